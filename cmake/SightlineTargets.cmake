@@ -1,0 +1,29 @@
+# How every library, tool and test of the project is made.
+
+# An empty library target sightline_NAME (alias sightline::NAME); folders add their files to it.
+function(sightline_library name)
+  add_library(sightline_${name} STATIC)
+  add_library(sightline::${name} ALIAS sightline_${name})
+  set_target_properties(sightline_${name} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(sightline_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include>)
+  sightline_settings(sightline_${name})
+endfunction()
+
+# Settings that hold for every target: the language, the warnings, and arithmetic that is the same everywhere.
+function(sightline_settings target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -ffp-contract=off
+    $<$<BOOL:${SIGHTLINE_WERROR}>:-Werror>)
+  if(SIGHTLINE_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${SIGHTLINE_SANITIZE} -fno-omit-frame-pointer
+      -fno-sanitize-recover=all)
+    target_link_options(${target} PUBLIC -fsanitize=${SIGHTLINE_SANITIZE})
+  endif()
+endfunction()
+
+# Adds the files of the current folder to sightline_TARGET.
+function(sightline_sources target)
+  list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE files)
+  target_sources(sightline_${target} PRIVATE ${files})
+endfunction()

@@ -1,0 +1,79 @@
+// A view: where the eye is, how it projects, and what the caller declares about the frame.
+// SPDX-License-Identifier: MIT
+#include "sightline/geom/view.h"
+
+#include <cmath>
+
+namespace sightline {
+
+glm::dmat4 lookAt(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) {
+    const glm::dvec3 back = glm::normalize(eye - target);
+    glm::dvec3 right = glm::cross(up, back);
+    if (!(glm::dot(right, right) > 1e-18 * glm::dot(up, up))) {
+        const glm::dvec3 other = std::abs(back.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+        right = glm::cross(other, back);
+    }
+    right = glm::normalize(right);
+    const glm::dvec3 above = glm::cross(back, right);
+    glm::dmat4 m(1.0);
+    for (int column = 0; column < 3; ++column) {
+        m[column][0] = right[column];
+        m[column][1] = above[column];
+        m[column][2] = back[column];
+    }
+    m[3] = glm::dvec4(-glm::dot(right, eye), -glm::dot(above, eye), -glm::dot(back, eye), 1.0);
+    return m;
+}
+
+glm::dmat4 perspective(double fov_y, double aspect, double z_near, double z_far) {
+    const double scale = 1.0 / std::tan(0.5 * fov_y);
+    glm::dmat4 m(0.0);
+    m[0][0] = scale / aspect;
+    m[1][1] = scale;
+    m[2][3] = -1.0;
+    if (std::isinf(z_far)) {
+        m[2][2] = -1.0;
+        m[3][2] = -2.0 * z_near;
+    } else {
+        m[2][2] = -(z_far + z_near) / (z_far - z_near);
+        m[3][2] = -2.0 * z_far * z_near / (z_far - z_near);
+    }
+    return m;
+}
+
+glm::dmat4 orthographic(double height, double aspect, double z_near, double z_far) {
+    glm::dmat4 m(0.0);
+    m[0][0] = 2.0 / (height * aspect);
+    m[1][1] = 2.0 / height;
+    m[3][3] = 1.0;
+    if (std::isinf(z_far)) {
+        // z = -1 at the near plane and falls short of 1 at any depth that double can tell apart.
+        m[2][2] = -0x1p-60;
+        m[3][2] = -1.0 - z_near * 0x1p-60;
+    } else {
+        m[2][2] = -2.0 / (z_far - z_near);
+        m[3][2] = -(z_far + z_near) / (z_far - z_near);
+    }
+    return m;
+}
+
+glm::dvec3 eyePosition(const View& view) {
+    const glm::dmat3 rotation(view.view);
+    return -(glm::transpose(rotation) * glm::dvec3(view.view[3]));
+}
+
+bool isOrthographic(const View& view) {
+    const glm::dmat4& p = view.projection;
+    return p[0][3] == 0.0 && p[1][3] == 0.0 && p[2][3] == 0.0;
+}
+
+bool isUsable(const View& view) {
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+            if (!std::isfinite(view.view[column][row]) || !std::isfinite(view.projection[column][row])) return false;
+    if (view.width == 0 || view.height == 0) return false;
+    const double determinant = glm::determinant(view.projection);
+    return std::isfinite(determinant) && determinant != 0.0;
+}
+
+}  // namespace sightline

@@ -1,0 +1,61 @@
+// A view: where the eye is, how it projects, and what the caller declares about the frame.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include <glm/glm.hpp>
+
+namespace sightline {
+
+/// The stages of a query, in the order in which they are applied. Their names are the names of
+/// the files in cull/.
+enum class Stage : uint8_t { kFrustum, kOcclusion };
+inline constexpr int kStageCount = 2;
+inline constexpr const char* kStageNames[kStageCount] = {"frustum", "occlusion"};
+inline constexpr uint32_t stageBit(Stage stage) { return 1u << static_cast<uint32_t>(stage); }
+inline constexpr uint32_t kAllStages = (1u << kStageCount) - 1;
+
+/// One eye's view of a world for one frame.
+///
+/// Matrices are column-major with column vectors: clip = projection * view * world. Clip space is
+/// OpenGL's: -w <= x, y, z <= w, y up, near at z = -w. The view must be rigid (rotation and
+/// translation); the projection may be perspective or orthographic, off-centre, with a finite or an
+/// infinite far plane. Anything that is not finite makes every object visible.
+struct View {
+    glm::dmat4 view{1.0};        ///< world to eye                                [rigid]
+    glm::dmat4 projection{1.0};  ///< eye to clip
+    uint32_t width = 1280;       ///< of the viewport                             [pixels, >= 1]
+    uint32_t height = 720;       ///<                                             [pixels, >= 1]
+    double jitter = 0.5;         ///< largest shift of the image that the frame may use  [pixels, >= 0]
+    uint32_t layers = ~0u;       ///< objects outside these layers are neither reported nor hide
+    uint32_t stages = kAllStages;             ///< bits of Stage: which stages may cull
+    uint32_t occluder_triangles = 1u << 20;   ///< work budget: triangles that may be rasterized  [limit]
+    bool time_stages = false;    ///< fill StageStats::nanoseconds (costs some time itself)
+};
+
+/// Right-handed, y up in clip space; up need not be orthogonal to the direction. If up is parallel
+/// to the direction, another axis is taken.
+glm::dmat4 lookAt(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up);
+
+/// @param fov_y   full vertical angle            [radians, in (0, pi)]
+/// @param aspect  width / height
+/// @param z_far   infinity for an infinite far plane
+glm::dmat4 perspective(double fov_y, double aspect, double z_near,
+                       double z_far = std::numeric_limits<double>::infinity());
+
+/// @param height  full height of the view volume [world units]
+/// z_far may be infinity: objects are then never culled for their depth.
+glm::dmat4 orthographic(double height, double aspect, double z_near, double z_far);
+
+/// The eye of a perspective view, or, for an orthographic one, the origin of its eye space.
+glm::dvec3 eyePosition(const View& view);
+
+/// True if clip w is the same for all points: parallel projection.
+bool isOrthographic(const View& view);
+
+/// True if all matrices are finite, the viewport has pixels, and the projection can be inverted.
+bool isUsable(const View& view);
+
+}  // namespace sightline

@@ -1,0 +1,24 @@
+// Makes an occluder from a mesh: exact vertex identities, clusters of nearby triangles.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+
+#include "sightline/geom/mesh_view.h"
+#include "sightline/geom/occluder.h"
+
+namespace sightline {
+
+/// Prepares the given triangles as an occluder.
+///
+/// Keeps every triangle except those that name a vertex twice or whose positions are not finite.
+/// Vertices are identified when their positions are equal to the last bit, never by tolerance.
+/// O(n log n) in the number of triangles.
+///
+/// @param mesh          object space
+/// @param hides         per triangle: whether it may hide  [size: triangles, or empty for all]
+/// @param double_sided  per triangle                       [size: triangles, or empty for none]
+Occluder prepareOccluder(const MeshView& mesh, std::span<const uint8_t> hides = {},
+                         std::span<const uint8_t> double_sided = {});
+
+}  // namespace sightline

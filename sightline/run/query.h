@@ -1,0 +1,78 @@
+// What can be seen in a snapshot from a view: one front-to-back walk, frustum and occlusion.
+// SPDX-License-Identifier: MIT
+//
+// Ned Greene, Michael Kass, Gavin Miller. Hierarchical Z-Buffer Visibility. 1993.
+// Jon Hasselgren, Magnus Andersson, Tomas Akenine-Moller. Masked Software Occlusion Culling. 2016.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "sightline/geom/view.h"
+#include "sightline/run/world.h"
+
+namespace sightline {
+
+struct Visible {
+    uint64_t key = 0;
+    ObjectId id;
+};
+
+/// Counts objects; a culled tree node counts all its objects.
+struct StageStats {
+    uint64_t tested = 0;
+    uint64_t culled = 0;
+    uint64_t doubt = 0;        ///< kept because the stage could not decide
+    uint64_t nanoseconds = 0;  ///< only with View::time_stages
+};
+
+struct QueryStats {
+    StageStats stages[kStageCount];
+    uint64_t objects = 0;              ///< in the snapshot, within View::layers
+    uint64_t visible = 0;              ///< = objects - the sum of culled
+    uint64_t nodes_visited = 0;
+    uint64_t occluder_triangles = 0;   ///< offered to the rasterizer
+    uint64_t seam_pixels = 0;          ///< resolved by exact pairing of edges
+    bool budget_spent = false;         ///< some visible occluders were not rasterized
+    uint64_t nanoseconds = 0;          ///< the whole query
+};
+
+struct VisibleSet {
+    std::span<const Visible> objects;  ///< front to back; valid until the query's next call
+    QueryStats stats;
+};
+
+/// Scratch of one thread; as many as there are threads. Allocates only when the world or the
+/// viewport has grown.
+class Query {
+public:
+    Query();
+    ~Query();
+    Query(Query&&) noexcept;
+    Query& operator=(Query&&) noexcept;
+
+    /// The objects that may be visible.
+    ///
+    /// Conservative: in exact projection of the positions given, every object with a visible point
+    /// is reported, at any resolution and under any image shift up to View::jitter. Objects in doubt
+    /// (bounds that touch the near plane or hold the eye, or are not finite) are reported and counted.
+    /// Deterministic: the same set, in the same order, on every instruction set.
+    VisibleSet visible(const Snapshot& now, const View& view);
+
+    /// For each object of the last answer's snapshot, in the order of World::add with removed objects
+    /// left out: 0 visible, 1 + Stage of the stage that culled it, 255 outside View::layers.
+    /// @param reasons  [size: Snapshot::objectCount()]
+    void reasons(std::span<uint8_t> reasons) const;
+
+    /// The occlusion buffer after the last answer, for pictures: nearness per buffer pixel, row 0 at
+    /// the bottom, 0 where nothing covers the whole pixel.
+    struct DepthImage { uint32_t width = 0, height = 0; std::span<const float> nearness; };
+    DepthImage depthImage();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sightline

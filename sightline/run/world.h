@@ -1,0 +1,70 @@
+// A world of objects that change, and its snapshots, which do not.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include <glm/glm.hpp>
+
+#include "sightline/geom/occluder.h"
+#include "sightline/math/box.h"
+
+namespace sightline {
+
+/// Ids are plain values; zero is null. A removed object's id is never given out again.
+struct ObjectId { uint32_t index = 0; uint32_t generation = 0; bool operator==(const ObjectId&) const = default; };
+struct OccluderId { uint32_t index = 0; bool operator==(const OccluderId&) const = default; };
+
+/// What an object is when it enters a world.
+struct ObjectDef {
+    Box3d bounds;                ///< object space, of everything that may be drawn: all LODs, all poses
+    glm::dmat4 transform{1.0};   ///< object to world, affine
+    uint64_t key = 0;            ///< yours; reported back
+    OccluderId occluder;         ///< what it hides with, or null
+    uint32_t layers = 1;         ///< bit mask; View::layers selects
+};
+
+namespace detail { struct WorldState; struct SnapshotState; }
+
+/// An immutable state of a world; cheap to copy, safe to share among threads, lives as long as any
+/// copy of it does.
+class Snapshot {
+public:
+    uint32_t objectCount() const;
+    const detail::SnapshotState& state() const { return *state_; }
+    explicit operator bool() const { return state_ != nullptr; }
+
+private:
+    friend class World;
+    std::shared_ptr<const detail::SnapshotState> state_;
+};
+
+/// The objects as they change. Not thread-safe itself; its snapshots are.
+class World {
+public:
+    World();
+    ~World();
+    World(World&&) noexcept;
+    World& operator=(World&&) noexcept;
+
+    /// Copies the occluder; many objects may share it. It lives as long as the world and its snapshots.
+    OccluderId addOccluder(Occluder occluder);
+
+    /// Bounds that are NaN, infinite, or empty make an object that is always visible and never hides.
+    ObjectId add(const ObjectDef& object);
+    /// False if the id is stale.
+    bool move(ObjectId id, const glm::dmat4& transform);
+    bool remove(ObjectId id);
+
+    /// The world as it is now. Costs O(changes log objects) for moves and O(objects log objects)
+    /// after additions and removals.
+    Snapshot commit();
+
+    uint32_t objectCount() const;
+
+private:
+    std::unique_ptr<detail::WorldState> state_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,81 @@
+// A scene as plain data: what an importer fills and what a world, a renderer or a witness reads.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "sightline/math/box.h"
+
+namespace sightline {
+
+enum class AlphaMode : uint8_t { kOpaque, kMask, kBlend };
+
+struct Material {
+    std::string name;
+    glm::vec4 base_color{1.0f};
+    AlphaMode alpha_mode = AlphaMode::kOpaque;
+    float alpha_cutoff = 0.5f;
+    bool double_sided = false;
+    bool transmissive = false;  ///< KHR_materials_transmission and its kin
+
+    /// Only opaque, non-transmissive surfaces hide what is behind them.
+    bool hides() const { return alpha_mode == AlphaMode::kOpaque && !transmissive; }
+};
+
+/// A run of triangles of one material.
+struct Primitive {
+    uint32_t first_triangle = 0;
+    uint32_t triangle_count = 0;
+    uint32_t material = 0;  ///< index into Scene::materials
+};
+
+/// Triangles in object space; counter-clockwise is front. Every position is finite.
+struct Mesh {
+    std::string name;
+    std::vector<glm::vec3> positions;
+    std::vector<uint32_t> indices;      ///< [size: 3 * triangles]
+    std::vector<Primitive> primitives;  ///< covers the triangles in order, without gaps
+    Box3d bounds;          ///< of the positions and, where the mesh deforms, of every pose
+    bool deforms = false;  ///< skinned or morphed: is bounded by `bounds`, and hides nothing
+
+    size_t triangles() const { return indices.size() / 3; }
+};
+
+/// One drawn instance of a mesh.
+struct SceneObject {
+    uint64_t key = 0;   ///< glTF: the node's index; GPU instances of one node share it
+    uint32_t mesh = 0;  ///< index into Scene::meshes
+    glm::dmat4 transform{1.0};  ///< object to world, affine; a negative determinant flips the winding
+    std::string name;
+};
+
+/// A camera that came with the scene.
+struct SceneCamera {
+    std::string name;
+    glm::dmat4 transform{1.0};  ///< camera to world; looks along its -z, y up
+    double fov_y = 0;           ///< [radians]; 0: orthographic
+    double orthographic_height = 0;  ///< full height [world units]; 0: perspective
+    double z_near = 0.1;
+    std::optional<double> z_far;     ///< none: infinite
+};
+
+struct Scene {
+    std::string name;  ///< the file's name or the procedural scene's specification
+    std::vector<Material> materials;  ///< never empty once imported: index 0 is glTF's default if needed
+    std::vector<Mesh> meshes;
+    std::vector<SceneObject> objects;
+    std::vector<SceneCamera> cameras;
+};
+
+/// Triangles that would be drawn: each object's mesh counted once per object.
+uint64_t drawnTriangles(const Scene& scene);
+
+/// The box around all objects' bounds, in world space. Empty if there are no objects.
+Box3d worldBounds(const Scene& scene);
+
+}  // namespace sightline
