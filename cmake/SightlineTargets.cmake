@@ -2,7 +2,8 @@
 
 # An empty library target sightline_NAME (alias sightline::NAME); folders add their files to it.
 function(sightline_library name)
-  add_library(sightline_${name} STATIC)
+  file(TOUCH ${CMAKE_BINARY_DIR}/empty.cpp)
+  add_library(sightline_${name} STATIC ${CMAKE_BINARY_DIR}/empty.cpp)
   add_library(sightline::${name} ALIAS sightline_${name})
   set_target_properties(sightline_${name} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(sightline_${name} PUBLIC
