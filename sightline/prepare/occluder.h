@@ -1,4 +1,4 @@
-// Makes an occluder from a mesh: exact vertex identities, clusters of nearby triangles.
+// Makes an occluder from a mesh: its hiding triangles, bit for bit, in clusters of nearby ones.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -12,7 +12,7 @@ namespace sightline {
 /// Prepares the given triangles as an occluder.
 ///
 /// Keeps every triangle except those that name a vertex twice or whose positions are not finite.
-/// Vertices are identified when their positions are equal to the last bit, never by tolerance.
+/// Positions are kept bit for bit (a negative zero becomes zero); nothing is welded by tolerance.
 /// O(n log n) in the number of triangles.
 ///
 /// @param mesh          object space

@@ -1,0 +1,225 @@
+// Occlusion against the depth tiles: occludee boxes become pixel rectangles, visible occluders are drawn.
+// SPDX-License-Identifier: MIT
+#include "sightline/cull/occlusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sightline/cull/occlusion.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F8 = hn::CappedTag<float, 8>;
+using V = hn::Vec<F8>;
+
+/// A row of the screen map over eight boxes: the terms of each axis at both bounds, and the rounding.
+struct RowTerms {
+    V low[3], high[3], constant, error;
+};
+
+HWY_INLINE RowTerms rowTerms(F8 d, const glm::dvec4& row, const EyeBoxes& boxes, size_t i) {
+    RowTerms t;
+    t.constant = hn::Set(d, static_cast<float>(row.w));
+    V size = hn::Abs(t.constant);
+    for (int axis = 0; axis < 3; ++axis) {
+        const V factor = hn::Set(d, static_cast<float>(row[axis]));
+        t.low[axis] = hn::Mul(factor, hn::Load(d, boxes.min[axis] + i));
+        t.high[axis] = hn::Mul(factor, hn::Load(d, boxes.max[axis] + i));
+        size = hn::Add(size, hn::Max(hn::Abs(t.low[axis]), hn::Abs(t.high[axis])));
+    }
+    t.error = hn::Mul(size, hn::Set(d, 0x1p-20f));  // eight roundings of 2^-24 or 2^-23 of the sum of sizes
+    return t;
+}
+
+HWY_INLINE V corner(const RowTerms& t, int which) {
+    return hn::Add(hn::Add(which & 1 ? t.high[0] : t.low[0], which & 2 ? t.high[1] : t.low[1]),
+                   hn::Add(which & 4 ? t.high[2] : t.low[2], t.constant));
+}
+
+HWY_INLINE V least(const RowTerms& t) {
+    return hn::Add(hn::Add(hn::Min(t.low[0], t.high[0]), hn::Min(t.low[1], t.high[1])),
+                   hn::Add(hn::Min(t.low[2], t.high[2]), t.constant));
+}
+
+HWY_INLINE V greatest(const RowTerms& t) {
+    return hn::Add(hn::Add(hn::Max(t.low[0], t.high[0]), hn::Max(t.low[1], t.high[1])),
+                   hn::Add(hn::Max(t.low[2], t.high[2]), t.constant));
+}
+
+/// Bounds of projected boxes in pixels and nearness, before they are rounded to whole pixels: x0, y0, x1, y1,
+/// nearness. Returns a bit per box that cannot be projected.
+uint32_t projectBoxesKernel(const Screen& screen, const EyeBoxes& boxes, float (*out)[8]) {
+    const F8 d;
+    uint32_t doubt = 0;
+    for (size_t i = 0; i < 8; i += hn::Lanes(d)) {
+        const RowTerms x = rowTerms(d, screen.x, boxes, i), y = rowTerms(d, screen.y, boxes, i);
+        const RowTerms w = rowTerms(d, screen.w, boxes, i), near = rowTerms(d, screen.near, boxes, i);
+        const V w_least = hn::Sub(least(w), w.error);
+        const auto sure = hn::And(hn::Gt(least(near), near.error), hn::Gt(w_least, hn::Zero(d)));
+        V x0 = hn::Set(d, 3e38f), y0 = x0, x1 = hn::Neg(x0), y1 = x1;
+        for (int which = 0; which < 8; ++which) {
+            const V inverse = hn::Div(hn::Set(d, 1.0f), corner(w, which));
+            const V px = hn::Mul(corner(x, which), inverse), py = hn::Mul(corner(y, which), inverse);
+            x0 = hn::Min(x0, px);
+            x1 = hn::Max(x1, px);
+            y0 = hn::Min(y0, py);
+            y1 = hn::Max(y1, py);
+        }
+        // x/w moves by at most (ex + |x/w| ew) / w.
+        const V over = hn::Div(hn::Set(d, 1.0f + 0x1p-18f), w_least);
+        const V wx = hn::Max(hn::Abs(x0), hn::Abs(x1)), wy = hn::Max(hn::Abs(y0), hn::Abs(y1));
+        const V tiny = hn::Set(d, 0x1p-22f);
+        const V grow_x = hn::Add(hn::Mul(hn::Add(x.error, hn::Mul(wx, w.error)), over), hn::Mul(wx, tiny));
+        const V grow_y = hn::Add(hn::Mul(hn::Add(y.error, hn::Mul(wy, w.error)), over), hn::Mul(wy, tiny));
+        hn::Store(hn::Sub(x0, grow_x), d, out[0] + i);
+        hn::Store(hn::Sub(y0, grow_y), d, out[1] + i);
+        hn::Store(hn::Add(x1, grow_x), d, out[2] + i);
+        hn::Store(hn::Add(y1, grow_y), d, out[3] + i);
+        if (screen.perspective) {
+            hn::Store(over, d, out[4] + i);
+        } else {
+            const RowTerms depth = rowTerms(d, screen.d, boxes, i);
+            hn::Store(hn::Add(greatest(depth), depth.error), d, out[4] + i);
+        }
+        uint8_t bits[8] = {};
+        hn::StoreMaskBits(d, sure, bits);
+        doubt |= (~uint32_t{bits[0]} & ((1u << hn::Lanes(d)) - 1)) << i;
+    }
+    return doubt;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sightline
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline {
+namespace {
+
+constexpr double kWorstPosition = 0.125;  // [pixels]: occluders known less exactly are left out
+
+/// Rounds bounds outward to whole pixels inside the buffer; false if nothing is left, or if they are not numbers.
+enum class Fit { kInside, kOutside, kDoubt };
+Fit toPixels(const Screen& screen, double x0, double y0, double x1, double y1, PixelRect& rect) {
+    if (!(x0 <= x1 && y0 <= y1)) return Fit::kDoubt;
+    const double width = screen.width, height = screen.height;
+    if (x1 < 0 || y1 < 0 || x0 > width || y0 > height) return Fit::kOutside;
+    rect.x0 = static_cast<int32_t>(std::max(x0, 0.0));
+    rect.y0 = static_cast<int32_t>(std::max(y0, 0.0));
+    rect.x1 = static_cast<int32_t>(std::min(x1, width - 1.0));
+    rect.y1 = static_cast<int32_t>(std::min(y1, height - 1.0));
+    rect.x0 = std::min(rect.x0, rect.x1);
+    rect.y0 = std::min(rect.y0, rect.y1);
+    return Fit::kInside;
+}
+
+}  // namespace
+
+HWY_EXPORT(projectBoxesKernel);
+
+ScreenAnswer projectBoxes(const Screen& screen, const EyeBoxes& boxes) {
+    alignas(64) float bounds[5][8];
+    ScreenAnswer answer;
+    answer.doubt = HWY_DYNAMIC_DISPATCH(projectBoxesKernel)(screen, boxes, bounds);
+    for (int i = 0; i < 8; ++i) {
+        if (answer.doubt >> i & 1) continue;
+        const Fit fit = toPixels(screen, bounds[0][i], bounds[1][i], bounds[2][i], bounds[3][i], answer.rects[i]);
+        answer.rects[i].nearness = bounds[4][i];
+        if (fit == Fit::kDoubt || std::isnan(bounds[4][i])) answer.doubt |= 1u << i;
+        else if (fit == Fit::kOutside) answer.outside |= 1u << i;
+    }
+    return answer;
+}
+
+BoxAnswer projectBox(const Screen& object, const Box3f& box) {
+    constexpr double kRounding = 0x1p-46;
+    BoxAnswer answer;
+    double x0 = 1e300, y0 = 1e300, x1 = -1e300, y1 = -1e300, w_least = 1e300, near_least = 1e300, d_most = -1e300;
+    double size_w = 0, size_near = 0, size_d = 0;
+    for (int which = 0; which < 8; ++which) {
+        const glm::dvec4 p(which & 1 ? box.max.x : box.min.x, which & 2 ? box.max.y : box.min.y,
+                           which & 4 ? box.max.z : box.min.z, 1.0);
+        const double w = glm::dot(object.w, p), near = glm::dot(object.near, p), d = glm::dot(object.d, p);
+        const double px = glm::dot(object.x, p) / w, py = glm::dot(object.y, p) / w;
+        w_least = std::min(w_least, w);
+        near_least = std::min(near_least, near);
+        d_most = std::max(d_most, d);
+        size_w = std::max(size_w, std::abs(w));
+        size_near = std::max(size_near, std::abs(near));
+        size_d = std::max(size_d, std::abs(d));
+        x0 = std::min(x0, px);
+        x1 = std::max(x1, px);
+        y0 = std::min(y0, py);
+        y1 = std::max(y1, py);
+    }
+    // Doubles: a millionth of a pixel is far above the rounding of any place inside the buffer.
+    constexpr double kSlack = 1e-6;
+    if (!(near_least > kRounding * size_near && w_least > kRounding * size_w)) {
+        answer.doubt = true;
+        return answer;
+    }
+    const Fit fit = toPixels(object, x0 - kSlack, y0 - kSlack, x1 + kSlack, y1 + kSlack, answer.rect);
+    answer.outside = fit == Fit::kOutside;
+    answer.doubt = fit == Fit::kDoubt;
+    const double nearness = object.perspective ? 1.0 / w_least : d_most;
+    answer.rect.nearness = static_cast<float>(nearness + std::abs(nearness) * 0x1p-22 + 0x1p-40 * size_d);
+    return answer;
+}
+
+OccluderInstance makeOccluderInstance(const Screen& screen, const Occluder& occluder, const glm::dmat4& transform) {
+    OccluderInstance instance;
+    instance.occluder = &occluder;
+    instance.transform = &transform;
+    instance.screen = objectScreen(screen, transform);
+    instance.flips = glm::determinant(glm::dmat3(transform)) < 0.0;
+    uint64_t words[16];
+    static_assert(sizeof words == sizeof transform);
+    std::memcpy(words, &transform, sizeof words);
+    uint64_t hash = 0x2545f4914f6cdd1dull;
+    for (uint64_t word : words) hash = (hash ^ word) * 0x9e3779b97f4a7c15ull, hash ^= hash >> 32;
+    instance.transform_hash = hash;
+    double size = 0;
+    for (int row = 0; row < 3; ++row) {
+        size += std::abs(transform[3][row]) + std::abs(screen.eye[row]);
+        for (int column = 0; column < 3; ++column)
+            size += std::abs(transform[column][row]) *
+                    std::max(std::abs(occluder.bounds.min[column]), std::abs(occluder.bounds.max[column]));
+    }
+    const double world_error = size * 0x1p-49;  // sixteen roundings of 2^-53
+    const auto errorOf = [&](const glm::dvec4& row) { return world_error * glm::length(glm::dvec3(row)); };
+    instance.pixel_error = errorOf(screen.x) + errorOf(screen.y) +
+                           2.0 * std::max(screen.width, screen.height) * errorOf(screen.w);
+    instance.depth_error = screen.perspective ? errorOf(screen.w) : errorOf(screen.d);
+    instance.clips = 4.0 * errorOf(screen.near) < screen.near_guard;
+    return instance;
+}
+
+uint32_t drawOccluder(DepthTiles& tiles, const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box) {
+    const Screen& screen = instance.screen;
+    double w = screen.near_w;
+    if (screen.perspective && !box.doubt) w = std::max(w, 1.0 / box.rect.nearness);
+    if (!(w > 0.0)) return 0;
+    DrawnCluster drawn;
+    drawn.occluder = instance.occluder;
+    drawn.transform = instance.transform;
+    drawn.transform_hash = instance.transform_hash;
+    drawn.cluster = cluster;
+    drawn.position_error = 0x1p-36 + instance.pixel_error / w;
+    drawn.depth_error = screen.perspective ? instance.depth_error / (w * w) : instance.depth_error;
+    drawn.clips = instance.clips;
+    if (!(drawn.position_error < kWorstPosition)) return 0;
+    drawCluster(tiles, screen, instance.flips, drawn);
+    return instance.occluder->clusters[cluster].triangle_count;
+}
+
+}  // namespace sightline
+#endif  // HWY_ONCE

@@ -1,0 +1,52 @@
+// Occlusion against the depth tiles: occludee boxes become pixel rectangles, visible occluders are drawn.
+// SPDX-License-Identifier: MIT
+//
+// Hansong Zhang, Dinesh Manocha, Tom Hudson, Kenneth Hoff. Visibility Culling Using Hierarchical Occlusion Maps. 1997.
+#pragma once
+
+#include <cstdint>
+
+#include "sightline/cull/frustum.h"
+#include "sightline/raster/tiles.h"
+
+namespace sightline {
+
+/// What eight boxes are to an occlusion buffer.
+struct ScreenAnswer {
+    PixelRect rects[8];
+    uint32_t doubt = 0;    ///< bit per box: touches the near plane or cannot be projected; it is visible
+    uint32_t outside = 0;  ///< bit per box: surely misses the buffer, and with it the widened viewport
+};
+
+/// Projects boxes to the smallest rectangles of whole pixels, with the nearest depth of each box; both are moved
+/// to the safe side by more than rounding could have moved them.
+ScreenAnswer projectBoxes(const Screen& screen, const EyeBoxes& boxes);
+
+/// One box in object space, in double, in the same way.
+/// @param object  objectScreen(screen, transform)
+struct BoxAnswer {
+    PixelRect rect;
+    bool doubt = false, outside = false;
+};
+BoxAnswer projectBox(const Screen& object, const Box3f& box);
+
+/// An object whose occluder is being drawn: its place, and how exactly that place is known.
+struct OccluderInstance {
+    const Occluder* occluder = nullptr;
+    const glm::dmat4* transform = nullptr;  ///< must outlive the frame
+    uint64_t transform_hash = 0;
+    Screen screen;              ///< objectScreen() of the transform
+    bool flips = false;         ///< the transform's determinant is negative
+    double pixel_error = 0;     ///< bound on the rounding of a projected vertex at w = 1 [pixels]
+    double depth_error = 0;     ///< bound on the rounding of its w, or of its depth in parallel projection
+    bool clips = false;         ///< and of its distance from the near plane: small against the near guard
+};
+
+OccluderInstance makeOccluderInstance(const Screen& screen, const Occluder& occluder, const glm::dmat4& transform);
+
+/// Draws one cluster, unless its place is known too badly to be sound.
+/// @param box  projectBox() of the cluster's bounds
+/// @returns triangles offered to the rasterizer
+uint32_t drawOccluder(DepthTiles& tiles, const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box);
+
+}  // namespace sightline

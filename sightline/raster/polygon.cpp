@@ -1,0 +1,112 @@
+// A projected occluder polygon ready for scan conversion: edge functions, depth plane, pixel bounds.
+// SPDX-License-Identifier: MIT
+#include "sightline/raster/polygon.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sightline {
+namespace {
+
+constexpr double kFarthestCorner = 0x1p32;  // [pixels]: beyond, a double's step shows in an edge function
+constexpr double kShortestEdge = 0x1p-10;   // [pixels]: shorter edges have no direction to rely on
+constexpr double kEvaluation = 0x1p-16;     // [pixels]: bound on the error of an edge function in float
+
+EdgeFunction makeEdge(double x0, double y0, double x1, double y1, double length) {
+    EdgeFunction e;
+    e.a = (y0 - y1) / length;
+    e.b = (x1 - x0) / length;
+    // Anchored at the end nearer to the buffer, so that a far corner's magnitude does not enter.
+    const bool first = std::abs(x0) + std::abs(y0) <= std::abs(x1) + std::abs(y1);
+    e.c = -(e.a * (first ? x0 : x1) + e.b * (first ? y0 : y1));
+    return e;
+}
+
+/// The plane through three corners.
+void makePlane(const double* x, const double* y, const double* d, double area2, int c, RasterPolygon& out) {
+    const double ux = x[c - 1] - x[0], uy = y[c - 1] - y[0], ud = d[c - 1] - d[0];
+    const double vx = x[c] - x[0], vy = y[c] - y[0], vd = d[c] - d[0];
+    out.dx = (ud * vy - vd * uy) / area2;
+    out.dy = (vd * ux - ud * vx) / area2;
+    out.d0 = d[0] - out.dx * x[0] - out.dy * y[0];
+    out.planar = std::isfinite(out.d0) && std::isfinite(out.dx) && std::isfinite(out.dy);
+}
+
+/// For a sliver, of which not even the winding is certain: the band around its longest side.
+void makeBand(const double* x, const double* y, int count, double area2, double slack, RasterPolygon& out) {
+    out.covers = false;
+    out.edges = 0;
+    double longest = kShortestEdge;
+    int at = -1;
+    for (int i = 0; i < count; ++i) {
+        const int j = i + 1 < count ? i + 1 : 0;
+        const double length = std::abs(x[j] - x[i]) + std::abs(y[j] - y[i]);
+        if (length < longest) continue;
+        longest = length;
+        at = i;
+    }
+    if (at < 0) return;
+    const int next = at + 1 < count ? at + 1 : 0;
+    const EdgeFunction e = makeEdge(x[at], y[at], x[next], y[next], longest);
+    const double reach = 8.0 * slack + area2 / longest;
+    out.edge[out.edges++] = {e.a, e.b, e.c + reach};
+    out.edge[out.edges++] = {-e.a, -e.b, -e.c + reach};
+}
+
+}  // namespace
+
+bool makeRasterPolygon(const double* x, const double* y, const double* d, int count, double position_error,
+                       double depth_error, uint32_t width, uint32_t height, RasterPolygon& out) {
+    const double slack = position_error + kEvaluation;
+    double x_min = x[0], x_max = x[0], y_min = y[0], y_max = y[0], d_min = d[0], d_max = d[0];
+    for (int i = 1; i < count; ++i) {
+        x_min = std::min(x_min, x[i]);
+        x_max = std::max(x_max, x[i]);
+        y_min = std::min(y_min, y[i]);
+        y_max = std::max(y_max, y[i]);
+        d_min = std::min(d_min, d[i]);
+        d_max = std::max(d_max, d[i]);
+    }
+    if (!(x_max + slack >= 0 && y_max + slack >= 0 && x_min - slack < width && y_min - slack < height)) return false;
+    if (!(x_min > -kFarthestCorner && y_min > -kFarthestCorner && x_max < kFarthestCorner && y_max < kFarthestCorner))
+        return false;
+    out.x0 = static_cast<int32_t>(std::max(0.0, std::floor(x_min - slack)));
+    out.y0 = static_cast<int32_t>(std::max(0.0, std::floor(y_min - slack)));
+    out.x1 = static_cast<int32_t>(std::min(width - 1.0, std::floor(x_max + slack)));
+    out.y1 = static_cast<int32_t>(std::min(height - 1.0, std::floor(y_max + slack)));
+
+    const double size = std::max(std::abs(d_min), std::abs(d_max));
+    const double corner_error = size * 0x1p-36 + depth_error;
+    out.farthest = static_cast<float>(d_min - corner_error - std::abs(d_min) * 0x1p-22);
+    out.nearest = static_cast<float>(d_max + corner_error + std::abs(d_max) * 0x1p-22);
+    // Inside a covered pixel a barycentric coordinate is wrong by at most three position errors over a height of
+    // the triangle that made the plane, which is half a pixel or more: nine such terms, doubled for a quadrangle.
+    out.depth_error = static_cast<float>(corner_error + 36.0 * position_error * (d_max - d_min));
+    out.slack = static_cast<float>(slack);
+
+    out.edges = 0;
+    out.covers = x_max - x_min >= 1.0 - slack && y_max - y_min >= 1.0 - slack;
+    double area2 = 0, best = 0, perimeter = 0;
+    int widest = 2;
+    for (int i = 2; i < count; ++i) {
+        const double part = (x[i - 1] - x[0]) * (y[i] - y[0]) - (x[i] - x[0]) * (y[i - 1] - y[0]);
+        area2 += part;
+        if (part > best) {
+            best = part;
+            widest = i;
+        }
+    }
+    for (int i = 0; i < count; ++i) {
+        const int j = i + 1 < count ? i + 1 : 0;
+        const double length = std::abs(x[j] - x[i]) + std::abs(y[j] - y[i]);
+        perimeter += length;
+        if (length < kShortestEdge) out.covers = false;
+        else out.edge[out.edges++] = makeEdge(x[i], y[i], x[j], y[j], length);
+    }
+    out.planar = false;
+    if (area2 <= 4.0 * slack * perimeter) makeBand(x, y, count, std::abs(area2), slack, out);
+    else if (out.covers) makePlane(x, y, d, best, widest, out);
+    return true;
+}
+
+}  // namespace sightline

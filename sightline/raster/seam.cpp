@@ -1,0 +1,299 @@
+// Covers a pixel by the triangles that share it, joined where their edges are identical in world space.
+// SPDX-License-Identifier: MIT
+//
+// The argument. Let F be a set of triangles, w(p) the number of those with counter-clockwise images that hold the
+// image point p less the clockwise ones. Crossing an edge changes w unless another triangle of F has the same edge
+// the other way round. So if every edge of F that meets the pixel is paired off like that, w is the same all over
+// the pixel; and if it is 1 or more at one point, each ray through the pixel meets a counter-clockwise, that is a
+// front-facing triangle of F, no farther than the farthest point of F in the pixel. Which edges meet the pixel, and
+// which triangles hold the point, is decided with a margin above the rounding; which edges are the same, exactly.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "sightline/raster/polygon.h"
+#include "sightline/raster/tiles.h"
+
+namespace sightline {
+namespace {
+
+constexpr int kMaxTriangles = 192;  // work cap: a pixel with more of them stays open
+constexpr double kMargin = 0x1p-15; // [pixels]: above all rounding of edge functions here
+
+struct Point {
+    float x, y, z;  // no initial values: a resolver is made for each pixel
+    bool operator==(const Point&) const = default;
+};
+
+/// A polygon as the pixel sees it.
+struct Piece {
+    double x[4], y[4], d[4];
+    Point from[4], to[4];     ///< mesh edge that side i lies on
+    bool open[4];             ///< the side has no partner: the near plane made it
+    int count;
+    const DrawnCluster* drawn;
+    double error;   ///< bound on the error of sideAt()
+    int group;
+    bool alive;
+};
+
+/// A side that meets the pixel.
+struct Side {
+    uint64_t key;  ///< the same for both directions
+    int piece;
+    int side;
+    bool forward;
+};
+
+uint64_t hashPoint(const Point& p, uint64_t seed) {
+    uint32_t bits[3];
+    std::memcpy(bits, &p, sizeof bits);
+    uint64_t h = seed;
+    for (uint32_t b : bits) h = (h ^ b) * 0x9e3779b97f4a7c15ull, h ^= h >> 29;
+    return h;
+}
+
+bool less(const Point& a, const Point& b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; }
+
+Point meshPoint(const DrawnCluster& drawn, uint8_t vertex) {
+    const Occluder& o = *drawn.occluder;
+    const size_t at = size_t{o.clusters[drawn.cluster].first_vertex} + vertex;
+    return {o.x[at], o.y[at], o.z[at]};
+}
+
+void loadPiece(const DepthTiles& tiles, const SeamTriangle& triangle, Piece& piece) {
+    const DrawnCluster& drawn = tiles.drawn[triangle.drawn];
+    piece.drawn = &drawn;
+    piece.error = drawn.position_error + kMargin;
+    piece.alive = true;
+    if (triangle.clipped != SeamTriangle::kWhole) {
+        const ClippedPolygon& c = tiles.clipped[triangle.clipped];
+        piece.count = c.count;
+        for (int i = 0; i < c.count; ++i) {
+            piece.x[i] = c.x[i];
+            piece.y[i] = c.y[i];
+            piece.d[i] = c.d[i];
+            piece.open[i] = c.open[i];
+            if (!c.open[i]) piece.from[i] = meshPoint(drawn, c.from[i]), piece.to[i] = meshPoint(drawn, c.to[i]);
+        }
+        return;
+    }
+    piece.count = 3;
+    for (int i = 0; i < 3; ++i) {
+        const size_t at = size_t{drawn.first_vertex} + triangle.vertex[i];
+        piece.x[i] = tiles.px[at];
+        piece.y[i] = tiles.py[at];
+        piece.d[i] = tiles.pd[at];
+        piece.open[i] = false;
+        piece.from[i] = meshPoint(drawn, triangle.vertex[i]);
+        piece.to[i] = meshPoint(drawn, triangle.vertex[(i + 1) % 3]);
+    }
+}
+
+/// The edge function of side i at a point, scaled as in RasterPolygon; NaN for a side too short for a direction.
+double sideAt(const Piece& p, int i, double x, double y) {
+    const int j = i + 1 < p.count ? i + 1 : 0;
+    const double a = p.y[i] - p.y[j], b = p.x[j] - p.x[i];
+    const double length = std::abs(a) + std::abs(b);
+    if (length < 0x1p-10) return std::numeric_limits<double>::quiet_NaN();
+    const bool first = std::abs(p.x[i] - x) + std::abs(p.y[i] - y) <= std::abs(p.x[j] - x) + std::abs(p.y[j] - y);
+    return (a * (x - (first ? p.x[i] : p.x[j])) + b * (y - (first ? p.y[i] : p.y[j]))) / length;
+}
+
+/// False only if side i surely misses the pixel whose centre is given.
+bool sideMeets(const Piece& p, int i, double x, double y) {
+    const int j = i + 1 < p.count ? i + 1 : 0;
+    const double reach = 0.5 + p.error;
+    if (std::max(p.x[i], p.x[j]) < x - reach || std::min(p.x[i], p.x[j]) > x + reach) return false;
+    if (std::max(p.y[i], p.y[j]) < y - reach || std::min(p.y[i], p.y[j]) > y + reach) return false;
+    const double e = sideAt(p, i, x, y);
+    return !(std::abs(e) > reach);
+}
+
+/// +1 or -1 if the point is surely inside a counter-clockwise or a clockwise piece, 0 if surely outside;
+/// kUnsure if rounding could decide.
+constexpr int kUnsure = 9;
+int windingAt(const Piece& p, double x, double y) {
+    bool positive = false, negative = false, unsure = false;
+    double x_min = p.x[0], x_max = p.x[0], y_min = p.y[0], y_max = p.y[0];
+    for (int i = 0; i < p.count; ++i) {
+        x_min = std::min(x_min, p.x[i]);
+        x_max = std::max(x_max, p.x[i]);
+        y_min = std::min(y_min, p.y[i]);
+        y_max = std::max(y_max, p.y[i]);
+        const double e = sideAt(p, i, x, y);
+        if (e > 2.0 * p.error) positive = true;
+        else if (e < -2.0 * p.error) negative = true;
+        else unsure = true;
+    }
+    const double m = 2.0 * p.error;
+    if (x < x_min - m || x > x_max + m || y < y_min - m || y > y_max + m) return 0;
+    if (positive && negative) return 0;
+    if (unsure) return kUnsure;
+    return positive ? 1 : -1;
+}
+
+bool sameTransform(const DrawnCluster& a, const DrawnCluster& b) {
+    return a.transform == b.transform ||
+           (a.transform_hash == b.transform_hash && std::memcmp(a.transform, b.transform, sizeof *a.transform) == 0);
+}
+
+/// Whether two sides are the same edge run through in opposite directions: exactly, in world space.
+bool areOpposite(const Piece& a, int i, const Piece& b, int j) {
+    return a.from[i] == b.to[j] && a.to[i] == b.from[j] && sameTransform(*a.drawn, *b.drawn);
+}
+
+struct Resolver {
+    Piece pieces[kMaxTriangles];
+    Side sides[4 * kMaxTriangles];
+    int partner[4 * kMaxTriangles];
+    int piece_count = 0, side_count = 0;
+
+    /// Lists the sides that meet the pixel. A piece with an open one there cannot help.
+    void collectSides(double x, double y) {
+        side_count = 0;
+        for (int p = 0; p < piece_count; ++p) {
+            Piece& piece = pieces[p];
+            if (!piece.alive) continue;
+            const int first = side_count;
+            for (int i = 0; i < piece.count; ++i) {
+                if (!sideMeets(piece, i, x, y)) continue;
+                if (piece.open[i]) {
+                    piece.alive = false;
+                    break;
+                }
+                const bool forward = less(piece.from[i], piece.to[i]);
+                const Point &low = forward ? piece.from[i] : piece.to[i], &high = forward ? piece.to[i] : piece.from[i];
+                const uint64_t key = hashPoint(high, hashPoint(low, piece.drawn->transform_hash));
+                sides[side_count++] = {key, p, i, forward};
+            }
+            if (!piece.alive) side_count = first;
+        }
+        std::sort(sides, sides + side_count, [](const Side& a, const Side& b) {
+            return a.key != b.key ? a.key < b.key : a.piece != b.piece ? a.piece < b.piece : a.side < b.side;
+        });
+    }
+
+    /// Pairs each living side with an opposite one, one to one; pieces left with a single side die, and the
+    /// pairing is made again until none does.
+    void pairSides() {
+        for (bool again = true; again;) {
+            again = false;
+            for (int i = 0; i < side_count; ++i) partner[i] = -1;
+            for (int i = 0; i < side_count; ++i) {
+                if (partner[i] >= 0 || !pieces[sides[i].piece].alive) continue;
+                for (int j = i + 1; j < side_count && sides[j].key == sides[i].key; ++j) {
+                    if (partner[j] >= 0 || !pieces[sides[j].piece].alive) continue;
+                    if (!areOpposite(pieces[sides[i].piece], sides[i].side, pieces[sides[j].piece], sides[j].side))
+                        continue;
+                    partner[i] = j;
+                    partner[j] = i;
+                    break;
+                }
+                if (partner[i] < 0) {
+                    pieces[sides[i].piece].alive = false;
+                    again = true;
+                }
+            }
+        }
+    }
+
+    int rootOf(int p) {
+        while (pieces[p].group != p) p = pieces[p].group = pieces[pieces[p].group].group;
+        return p;
+    }
+
+    void joinGroups() {
+        for (int p = 0; p < piece_count; ++p) pieces[p].group = p;
+        for (int i = 0; i < side_count; ++i)
+            if (pieces[sides[i].piece].alive && partner[i] > i)
+                pieces[rootOf(sides[i].piece)].group = rootOf(sides[partner[i]].piece);
+    }
+
+    /// Whether a group's winding number is 1 or more at a point of the pixel.
+    bool holdsPixel(int group, double x, double y) {
+        static constexpr double kPlaces[5][2] = {{0, 0}, {0.23, 0.31}, {-0.29, 0.19}, {0.37, -0.27}, {-0.17, -0.33}};
+        for (const auto& place : kPlaces) {
+            int winding = 0;
+            bool sure = true;
+            for (int p = 0; p < piece_count && sure; ++p) {
+                if (!pieces[p].alive || rootOf(p) != group) continue;
+                const int w = windingAt(pieces[p], x + place[0], y + place[1]);
+                sure = w != kUnsure;
+                winding += w;
+            }
+            if (sure) return winding >= 1;
+        }
+        return false;
+    }
+
+    /// No point of the piece inside the pixel is farther.
+    static double farthestIn(const Piece& piece, const DepthTiles& tiles, double x, double y) {
+        RasterPolygon polygon;
+        double least = piece.d[0];
+        for (int i = 1; i < piece.count; ++i) least = std::min(least, piece.d[i]);
+        if (!makeRasterPolygon(piece.x, piece.y, piece.d, piece.count, piece.drawn->position_error,
+                               piece.drawn->depth_error, tiles.width, tiles.height, polygon))
+            return -std::numeric_limits<double>::infinity();
+        if (!polygon.planar) return polygon.farthest;
+        const double tilt = std::abs(polygon.dx) + std::abs(polygon.dy);
+        const double d = polygon.d0 + polygon.dx * x + polygon.dy * y;
+        return std::max<double>(polygon.farthest, d - 0.5 * tilt - polygon.depth_error - std::abs(d) * 0x1p-40);
+    }
+
+    /// The best depth of any group that covers the pixel; -infinity if none does.
+    double resolve(const DepthTiles& tiles, double x, double y) {
+        collectSides(x, y);
+        pairSides();
+        joinGroups();
+        double best = -std::numeric_limits<double>::infinity();
+        for (int g = 0; g < piece_count; ++g) {
+            if (!pieces[g].alive || rootOf(g) != g || !holdsPixel(g, x, y)) continue;
+            double farthest = std::numeric_limits<double>::infinity();
+            for (int p = 0; p < piece_count; ++p)
+                if (pieces[p].alive && rootOf(p) == g)
+                    farthest = std::min(farthest, farthestIn(pieces[p], tiles, x, y));
+            best = std::max(best, farthest);
+        }
+        return best;
+    }
+};
+
+/// Rounds to float, away from the eye.
+float roundFarther(double nearness) {
+    const float f = static_cast<float>(nearness);
+    return f > nearness ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+}
+
+}  // namespace
+
+bool resolveSeam(DepthTiles& tiles, uint32_t tile_index, int bit) {
+    DepthTiles::Tile& tile = tiles.tiles[tile_index];
+    const uint64_t pixel = uint64_t{1} << bit;
+    if (tile.tried & pixel) return (tile.covered & pixel) != 0;
+    tile.tried |= pixel;
+    ++tiles.seam_pixels;
+    Resolver resolver;
+    for (uint32_t at = tile.seams; at != DepthTiles::kNone; at = tiles.entries[at].next) {
+        if (!(tiles.entries[at].mask & pixel)) continue;
+        if (resolver.piece_count == kMaxTriangles) return (tile.covered & pixel) != 0;
+        loadPiece(tiles, tiles.triangles[tiles.entries[at].triangle], resolver.pieces[resolver.piece_count++]);
+    }
+    const double x = 8.0 * (tile_index % tiles.columns) + (bit & 7) + 0.5;
+    const double y = 8.0 * (tile_index / tiles.columns) + (bit >> 3) + 0.5;
+    const double nearness = resolver.resolve(tiles, x, y);
+    if (!(nearness > -std::numeric_limits<double>::infinity())) return (tile.covered & pixel) != 0;
+
+    constexpr float kOpen = -std::numeric_limits<float>::infinity();
+    float* depth = tiles.depth.data() + 64 * size_t{tile_index};
+    if (!tile.touched) std::fill(depth, depth + 64, kOpen);
+    tile.touched = true;
+    tile.covered |= pixel;
+    depth[bit] = std::max(depth[bit], roundFarther(nearness));
+    if (tile.covered == ~uint64_t{0}) tile.farthest = *std::min_element(depth, depth + 64);
+    return true;
+}
+
+}  // namespace sightline

@@ -1,0 +1,103 @@
+// The occlusion buffer: tiles of 8x8 pixels with a coverage mask, a depth per pixel, and seams kept aside.
+// SPDX-License-Identifier: MIT
+//
+// Jon Hasselgren, Magnus Andersson, Tomas Akenine-Moller. Masked Software Occlusion Culling. 2016.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sightline/geom/occluder.h"
+#include "sightline/raster/screen.h"
+
+namespace sightline {
+
+/// A rectangle of buffer pixels and the nearest depth behind it: what an occludee's bound becomes.
+struct PixelRect {
+    int32_t x0 = 0, y0 = 0, x1 = -1, y1 = -1;  ///< inclusive, inside the buffer
+    float nearness = 0;                        ///< no point of the bound is nearer
+};
+
+/// One drawn cluster: where its projected vertices lie, and what they came from.
+struct DrawnCluster {
+    const Occluder* occluder = nullptr;
+    const glm::dmat4* transform = nullptr;  ///< must outlive the frame
+    uint64_t transform_hash = 0;
+    uint32_t first_vertex = 0;  ///< in DepthTiles::px, py, pd
+    uint32_t cluster = 0;
+    double position_error = 0;  ///< bound on the error of a projected vertex  [pixels]
+    double depth_error = 0;     ///< bound on the error of a vertex's nearness
+    bool clips = true;          ///< the near plane's place is known well enough to clip at it
+};
+
+/// A triangle clipped at the near plane: up to four corners, and for each edge the mesh vertices it lies
+/// between (kOpen for the edge that the near plane made).
+struct ClippedPolygon {
+    static constexpr uint8_t kOpen = 255;
+    double x[4], y[4], d[4];
+    uint8_t from[4], to[4];  ///< cluster vertices that edge i (corner i to i + 1) lies between
+    bool open[4];
+    int count = 0;
+};
+
+/// A triangle that touches pixels which it does not cover alone.
+struct SeamTriangle {
+    static constexpr uint32_t kWhole = ~0u;
+    uint32_t drawn = 0;           ///< index into DepthTiles::drawn
+    uint32_t clipped = kWhole;    ///< index into DepthTiles::clipped, or kWhole
+    uint8_t vertex[3] = {0, 0, 0};
+};
+
+/// The pixels of one tile that a seam triangle touches.
+struct SeamEntry {
+    uint64_t mask = 0;
+    uint32_t triangle = 0;  ///< index into DepthTiles::triangles
+    uint32_t next = ~0u;    ///< the next entry of the tile
+};
+
+/// The buffer. A pixel is covered when every ray through any of its points meets an occluder no farther
+/// than the depth stored there. Nearness as in Screen: larger is nearer.
+struct DepthTiles {
+    static constexpr uint32_t kNone = ~0u;
+
+    struct Tile {
+        uint64_t covered = 0;   ///< bit 8 * row + column
+        uint64_t tried = 0;     ///< seam pixels that were resolved in vain with the present entries
+        float farthest = 0;     ///< least nearness of the tile if all is covered, else -infinity
+        uint32_t seams = kNone; ///< first SeamEntry
+        bool touched = false;   ///< the depths below are valid
+    };
+
+    uint32_t width = 0, height = 0;        ///< [pixels]
+    uint32_t columns = 0, rows = 0;        ///< [tiles]
+    std::vector<Tile> tiles;
+    std::vector<float> depth;              ///< 64 per tile; -infinity where not covered
+
+    std::vector<double> px, py, pd;        ///< projected vertices of the frame; px is NaN before the near plane
+    std::vector<DrawnCluster> drawn;
+    std::vector<ClippedPolygon> clipped;
+    std::vector<SeamTriangle> triangles;
+    std::vector<SeamEntry> entries;
+
+    uint64_t seam_pixels = 0;              ///< resolved since the clear
+
+    /// Makes the buffer empty. Allocates only when it grows.
+    void clear(uint32_t width, uint32_t height);
+};
+
+/// Draws one cluster of an occluder: covers the pixels that single triangles cover whole, and keeps aside
+/// those that they share. Back faces of single-sided triangles draw nothing.
+///
+/// @param object  objectScreen() of the object that the occluder belongs to
+/// @param flips   the object's transform mirrors: its counter-clockwise triangles are back faces
+void drawCluster(DepthTiles& tiles, const Screen& object, bool flips, const DrawnCluster& cluster);
+
+/// Whether the buffer surely hides everything in the rectangle. Resolves the seam pixels that decide.
+bool isHidden(DepthTiles& tiles, const PixelRect& rect);
+
+/// Tries to cover one pixel by the triangles that share it; true if it is covered now.
+/// @param tile_index  which tile
+/// @param bit         which pixel of it, 0 to 63
+bool resolveSeam(DepthTiles& tiles, uint32_t tile_index, int bit);
+
+}  // namespace sightline

@@ -1,0 +1,298 @@
+// What can be seen in a snapshot from a view: one front-to-back walk, frustum and occlusion.
+// SPDX-License-Identifier: MIT
+#include "sightline/run/query.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <vector>
+
+#include "sightline/base/assert.h"
+#include "sightline/cull/frustum.h"
+#include "sightline/cull/occlusion.h"
+#include "sightline/run/world_state.h"
+
+namespace sightline {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+uint64_t since(Clock::time_point start) {
+    return static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count());
+}
+
+/// Something that the walk has met and not yet looked at. Nearest first; ties in the order of meeting.
+struct Pending {
+    enum class Kind : uint8_t { kNode, kObject, kCluster };
+    PixelRect rect;
+    uint32_t serial = 0;
+    uint32_t index = 0;     ///< node; place of the object; or cluster
+    uint32_t owner = 0;     ///< of a cluster: index into Impl::instances
+    uint32_t first = 0, count = 1;  ///< places of the objects below
+    uint8_t planes = 0;     ///< of a node: frustum planes that it is not inside of
+    Kind kind = Kind::kNode;
+    bool testable = false;  ///< the rectangle stands for the bound; else it is in doubt, or outside and kept
+
+    bool operator<(const Pending& other) const {  // std heaps keep the largest at the front
+        return rect.nearness != other.rect.nearness ? rect.nearness < other.rect.nearness : serial > other.serial;
+    }
+};
+
+/// Objects that were culled together.
+struct CulledRange {
+    uint32_t first = 0, count = 0;
+    Stage stage = Stage::kFrustum;
+};
+
+}  // namespace
+
+struct Query::Impl {
+    Snapshot snapshot;
+    View view;
+    bool every_layer = true;  ///< no object is outside the view's layers
+    Frustum frustum;
+    Screen screen;
+    DepthTiles tiles;
+    std::vector<Pending> pending;
+    std::vector<OccluderInstance> instances;
+    std::vector<Visible> visible;
+    std::vector<CulledRange> culled;
+    std::vector<float> depth_image;
+    QueryStats stats;
+    uint32_t serial = 0;
+
+    const detail::SnapshotState& state() const { return snapshot.state(); }
+    bool uses(Stage stage) const { return view.stages & stageBit(stage); }
+    StageStats& of(Stage stage) { return stats.stages[static_cast<int>(stage)]; }
+
+    void begin(const Snapshot& now, const View& new_view);
+    void keepEverything();
+    void walk();
+    void expand(uint32_t node, uint8_t planes);
+    void meet(const BvhNode& node, int slot, uint8_t planes, const ScreenAnswer& on_screen);
+    void visit(const Pending& entry);
+    void report(uint32_t item);
+    void offerOccluder(const detail::ObjectRecord& object);
+    void draw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box);
+    void cull(uint32_t first, uint32_t count, Stage stage);
+    uint64_t inLayers(uint32_t first, uint32_t count) const;
+    void push(Pending entry);
+    void finish();
+};
+
+void Query::Impl::push(Pending entry) {
+    entry.serial = serial++;
+    pending.push_back(entry);
+    std::push_heap(pending.begin(), pending.end());
+}
+
+/// How many objects of a range of places are within the view's layers.
+uint64_t Query::Impl::inLayers(uint32_t first, uint32_t count) const {
+    if (every_layer) return count;
+    uint64_t within = 0;
+    for (uint32_t place = first; place < first + count; ++place)
+        within += (state().object(state().itemOf(state().bvh.order[place])).layers & view.layers) != 0;
+    return within;
+}
+
+void Query::Impl::cull(uint32_t first, uint32_t count, Stage stage) {
+    of(stage).culled += inLayers(first, count);
+    culled.push_back({first, count, stage});
+}
+
+void Query::Impl::begin(const Snapshot& now, const View& new_view) {
+    snapshot = now;
+    view = new_view;
+    stats = {};
+    serial = 0;
+    pending.clear();
+    instances.clear();
+    visible.clear();
+    culled.clear();
+    tiles.clear(0, 0);
+    if (!snapshot) return;
+    every_layer = (state().common_layers & view.layers) != 0 || state().count == 0;
+    stats.objects = state().count;
+    if (every_layer) return;
+    stats.objects = 0;
+    for (uint32_t item = 0; item < state().count; ++item)
+        stats.objects += (state().object(item).layers & view.layers) != 0;
+}
+
+void Query::Impl::report(uint32_t item) {
+    const detail::ObjectRecord& object = state().object(item);
+    if (object.layers & view.layers) visible.push_back({object.key, object.id});
+}
+
+/// Without a usable view nothing can be proved hidden.
+void Query::Impl::keepEverything() {
+    for (uint32_t item = 0; item < state().count; ++item) report(item);
+    of(Stage::kFrustum).doubt = visible.size();
+}
+
+/// Tests a node's children against the frustum and puts those that are left in line.
+void Query::Impl::expand(uint32_t index, uint8_t planes) {
+    const auto start = view.time_stages ? Clock::now() : Clock::time_point();
+    ++stats.nodes_visited;
+    const BvhNode& node = state().bvh.nodes[index];
+    const EyeBoxes boxes = eyeBoxes(node, state().bvh.origin - frustum.eye);
+    FrustumAnswer answer;
+    if (uses(Stage::kFrustum)) answer = testFrustum(frustum, boxes, planes);
+    if (view.time_stages) of(Stage::kFrustum).nanoseconds += since(start);
+    uint32_t left = 0;
+    for (int slot = 0; slot < 8; ++slot) {
+        if (node.count[slot] == 0) continue;
+        if (answer.outside >> slot & 1) cull(node.first[slot], node.count[slot], Stage::kFrustum);
+        else left |= 1u << slot;
+    }
+    if (!left) return;
+    const ScreenAnswer on_screen = projectBoxes(screen, boxes);
+    for (int slot = 0; slot < 8; ++slot)
+        if (left >> slot & 1) meet(node, slot, uses(Stage::kFrustum) ? answer.planes[slot] : 0, on_screen);
+}
+
+void Query::Impl::meet(const BvhNode& node, int slot, uint8_t planes, const ScreenAnswer& on_screen) {
+    const bool doubt = on_screen.doubt >> slot & 1, outside = on_screen.outside >> slot & 1;
+    if (outside && uses(Stage::kFrustum)) return cull(node.first[slot], node.count[slot], Stage::kFrustum);
+    Pending entry;
+    const bool leaf = node.child[slot] & BvhNode::kLeaf;
+    entry.kind = leaf ? Pending::Kind::kObject : Pending::Kind::kNode;
+    entry.index = node.child[slot] & ~BvhNode::kLeaf;
+    entry.first = node.first[slot];
+    entry.count = node.count[slot];
+    entry.planes = planes;
+    entry.rect = on_screen.rects[slot];
+    if (doubt) entry.rect.nearness = std::numeric_limits<float>::infinity();
+    if (outside) entry.rect.nearness = -std::numeric_limits<float>::infinity();
+    entry.testable = !doubt && !outside;
+    if (doubt && leaf) ++of(Stage::kOcclusion).doubt;
+    push(entry);
+}
+
+/// Puts the clusters of a visible object's occluder in line, or draws it at once if there is one only.
+void Query::Impl::offerOccluder(const detail::ObjectRecord& object) {
+    if (object.occluder.index == 0 || !(object.layers & view.layers)) return;
+    const Occluder& occluder = *state().occluders[object.occluder.index];
+    const uint32_t owner = static_cast<uint32_t>(instances.size());
+    instances.push_back(makeOccluderInstance(screen, occluder, object.transform));
+    const uint32_t clusters = static_cast<uint32_t>(occluder.clusters.size());
+    for (uint32_t cluster = 0; cluster < clusters; ++cluster) {
+        const BoxAnswer box = projectBox(instances[owner].screen, occluder.clusters[cluster].bounds);
+        if (box.outside) continue;
+        if (clusters == 1) {
+            draw(instances[owner], cluster, box);
+            continue;
+        }
+        Pending entry;
+        entry.kind = Pending::Kind::kCluster;
+        entry.index = cluster;
+        entry.owner = owner;
+        entry.rect = box.rect;
+        if (box.doubt) entry.rect.nearness = std::numeric_limits<float>::infinity();
+        entry.testable = !box.doubt;
+        push(entry);
+    }
+}
+
+void Query::Impl::draw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box) {
+    constexpr int kLeastExtent = 2;  // [pixels]: what spans no more covers no pixel, alone or with its neighbours
+    if (!box.doubt && (box.rect.x1 - box.rect.x0 < kLeastExtent || box.rect.y1 - box.rect.y0 < kLeastExtent)) return;
+    if (stats.occluder_triangles >= view.occluder_triangles) {
+        stats.budget_spent = true;
+        return;
+    }
+    stats.occluder_triangles += drawOccluder(tiles, instance, cluster, box);
+}
+
+void Query::Impl::visit(const Pending& entry) {
+    const bool occlusion = uses(Stage::kOcclusion);
+    if (entry.kind == Pending::Kind::kCluster) {
+        BoxAnswer box;
+        box.rect = entry.rect;
+        box.doubt = !entry.testable;
+        if (box.doubt || !isHidden(tiles, box.rect)) draw(instances[entry.owner], entry.index, box);
+        return;
+    }
+    if (occlusion && entry.testable && isHidden(tiles, entry.rect))
+        return cull(entry.first, entry.count, Stage::kOcclusion);
+    if (entry.kind == Pending::Kind::kNode) return expand(entry.index, entry.planes);
+    const uint32_t item = state().itemOf(state().bvh.order[entry.index]);
+    report(item);
+    if (occlusion) offerOccluder(state().object(item));
+}
+
+void Query::Impl::walk() {
+    frustum = makeFrustum(view);
+    screen = makeScreen(view, std::max(view.occlusion_width, 1u));
+    if (uses(Stage::kOcclusion)) tiles.clear(screen.width, screen.height);
+    for (uint32_t item : state().unbounded) report(item);
+    of(Stage::kFrustum).doubt += visible.size();
+    if (state().bvh.nodes.empty()) return;
+    expand(0, static_cast<uint8_t>((1u << frustum.count) - 1));
+    while (!pending.empty()) {
+        std::pop_heap(pending.begin(), pending.end());
+        const Pending entry = pending.back();
+        pending.pop_back();
+        visit(entry);
+    }
+}
+
+void Query::Impl::finish() {
+    of(Stage::kFrustum).tested = uses(Stage::kFrustum) ? stats.objects : 0;
+    of(Stage::kOcclusion).tested = uses(Stage::kOcclusion) ? stats.objects - of(Stage::kFrustum).culled : 0;
+    stats.visible = visible.size();
+    stats.seam_pixels = tiles.seam_pixels;
+    uint64_t culled_objects = 0;
+    for (const StageStats& stage : stats.stages) culled_objects += stage.culled;
+    SIGHTLINE_ASSERT(stats.visible + culled_objects == stats.objects);
+}
+
+Query::Query() : impl_(std::make_unique<Impl>()) {}
+Query::~Query() = default;
+Query::Query(Query&&) noexcept = default;
+Query& Query::operator=(Query&&) noexcept = default;
+
+VisibleSet Query::visible(const Snapshot& now, const View& view) {
+    const auto start = Clock::now();
+    Impl& impl = *impl_;
+    impl.begin(now, view);
+    if (now) {
+        if (isUsable(view)) impl.walk();
+        else impl.keepEverything();
+        impl.finish();
+    }
+    impl.stats.nanoseconds = since(start);
+    if (view.time_stages && impl.uses(Stage::kOcclusion))
+        impl.of(Stage::kOcclusion).nanoseconds = impl.stats.nanoseconds - impl.of(Stage::kFrustum).nanoseconds;
+    return {impl.visible, impl.stats};
+}
+
+void Query::reasons(std::span<uint8_t> reasons) const {
+    const Impl& impl = *impl_;
+    SIGHTLINE_ASSERT(!impl.snapshot || reasons.size() >= impl.state().count);
+    std::fill(reasons.begin(), reasons.end(), uint8_t{0});
+    if (!impl.snapshot) return;
+    const detail::SnapshotState& state = impl.state();
+    for (const CulledRange& range : impl.culled)
+        for (uint32_t place = range.first; place < range.first + range.count; ++place)
+            reasons[state.itemOf(state.bvh.order[place])] = static_cast<uint8_t>(1 + static_cast<int>(range.stage));
+    if (impl.every_layer) return;
+    for (uint32_t item = 0; item < state.count; ++item)
+        if (!(state.object(item).layers & impl.view.layers)) reasons[item] = 255;
+}
+
+Query::DepthImage Query::depthImage() {
+    Impl& impl = *impl_;
+    const DepthTiles& tiles = impl.tiles;
+    impl.depth_image.assign(size_t{tiles.width} * tiles.height, 0.0f);
+    for (uint32_t y = 0; y < tiles.height; ++y)
+        for (uint32_t x = 0; x < tiles.width; ++x) {
+            const size_t tile = size_t{y / 8} * tiles.columns + x / 8;
+            const uint32_t pixel = y % 8 * 8 + x % 8;
+            if (tiles.tiles[tile].covered >> pixel & 1)
+                impl.depth_image[size_t{y} * tiles.width + x] = tiles.depth[64 * tile + pixel];
+        }
+    return {tiles.width, tiles.height, impl.depth_image};
+}
+
+}  // namespace sightline

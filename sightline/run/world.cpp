@@ -1,0 +1,172 @@
+// A world of objects that change, and its snapshots, which do not.
+// SPDX-License-Identifier: MIT
+#include "sightline/run/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sightline/base/assert.h"
+#include "sightline/run/world_state.h"
+
+namespace sightline {
+namespace detail {
+
+ObjectRecord& ObjectTable::change(uint32_t place) {
+    std::shared_ptr<ObjectChunk>& chunk = chunks[place / ObjectChunk::kSize];
+    if (chunk.use_count() > 1) chunk = std::make_shared<ObjectChunk>(*chunk);
+    return chunk->objects[place % ObjectChunk::kSize];
+}
+
+ObjectRecord& ObjectTable::append() {
+    if (size % ObjectChunk::kSize == 0) chunks.push_back(std::make_shared<ObjectChunk>());
+    return change(size++);
+}
+
+Box3d worldBounds(const ObjectRecord& object) {
+    constexpr double kLargest = 1e30;  // [world units]: float must hold it with room for sums
+    Box3d box;
+    if (!object.bounds.finite() || object.bounds.empty()) return box;
+    box = transformBox(object.bounds, object.transform);
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(std::abs(box.min[axis]) < kLargest && std::abs(box.max[axis]) < kLargest)) return Box3d();
+    return box;
+}
+
+/// The world as its user changes it.
+struct WorldState {
+    ObjectTable objects;
+    OccluderTable occluders{nullptr};
+    std::vector<uint32_t> place_of_index;  ///< ObjectId::index - 1 to place; indices are never given out twice
+    uint32_t living = 0;
+    bool rebuild = true;                   ///< objects came, went, or changed between bounded and unbounded
+    std::vector<uint32_t> moved;           ///< places
+    std::shared_ptr<const SnapshotState> last;
+
+    ObjectRecord* find(ObjectId id) {
+        if (id.index == 0 || id.index > place_of_index.size()) return nullptr;
+        const uint32_t place = place_of_index[id.index - 1];
+        if (objects[place].id != id) return nullptr;
+        return &objects.change(place);
+    }
+
+    std::shared_ptr<SnapshotState> build();
+    std::shared_ptr<SnapshotState> refitted();
+    void compact();
+};
+
+/// Closes the gaps that removed objects left, once they are as many as the living.
+void WorldState::compact() {
+    if (objects.size < 2 * living + 1024) return;
+    ObjectTable packed;
+    for (uint32_t place = 0; place < objects.size; ++place) {
+        if (objects[place].id.index == 0) continue;
+        place_of_index[objects[place].id.index - 1] = packed.size;
+        packed.append() = objects[place];
+    }
+    objects = std::move(packed);
+}
+
+std::shared_ptr<SnapshotState> WorldState::build() {
+    compact();
+    auto state = std::make_shared<SnapshotState>();
+    state->objects = objects;
+    state->occluders = occluders;
+    state->count = living;
+    if (living != objects.size) state->items.reserve(living);
+    std::vector<Box3d> boxes;
+    std::vector<uint32_t> boxed;
+    boxes.reserve(living);
+    uint32_t item = 0;
+    for (uint32_t place = 0; place < objects.size; ++place) {
+        const ObjectRecord& object = objects[place];
+        if (object.id.index == 0) continue;
+        if (living != objects.size) state->items.push_back(place);
+        state->common_layers &= object.layers;
+        const Box3d box = worldBounds(object);
+        if (box.finite()) {
+            boxes.push_back(box);
+            boxed.push_back(item);
+        } else {
+            state->unbounded.push_back(item);
+        }
+        ++item;
+    }
+    if (!state->unbounded.empty()) state->boxed = std::move(boxed);
+    state->bvh = buildBvh(boxes);
+    return state;
+}
+
+/// The last snapshot with moved objects refitted; null if building anew is better.
+std::shared_ptr<SnapshotState> WorldState::refitted() {
+    if (!last->unbounded.empty() || !last->items.empty() || moved.size() > living / 4 + 16) return nullptr;
+    auto state = std::make_shared<SnapshotState>(*last);
+    state->objects = objects;
+    for (uint32_t place : moved) {
+        const Box3d box = worldBounds(objects[place]);
+        if (!box.finite()) return nullptr;
+        // Float bounds far from the hierarchy's origin are coarse: a world that wanders off is built anew.
+        refit(state->bvh, place, box);
+    }
+    constexpr double kWorthRebuilding = 1.5;
+    return surfaceCost(state->bvh) <= kWorthRebuilding * state->bvh.built_cost ? state : nullptr;
+}
+
+}  // namespace detail
+
+World::World() : state_(std::make_unique<detail::WorldState>()) {}
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+uint32_t Snapshot::objectCount() const { return state_ ? state_->count : 0; }
+
+OccluderId World::addOccluder(Occluder occluder) {
+    state_->occluders.push_back(std::make_shared<const Occluder>(std::move(occluder)));
+    state_->rebuild = true;
+    return {static_cast<uint32_t>(state_->occluders.size() - 1)};
+}
+
+ObjectId World::add(const ObjectDef& object) {
+    SIGHTLINE_ASSERT(object.occluder.index < state_->occluders.size());
+    const ObjectId id{static_cast<uint32_t>(state_->place_of_index.size() + 1), 1};
+    state_->place_of_index.push_back(state_->objects.size);
+    state_->objects.append() = {object.transform, object.bounds, object.key, id, object.occluder, object.layers};
+    ++state_->living;
+    state_->rebuild = true;
+    return id;
+}
+
+bool World::move(ObjectId id, const glm::dmat4& transform) {
+    detail::ObjectRecord* object = state_->find(id);
+    if (!object) return false;
+    object->transform = transform;
+    state_->moved.push_back(state_->place_of_index[id.index - 1]);
+    return true;
+}
+
+bool World::remove(ObjectId id) {
+    detail::ObjectRecord* object = state_->find(id);
+    if (!object) return false;
+    *object = {};
+    --state_->living;
+    state_->rebuild = true;
+    return true;
+}
+
+Snapshot World::commit() {
+    if (state_->rebuild || !state_->last) {
+        state_->last = state_->build();
+    } else if (!state_->moved.empty()) {
+        std::shared_ptr<detail::SnapshotState> next = state_->refitted();
+        state_->last = next ? next : state_->build();
+    }
+    state_->rebuild = false;
+    state_->moved.clear();
+    Snapshot snapshot;
+    snapshot.state_ = state_->last;
+    return snapshot;
+}
+
+uint32_t World::objectCount() const { return state_->living; }
+
+}  // namespace sightline

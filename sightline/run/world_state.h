@@ -1,0 +1,64 @@
+// What worlds and snapshots hold: objects in shared chunks, and the hierarchy over them.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sightline/geom/occluder.h"
+#include "sightline/run/world.h"
+#include "sightline/space/bvh.h"
+
+namespace sightline::detail {
+
+/// An object as a query reads it.
+struct ObjectRecord {
+    glm::dmat4 transform{1.0};
+    Box3d bounds;  ///< object space
+    uint64_t key = 0;
+    ObjectId id;   ///< null: the place is free
+    OccluderId occluder;
+    uint32_t layers = 0;
+};
+
+/// Objects in chunks that snapshots share: a commit copies only the chunks that changed.
+struct ObjectChunk {
+    static constexpr uint32_t kSize = 256;
+    ObjectRecord objects[kSize];
+};
+
+/// Objects by place; places are given in the order of World::add.
+struct ObjectTable {
+    std::vector<std::shared_ptr<ObjectChunk>> chunks;
+    uint32_t size = 0;
+
+    const ObjectRecord& operator[](uint32_t place) const {
+        return chunks[place / ObjectChunk::kSize]->objects[place % ObjectChunk::kSize];
+    }
+    /// For writing: makes the chunk this table's own first.
+    ObjectRecord& change(uint32_t place);
+    ObjectRecord& append();
+};
+
+using OccluderTable = std::vector<std::shared_ptr<const Occluder>>;  // entry 0 is null
+
+/// An immutable state of a world. Items are the living objects in the order of World::add.
+struct SnapshotState {
+    ObjectTable objects;
+    OccluderTable occluders;
+    std::vector<uint32_t> items;      ///< item to place; empty if every place is its own item
+    std::vector<uint32_t> boxed;      ///< hierarchy item to item; empty if all items have finite bounds
+    std::vector<uint32_t> unbounded;  ///< items that are always visible
+    Bvh bvh;                          ///< over the boxed items
+    uint32_t count = 0;               ///< living objects
+    uint32_t common_layers = ~0u;     ///< layers that every object is in
+
+    uint32_t placeOf(uint32_t item) const { return items.empty() ? item : items[item]; }
+    uint32_t itemOf(uint32_t hierarchy_item) const { return boxed.empty() ? hierarchy_item : boxed[hierarchy_item]; }
+    const ObjectRecord& object(uint32_t item) const { return objects[placeOf(item)]; }
+};
+
+/// The bounds in world space; not finite if they cannot be trusted.
+Box3d worldBounds(const ObjectRecord& object);
+
+}  // namespace sightline::detail
