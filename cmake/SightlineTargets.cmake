@@ -1,13 +1,13 @@
 # How every library, tool and test of the project is made.
 
-# An empty library target sightline_NAME (alias sightline::NAME); folders add their files to it.
+# A library target sightline_NAME (alias sightline::NAME); folders add their files to it.
 function(sightline_library name)
   file(TOUCH ${CMAKE_BINARY_DIR}/empty.cpp)
   add_library(sightline_${name} STATIC ${CMAKE_BINARY_DIR}/empty.cpp)
   add_library(sightline::${name} ALIAS sightline_${name})
-  set_target_properties(sightline_${name} PROPERTIES EXPORT_NAME ${name})
+  set_target_properties(sightline_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_include_directories(sightline_${name} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   sightline_settings(sightline_${name})
 endfunction()
 
@@ -20,6 +20,9 @@ function(sightline_settings target)
     target_compile_options(${target} PRIVATE -fsanitize=${SIGHTLINE_SANITIZE} -fno-omit-frame-pointer
       -fno-sanitize-recover=all)
     target_link_options(${target} PUBLIC -fsanitize=${SIGHTLINE_SANITIZE})
+  endif()
+  if(SIGHTLINE_FUZZ)
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
   endif()
 endfunction()
 

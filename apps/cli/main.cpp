@@ -1,0 +1,3 @@
+// The command line tool.
+// SPDX-License-Identifier: MIT
+int main() { return 0; }

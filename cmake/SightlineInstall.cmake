@@ -1,0 +1,44 @@
+# What an installation holds: libraries, headers under <sightline/...>, the tool, and how to find them.
+include(CMakePackageConfigHelpers)
+
+# Installs libraries with the headers of their folders and exports them as sightline::NAME.
+#   EXPORT     the export set; sightline-config.cmake includes one file for each
+#   LIBRARIES  names as given to sightline_library
+#   FOLDERS    folders of sightline/ whose headers belong to them
+function(sightline_install)
+  cmake_parse_arguments(arg "" "EXPORT" "LIBRARIES;FOLDERS" ${ARGN})
+  list(TRANSFORM arg_LIBRARIES PREPEND sightline_ OUTPUT_VARIABLE targets)
+  install(TARGETS ${targets} EXPORT ${arg_EXPORT})
+  foreach(folder ${arg_FOLDERS})
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/sightline/${folder}
+      DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sightline FILES_MATCHING PATTERN "*.h")
+  endforeach()
+  install(EXPORT ${arg_EXPORT} NAMESPACE sightline:: DESTINATION ${SIGHTLINE_CMAKE_DIR})
+endfunction()
+
+set(SIGHTLINE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/sightline)
+
+sightline_install(EXPORT sightline-runtime LIBRARIES run hidden
+  FOLDERS base math geom space raster cull hidden prepare run)
+if(SIGHTLINE_TOOLS)
+  sightline_install(EXPORT sightline-tools LIBRARIES scene import truth report
+    FOLDERS scene load import truth report)
+  install(TARGETS sightline)
+endif()
+
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sightline-config.cmake.in
+  ${PROJECT_BINARY_DIR}/sightline-config.cmake INSTALL_DESTINATION ${SIGHTLINE_CMAKE_DIR}
+  NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/sightline-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/sightline-config.cmake ${PROJECT_BINARY_DIR}/sightline-config-version.cmake
+  DESTINATION ${SIGHTLINE_CMAKE_DIR})
+
+# Written while installing, so that it names the prefix that --prefix chose.
+install(CODE "
+  set(PROJECT_VERSION ${PROJECT_VERSION})
+  set(CMAKE_INSTALL_FULL_LIBDIR \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR})
+  set(CMAKE_INSTALL_FULL_INCLUDEDIR \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR})
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/sightline.pc.in
+    \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/pkgconfig/sightline.pc @ONLY)")
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# Sets up, builds build/release and passes all tests; --full adds sanitizers, clang, the fuzzer and the format.
+# SPDX-License-Identifier: MIT
+set -euo pipefail
+
+cd -- "$(dirname -- "${BASH_SOURCE[0]}")"
+full=
+case "${1:-}" in
+    '') ;;
+    --full) full=1 ;;
+    *) echo "usage: ./test.sh [--full]" >&2; exit 2 ;;
+esac
+
+step() { printf '\n== %s\n' "$*"; }
+
+# Configures and builds a preset.
+build() {
+    [ -f "build/$1/build.ninja" ] || cmake --preset "$1"
+    cmake --build --preset "$1"
+}
+
+tools/setup ${full:+--full}
+
+if [ -n "$full" ]; then
+    step "format"
+    git ls-files '*.h' '*.cpp' | xargs clang-format-14 --dry-run --Werror
+
+    for preset in asan tsan; do
+        step "$preset"
+        build "$preset"
+        ctest --preset "$preset" --output-log "build/$preset/test.log"
+    done
+
+    step "clang without warnings"
+    build clang
+
+    step "fuzzer, one minute"
+    build fuzz
+    tests/fuzz/run 60
+fi
+
+step "release"
+build release
+ctest --preset release --output-log build/release/test.log
