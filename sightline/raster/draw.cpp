@@ -54,29 +54,66 @@ void projectVertices(const Screen& object, const Occluder& occluder, const Occlu
 struct TilePolygon {
     float a[4], b[4], c[4];
     int edges = 0;        ///< those that do not contain the whole tile
-    float d = 0, dx = 0, dy = 0;  ///< farthest nearness over the pixel whose centre is here
-    float floor = 0;      ///< no point of the polygon is farther
+    DepthTiles::Plane plane;  ///< the farthest nearness over each pixel
     uint64_t window = 0;  ///< pixels inside the polygon's bounds
 };
 
+/// A plane's depths at the pixels of one row whose offsets from the tile's centre are given.
+template <class D, class Vec>
+HWY_INLINE Vec planeDepth(D d, const DepthTiles::Plane& plane, int row, Vec x) {
+    const auto base = hn::Set(d, plane.d + plane.dy * (static_cast<float>(row) - 3.5f));
+    return hn::Max(hn::Add(base, hn::Mul(hn::Set(d, plane.dx), x)), hn::Set(d, plane.floor));
+}
+
+/// Writes a plane out, or -infinity for an empty tile, so that single pixels can change.
+void toPixels(DepthTiles::Tile& tile, float* depth) {
+    const F8 d;
+    const auto open = hn::Set(d, -std::numeric_limits<float>::infinity());
+    const auto offset = hn::Iota(d, -3.5f);
+    for (int row = 0; row < 8; ++row)
+        for (size_t h = 0; h < 8; h += hn::Lanes(d)) {
+            const auto z = planeDepth(d, tile.plane, row, hn::Add(offset, hn::Set(d, static_cast<float>(h))));
+            hn::StoreU(tile.form == DepthTiles::Form::kPlane ? z : open, d, depth + 8 * row + h);
+        }
+    tile.form = DepthTiles::Form::kPixels;
+}
+
+float leastDepth(const float* depth) {
+    const F8 d;
+    auto least = hn::LoadU(d, depth);
+    for (size_t i = hn::Lanes(d); i < 64; i += hn::Lanes(d)) least = hn::Min(least, hn::LoadU(d, depth + i));
+    return hn::GetLane(hn::MinOfLanes(d, least));
+}
+
+float tilt(const DepthTiles::Plane& plane) { return 3.5f * (std::abs(plane.dx) + std::abs(plane.dy)); }
+
 /// Raises the depths of all pixels of a tile that the polygon covers whole.
-void coverWholeTile(DepthTiles::Tile& tile, float* depth, const TilePolygon& p) {
+void coverWholeTile(DepthTiles::Tile& tile, float* depth, const DepthTiles::Plane& plane) {
+    // The last factor keeps the bound below the plane's own rounding.
+    const float across = tilt(plane) * (1.0f + 0x1p-20f) + 0x1p-20f * std::abs(plane.d);
+    const float farthest = std::max(plane.floor, plane.d - across);
+    const bool in_front = tile.form == DepthTiles::Form::kEmpty ||
+                          (tile.form == DepthTiles::Form::kPlane &&
+                           farthest >= std::max(tile.plane.floor, tile.plane.d + tilt(tile.plane) * (1.0f + 0x1p-20f)));
+    if (in_front) {
+        tile.form = DepthTiles::Form::kPlane;
+        tile.plane = plane;
+        tile.covered = ~uint64_t{0};
+        tile.farthest = farthest;
+        return;
+    }
+    if (tile.form != DepthTiles::Form::kPixels) toPixels(tile, depth);
     const F8 d;
     const auto offset = hn::Iota(d, -3.5f);
-    const auto floor = hn::Set(d, p.floor), dx = hn::Set(d, p.dx);
     auto least = hn::Set(d, std::numeric_limits<float>::infinity());
-    for (int row = 0; row < 8; ++row) {
-        const auto base = hn::Set(d, p.d + p.dy * (static_cast<float>(row) - 3.5f));
+    for (int row = 0; row < 8; ++row)
         for (size_t h = 0; h < 8; h += hn::Lanes(d)) {
-            const auto at = hn::Add(offset, hn::Set(d, static_cast<float>(h)));
-            auto z = hn::Max(hn::Add(base, hn::Mul(dx, at)), floor);
             float* place = depth + 8 * row + h;
-            if (tile.touched) z = hn::Max(z, hn::LoadU(d, place));
-            hn::StoreU(z, d, place);
-            least = hn::Min(least, z);
+            const auto z = planeDepth(d, plane, row, hn::Add(offset, hn::Set(d, static_cast<float>(h))));
+            const auto raised = hn::Max(z, hn::LoadU(d, place));
+            hn::StoreU(raised, d, place);
+            least = hn::Min(least, raised);
         }
-    }
-    tile.touched = true;
     tile.covered = ~uint64_t{0};
     tile.farthest = hn::GetLane(hn::MinOfLanes(d, least));
 }
@@ -112,35 +149,24 @@ TileMasks classifyPixels(const TilePolygon& p, float slack) {
     return masks;
 }
 
-uint64_t pixelsNotNearer(const float* depth, float nearness);
-
 /// Raises the depths of the covered pixels of a tile.
-void coverPixels(DepthTiles::Tile& tile, float* depth, const TilePolygon& p, uint64_t inner) {
+void coverPixels(DepthTiles::Tile& tile, float* depth, const DepthTiles::Plane& plane, uint64_t inner) {
     const F8 d;
+    if (tile.form != DepthTiles::Form::kPixels) toPixels(tile, depth);
     const auto offset = hn::Iota(d, -3.5f);
-    const auto floor = hn::Set(d, p.floor), dx = hn::Set(d, p.dx);
-    const auto open = hn::Set(d, -std::numeric_limits<float>::infinity());
     for (int row = 0; row < 8; ++row) {
         const uint64_t bits = (inner >> (8 * row)) & 255;
-        if (tile.touched && !bits) continue;
-        const auto base = hn::Set(d, p.d + p.dy * (static_cast<float>(row) - 3.5f));
+        if (!bits) continue;
         for (size_t h = 0; h < 8; h += hn::Lanes(d)) {
             float* place = depth + 8 * row + h;
             const uint8_t part[8] = {static_cast<uint8_t>(bits >> h)};
-            const auto mask = hn::LoadMaskBits(d, part);
-            const auto at = hn::Add(offset, hn::Set(d, static_cast<float>(h)));
-            const auto z = hn::Max(hn::Add(base, hn::Mul(dx, at)), floor);
-            const auto old = tile.touched ? hn::LoadU(d, place) : open;
-            hn::StoreU(hn::Max(old, hn::IfThenElse(mask, z, open)), d, place);
+            const auto z = planeDepth(d, plane, row, hn::Add(offset, hn::Set(d, static_cast<float>(h))));
+            const auto old = hn::LoadU(d, place);
+            hn::StoreU(hn::IfThenElse(hn::LoadMaskBits(d, part), hn::Max(old, z), old), d, place);
         }
     }
-    tile.touched = true;
     tile.covered |= inner;
-    if (tile.covered == ~uint64_t{0}) {
-        auto least = hn::LoadU(d, depth);
-        for (size_t i = hn::Lanes(d); i < 64; i += hn::Lanes(d)) least = hn::Min(least, hn::LoadU(d, depth + i));
-        tile.farthest = hn::GetLane(hn::MinOfLanes(d, least));
-    }
+    if (tile.covered == ~uint64_t{0}) tile.farthest = leastDepth(depth);
 }
 
 /// Pixels of a tile whose depth does not surely lie in front of the given nearness.
@@ -178,48 +204,74 @@ void addSeam(DepthTiles& tiles, DepthTiles::Tile& tile, uint64_t mask, const Sea
     tile.tried &= ~mask;
 }
 
+/// The part of a polygon that one tile sees; false if there is none, or none that the tile does not hide.
+bool seenByTile(const RasterPolygon& polygon, double tilt, const DepthTiles::Tile& tile, int32_t column, int32_t row,
+                TilePolygon& p, float& nearest) {
+    const double x = 8.0 * column + 4.0, y = 8.0 * row + 4.0;
+    p.edges = 0;
+    for (int e = 0; e < polygon.edges; ++e) {
+        const float c = static_cast<float>(polygon.edge[e].at(x, y));
+        if (c < -4.0f - polygon.slack) return false;
+        if (c >= 4.0f + polygon.slack) continue;
+        p.a[p.edges] = static_cast<float>(polygon.edge[e].a);
+        p.b[p.edges] = static_cast<float>(polygon.edge[e].b);
+        p.c[p.edges++] = c;
+    }
+    nearest = polygon.nearest;
+    p.plane = {polygon.farthest, 0, 0, polygon.farthest};
+    if (polygon.planar) {
+        const double d = polygon.d0 + polygon.dx * x + polygon.dy * y;
+        const double error = polygon.depth_error + 0x1p-21 * (std::abs(d) + 4.0 * tilt);
+        nearest = std::min(nearest, static_cast<float>(d + 4.0 * tilt + error));
+        if (tile.farthest >= nearest) return false;
+        p.plane = {static_cast<float>(d - 0.5 * tilt - error), static_cast<float>(polygon.dx),
+                   static_cast<float>(polygon.dy), polygon.farthest};
+    }
+    p.window = windowBits(polygon.x0, polygon.y0, polygon.x1, polygon.y1, 8 * column, 8 * row);
+    return true;
+}
+
+/// The tile columns of a row of tiles that the edges leave; widened by rounding to whole tiles.
+void columnsOfRow(const RasterPolygon& polygon, int32_t row, int32_t& first, int32_t& last) {
+    const double y = 8.0 * row + 4.0;
+    double low = polygon.x0 - 4.0, high = polygon.x1 + 5.0;  // centres of tiles that may be met
+    for (int e = 0; e < polygon.edges; ++e) {
+        const EdgeFunction& edge = polygon.edge[e];
+        if (std::abs(edge.a) < 1e-6) continue;
+        const double at = -(edge.b * y + edge.c + 4.0 + polygon.slack) / edge.a;
+        if (edge.a > 0) low = std::max(low, at - 1e-3);
+        else high = std::min(high, at + 1e-3);
+    }
+    first = std::max(polygon.x0 >> 3, static_cast<int32_t>((std::clamp(low, -4.0, polygon.x1 + 16.0) + 4.0) / 8.0) - 1);
+    last = std::min(polygon.x1 >> 3, static_cast<int32_t>(std::max(high, -12.0) + 12.0) / 8 - 1);
+}
+
 void drawPolygon(DepthTiles& tiles, const RasterPolygon& polygon, const SeamTriangle& triangle) {
     uint32_t record = DepthTiles::kNone;
     const double tilt = std::abs(polygon.dx) + std::abs(polygon.dy);
     for (int32_t row = polygon.y0 >> 3; row <= polygon.y1 >> 3; ++row) {
-        for (int32_t column = polygon.x0 >> 3; column <= polygon.x1 >> 3; ++column) {
+        int32_t column, last;
+        columnsOfRow(polygon, row, column, last);
+        for (; column <= last; ++column) {
             const uint32_t index = static_cast<uint32_t>(row) * tiles.columns + static_cast<uint32_t>(column);
             DepthTiles::Tile& tile = tiles.tiles[index];
             if (tile.farthest >= polygon.nearest) continue;
-            const double x = 8.0 * column + 4.0, y = 8.0 * row + 4.0;
             TilePolygon p;
-            bool outside = false;
-            for (int e = 0; e < polygon.edges; ++e) {
-                const float c = static_cast<float>(polygon.edge[e].at(x, y));
-                outside |= c < -4.0f - polygon.slack;
-                if (c >= 4.0f + polygon.slack) continue;
-                p.a[p.edges] = static_cast<float>(polygon.edge[e].a);
-                p.b[p.edges] = static_cast<float>(polygon.edge[e].b);
-                p.c[p.edges++] = c;
-            }
-            if (outside) continue;
-            float nearest = polygon.nearest;
-            p.floor = p.d = polygon.farthest;
-            if (polygon.planar) {
-                const double d = polygon.d0 + polygon.dx * x + polygon.dy * y;
-                const double error = polygon.depth_error + 0x1p-21 * (std::abs(d) + 4.0 * tilt);
-                nearest = std::min(nearest, static_cast<float>(d + 4.0 * tilt + error));
-                if (tile.farthest >= nearest) continue;
-                p.d = static_cast<float>(d - 0.5 * tilt - error);
-                p.dx = static_cast<float>(polygon.dx);
-                p.dy = static_cast<float>(polygon.dy);
-            }
+            float nearest;
+            if (!seenByTile(polygon, tilt, tile, column, row, p, nearest)) continue;
             float* depth = tiles.depth.data() + 64 * size_t{index};
-            p.window = windowBits(polygon.x0, polygon.y0, polygon.x1, polygon.y1, 8 * column, 8 * row);
             if (polygon.covers && p.edges == 0 && p.window == ~uint64_t{0}) {
-                coverWholeTile(tile, depth, p);
+                coverWholeTile(tile, depth, p.plane);
                 continue;
             }
             TileMasks masks = classifyPixels(p, polygon.slack);
             if (!polygon.covers) masks.inner = 0;
             uint64_t seam = masks.outer & ~masks.inner;
-            if (masks.inner) coverPixels(tile, depth, p, masks.inner);
-            if (seam && (seam & tile.covered)) seam &= pixelsNotNearer(depth, nearest) | ~tile.covered;
+            if (masks.inner) coverPixels(tile, depth, p.plane, masks.inner);
+            if (seam & tile.covered) {
+                if (tile.form == DepthTiles::Form::kPlane) toPixels(tile, depth);
+                seam &= pixelsNotNearer(depth, nearest);
+            }
             if (seam) addSeam(tiles, tile, seam, triangle, record);
         }
     }
@@ -307,12 +359,14 @@ void drawClusterKernel(DepthTiles& tiles, const Screen& object, bool flips, cons
 }
 
 /// What a tile leaves open of a rectangle: pixels that are not surely nearer than the rectangle.
-uint64_t openPixels(const DepthTiles& tiles, uint32_t index, const PixelRect& rect, int32_t column, int32_t row) {
-    const DepthTiles::Tile& tile = tiles.tiles[index];
+uint64_t openPixels(DepthTiles& tiles, uint32_t index, const PixelRect& rect, int32_t column, int32_t row) {
+    DepthTiles::Tile& tile = tiles.tiles[index];
     if (tile.farthest > rect.nearness) return 0;
     const uint64_t window = windowBits(rect.x0, rect.y0, rect.x1, rect.y1, 8 * column, 8 * row);
-    if (!tile.touched) return window;
-    return window & pixelsNotNearer(tiles.depth.data() + 64 * size_t{index}, rect.nearness);
+    if (tile.form == DepthTiles::Form::kEmpty) return window;
+    float* depth = tiles.depth.data() + 64 * size_t{index};
+    if (tile.form == DepthTiles::Form::kPlane) toPixels(tile, depth);
+    return window & pixelsNotNearer(depth, rect.nearness);
 }
 
 bool isHiddenKernel(DepthTiles& tiles, const PixelRect& rect) {
@@ -352,9 +406,15 @@ namespace sightline {
 
 HWY_EXPORT(drawClusterKernel);
 HWY_EXPORT(isHiddenKernel);
+HWY_EXPORT(toPixels);
 
 void drawCluster(DepthTiles& tiles, const Screen& object, bool flips, const DrawnCluster& cluster) {
     HWY_DYNAMIC_DISPATCH(drawClusterKernel)(tiles, object, flips, cluster);
+}
+
+void writeOut(DepthTiles& tiles, uint32_t tile) {
+    if (tiles.tiles[tile].form != DepthTiles::Form::kPixels)
+        HWY_DYNAMIC_DISPATCH(toPixels)(tiles.tiles[tile], tiles.depth.data() + 64 * size_t{tile});
 }
 
 bool isHidden(DepthTiles& tiles, const PixelRect& rect) {

@@ -286,10 +286,8 @@ bool resolveSeam(DepthTiles& tiles, uint32_t tile_index, int bit) {
     const double nearness = resolver.resolve(tiles, x, y);
     if (!(nearness > -std::numeric_limits<double>::infinity())) return (tile.covered & pixel) != 0;
 
-    constexpr float kOpen = -std::numeric_limits<float>::infinity();
+    writeOut(tiles, tile_index);
     float* depth = tiles.depth.data() + 64 * size_t{tile_index};
-    if (!tile.touched) std::fill(depth, depth + 64, kOpen);
-    tile.touched = true;
     tile.covered |= pixel;
     depth[bit] = std::max(depth[bit], roundFarther(nearness));
     if (tile.covered == ~uint64_t{0}) tile.farthest = *std::min_element(depth, depth + 64);

@@ -60,18 +60,32 @@ struct SeamEntry {
 struct DepthTiles {
     static constexpr uint32_t kNone = ~0u;
 
+    /// How a tile's depths are held.
+    enum class Form : uint8_t {
+        kEmpty,   ///< no pixel is covered
+        kPlane,   ///< all pixels are, by one polygon: Tile::plane; the depth array is not valid
+        kPixels,  ///< the depth array is valid
+    };
+
+    /// Nearness over a tile as one polygon gave it: at the pixel (x, y) of the tile,
+    /// max(floor, d + dx (x - 3.5) + dy (y - 3.5)).
+    struct Plane {
+        float d = 0, dx = 0, dy = 0, floor = 0;
+    };
+
     struct Tile {
         uint64_t covered = 0;   ///< bit 8 * row + column
-        uint64_t tried = 0;     ///< seam pixels that were resolved in vain with the present entries
-        float farthest = 0;     ///< least nearness of the tile if all is covered, else -infinity
+        uint64_t tried = 0;     ///< seam pixels whose present entries have been resolved
+        Plane plane;
+        float farthest = 0;     ///< no more than the least nearness in the tile; -infinity unless all is covered
         uint32_t seams = kNone; ///< first SeamEntry
-        bool touched = false;   ///< the depths below are valid
+        Form form = Form::kEmpty;
     };
 
     uint32_t width = 0, height = 0;        ///< [pixels]
     uint32_t columns = 0, rows = 0;        ///< [tiles]
     std::vector<Tile> tiles;
-    std::vector<float> depth;              ///< 64 per tile; -infinity where not covered
+    std::vector<float> depth;              ///< 64 per tile; -infinity where not covered; see Tile::form
 
     std::vector<double> px, py, pd;        ///< projected vertices of the frame; px is NaN before the near plane
     std::vector<DrawnCluster> drawn;
@@ -94,6 +108,9 @@ void drawCluster(DepthTiles& tiles, const Screen& object, bool flips, const Draw
 
 /// Whether the buffer surely hides everything in the rectangle. Resolves the seam pixels that decide.
 bool isHidden(DepthTiles& tiles, const PixelRect& rect);
+
+/// Makes a tile's pixels valid in the depth array.
+void writeOut(DepthTiles& tiles, uint32_t tile);
 
 /// Tries to cover one pixel by the triangles that share it; true if it is covered now.
 /// @param tile_index  which tile

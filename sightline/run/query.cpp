@@ -283,7 +283,8 @@ void Query::reasons(std::span<uint8_t> reasons) const {
 
 Query::DepthImage Query::depthImage() {
     Impl& impl = *impl_;
-    const DepthTiles& tiles = impl.tiles;
+    DepthTiles& tiles = impl.tiles;
+    for (uint32_t tile = 0; tile < tiles.tiles.size(); ++tile) writeOut(tiles, tile);
     impl.depth_image.assign(size_t{tiles.width} * tiles.height, 0.0f);
     for (uint32_t y = 0; y < tiles.height; ++y)
         for (uint32_t x = 0; x < tiles.width; ++x) {

@@ -1,0 +1,195 @@
+// The law of coverage: no ray through a covered pixel gets past the depth that it claims.
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include "tests/raster/tiles_fixture.h"
+
+namespace sightline::test {
+namespace {
+
+TEST(Tiles, CoverOnlyWhatRandomSheetsCover) {
+    uint64_t covered = 0;
+    for (uint64_t seed = 1; seed <= 16; ++seed) {
+        Random random(seed);
+        Drawing drawing(smallView());
+        std::vector<Solid> solids;
+        for (int i = 0; i < 3; ++i) {
+            const float x = float(random.uniform(-3, 0)), y = float(random.uniform(-2, 0));
+            const float z = float(random.uniform(-6, -2));
+            const int n = 1 + int(random.below(8));
+            solids.push_back(makeSheet(random, n, n, {x, y, z}, {x + 3, y + 2, z - float(random.uniform(-1, 3))},
+                                       float(random.uniform(0, 0.3))));
+        }
+        drawing.draw(solids);
+        drawing.resolveAll();
+        covered += drawing.coveredPixels();
+        ASSERT_EQ(findLeak(drawing, seed, 12), "");
+    }
+    EXPECT_GT(covered, 16000u);
+}
+
+TEST(Tiles, CoverOnlyWhatTriangleSoupCovers) {
+    for (uint64_t seed = 1; seed <= 20; ++seed) {
+        Random random(seed);
+        Drawing drawing(smallView());
+        Solid soup;
+        soup.double_sided.assign(60, seed % 2);
+        for (int t = 0; t < 60; ++t) {
+            const glm::vec3 center(random.uniform(-3, 3), random.uniform(-2, 2), random.uniform(-6, -0.5));
+            const double size = t % 4 ? random.uniform(0.01, 1.5) : random.uniform(1.0, 8.0);
+            for (int k = 0; k < 3; ++k) {
+                soup.indices.push_back(static_cast<uint32_t>(soup.positions.size()));
+                soup.positions.push_back(center + glm::vec3(random.uniform(-size, size), random.uniform(-size, size),
+                                                            random.uniform(-size, size)));
+            }
+        }
+        drawing.draw({soup});
+        drawing.resolveAll();
+        ASSERT_EQ(findLeak(drawing, seed, 12), "");
+    }
+}
+
+TEST(Tiles, CoverOnlyWhatIsDrawnInParallelProjection) {
+    for (uint64_t seed = 1; seed <= 8; ++seed) {
+        Random random(seed);
+        View view = smallView();
+        view.projection = orthographic(4.0, 1.5, 0.1, 50.0);
+        Drawing drawing(view);
+        std::vector<Solid> solids{makeSheet(random, 6, 6, {-3, -2, -3}, {1, 2, -8}, 0.2f),
+                                  makeSheet(random, 2, 3, {-1, -2, 0.5f}, {3, 2, -4}, 0.1f)};  // meets the near plane
+        drawing.draw(solids);
+        drawing.resolveAll();
+        EXPECT_GT(drawing.coveredPixels(), 1000u);
+        ASSERT_EQ(findLeak(drawing, seed, 12), "");
+    }
+}
+
+TEST(Tiles, CloseTheSeamsOfAJoinedSheet) {
+    Random random(7);
+    Drawing drawing(smallView());
+    drawing.draw({makeSheet(random, 13, 9, {-6, -4, -4}, {6, 4, -6}, 0.05f)});
+    drawing.resolveAll();
+    EXPECT_EQ(drawing.coveredPixels(), uint64_t{drawing.tiles.width} * drawing.tiles.height);
+    EXPECT_EQ(findLeak(drawing, 7, 8), "");
+}
+
+TEST(Tiles, CloseTheSeamsOfASheetOfTinyTriangles) {
+    Random random(8);
+    Drawing drawing(smallView());
+    drawing.draw({makeSheet(random, 300, 200, {-6, -4, -4}, {6, 4, -6}, 0.0f)});
+    drawing.resolveAll();
+    EXPECT_EQ(drawing.coveredPixels(), uint64_t{drawing.tiles.width} * drawing.tiles.height);
+}
+
+TEST(Tiles, CloseTheSeamBetweenObjectsThatShareATransform) {
+    Random random(9);
+    Solid left = makeSheet(random, 3, 3, {-6, -4, -4}, {0.25f, 4, -4}, 0.0f);
+    Solid right = makeSheet(random, 3, 3, {0.25f, -4, -4}, {6, 4, -4}, 0.0f);
+    Drawing drawing(smallView());
+    drawing.draw({left, right});
+    drawing.resolveAll();
+    EXPECT_EQ(drawing.coveredPixels(), uint64_t{drawing.tiles.width} * drawing.tiles.height);
+}
+
+TEST(Tiles, LeaveTheThinnestGapOpen) {
+    Random random(10);
+    for (float gap : {1e-6f, 1e-4f, 1e-2f, 0.3f}) {
+        Solid left = makeSheet(random, 1, 3, {-6, -4, -4}, {0.25f, 4, -4}, 0.0f);
+        Solid right = makeSheet(random, 1, 3, {0.25f + gap, -4, -4}, {6, 4, -4}, 0.0f);
+        Drawing drawing(smallView());
+        drawing.draw({left, right});
+        drawing.resolveAll();
+        for (uint32_t y = 0; y < drawing.tiles.height; ++y) {
+            uint32_t open = 0;
+            for (uint32_t x = 0; x < drawing.tiles.width; ++x) open += !drawing.covered(x, y);
+            EXPECT_GE(open, 1u) << "gap " << gap << " row " << y;
+        }
+    }
+}
+
+TEST(Tiles, AFanThatMeetsTheSilhouetteInAVertexLeavesItOpen) {
+    // The triangle beside the tip owns no silhouette edge, but the pixel of the tip is not covered.
+    Solid fan;
+    fan.positions = {{0, 1, -4}, {-2, -2, -4}, {-0.5f, -2, -4}, {0.5f, -2, -4}, {2, -2, -4}};
+    fan.indices = {0, 1, 2, 0, 2, 3, 0, 3, 4};
+    Drawing drawing(smallView());
+    drawing.draw({fan});
+    drawing.resolveAll();
+    EXPECT_GT(drawing.coveredPixels(), 100u);
+    EXPECT_EQ(findLeak(drawing, 11, 64), "");
+}
+
+TEST(Tiles, AFloorThroughTheNearPlaneCoversUpToIt) {
+    Solid floor;
+    floor.positions = {{-50, -0.5f, 50}, {50, -0.5f, 50}, {50, -0.5f, -200}, {-50, -0.5f, -200}};
+    floor.indices = {0, 1, 2, 0, 2, 3};
+    Drawing drawing(smallView());
+    drawing.draw({floor});
+    drawing.resolveAll();
+    EXPECT_GT(drawing.coveredPixels(), uint64_t{drawing.tiles.width} * drawing.tiles.height * 2 / 5);
+    EXPECT_EQ(findLeak(drawing, 12, 16), "");
+}
+
+TEST(Tiles, ABackFaceHidesNothingUnlessItIsDoubleSided) {
+    Random random(13);
+    Solid sheet = makeSheet(random, 2, 2, {-6, -4, -4}, {6, 4, -4}, 0.0f);
+    for (size_t t = 0; t < sheet.indices.size(); t += 3) std::swap(sheet.indices[t + 1], sheet.indices[t + 2]);
+    Drawing single(smallView());
+    single.draw({sheet});
+    single.resolveAll();
+    EXPECT_EQ(single.coveredPixels(), 0u);
+    sheet.double_sided.assign(sheet.indices.size() / 3, 1);
+    Drawing both(smallView());
+    both.draw({sheet});
+    both.resolveAll();
+    EXPECT_EQ(both.coveredPixels(), uint64_t{both.tiles.width} * both.tiles.height);
+    sheet = makeSheet(random, 2, 2, {-6, -4, -4}, {6, 4, -4}, 0.0f);
+    sheet.transform[0][0] = -1.0;  // a mirror turns the winding about, and a front face stays one
+    Drawing mirrored(smallView());
+    mirrored.draw({sheet});
+    mirrored.resolveAll();
+    EXPECT_EQ(mirrored.coveredPixels(), uint64_t{mirrored.tiles.width} * mirrored.tiles.height);
+    EXPECT_EQ(findLeak(mirrored, 13, 4), "");
+}
+
+TEST(Tiles, AreTheSameFarFromTheOrigin) {
+    for (double distance : {0.0, 1e6, 1e9}) {
+        Random random(14);
+        View view = smallView();
+        const glm::dvec3 home(distance, -distance, 0.5 * distance);
+        view.view = lookAt(home, home + glm::dvec3(0, 0, -1), {0, 1, 0});
+        Solid sheet = makeSheet(random, 5, 5, {-6, -4, -4}, {6, 4, -6}, 0.05f);
+        sheet.transform[3] = glm::dvec4(home, 1.0);
+        Drawing drawing(view);
+        drawing.draw({sheet});
+        drawing.resolveAll();
+        EXPECT_EQ(drawing.coveredPixels(), uint64_t{drawing.tiles.width} * drawing.tiles.height) << distance;
+    }
+}
+
+TEST(Tiles, AreTheSameOnEveryInstructionSet) {
+    std::vector<float> expected;
+    int targets = 0;
+    const int64_t supported = hwy::SupportedTargets();
+    for (int64_t left = supported; left; left &= left - 1) {
+        hwy::SetSupportedTargetsForTest(left & -left);
+        Random random(15);
+        Drawing drawing(smallView(200, 120));
+        drawing.draw({makeSheet(random, 40, 30, {-3, -3, -2}, {2, 3, -9}, 0.1f),
+                      makeSheet(random, 3, 3, {-5, -3, -6}, {5, 3, -6}, 0.2f)});
+        drawing.resolveAll();
+        std::vector<float> depths;
+        for (uint32_t y = 0; y < drawing.tiles.height; ++y)
+            for (uint32_t x = 0; x < drawing.tiles.width; ++x) depths.push_back(drawing.depth(x, y));
+        if (expected.empty()) expected = depths;
+        EXPECT_TRUE(depths == expected) << "target " << hwy::TargetName(left & -left);
+        ++targets;
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    RecordProperty("targets", targets);
+    EXPECT_GE(targets, 2);
+}
+
+}  // namespace
+}  // namespace sightline::test
