@@ -1,0 +1,282 @@
+// What stands between the city's buildings: ground, trees, lamps, cars and the rest.
+// SPDX-License-Identifier: MIT
+#include <utility>
+
+#include "sightline/base/assert.h"
+#include "sightline/scene/city_library.h"
+#include "sightline/scene/city_mesh.h"
+
+namespace sightline::city {
+namespace {
+
+// All stand on y = 0 with their front to +z, unless said otherwise.
+
+/// The asphalt under a block, up to the middle of the streets, and the pavements on it.
+/// @param lanes  gap along z through the middle of the pavement; 0: none
+MeshBuilder ground(double size, double lane) {
+    MeshBuilder mesh;
+    const double half = 0.5 * size, kerb = half - kKerb;
+    mesh.quad(kAsphalt, {-half, 0, half}, {half, 0, half}, {half, 0, -half}, {-half, 0, -half});
+    if (lane == 0) {
+        addBox(mesh, kPaving, {-kerb, -0.25, -kerb}, {kerb, kPavement, kerb});
+    } else {
+        addBox(mesh, kPaving, {-kerb, -0.25, -kerb}, {-0.5 * lane, kPavement, kerb});
+        addBox(mesh, kPaving, {0.5 * lane, -0.25, -kerb}, {kerb, kPavement, kerb});
+    }
+    return mesh;
+}
+
+MeshBuilder lawn() {
+    MeshBuilder mesh;
+    addBox(mesh, kLawnGreen, {-0.5, 0, -0.5}, {0.5, 0.0625, 0.5});
+    return mesh;
+}
+
+MeshBuilder crossing() {
+    MeshBuilder mesh;
+    for (int stripe = 0; stripe < 6; ++stripe) {
+        const double x = -3.25 + 1.25 * stripe;
+        addBox(mesh, kPaint, {x, 0, -1.5}, {x + 0.5, 0.015625, 1.5});
+    }
+    return mesh;
+}
+
+/// A trunk and a crown of crossed leafy shells.
+MeshBuilder tree(uint32_t leaf, int sides, const std::vector<Ring>& crown) {
+    MeshBuilder mesh;
+    addTurned(mesh, kBark, {0, 0, 0}, 6, {{0.1875, 0}, {0.125, crown.front().y + 0.75}});
+    addTurned(mesh, leaf, {0, 0, 0}, sides, crown);
+    const Ring &low = crown[1], &high = crown[crown.size() - 2];
+    for (const glm::dvec3& across : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1)})
+        mesh.quad(leaf, -across * (0.875 * low.radius) + glm::dvec3(0, low.y, 0),
+                  across * (0.875 * low.radius) + glm::dvec3(0, low.y, 0),
+                  across * (0.75 * high.radius) + glm::dvec3(0, high.y, 0),
+                  -across * (0.75 * high.radius) + glm::dvec3(0, high.y, 0));
+    return mesh;
+}
+
+MeshBuilder hedge() {
+    MeshBuilder mesh;
+    addBox(mesh, kDarkLeaf, {-1.5, 0, -0.375}, {1.5, 1.25, 0.375});
+    addBox(mesh, kLeaf, {-1.375, 0.125, -0.5}, {1.375, 1.0, 0.5});
+    return mesh;
+}
+
+MeshBuilder lamp() {
+    MeshBuilder mesh;
+    addTurned(mesh, kMetal, {0, 0, 0}, 6, {{0.1875, 0}, {0.125, 0.75}, {0.0625, 1}, {0.046875, 6}});
+    addBox(mesh, kMetal, {-0.03125, 5.875, -0.03125}, {0.03125, 5.9375, 1.5});
+    addBox(mesh, kMetal, {-0.15625, 5.8125, 0.9375}, {0.15625, 5.96875, 1.625});
+    addBox(mesh, kLight, {-0.125, 5.75, 1}, {0.125, 5.84375, 1.5625});
+    return mesh;
+}
+
+MeshBuilder bench() {
+    MeshBuilder mesh;
+    for (const double x : {-0.75, 0.625}) addBox(mesh, kMetal, {x, 0, -0.25}, {x + 0.125, 0.40625, 0.25});
+    for (const double z : {-0.25, 0.0625}) addBox(mesh, kWood, {-1, 0.4375, z}, {1, 0.5, z + 0.21875});
+    for (const double y : {0.59375, 0.78125}) addBox(mesh, kWood, {-1, y, -0.3125}, {1, y + 0.15625, -0.265625});
+    return mesh;
+}
+
+MeshBuilder bin() {
+    MeshBuilder mesh;
+    addTurned(mesh, kMetal, {0, 0, 0}, 8, {{0.21875, 0}, {0.25, 0.75}, {0.28125, 0.8125}, {0.1875, 0.9375}, {0, 1}});
+    return mesh;
+}
+
+MeshBuilder hydrant() {
+    MeshBuilder mesh;
+    addTurned(mesh, kRed, {0, 0, 0}, 8, {{0.1875, 0}, {0.125, 0.0625}, {0.125, 0.5625}, {0.15625, 0.625}, {0, 0.8125}});
+    addBox(mesh, kRed, {-0.21875, 0.375, -0.0625}, {0.21875, 0.5, 0.0625});
+    addBox(mesh, kSilver, {-0.0625, 0.34375, -0.09375}, {0.0625, 0.46875, 0.1875});
+    return mesh;
+}
+
+MeshBuilder bollard() {
+    MeshBuilder mesh;
+    addTurned(mesh, kMetal, {0, 0, 0}, 6, {{0.09375, 0}, {0.078125, 0.8125}, {0.109375, 0.875}, {0, 1}});
+    return mesh;
+}
+
+/// Six metres of mesh panels between posts; the panels are drawn from both sides.
+MeshBuilder fence() {
+    MeshBuilder mesh;
+    for (int post = 0; post < 4; ++post) {
+        const double x = -3 + 2 * post;
+        addBox(mesh, kMetal, {x - 0.046875, 0, -0.046875}, {x + 0.046875, 1.75, 0.046875});
+    }
+    for (int bar = 0; bar < 24; ++bar) {
+        const double x = -2.875 + 0.25 * bar;
+        mesh.quad(kMesh, {x - 0.03125, 0.125, 0}, {x + 0.03125, 0.125, 0}, {x + 0.03125, 1.625, 0},
+                  {x - 0.03125, 1.625, 0});
+    }
+    for (const double y : {0.1875, 1.5}) mesh.quad(kMesh, {-3, y, 0.015625}, {3, y, 0.015625}, {3, y + 0.0625, 0.015625},
+                                                 {-3, y + 0.0625, 0.015625});
+    return mesh;
+}
+
+MeshBuilder sign() {
+    MeshBuilder mesh;
+    addTurned(mesh, kSilver, {0, 0, 0}, 6, {{0.046875, 0}, {0.046875, 2.75}});
+    const std::vector<glm::dvec2> rim = regularPolygon(8);
+    for (size_t i = 1; i + 1 < rim.size(); ++i) {
+        const auto at = [&](size_t k) { return glm::dvec3(0.3125 * rim[k].x, 2.375 + 0.3125 * rim[k].y, 0.0625); };
+        mesh.triangle(kBoard, at(0), at(i), at(i + 1));
+    }
+    return mesh;
+}
+
+MeshBuilder kiosk() {
+    MeshBuilder mesh;
+    addTurned(mesh, kMetal, {0, 0, 0}, 8, {{1.25, 0}, {1.25, 2.5}});
+    addTurned(mesh, kCopper, {0, 0, 0}, 8, {{1.5, 2.4375}, {1.5, 2.625}, {0.5, 3.25}, {0, 3.75}});
+    addBox(mesh, kWood, {-0.75, 0.875, 0.75}, {0.75, 1.0, 1.4375});
+    mesh.quad(kGlass, {-0.5, 1.0625, 1.1875}, {0.5, 1.0625, 1.1875}, {0.5, 2.125, 1.1875}, {-0.5, 2.125, 1.1875});
+    return mesh;
+}
+
+/// A stop with a roof and panes on three sides.
+MeshBuilder shelter() {
+    MeshBuilder mesh;
+    for (const double x : {-1.9375, 1.8125})
+        for (const double z : {-0.6875, 0.5625}) addBox(mesh, kMetal, {x, 0, z}, {x + 0.125, 2.375, z + 0.125});
+    addBox(mesh, kMetal, {-2.0625, 2.34375, -0.8125}, {2.0625, 2.46875, 0.8125});
+    addBox(mesh, kWood, {-1.5, 0.4375, -0.5625}, {1.5, 0.5, -0.1875});
+    mesh.quad(kGlass, {-1.75, 0.25, -0.625}, {1.75, 0.25, -0.625}, {1.75, 2.25, -0.625}, {-1.75, 2.25, -0.625});
+    for (const double x : {-1.875, 1.875})
+        mesh.quad(kGlass, {x, 0.25, 0.5}, {x, 0.25, -0.5}, {x, 2.25, -0.5}, {x, 2.25, 0.5});
+    return mesh;
+}
+
+/// Length along x.
+MeshBuilder car(uint32_t paint) {
+    MeshBuilder mesh;
+    addPrism(mesh, paint, kSideways,
+             {{-2.125, 0.3125}, {2.125, 0.3125}, {2.1875, 0.625}, {2.0625, 0.84375}, {1.1875, 0.96875}, {0.5, 1.4375},
+              {-1.125, 1.46875}, {-1.8125, 1.0}, {-2.1875, 0.9375}}, -0.84375, 0.84375);
+    const std::vector<glm::dvec2> circle = regularPolygon(8);
+    for (const double x : {-1.3125, 1.3125})
+        for (const double z : {-0.90625, 0.71875}) {
+            std::vector<glm::dvec2> wheel;
+            for (const glm::dvec2& c : circle) wheel.push_back({x + 0.3125 * c.x, 0.3125 + 0.3125 * c.y});
+            addPrism(mesh, kRubber, kSideways, wheel, z, z + 0.1875);
+        }
+    mesh.quad(kGlass, {-1.0, 1.03125, 0.859375}, {0.875, 1.03125, 0.859375}, {0.375, 1.375, 0.859375},
+              {-0.9375, 1.375, 0.859375});
+    mesh.quad(kGlass, {0.875, 1.03125, -0.859375}, {-1.0, 1.03125, -0.859375}, {-0.9375, 1.375, -0.859375},
+              {0.375, 1.375, -0.859375});
+    mesh.quad(kGlass, {1.171875, 1.0, 0.6875}, {1.171875, 1.0, -0.6875}, {0.578125, 1.40625, -0.6875},
+              {0.578125, 1.40625, 0.6875});
+    return mesh;
+}
+
+MeshBuilder planter() {
+    MeshBuilder mesh;
+    addBox(mesh, kStone, {-0.625, 0, -0.375}, {0.625, 0.5, 0.375});
+    addTurned(mesh, kLeaf, {0, 0, 0}, 6, {{0, 0.375}, {0.5, 0.6875}, {0.3125, 1.0625}, {0, 1.1875}});
+    return mesh;
+}
+
+/// Hangs on the front at z = 0, over a shop window.
+MeshBuilder awning() {
+    MeshBuilder mesh;
+    mesh.quad(kCloth, {-1.75, 2.625, 1.25}, {1.75, 2.625, 1.25}, {1.75, 3.25, 0}, {-1.75, 3.25, 0});
+    mesh.quad(kCloth, {-1.75, 2.375, 1.25}, {1.75, 2.375, 1.25}, {1.75, 2.625, 1.25}, {-1.75, 2.625, 1.25});
+    for (const double x : {-1.6875, 1.625}) addBox(mesh, kMetal, {x, 2.5625, -0.125}, {x + 0.0625, 2.59375, 1.1875});
+    return mesh;
+}
+
+MeshBuilder bicycleStand() {
+    MeshBuilder mesh;
+    for (int hoop = 0; hoop < 3; ++hoop) {
+        const double x = -0.75 + 0.75 * hoop;
+        for (const double z : {-0.34375, 0.28125}) addBox(mesh, kSilver, {x, 0, z}, {x + 0.0625, 0.78125, z + 0.0625});
+        addBox(mesh, kSilver, {x - 0.015625, 0.765625, -0.359375}, {x + 0.078125, 0.84375, 0.359375});
+    }
+    return mesh;
+}
+
+MeshBuilder chimney() {
+    MeshBuilder mesh;
+    addBox(mesh, kBrick, {-0.5, -1, -0.375}, {0.5, 2.75, 0.375});
+    for (const double x : {-0.25, 0.25})
+        addTurned(mesh, kTiles, {x, 0, 0}, 6, {{0.15625, 2.6875}, {0.125, 3.25}});
+    return mesh;
+}
+
+/// A water tank on legs.
+MeshBuilder tank() {
+    MeshBuilder mesh;
+    for (const double x : {-0.875, 0.75})
+        for (const double z : {-0.875, 0.75}) addBox(mesh, kMetal, {x, -0.125, z}, {x + 0.125, 1.5, z + 0.125});
+    addTurned(mesh, kWood, {0, 0, 0}, 8, {{1.25, 1.4375}, {1.25, 3.5}});
+    addTurned(mesh, kSlate, {0, 0, 0}, 8, {{1.375, 3.4375}, {0, 4.25}});
+    return mesh;
+}
+
+MeshBuilder cooler() {
+    MeshBuilder mesh;
+    addBox(mesh, kSilver, {-0.875, -0.125, -0.625}, {0.875, 1.125, 0.625});
+    addTurned(mesh, kBlack, {0, 0, 0}, 8, {{0.5, 1.0625}, {0.5, 1.25}});
+    return mesh;
+}
+
+MeshBuilder shed() {
+    MeshBuilder mesh;
+    addBox(mesh, kWood, {-2.5, 0, -1.75}, {2.5, 2.5, 1.75});
+    addPrism(mesh, kSlate, kAcross, {{-2, 2.4375}, {2, 2.4375}, {0, 3.75}}, -2.75, 2.75);
+    addBox(mesh, kShade, {-1.25, 0, 1.625}, {1.25, 2.125, 1.8125});
+    return mesh;
+}
+
+MeshBuilder monument() {
+    MeshBuilder mesh;
+    addBox(mesh, kStone, {-2.5, 0, -2.5}, {2.5, 0.375, 2.5});
+    addBox(mesh, kStone, {-1.75, 0.25, -1.75}, {1.75, 0.75, 1.75});
+    addBox(mesh, kTrim, {-1, 0.625, -1}, {1, 3.25, 1});
+    addTurned(mesh, kStone, {0, 0, 0}, 8, {{0.75, 3.125}, {0.4375, 10}, {0, 11}});
+    return mesh;
+}
+
+}  // namespace
+
+void addItems(Library& library) {
+    const auto add = [&](Item item, const char* name, const MeshBuilder& mesh) {
+        SIGHTLINE_ASSERT(library.meshes.size() == item);
+        library.meshes.push_back(mesh.finish(name));
+    };
+    add(kGroundLarge, "ground", ground(kLargeBlock, 0));
+    add(kGroundSplit, "ground with lane", ground(kLargeBlock, kAlley - 2));
+    add(kGroundSmall, "small ground", ground(kSmallBlock, 0));
+    add(kLawn, "lawn", lawn());
+    add(kCrossing, "crossing", crossing());
+    add(kPlaneTree, "plane tree", tree(kLeaf, 8, {{0, 2.75}, {1.5, 3.5}, {2.125, 5}, {1.5, 6.75}, {0, 7.75}}));
+    add(kLimeTree, "lime tree", tree(kDarkLeaf, 8, {{0, 2.5}, {1.375, 3.25}, {1.625, 4.5}, {0.75, 6.5}, {0, 7.25}}));
+    add(kPoplar, "poplar", tree(kDarkLeaf, 6, {{0, 1.5}, {0.875, 2.5}, {1.125, 5}, {0.625, 9}, {0, 11}}));
+    add(kHedge, "hedge", hedge());
+    add(kLamp, "lamp", lamp());
+    add(kBench, "bench", bench());
+    add(kBin, "bin", bin());
+    add(kHydrant, "hydrant", hydrant());
+    add(kBollard, "bollard", bollard());
+    add(kFence, "fence", fence());
+    add(kSign, "sign", sign());
+    add(kKiosk, "kiosk", kiosk());
+    add(kShelter, "shelter", shelter());
+    add(kRedCar, "red car", car(kRed));
+    add(kBlueCar, "blue car", car(kBlue));
+    add(kSilverCar, "silver car", car(kSilver));
+    add(kBlackCar, "black car", car(kBlack));
+    add(kPlanter, "planter", planter());
+    add(kAwning, "awning", awning());
+    add(kBicycleStand, "bicycle stand", bicycleStand());
+    add(kChimney, "chimney", chimney());
+    add(kTank, "tank", tank());
+    add(kCooler, "cooler", cooler());
+    add(kShed, "shed", shed());
+    add(kMonument, "monument", monument());
+    SIGHTLINE_ASSERT(library.meshes.size() == kItemCount);
+}
+
+}  // namespace sightline::city

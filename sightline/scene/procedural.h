@@ -1,0 +1,23 @@
+// Procedural scenes by their specification: NAME:SEED:SIZE.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "sightline/base/result.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline {
+
+/// True if the text begins with the name of a procedural scene and a colon; anything else is a file's name.
+bool isProcedural(const std::string& spec);
+
+/// Makes the scene that a specification names; its name is the specification.
+///
+///     city:SEED:OBJECTS    makeCity; OBJECTS from 1 to 10,000,000
+///
+/// Errors (kUsage) quote the specification: an unknown name, a part that is missing or too many, a number that
+/// is malformed or out of its limits.
+Result<Scene> makeProcedural(const std::string& spec);
+
+}  // namespace sightline
