@@ -1,4 +1,4 @@
-// Draws occluder clusters into the depth tiles, and asks them whether a rectangle is hidden: the SIMD kernels.
+// Draws occluder clusters into the depth tiles: projection, tile classification, coverage.
 // SPDX-License-Identifier: MIT
 #include "sightline/raster/tiles.h"
 
@@ -16,12 +16,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "sightline/raster/tile_ops-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sightline {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using F8 = hn::CappedTag<float, 8>;
 using D8 = hn::CappedTag<double, 8>;
 
 /// Projects a cluster's vertices into px, py, pd; those before the near guard get a NaN.
@@ -50,195 +50,138 @@ void projectVertices(const Screen& object, const Occluder& occluder, const Occlu
     }
 }
 
-/// One tile's view of a polygon: everything relative to the tile's centre, in float.
+/// What a polygon's edge functions and its plane add to a tile centre's values at each of its 64 pixels.
+struct PixelOffsets {
+    alignas(64) float edge[4][64];
+    alignas(64) float depth[64];
+    bool ready = false;
+};
+
+void makeOffsets(const RasterPolygon& polygon, PixelOffsets& out) {
+    const F16 d;
+    const auto fill = [&](double a, double b, float* values) HWY_ATTR {
+        for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
+            const auto place = hn::Iota(d, static_cast<float>(i));
+            const auto row = hn::Floor(hn::Mul(place, hn::Set(d, 0.125f)));
+            const auto x = hn::Sub(hn::Sub(place, hn::Mul(row, hn::Set(d, 8.0f))), hn::Set(d, 3.5f));
+            const auto y = hn::Sub(row, hn::Set(d, 3.5f));
+            hn::Store(hn::Add(hn::Mul(x, hn::Set(d, static_cast<float>(a))), hn::Mul(y, hn::Set(d, static_cast<float>(b)))),
+                      d, values + i);
+        }
+    };
+    for (int e = 0; e < polygon.edges; ++e) fill(polygon.edge[e].a, polygon.edge[e].b, out.edge[e]);
+    fill(polygon.planar ? polygon.dx : 0.0, polygon.planar ? polygon.dy : 0.0, out.depth);
+    out.ready = true;
+}
+
+/// One tile's view of a polygon.
 struct TilePolygon {
-    float a[4], b[4], c[4];
-    int edges = 0;        ///< those that do not contain the whole tile
-    DepthTiles::Plane plane;  ///< the farthest nearness over each pixel
+    float at_center[4];   ///< edge functions there
+    uint32_t cutting = 0; ///< bit per edge that does not contain the whole tile
+    float depth = 0;      ///< at the centre, the farthest nearness over a pixel
+    float nearest = 0;    ///< no point of the polygon in the tile is nearer
     uint64_t window = 0;  ///< pixels inside the polygon's bounds
 };
 
-/// A plane's depths at the pixels of one row whose offsets from the tile's centre are given.
-template <class D, class Vec>
-HWY_INLINE Vec planeDepth(D d, const DepthTiles::Plane& plane, int row, Vec x) {
-    const auto base = hn::Set(d, plane.d + plane.dy * (static_cast<float>(row) - 3.5f));
-    return hn::Max(hn::Add(base, hn::Mul(hn::Set(d, plane.dx), x)), hn::Set(d, plane.floor));
-}
-
-/// Writes a plane out, or -infinity for an empty tile, so that single pixels can change.
-void toPixels(DepthTiles::Tile& tile, float* depth) {
-    const F8 d;
-    const auto open = hn::Set(d, -std::numeric_limits<float>::infinity());
-    const auto offset = hn::Iota(d, -3.5f);
-    for (int row = 0; row < 8; ++row)
-        for (size_t h = 0; h < 8; h += hn::Lanes(d)) {
-            const auto z = planeDepth(d, tile.plane, row, hn::Add(offset, hn::Set(d, static_cast<float>(h))));
-            hn::StoreU(tile.form == DepthTiles::Form::kPlane ? z : open, d, depth + 8 * row + h);
-        }
-    tile.form = DepthTiles::Form::kPixels;
-}
-
-float leastDepth(const float* depth) {
-    const F8 d;
-    auto least = hn::LoadU(d, depth);
-    for (size_t i = hn::Lanes(d); i < 64; i += hn::Lanes(d)) least = hn::Min(least, hn::LoadU(d, depth + i));
-    return hn::GetLane(hn::MinOfLanes(d, least));
-}
-
-float tilt(const DepthTiles::Plane& plane) { return 3.5f * (std::abs(plane.dx) + std::abs(plane.dy)); }
-
-/// Raises the depths of all pixels of a tile that the polygon covers whole.
-void coverWholeTile(DepthTiles::Tile& tile, float* depth, const DepthTiles::Plane& plane) {
-    // The last factor keeps the bound below the plane's own rounding.
-    const float across = tilt(plane) * (1.0f + 0x1p-20f) + 0x1p-20f * std::abs(plane.d);
-    const float farthest = std::max(plane.floor, plane.d - across);
-    const bool in_front = tile.form == DepthTiles::Form::kEmpty ||
-                          (tile.form == DepthTiles::Form::kPlane &&
-                           farthest >= std::max(tile.plane.floor, tile.plane.d + tilt(tile.plane) * (1.0f + 0x1p-20f)));
-    if (in_front) {
-        tile.form = DepthTiles::Form::kPlane;
-        tile.plane = plane;
-        tile.covered = ~uint64_t{0};
-        tile.farthest = farthest;
-        return;
-    }
-    if (tile.form != DepthTiles::Form::kPixels) toPixels(tile, depth);
-    const F8 d;
-    const auto offset = hn::Iota(d, -3.5f);
+/// Raises the depths of a tile's pixels that the mask names.
+void coverPixels(DepthTiles& tiles, uint32_t tile, float center, float floor, const float* offsets, uint64_t mask) {
+    const F16 d;
+    toPixels(tiles, tile);
+    float* depth = tiles.depth.data() + 64 * size_t{tile};
     auto least = hn::Set(d, std::numeric_limits<float>::infinity());
-    for (int row = 0; row < 8; ++row)
-        for (size_t h = 0; h < 8; h += hn::Lanes(d)) {
-            float* place = depth + 8 * row + h;
-            const auto z = planeDepth(d, plane, row, hn::Add(offset, hn::Set(d, static_cast<float>(h))));
-            const auto raised = hn::Max(z, hn::LoadU(d, place));
-            hn::StoreU(raised, d, place);
-            least = hn::Min(least, raised);
-        }
-    tile.covered = ~uint64_t{0};
-    tile.farthest = hn::GetLane(hn::MinOfLanes(d, least));
+    for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
+        const uint64_t part = mask >> i;
+        const auto z = hn::Max(hn::Add(hn::Set(d, center), hn::Load(d, offsets + i)), hn::Set(d, floor));
+        const auto old = hn::LoadU(d, depth + i);
+        const auto raised = hn::IfThenElse(maskFromBits(d, part), hn::Max(old, z), old);
+        hn::StoreU(raised, d, depth + i);
+        least = hn::Min(least, raised);
+    }
+    tiles.covered[tile] |= mask;
+    if (tiles.covered[tile] == ~uint64_t{0}) tiles.farthest[tile] = hn::GetLane(hn::MinOfLanes(d, least));
 }
 
-/// Bits of the pixels, and what a partial polygon does to them.
+/// Bits of the pixels that a polygon covers whole, and of those that it touches.
 struct TileMasks {
-    uint64_t inner = 0;  ///< covered whole by this polygon
-    uint64_t outer = 0;  ///< touched by it
+    uint64_t inner = 0, outer = 0;
 };
 
-TileMasks classifyPixels(const TilePolygon& p, float slack) {
-    const F8 d;
-    const auto offset = hn::Iota(d, -3.5f);
+TileMasks classifyPixels(const TilePolygon& p, const PixelOffsets& offsets, float slack) {
+    const F16 d;
     const auto inside = hn::Set(d, 0.5f + slack), touches = hn::Set(d, -0.5f - slack);
     TileMasks masks;
-    for (int row = 0; row < 8; ++row) {
-        if (!((p.window >> (8 * row)) & 255)) continue;
-        const float y = static_cast<float>(row) - 3.5f;
-        for (size_t h = 0; h < 8; h += hn::Lanes(d)) {
-            const auto at = hn::Add(offset, hn::Set(d, static_cast<float>(h)));
-            auto least = hn::Set(d, 1e30f);
-            for (int e = 0; e < p.edges; ++e)
-                least = hn::Min(least, hn::Add(hn::Set(d, p.c[e] + p.b[e] * y), hn::Mul(hn::Set(d, p.a[e]), at)));
-            uint8_t bits[8] = {};
-            hn::StoreMaskBits(d, hn::Ge(least, inside), bits);
-            masks.inner |= uint64_t{bits[0]} << (8 * row + h);
-            hn::StoreMaskBits(d, hn::Ge(least, touches), bits);
-            masks.outer |= uint64_t{bits[0]} << (8 * row + h);
+    for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
+        auto least = hn::Set(d, 1e30f);
+        for (uint32_t left = p.cutting; left; left &= left - 1) {
+            const int e = std::countr_zero(left);
+            least = hn::Min(least, hn::Add(hn::Set(d, p.at_center[e]), hn::Load(d, offsets.edge[e] + i)));
         }
+        masks.inner |= bitsFromMask(d, hn::Ge(least, inside)) << i;
+        masks.outer |= bitsFromMask(d, hn::Ge(least, touches)) << i;
     }
     masks.outer &= p.window;
     masks.inner &= p.window;
     return masks;
 }
 
-/// Raises the depths of the covered pixels of a tile.
-void coverPixels(DepthTiles::Tile& tile, float* depth, const DepthTiles::Plane& plane, uint64_t inner) {
-    const F8 d;
-    if (tile.form != DepthTiles::Form::kPixels) toPixels(tile, depth);
-    const auto offset = hn::Iota(d, -3.5f);
-    for (int row = 0; row < 8; ++row) {
-        const uint64_t bits = (inner >> (8 * row)) & 255;
-        if (!bits) continue;
-        for (size_t h = 0; h < 8; h += hn::Lanes(d)) {
-            float* place = depth + 8 * row + h;
-            const uint8_t part[8] = {static_cast<uint8_t>(bits >> h)};
-            const auto z = planeDepth(d, plane, row, hn::Add(offset, hn::Set(d, static_cast<float>(h))));
-            const auto old = hn::LoadU(d, place);
-            hn::StoreU(hn::IfThenElse(hn::LoadMaskBits(d, part), hn::Max(old, z), old), d, place);
-        }
-    }
-    tile.covered |= inner;
-    if (tile.covered == ~uint64_t{0}) tile.farthest = leastDepth(depth);
-}
-
-/// Pixels of a tile whose depth does not surely lie in front of the given nearness.
-uint64_t pixelsNotNearer(const float* depth, float nearness) {
-    const F8 d;
-    const auto limit = hn::Set(d, nearness);
-    uint64_t open = 0;
-    for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
-        uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, hn::Gt(hn::LoadU(d, depth + i), limit), bits);
-        open |= uint64_t{static_cast<uint8_t>(~bits[0] & ((1u << hn::Lanes(d)) - 1))} << i;
-    }
-    return open;
-}
-
-/// Bits of the columns and rows of a tile that a pixel rectangle meets.
-uint64_t windowBits(int32_t x0, int32_t y0, int32_t x1, int32_t y1, int32_t tile_x, int32_t tile_y) {
-    const int left = std::max(0, x0 - tile_x), right = std::min(7, x1 - tile_x);
-    const int low = std::max(0, y0 - tile_y), high = std::min(7, y1 - tile_y);
-    const uint64_t columns = (0xffu >> (7 - right)) & (0xffu << left) & 0xffu;
-    uint64_t rows = ~uint64_t{0} << (8 * low);
-    if (high < 7) rows &= (uint64_t{1} << (8 * (high + 1))) - 1;
-    return columns * 0x0101010101010101ull & rows;
-}
-
 /// Adds a seam triangle's pixels to a tile, making its record at the first need.
-void addSeam(DepthTiles& tiles, DepthTiles::Tile& tile, uint64_t mask, const SeamTriangle& triangle,
-             uint32_t& record) {
+void addSeam(DepthTiles& tiles, uint32_t tile, uint64_t mask, const SeamTriangle& triangle, uint32_t& record) {
     if (record == DepthTiles::kNone) {
         record = static_cast<uint32_t>(tiles.triangles.size());
         tiles.triangles.push_back(triangle);
     }
-    tiles.entries.push_back({mask, record, tile.seams});
-    tile.seams = static_cast<uint32_t>(tiles.entries.size() - 1);
-    tile.tried &= ~mask;
+    tiles.entries.push_back({mask, record, tiles.seams[tile]});
+    tiles.seams[tile] = static_cast<uint32_t>(tiles.entries.size() - 1);
+    tiles.tried[tile] &= ~mask;
 }
 
-/// The part of a polygon that one tile sees; false if there is none, or none that the tile does not hide.
-bool seenByTile(const RasterPolygon& polygon, double tilt, const DepthTiles::Tile& tile, int32_t column, int32_t row,
-                TilePolygon& p, float& nearest) {
+/// The part of a polygon that one tile sees, worked out from the polygon in double.
+TilePolygon seenByTile(const RasterPolygon& polygon, int32_t column, int32_t row) {
     const double x = 8.0 * column + 4.0, y = 8.0 * row + 4.0;
-    p.edges = 0;
+    TilePolygon p;
     for (int e = 0; e < polygon.edges; ++e) {
-        const float c = static_cast<float>(polygon.edge[e].at(x, y));
-        if (c < -4.0f - polygon.slack) return false;
-        if (c >= 4.0f + polygon.slack) continue;
-        p.a[p.edges] = static_cast<float>(polygon.edge[e].a);
-        p.b[p.edges] = static_cast<float>(polygon.edge[e].b);
-        p.c[p.edges++] = c;
+        p.at_center[e] = static_cast<float>(polygon.edge[e].at(x, y));
+        if (p.at_center[e] < 4.0f + polygon.slack) p.cutting |= 1u << e;
     }
-    nearest = polygon.nearest;
-    p.plane = {polygon.farthest, 0, 0, polygon.farthest};
+    p.nearest = polygon.nearest;
+    p.depth = polygon.farthest;
     if (polygon.planar) {
+        const double tilt = std::abs(polygon.dx) + std::abs(polygon.dy);
         const double d = polygon.d0 + polygon.dx * x + polygon.dy * y;
         const double error = polygon.depth_error + 0x1p-21 * (std::abs(d) + 4.0 * tilt);
-        nearest = std::min(nearest, static_cast<float>(d + 4.0 * tilt + error));
-        if (tile.farthest >= nearest) return false;
-        p.plane = {static_cast<float>(d - 0.5 * tilt - error), static_cast<float>(polygon.dx),
-                   static_cast<float>(polygon.dy), polygon.farthest};
+        p.nearest = std::min(p.nearest, static_cast<float>(d + 4.0 * tilt + error));
+        p.depth = static_cast<float>(d - 0.5 * tilt - error);
     }
     p.window = windowBits(polygon.x0, polygon.y0, polygon.x1, polygon.y1, 8 * column, 8 * row);
-    return true;
+    return p;
+}
+
+/// A tile that the polygon covers in part, or whose depth it does not simply replace.
+void drawTile(DepthTiles& tiles, const RasterPolygon& polygon, PixelOffsets& offsets, const SeamTriangle& triangle,
+              int32_t column, int32_t row, uint32_t& record) {
+    const uint32_t tile = static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(column);
+    const TilePolygon p = seenByTile(polygon, column, row);
+    if (tiles.farthest[tile] >= p.nearest) return;
+    if (!offsets.ready) makeOffsets(polygon, offsets);
+    TileMasks masks = p.cutting ? classifyPixels(p, offsets, polygon.slack) : TileMasks{p.window, p.window};
+    if (!polygon.covers) masks.inner = 0;
+    uint64_t seam = masks.outer & ~masks.inner;
+    if (masks.inner) coverPixels(tiles, tile, p.depth, polygon.farthest, offsets.depth, masks.inner);
+    if (seam & tiles.coveredBits(tile)) {
+        toPixels(tiles, tile);
+        seam &= pixelsNotNearer(tiles.depth.data() + 64 * size_t{tile}, p.nearest);
+    }
+    if (seam) addSeam(tiles, tile, seam, triangle, record);
 }
 
 /// The tile columns of a row of tiles that the edges leave; widened by rounding to whole tiles.
-void columnsOfRow(const RasterPolygon& polygon, int32_t row, int32_t& first, int32_t& last) {
+void columnsOfRow(const RasterPolygon& polygon, const double* inverse_a, int32_t row, int32_t& first, int32_t& last) {
     const double y = 8.0 * row + 4.0;
     double low = polygon.x0 - 4.0, high = polygon.x1 + 5.0;  // centres of tiles that may be met
     for (int e = 0; e < polygon.edges; ++e) {
         const EdgeFunction& edge = polygon.edge[e];
-        if (std::abs(edge.a) < 1e-6) continue;
-        const double at = -(edge.b * y + edge.c + 4.0 + polygon.slack) / edge.a;
+        if (inverse_a[e] == 0.0) continue;
+        const double at = -(edge.b * y + edge.c + 4.0 + polygon.slack) * inverse_a[e];
         if (edge.a > 0) low = std::max(low, at - 1e-3);
         else high = std::min(high, at + 1e-3);
     }
@@ -246,33 +189,83 @@ void columnsOfRow(const RasterPolygon& polygon, int32_t row, int32_t& first, int
     last = std::min(polygon.x1 >> 3, static_cast<int32_t>(std::max(high, -12.0) + 12.0) / 8 - 1);
 }
 
+/// What changes from tile to tile along a row.
+struct ChunkSetup {
+    double inverse_a[4];  ///< 0 for an edge too level to bound a row
+    float step_a[4];   ///< edge functions' change from one tile to the next
+    float step_d;      ///< the plane's
+    float tilt;        ///< the plane's change over a pixel
+};
+
+/// Looks at eight tiles at once: leaves out those that the polygon misses or that hide it, replaces the depth of
+/// those that it covers whole and lies in front of, and returns the others.
+uint32_t drawChunk(DepthTiles& tiles, const RasterPolygon& polygon, const ChunkSetup& setup, int32_t chunk, int32_t row) {
+    // Relative to the first tile's centre in double; eight steps from there float rounds by less than the margin.
+    constexpr float kMargin = 0x1p-10f;
+    const double x = 8.0 * chunk + 4.0, y = 8.0 * row + 4.0;
+    const F8 d;
+    const uint32_t base = static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(chunk);
+    float c[4];
+    for (int e = 0; e < polygon.edges; ++e) c[e] = static_cast<float>(polygon.edge[e].at(x, y));
+    const double center = polygon.planar ? polygon.d0 + polygon.dx * x + polygon.dy * y : polygon.farthest;
+    const float tilt = setup.tilt, reach = std::abs(static_cast<float>(center)) + 64.0f * tilt;
+    const auto error = hn::Set(d, polygon.depth_error + 0x1p-20f * reach);
+    uint32_t slow = 0;
+    for (size_t h = 0; h < 8; h += hn::Lanes(d)) {
+        const auto step = hn::Iota(d, static_cast<float>(h));
+        auto least = hn::Set(d, 1e30f);
+        for (int e = 0; e < polygon.edges; ++e)
+            least = hn::Min(least, hn::Add(hn::Set(d, c[e]), hn::Mul(step, hn::Set(d, setup.step_a[e]))));
+        const auto z = hn::Add(hn::Set(d, static_cast<float>(center)), hn::Mul(step, hn::Set(d, setup.step_d)));
+        auto nearest = hn::Set(d, polygon.nearest);
+        if (polygon.planar) nearest = hn::Min(nearest, hn::Add(hn::Add(z, hn::Set(d, 4.0f * tilt)), error));
+        const auto met = hn::And(hn::Ge(least, hn::Set(d, -4.0f - kMargin - polygon.slack)),
+                                 hn::Lt(hn::LoadU(d, tiles.farthest.data() + base + h), nearest));
+        uint32_t left = static_cast<uint32_t>(bitsFromMask(d, met));
+        if (left && polygon.covers && polygon.planar) {
+            const auto floor = hn::Set(d, polygon.farthest);
+            const auto plane = hn::Sub(hn::Sub(z, hn::Set(d, 0.5f * tilt)), error);
+            const auto farthest = hn::Max(hn::Sub(plane, hn::Add(hn::Set(d, 3.5f * tilt), error)), floor);
+            const auto whole = hn::And(hn::And(met, hn::Ge(least, hn::Set(d, 4.0f + kMargin + polygon.slack))),
+                                       hn::Ge(farthest, hn::LoadU(d, tiles.nearest.data() + base + h)));
+            const auto put = [&](auto value, std::vector<float>& array) HWY_ATTR {
+                hn::BlendedStore(value, whole, d, array.data() + base + h);
+            };
+            put(plane, tiles.plane_d);
+            put(hn::Set(d, static_cast<float>(polygon.dx)), tiles.plane_dx);
+            put(hn::Set(d, static_cast<float>(polygon.dy)), tiles.plane_dy);
+            put(floor, tiles.plane_floor);
+            put(farthest, tiles.farthest);
+            put(hn::Max(hn::Add(plane, hn::Add(hn::Set(d, 3.5f * tilt), error)), floor), tiles.nearest);
+            const uint32_t replaced = static_cast<uint32_t>(bitsFromMask(d, whole));
+            left &= ~replaced;
+            for (uint32_t set = replaced; set; set &= set - 1)
+                tiles.form[base + h + static_cast<size_t>(std::countr_zero(set))] = DepthTiles::Form::kPlane;
+        }
+        slow |= left << h;
+    }
+    return slow;
+}
+
 void drawPolygon(DepthTiles& tiles, const RasterPolygon& polygon, const SeamTriangle& triangle) {
     uint32_t record = DepthTiles::kNone;
-    const double tilt = std::abs(polygon.dx) + std::abs(polygon.dy);
+    PixelOffsets offsets;
+    ChunkSetup setup;
+    for (int e = 0; e < polygon.edges; ++e) {
+        const double a = polygon.edge[e].a;
+        setup.step_a[e] = static_cast<float>(8.0 * a);
+        setup.inverse_a[e] = std::abs(a) < 1e-6 ? 0.0 : 1.0 / a;
+    }
+    setup.step_d = polygon.planar ? static_cast<float>(8.0 * polygon.dx) : 0.0f;
+    setup.tilt = polygon.planar ? static_cast<float>(std::abs(polygon.dx) + std::abs(polygon.dy)) : 0.0f;
     for (int32_t row = polygon.y0 >> 3; row <= polygon.y1 >> 3; ++row) {
-        int32_t column, last;
-        columnsOfRow(polygon, row, column, last);
-        for (; column <= last; ++column) {
-            const uint32_t index = static_cast<uint32_t>(row) * tiles.columns + static_cast<uint32_t>(column);
-            DepthTiles::Tile& tile = tiles.tiles[index];
-            if (tile.farthest >= polygon.nearest) continue;
-            TilePolygon p;
-            float nearest;
-            if (!seenByTile(polygon, tilt, tile, column, row, p, nearest)) continue;
-            float* depth = tiles.depth.data() + 64 * size_t{index};
-            if (polygon.covers && p.edges == 0 && p.window == ~uint64_t{0}) {
-                coverWholeTile(tile, depth, p.plane);
-                continue;
-            }
-            TileMasks masks = classifyPixels(p, polygon.slack);
-            if (!polygon.covers) masks.inner = 0;
-            uint64_t seam = masks.outer & ~masks.inner;
-            if (masks.inner) coverPixels(tile, depth, p.plane, masks.inner);
-            if (seam & tile.covered) {
-                if (tile.form == DepthTiles::Form::kPlane) toPixels(tile, depth);
-                seam &= pixelsNotNearer(depth, nearest);
-            }
-            if (seam) addSeam(tiles, tile, seam, triangle, record);
+        int32_t first, last;
+        columnsOfRow(polygon, setup.inverse_a, row, first, last);
+        for (int32_t chunk = first & ~7; chunk <= last; chunk += 8) {
+            uint32_t slow = drawChunk(tiles, polygon, setup, chunk, row);
+            slow &= 0xffu << std::max(0, first - chunk) & 0xffu >> std::max(0, chunk + 7 - last);
+            for (; slow; slow &= slow - 1)
+                drawTile(tiles, polygon, offsets, triangle, chunk + std::countr_zero(slow), row, record);
         }
     }
 }
@@ -358,45 +351,6 @@ void drawClusterKernel(DepthTiles& tiles, const Screen& object, bool flips, cons
     drawTriangles(tiles, object, flips, drawn);
 }
 
-/// What a tile leaves open of a rectangle: pixels that are not surely nearer than the rectangle.
-uint64_t openPixels(DepthTiles& tiles, uint32_t index, const PixelRect& rect, int32_t column, int32_t row) {
-    DepthTiles::Tile& tile = tiles.tiles[index];
-    if (tile.farthest > rect.nearness) return 0;
-    const uint64_t window = windowBits(rect.x0, rect.y0, rect.x1, rect.y1, 8 * column, 8 * row);
-    if (tile.form == DepthTiles::Form::kEmpty) return window;
-    float* depth = tiles.depth.data() + 64 * size_t{index};
-    if (tile.form == DepthTiles::Form::kPlane) toPixels(tile, depth);
-    return window & pixelsNotNearer(depth, rect.nearness);
-}
-
-bool isHiddenKernel(DepthTiles& tiles, const PixelRect& rect) {
-    // First the cheap answer: a pixel that is open and that no seam can close makes the rectangle visible.
-    bool undecided = false;
-    for (int32_t row = rect.y0 >> 3; row <= rect.y1 >> 3; ++row)
-        for (int32_t column = rect.x0 >> 3; column <= rect.x1 >> 3; ++column) {
-            const uint32_t index = static_cast<uint32_t>(row) * tiles.columns + static_cast<uint32_t>(column);
-            const uint64_t open = openPixels(tiles, index, rect, column, row);
-            if (!open) continue;
-            const DepthTiles::Tile& tile = tiles.tiles[index];
-            uint64_t seams = 0;
-            for (uint32_t at = tile.seams; at != DepthTiles::kNone; at = tiles.entries[at].next)
-                seams |= tiles.entries[at].mask;
-            if (open & (~seams | tile.tried)) return false;
-            undecided = true;
-        }
-    if (!undecided) return true;
-    for (int32_t row = rect.y0 >> 3; row <= rect.y1 >> 3; ++row)
-        for (int32_t column = rect.x0 >> 3; column <= rect.x1 >> 3; ++column) {
-            const uint32_t index = static_cast<uint32_t>(row) * tiles.columns + static_cast<uint32_t>(column);
-            for (uint64_t open = openPixels(tiles, index, rect, column, row); open; open &= open - 1) {
-                const int bit = std::countr_zero(open);
-                if (!resolveSeam(tiles, index, bit)) return false;
-                if (!(tiles.depth[64 * size_t{index} + bit] > rect.nearness)) return false;
-            }
-        }
-    return true;
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace sightline
 HWY_AFTER_NAMESPACE();
@@ -405,20 +359,9 @@ HWY_AFTER_NAMESPACE();
 namespace sightline {
 
 HWY_EXPORT(drawClusterKernel);
-HWY_EXPORT(isHiddenKernel);
-HWY_EXPORT(toPixels);
 
 void drawCluster(DepthTiles& tiles, const Screen& object, bool flips, const DrawnCluster& cluster) {
     HWY_DYNAMIC_DISPATCH(drawClusterKernel)(tiles, object, flips, cluster);
-}
-
-void writeOut(DepthTiles& tiles, uint32_t tile) {
-    if (tiles.tiles[tile].form != DepthTiles::Form::kPixels)
-        HWY_DYNAMIC_DISPATCH(toPixels)(tiles.tiles[tile], tiles.depth.data() + 64 * size_t{tile});
-}
-
-bool isHidden(DepthTiles& tiles, const PixelRect& rect) {
-    return HWY_DYNAMIC_DISPATCH(isHiddenKernel)(tiles, rect);
 }
 
 }  // namespace sightline

@@ -269,28 +269,27 @@ float roundFarther(double nearness) {
 
 }  // namespace
 
-bool resolveSeam(DepthTiles& tiles, uint32_t tile_index, int bit) {
-    DepthTiles::Tile& tile = tiles.tiles[tile_index];
+bool resolveSeam(DepthTiles& tiles, uint32_t tile, int bit) {
     const uint64_t pixel = uint64_t{1} << bit;
-    if (tile.tried & pixel) return (tile.covered & pixel) != 0;
-    tile.tried |= pixel;
+    const bool before = (tiles.coveredBits(tile) & pixel) != 0;
+    if (tiles.tried[tile] & pixel) return before;
+    tiles.tried[tile] |= pixel;
     ++tiles.seam_pixels;
     Resolver resolver;
-    for (uint32_t at = tile.seams; at != DepthTiles::kNone; at = tiles.entries[at].next) {
+    for (uint32_t at = tiles.seams[tile]; at != DepthTiles::kNone; at = tiles.entries[at].next) {
         if (!(tiles.entries[at].mask & pixel)) continue;
-        if (resolver.piece_count == kMaxTriangles) return (tile.covered & pixel) != 0;
+        if (resolver.piece_count == kMaxTriangles) return before;
         loadPiece(tiles, tiles.triangles[tiles.entries[at].triangle], resolver.pieces[resolver.piece_count++]);
     }
-    const double x = 8.0 * (tile_index % tiles.columns) + (bit & 7) + 0.5;
-    const double y = 8.0 * (tile_index / tiles.columns) + (bit >> 3) + 0.5;
+    const double x = 8.0 * (tile % tiles.stride) + (bit & 7) + 0.5;
+    const double y = 8.0 * (tile / tiles.stride) + (bit >> 3) + 0.5;
     const double nearness = resolver.resolve(tiles, x, y);
-    if (!(nearness > -std::numeric_limits<double>::infinity())) return (tile.covered & pixel) != 0;
-
-    writeOut(tiles, tile_index);
-    float* depth = tiles.depth.data() + 64 * size_t{tile_index};
-    tile.covered |= pixel;
+    if (!(nearness > -std::numeric_limits<double>::infinity())) return before;
+    writeOut(tiles, tile);
+    float* depth = tiles.depth.data() + 64 * size_t{tile};
+    tiles.covered[tile] |= pixel;
     depth[bit] = std::max(depth[bit], roundFarther(nearness));
-    if (tile.covered == ~uint64_t{0}) tile.farthest = *std::min_element(depth, depth + 64);
+    if (tiles.covered[tile] == ~uint64_t{0}) tiles.farthest[tile] = *std::min_element(depth, depth + 64);
     return true;
 }
 

@@ -12,11 +12,19 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height) {
     height = new_height;
     columns = (width + 7) / 8;
     rows = (height + 7) / 8;
-    const size_t count = size_t{columns} * rows;
-    if (depth.size() < 64 * count) depth.resize(64 * count);
-    Tile empty;
-    empty.farthest = -std::numeric_limits<float>::infinity();
-    tiles.assign(count, empty);
+    stride = (columns + 7) / 8 * 8;
+    constexpr float kOpen = -std::numeric_limits<float>::infinity();
+    const size_t count = size_t{stride} * rows;
+    farthest.assign(count, kOpen);
+    nearest.assign(count, kOpen);
+    form.assign(count, Form::kEmpty);
+    tried.assign(count, 0);
+    seams.assign(count, kNone);
+    if (covered.size() < count) {  // these are read only where the form says that they were written
+        for (std::vector<float>* plane : {&plane_d, &plane_dx, &plane_dy, &plane_floor}) plane->resize(count);
+        covered.resize(count);
+        depth.resize(64 * count);
+    }
     px.clear();
     py.clear();
     pd.clear();

@@ -63,29 +63,28 @@ struct DepthTiles {
     /// How a tile's depths are held.
     enum class Form : uint8_t {
         kEmpty,   ///< no pixel is covered
-        kPlane,   ///< all pixels are, by one polygon: Tile::plane; the depth array is not valid
+        kPlane,   ///< all pixels are, by one polygon: the plane arrays; the depth array is not valid
         kPixels,  ///< the depth array is valid
     };
 
-    /// Nearness over a tile as one polygon gave it: at the pixel (x, y) of the tile,
-    /// max(floor, d + dx (x - 3.5) + dy (y - 3.5)).
-    struct Plane {
-        float d = 0, dx = 0, dy = 0, floor = 0;
-    };
+    uint32_t width = 0, height = 0;   ///< [pixels], multiples of 8
+    uint32_t columns = 0, rows = 0;   ///< [tiles]
+    uint32_t stride = 0;              ///< tiles from one row to the next: columns rounded up to 8
 
-    struct Tile {
-        uint64_t covered = 0;   ///< bit 8 * row + column
-        uint64_t tried = 0;     ///< seam pixels whose present entries have been resolved
-        Plane plane;
-        float farthest = 0;     ///< no more than the least nearness in the tile; -infinity unless all is covered
-        uint32_t seams = kNone; ///< first SeamEntry
-        Form form = Form::kEmpty;
-    };
+    // Per tile, side by side, so that eight tiles of a row are looked at together.
+    std::vector<float> farthest;      ///< no more than the least nearness in the tile; -infinity unless all is covered
+    std::vector<float> nearest;       ///< form kPlane: no less than the greatest; kEmpty: -infinity; kPixels: +infinity
+    std::vector<float> plane_d, plane_dx, plane_dy, plane_floor;  ///< form kPlane: nearness at pixel (x, y) of the tile
+                                      ///< is max(floor, d + dx (x - 3.5) + dy (y - 3.5))
+    std::vector<Form> form;
+    std::vector<uint64_t> covered;    ///< bit 8 * row + column; not kept up to date in form kPlane, which is all covered
+    std::vector<uint64_t> tried;      ///< seam pixels whose present entries have been resolved
+    std::vector<uint32_t> seams;      ///< first SeamEntry, or kNone
+    std::vector<float> depth;         ///< 64 per tile; -infinity where not covered; see Form
 
-    uint32_t width = 0, height = 0;        ///< [pixels]
-    uint32_t columns = 0, rows = 0;        ///< [tiles]
-    std::vector<Tile> tiles;
-    std::vector<float> depth;              ///< 64 per tile; -infinity where not covered; see Tile::form
+    uint64_t coveredBits(uint32_t tile) const {
+        return form[tile] == Form::kPlane ? ~uint64_t{0} : form[tile] == Form::kEmpty ? 0 : covered[tile];
+    }
 
     std::vector<double> px, py, pd;        ///< projected vertices of the frame; px is NaN before the near plane
     std::vector<DrawnCluster> drawn;

@@ -284,13 +284,13 @@ void Query::reasons(std::span<uint8_t> reasons) const {
 Query::DepthImage Query::depthImage() {
     Impl& impl = *impl_;
     DepthTiles& tiles = impl.tiles;
-    for (uint32_t tile = 0; tile < tiles.tiles.size(); ++tile) writeOut(tiles, tile);
+    for (uint32_t tile = 0; tile < tiles.form.size(); ++tile) writeOut(tiles, tile);
     impl.depth_image.assign(size_t{tiles.width} * tiles.height, 0.0f);
     for (uint32_t y = 0; y < tiles.height; ++y)
         for (uint32_t x = 0; x < tiles.width; ++x) {
-            const size_t tile = size_t{y / 8} * tiles.columns + x / 8;
+            const size_t tile = size_t{y / 8} * tiles.stride + x / 8;
             const uint32_t pixel = y % 8 * 8 + x % 8;
-            if (tiles.tiles[tile].covered >> pixel & 1)
+            if (tiles.coveredBits(static_cast<uint32_t>(tile)) >> pixel & 1)
                 impl.depth_image[size_t{y} * tiles.width + x] = tiles.depth[64 * tile + pixel];
         }
     return {tiles.width, tiles.height, impl.depth_image};

@@ -43,22 +43,22 @@ struct Drawing {
     }
 
     bool resolve(uint32_t x, uint32_t y) {
-        const uint32_t tile = y / 8 * tiles.columns + x / 8, bit = y % 8 * 8 + x % 8;
-        if (tiles.tiles[tile].covered >> bit & 1) return true;
+        const uint32_t tile = y / 8 * tiles.stride + x / 8, bit = y % 8 * 8 + x % 8;
+        if (tiles.coveredBits(tile) >> bit & 1) return true;
         return resolveSeam(tiles, tile, static_cast<int>(bit));
     }
 
     void resolveAll() {
         for (uint32_t y = 0; y < tiles.height; ++y)
             for (uint32_t x = 0; x < tiles.width; ++x) resolve(x, y);
-        for (uint32_t t = 0; t < tiles.tiles.size(); ++t) writeOut(tiles, t);
+        for (uint32_t t = 0; t < tiles.form.size(); ++t) writeOut(tiles, t);
     }
 
     bool covered(uint32_t x, uint32_t y) const {
-        return tiles.tiles[y / 8 * tiles.columns + x / 8].covered >> (y % 8 * 8 + x % 8) & 1;
+        return tiles.coveredBits(y / 8 * tiles.stride + x / 8) >> (y % 8 * 8 + x % 8) & 1;
     }
     float depth(uint32_t x, uint32_t y) const {
-        return tiles.depth[64 * size_t{y / 8 * tiles.columns + x / 8} + (y % 8 * 8 + x % 8)];
+        return tiles.depth[64 * size_t{y / 8 * tiles.stride + x / 8} + (y % 8 * 8 + x % 8)];
     }
     uint64_t coveredPixels() const {
         uint64_t n = 0;
