@@ -17,7 +17,7 @@ struct Vertex {
     static constexpr uint8_t kReject = kLeft | kRight | kBottom | kTop | kNear | kFar | kBroken;
     static constexpr uint8_t kClip = kNear | kFar | kGuard;
 
-    glm::dvec4 clip{0.0};
+    glm::dvec4 clip{0.0};  ///< x, y, the near plane's distance z + w, w
     double eye_z = 0;
     uint8_t outside = 0;
 };
@@ -37,6 +37,8 @@ public:
     Renderer(const View& view, const ZBufferSettings& settings, ZBufferImage& image)
         : settings_(settings), image_(image), orthographic_(isOrthographic(view)), eye_(eyePosition(view)),
           rotation_(glm::dmat3(view.view)), projection_(view.projection) {
+        // z and w are summed as rows: a parallel projection to infinity has a z that double cannot tell from -w.
+        for (int column = 0; column < 4; ++column) projection_[column][2] += projection_[column][3];
         // The usual projection turns a right-handed eye space into a left-handed clip space.
         mirrored_ = (glm::determinant(view.projection) > 0) != (glm::determinant(glm::dmat3(view.view)) < 0);
         const double samples = settings.samples;
@@ -107,8 +109,8 @@ private:
             if (clip.x > high_.x * clip.w) outside |= Vertex::kRight;
             if (clip.y < low_.y * clip.w) outside |= Vertex::kBottom;
             if (clip.y > high_.y * clip.w) outside |= Vertex::kTop;
-            if (clip.z + clip.w < 0) outside |= Vertex::kNear;
-            if (clip.w - clip.z < 0) outside |= Vertex::kFar;
+            if (clip.z < 0) outside |= Vertex::kNear;
+            if (2 * clip.w - clip.z < 0) outside |= Vertex::kFar;
             const double guard = kGuardBand * clip.w;
             if (!(std::abs(clip.x) <= guard && std::abs(clip.y) <= guard && clip.w >= kSmallestW))
                 outside |= Vertex::kGuard;
@@ -159,7 +161,7 @@ private:
 
     static bool clipAll(ClipPolygon& polygon) {
         const glm::dvec4 planes[ClipPolygon::kMaxPlanes] = {
-            {0, 0, 1, 1}, {0, 0, -1, 1}, {0, 0, 0, 1}, {1, 0, 0, kGuardBand}, {-1, 0, 0, kGuardBand},
+            {0, 0, 1, 0}, {0, 0, -1, 2}, {0, 0, 0, 1}, {1, 0, 0, kGuardBand}, {-1, 0, 0, kGuardBand},
             {0, 1, 0, kGuardBand}, {0, -1, 0, kGuardBand}};
         for (const glm::dvec4& plane : planes) {
             ClipPolygon rest;

@@ -189,6 +189,14 @@ TEST(ZBuffer, CoversClosedSurfaceTwiceAndFrontOnce) {
     }
 }
 
+TEST(ZBuffer, ParallelProjectionToInfinityBeginsAtTheEye) {
+    const TestMesh behind = square(1, 2), ahead = square(1, -2);
+    const uint8_t both[2] = {1, 1};
+    const DrawItem items[2] = {{behind.view(), both, {}, glm::dmat4(1.0), 1}, {ahead.view(), both, {}, glm::dmat4(1.0), 2}};
+    const View view = makeTestView(orthographic(1, 4.0 / 3, 0.1, std::numeric_limits<double>::infinity()));
+    EXPECT_EQ(centerId(renderZBuffer(items, view)), 2u);
+}
+
 TEST(ZBuffer, PassesBackFacesOnly) {
     const TestMesh front = square(1, -2), back = square(1, -2, true), behind = square(1, -3);
     const View view = makeTestView(perspective(1.0, 4.0 / 3, 0.1));

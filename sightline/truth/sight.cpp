@@ -1,0 +1,72 @@
+// A view as the witnesses see it: lines of sight, and what lies in the frustum, in double and relative to the eye.
+// SPDX-License-Identifier: MIT
+#include "sightline/truth/sight.h"
+
+#include <cmath>
+#include <limits>
+
+namespace sightline {
+namespace {
+
+double distanceTo(const glm::dvec4& plane, const glm::dvec3& point) {
+    return glm::dot(glm::dvec3(plane), point) + plane.w;
+}
+
+}  // namespace
+
+Sight::Sight(const View& view)
+    : eye_(eyePosition(view)), orthographic_(isOrthographic(view)), size_(view.width, view.height) {
+    const glm::dmat4 m = view.projection * glm::dmat4(glm::dmat3(view.view));
+    const auto row = [&](int r) { return glm::dvec4(m[0][r], m[1][r], m[2][r], m[3][r]); };
+    x_ = row(0);
+    y_ = row(1);
+    w_ = row(3);
+    const glm::dvec4 z = row(2);
+    const glm::dvec4 planes[6] = {w_ + x_, w_ - x_, w_ + y_, w_ - y_, w_ + z, w_ - z};
+    for (int i = 0; i < 6; ++i) planes_[i] = planes[i];
+}
+
+SightRay Sight::rayThrough(const glm::dvec2& place) const {
+    // x/w = place.x and y/w = place.y are planes; they meet in the line of sight.
+    const glm::dvec4 a = x_ - place.x * w_, b = y_ - place.y * w_;
+    SightRay ray;
+    glm::dvec3 along = glm::cross(glm::dvec3(a), glm::dvec3(b));
+    const double size = glm::dot(along, along);
+    ray.origin = (-a.w * glm::cross(glm::dvec3(b), along) - b.w * glm::cross(along, glm::dvec3(a))) / size;
+    const glm::dvec4 &near_plane = planes_[4], &far_plane = planes_[5];
+    if (glm::dot(glm::dvec3(near_plane), along) < 0) along = -along;
+    ray.direction = glm::normalize(along);
+    ray.t_near = -distanceTo(near_plane, ray.origin) / glm::dot(glm::dvec3(near_plane), ray.direction);
+    const double closing = glm::dot(glm::dvec3(far_plane), ray.direction);
+    // An infinite far plane is never met: its normal is zero but for rounding.
+    const bool meets_far = closing < -1e-14 * glm::length(glm::dvec3(w_)) && closing < 0;
+    ray.t_far = meets_far ? -distanceTo(far_plane, ray.origin) / closing : std::numeric_limits<double>::infinity();
+    return ray;
+}
+
+bool Sight::project(const glm::dvec3& point, glm::dvec2& place) const {
+    for (const glm::dvec4& plane : planes_)
+        if (!(distanceTo(plane, point) >= 0)) return false;
+    const double w = distanceTo(w_, point);
+    if (!(w > 0)) return false;
+    place = glm::dvec2(distanceTo(x_, point), distanceTo(y_, point)) / w;
+    return std::abs(place.x) <= 1 && std::abs(place.y) <= 1;
+}
+
+bool Sight::touches(const Box3d& box) const {
+    const glm::dvec3 low = box.min - eye_, high = box.max - eye_;
+    for (const glm::dvec4& plane : planes_) {
+        const glm::dvec3 corner(plane.x > 0 ? high.x : low.x, plane.y > 0 ? high.y : low.y,
+                                plane.z > 0 ? high.z : low.z);
+        const glm::dvec3 size = glm::abs(glm::dvec3(plane)) * glm::abs(corner);
+        const double slack = 1e-12 * (size.x + size.y + size.z + std::abs(plane.w));
+        if (distanceTo(plane, corner) < -slack) return false;
+    }
+    return true;
+}
+
+glm::dvec2 Sight::pixel(const glm::dvec2& place) const {
+    return {(0.5 + 0.5 * place.x) * size_.x, (0.5 - 0.5 * place.y) * size_.y};
+}
+
+}  // namespace sightline
