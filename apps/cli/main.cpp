@@ -1,3 +1,65 @@
-// The command line tool.
+// The command line tool: verbs, their help, and what the exit code says.
 // SPDX-License-Identifier: MIT
-int main() { return 0; }
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/cli/common.h"
+#include "apps/cli/verbs.h"
+
+namespace sightline::cli {
+namespace {
+
+constexpr const char* kAbout =
+    "What can be seen, from any view of any world: conservative visibility, measured and proved.";
+constexpr const char* kFooter =
+    "Scenes: .glb and .gltf files, and city:SEED:OBJECTS (a built-in city, any seed, up to 10,000,000 objects).\n"
+    "Cameras: --cameras, else --frames and --seed, else the scene's own, else 16 seeded ones. A city with --frames\n"
+    "and without --seed is walked along its streets.\n"
+    "Exit codes: 0 done; 1 the answer is no (verification failed); 2 the arguments are wrong; 3 an input cannot be\n"
+    "read; 4 an output cannot be written.";
+
+/// The verb that was being parsed, as "sightline cull".
+std::string verbOf(const CLI::App& tool) {
+    const auto chosen = tool.get_subcommands();
+    return "sightline" + (chosen.empty() ? std::string() : " " + chosen.front()->get_name());
+}
+
+int runTool(int count, char** words) {
+    CLI::App tool(kAbout, "sightline");
+    tool.footer(kFooter);
+    tool.set_version_flag("--version", "sightline " SIGHTLINE_VERSION);
+    tool.require_subcommand(1);
+    int exit_code = kDone;
+    addCull(tool, exit_code);
+    addVerify(tool, exit_code);
+    addInfo(tool, exit_code);
+    addBench(tool, exit_code);
+    if (count <= 1) {
+        std::fputs(tool.help().c_str(), stderr);
+        return kWrongArguments;
+    }
+    try {
+        tool.parse(count, words);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return tool.exit(error);  // --help and --version
+        return report({Error::Kind::kUsage, std::string(error.what()) + " (see " + verbOf(tool) + " --help)"});
+    }
+    return exit_code;
+}
+
+}  // namespace
+}  // namespace sightline::cli
+
+int main(int count, char** words) {
+    try {
+        return sightline::cli::runTool(count, words);
+    } catch (const std::bad_alloc&) {
+        return sightline::cli::report({sightline::Error::Kind::kInput, "not enough memory for this scene"});
+    } catch (const std::exception& error) {
+        return sightline::cli::report({sightline::Error::Kind::kInput, error.what()});
+    }
+}

@@ -1,0 +1,43 @@
+// The verb `bench`: measures this machine with the cases of the benchmark library.
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <memory>
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include "apps/cli/common.h"
+#include "apps/cli/verbs.h"
+#include "bench/bench.h"
+#include "sightline/report/output_file.h"
+
+namespace sightline::cli {
+namespace {
+
+Status runBench(const bench::Options& options) {
+    const std::vector<std::string> names = bench::names();
+    if (std::find(names.begin(), names.end(), options.name) == names.end())
+        return Error{Error::Kind::kUsage, fmt::format("bench: there is no case \"{}\" (there are: {})", options.name,
+                                                      fmt::join(names, ", "))};
+    if (!options.json.empty() && options.json != "-")
+        if (Status writable = canWriteFile(options.json); !writable) return writable;
+    return bench::run(options);
+}
+
+}  // namespace
+
+void addBench(CLI::App& tool, int& exit_code) {
+    CLI::App* verb = tool.add_subcommand("bench", "measures this machine: each technique beside its plain baseline");
+    const auto options = std::make_shared<bench::Options>();
+    verb->add_option("NAME", options->name, fmt::format("one of: {}", fmt::join(bench::names(), ", ")))->required();
+    verb->add_option("--json", options->json, "write the rows as JSON (-: standard output)")->type_name("FILE");
+    verb->add_option("--scene", options->scene, "measure on this scene instead of the case's own")->type_name("SCENE");
+    verb->add_option("--repeat", options->repeat, "measurements of each value")->check(CLI::Range(1, 100000))
+        ->type_name("N");
+    verb->callback([options, &exit_code] {
+        const Status done = runBench(*options);
+        exit_code = done ? kDone : report(done.error());
+    });
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,173 @@
+// What several verbs share: the common options, scenes by name, camera paths, errors.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/common.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <thread>
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include "apps/cli/verbs.h"
+#include "sightline/geom/view.h"
+#include "sightline/import/gltf.h"
+#include "sightline/load/seeded_cameras.h"
+#include "sightline/report/chart.h"
+#include "sightline/report/output_file.h"
+#include "sightline/scene/city.h"
+#include "sightline/scene/procedural.h"
+
+namespace sightline::cli {
+namespace {
+
+constexpr uint32_t kLargestSide = 16384;    // [pixels]
+constexpr uint32_t kMostFrames = 1000000;
+constexpr uint32_t kMostThreads = 1024;
+
+Error usage(const std::string& message) { return {Error::Kind::kUsage, message}; }
+
+/// Reads a whole number that is all of the text.
+template <class T>
+bool readWhole(std::string_view text, T& out) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+    return error == std::errc() && end == text.data() + text.size();
+}
+
+Status readSize(RunOptions& options) {
+    const std::string_view text = options.size;
+    const size_t cross = text.find('x');
+    const bool good = cross != std::string_view::npos && readWhole(text.substr(0, cross), options.width) &&
+                      readWhole(text.substr(cross + 1), options.height) && options.width >= 1 && options.height >= 1 &&
+                      options.width <= kLargestSide && options.height <= kLargestSide;
+    if (good) return success();
+    return usage(fmt::format("--size {}: not WxH with sides from 1 to {}", options.size, kLargestSide));
+}
+
+std::string stageNames() {
+    std::string names;
+    for (const char* name : kStageNames) names += (names.empty() ? "" : ", ") + std::string(name);
+    return names;
+}
+
+Result<uint32_t> readStages(const std::string& option, const std::vector<std::string>& names) {
+    uint32_t bits = 0;
+    for (const std::string& name : names) {
+        const auto* const found = std::find(std::begin(kStageNames), std::end(kStageNames), name);
+        if (found == std::end(kStageNames))
+            return usage(fmt::format("{}: there is no stage \"{}\" (there are: {})", option, name, stageNames()));
+        bits |= 1u << (found - std::begin(kStageNames));
+    }
+    return bits;
+}
+
+/// The city's seed in `city:SEED:OBJECTS`, which has been checked by making the city.
+bool isCity(const std::string& scene, uint64_t& seed) {
+    const std::string_view text = scene;
+    if (text.substr(0, 5) != "city:") return false;
+    return readWhole(text.substr(5, text.find(':', 5) - 5), seed);
+}
+
+}  // namespace
+
+void addSceneOptions(CLI::App& verb, RunOptions& options) {
+    verb.add_option("SCENE", options.scene, "a .glb or .gltf file, or city:SEED:OBJECTS")->required();
+    verb.add_option("--cameras", options.cameras, "camera path (JSON)")->type_name("PATH.json");
+    verb.add_option("--frames", options.frames,
+                    "so many seeded cameras; a city without --seed is walked along its streets")
+        ->check(CLI::Range(1u, kMostFrames))->type_name("N");
+    verb.add_option("--seed", options.seed, "of the seeded cameras")->type_name("S")->capture_default_str();
+    verb.add_option("--size", options.size, "of the viewport [pixels]")->type_name("WxH")->capture_default_str();
+    verb.add_option("--threads", options.threads, "share the frames among so many threads (default: one a core)")
+        ->check(CLI::Range(1u, kMostThreads))->type_name("N");
+    verb.add_option("--repeat", options.repeat, "queries a frame; times are their medians")
+        ->check(CLI::Range(1, 100000))->type_name("N")->capture_default_str();
+    verb.add_option("--use", options.use, "only these stages, separated by commas (" + stageNames() + ")")
+        ->delimiter(',')->type_name("LIST");
+    verb.add_option("--skip", options.skip, "not these stages")->delimiter(',')->type_name("LIST");
+    verb.add_option("--jitter", options.jitter, "largest shift of the image that the answer must hold for")
+        ->check(CLI::Range(0.0, 1024.0))->type_name("PX")->capture_default_str();
+    verb.add_option("--rays", options.rays, "that the first witness casts for a frame")
+        ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))->type_name("N")->capture_default_str();
+    verb.add_option("--json", options.json, "write the result as JSON (-: standard output)")->type_name("FILE");
+}
+
+Status finish(const CLI::App& verb, RunOptions& options) {
+    if (Status size = readSize(options); !size) return size;
+    const Result<uint32_t> use = readStages("--use", options.use), skip = readStages("--skip", options.skip);
+    if (!use) return use.error();
+    if (!skip) return skip.error();
+    options.stages = (options.use.empty() ? kAllStages : *use) & ~*skip;
+    options.seed_given = verb.count("--seed") > 0;
+    if (!options.cameras.empty() && (options.frames > 0 || options.seed_given))
+        return usage("--cameras excludes --frames and --seed");
+    if (options.threads == 0) options.threads = std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads);
+    if (options.json.empty() && verb.count("--json") > 0) return usage("--json: the name is empty");
+    return success();
+}
+
+Result<Scene> loadScene(const std::string& name) {
+    if (isProcedural(name)) return makeProcedural(name);
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(name, error);
+    if (status.type() == std::filesystem::file_type::not_found)
+        return Error{Error::Kind::kInput, fmt::format("{}: no such file", name.empty() ? "\"\"" : name)};
+    if (error) return Error{Error::Kind::kInput, fmt::format("{}: {}", name, error.message())};
+    if (std::filesystem::is_directory(status))
+        return Error{Error::Kind::kInput, fmt::format("{}: is a directory, not a scene", name)};
+    std::string extension = std::filesystem::path(name).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension != ".glb" && extension != ".gltf")
+        return Error{Error::Kind::kInput,
+                     fmt::format("{}: not a scene that can be read (.glb, .gltf, or city:SEED:OBJECTS)", name)};
+    return loadGltf(name);
+}
+
+Result<CameraPath> loadPath(const Scene& scene, const RunOptions& options) {
+    constexpr uint32_t kDefaultFrames = 16;
+    uint64_t city_seed = 0;
+    if (options.cameras.empty() && options.frames > 0 && !options.seed_given && isCity(options.scene, city_seed))
+        return cityStreetPath(city_seed, options.frames);
+    PathChoice choice;
+    choice.file = options.cameras;
+    choice.frames = options.frames == 0 && options.seed_given ? kDefaultFrames : options.frames;
+    choice.seed = options.seed;
+    return choosePath(scene, choice);
+}
+
+int report(const Error& error) {
+    std::string line = error.message;
+    for (char& c : line)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    fmt::print(stderr, "sightline: {}\n", line);
+    switch (error.kind) {
+        case Error::Kind::kUsage: return kWrongArguments;
+        case Error::Kind::kOutput: return kOutputUnwritable;
+        case Error::Kind::kInput: break;
+    }
+    return kInputUnreadable;
+}
+
+Status writeText(const std::string& file, const std::string& text) {
+    if (file != "-") return writeFileAside(file, text);
+    if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return success();
+    return Error{Error::Kind::kOutput, "standard output: cannot be written"};
+}
+
+std::string grouped(uint64_t number) { return readable(static_cast<double>(number)); }
+
+std::string quoted(const std::string& word) {
+    const auto plain = [](unsigned char c) {
+        return std::isalnum(c) || std::string_view("@%+=:,./_-").find(static_cast<char>(c)) != std::string_view::npos;
+    };
+    if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+    std::string out = "'";
+    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
+
+}  // namespace sightline::cli

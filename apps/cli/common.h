@@ -1,0 +1,58 @@
+// What several verbs share: the common options, scenes by name, camera paths, errors.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "sightline/base/result.h"
+#include "sightline/scene/camera_path.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline::cli {
+
+/// Options of every verb that moves a camera through a scene.
+struct RunOptions {
+    std::string scene;
+    std::string cameras;          ///< file; empty: none
+    uint32_t frames = 0;          ///< 0: not given
+    uint64_t seed = 1;
+    bool seed_given = false;
+    std::string size = "1280x720";
+    uint32_t width = 1280, height = 720;  ///< from `size`
+    uint32_t threads = 0;         ///< 0: all cores
+    int repeat = 3;
+    std::vector<std::string> use, skip;
+    uint32_t stages = 0;          ///< from `use` and `skip`
+    double jitter = 0.5;
+    uint64_t rays = 1000000;
+    std::string json;             ///< file, `-`, or empty
+    std::string report;           ///< directory, or empty
+};
+
+void addSceneOptions(CLI::App& verb, RunOptions& options);
+/// Checks what single options cannot: sizes, stage names. Errors are kUsage.
+Status finish(const CLI::App& verb, RunOptions& options);
+
+/// A glTF file, or a procedural scene by its specification. Errors name the file and say what is wrong.
+Result<Scene> loadScene(const std::string& name);
+
+/// Which path: --cameras; --frames and --seed; a city's streets for --frames alone; the scene's own; 16 seeded.
+Result<CameraPath> loadPath(const Scene& scene, const RunOptions& options);
+
+/// Prints one line on standard error.
+/// @return the exit code of the error's kind
+int report(const Error& error);
+
+/// Writes text to a file aside and renames it, or to standard output for `-`.
+Status writeText(const std::string& file, const std::string& text);
+
+/// 1234567 as "1,234,567".
+std::string grouped(uint64_t number);
+/// A word as a shell takes it.
+std::string quoted(const std::string& word);
+
+}  // namespace sightline::cli

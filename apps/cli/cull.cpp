@@ -1,0 +1,84 @@
+// The verb `cull`: the visible set along a camera path, measured, proved and reported as asked for.
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include <fmt/core.h>
+
+#include "apps/cli/common.h"
+#include "apps/cli/cull_path.h"
+#include "apps/cli/progress.h"
+#include "apps/cli/summary.h"
+#include "apps/cli/verbs.h"
+#include "sightline/report/output_file.h"
+#include "sightline/report/page.h"
+
+namespace sightline::cli {
+namespace {
+
+struct CullOptions : RunOptions {
+    bool verify = false;
+};
+
+/// Finds out before the work whether its result can be written.
+Status checkOutputs(const CullOptions& options) {
+    if (!options.json.empty() && options.json != "-")
+        if (Status writable = canWriteFile(options.json); !writable) return writable;
+    if (options.report.empty()) return success();
+    if (Status made = makeDirectory(options.report); !made) return made;
+    return canWriteFile(options.report + "/index.html");
+}
+
+Status writeOutputs(const Scene& scene, const CullRun& run, const CullOptions& options) {
+    const std::string json = cullJson(run, scene);
+    if (!options.json.empty())
+        if (Status written = writeText(options.json, json); !written) return written;
+    if (options.report.empty()) return success();
+    if (Status written = writeFileAside(options.report + "/cull.json", json); !written) return written;
+    Progress progress("drawing", "pictures", 0);
+    PageSettings settings;
+    settings.for_each = [&](size_t count, const std::function<void(size_t)>& work) {
+        forEach(count, options.threads, work);
+    };
+    settings.progress = [&](size_t done, size_t total) { progress.set(done, total); };
+    return writeFileAside(options.report + "/index.html", reportPage(scene, run, settings));
+}
+
+/// The whole verb. Returns whether nothing visible was culled, as far as it was asked.
+Result<bool> runCull(const CLI::App& verb, CullOptions& options) {
+    if (Status good = finish(verb, options); !good) return good.error();
+    const Result<Scene> scene = loadScene(options.scene);
+    if (!scene) return scene.error();
+    const Result<CameraPath> path = loadPath(*scene, options);
+    if (!path) return path.error();
+    if (Status writable = checkOutputs(options); !writable) return writable.error();
+
+    CullRun run = cullPath(*scene, *path, options);
+    run.command = replayOfRun(options, options.verify);
+    if (options.verify) verifyPath(*scene, options, run);
+
+    printSummary(options.json == "-" ? stderr : stdout, run);
+    if (Status explained = explainFalseCulls(*scene, options, run); !explained) return explained.error();
+    if (Status written = writeOutputs(*scene, run, options); !written) return written.error();
+    const auto sum = sumVerification(run);
+    return !sum || sum->false_culls == 0;
+}
+
+}  // namespace
+
+void addCull(CLI::App& tool, int& exit_code) {
+    CLI::App* verb = tool.add_subcommand("cull", "the visible set along a camera path");
+    const auto options = std::make_shared<CullOptions>();
+    addSceneOptions(*verb, *options);
+    verb->add_flag("--verify", options->verify, "let rays and an id-buffer judge every frame; exit code 1 if "
+                                                "anything visible was culled");
+    verb->add_option("--report", options->report, "write DIR/index.html, one page with pictures, and DIR/cull.json")
+        ->type_name("DIR");
+    verb->callback([verb, options, &exit_code] {
+        const Result<bool> sound = runCull(*verb, *options);
+        exit_code = !sound ? report(sound.error()) : *sound ? kDone : kAnswerIsNo;
+    });
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,178 @@
+// Culls a scene along a camera path on several threads, and lets the witnesses judge the answers.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/cull_path.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <filesystem>
+#include <set>
+#include <thread>
+
+#include <fmt/core.h>
+
+#include "apps/cli/progress.h"
+#include "sightline/load/load_world.h"
+#include "sightline/report/output_file.h"
+#include "sightline/run/query.h"
+#include "sightline/truth/verify.h"
+
+namespace sightline::cli {
+namespace {
+
+double median(std::vector<double>& values) {
+    const size_t middle = values.size() / 2;
+    std::nth_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(middle), values.end());
+    if (values.size() % 2) return values[middle];
+    return 0.5 * (values[middle] + *std::max_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(middle)));
+}
+
+View viewOf(const CameraFrame& camera, const CullRun& run) {
+    View view = makeView(camera, run.width, run.height);
+    view.jitter = run.jitter;
+    view.stages = run.stages;
+    return view;
+}
+
+/// Queries one frame `repeat` times for the time of the whole, and once more for the times of the stages.
+void cullFrame(const Snapshot& now, const CullRun& run, Query& query, FrameResult& frame) {
+    View view = viewOf(frame.camera, run);
+    std::vector<double> times;
+    for (int i = 0; i < run.repeat; ++i)
+        times.push_back(1e-3 * static_cast<double>(query.visible(now, view).stats.nanoseconds));
+    frame.query_microseconds = median(times);
+    view.time_stages = true;
+    const QueryStats stats = query.visible(now, view).stats;
+    for (int stage = 0; stage < kStageCount; ++stage) {
+        frame.stages[stage].doubt = stats.stages[stage].doubt;
+        frame.stages[stage].microseconds = 1e-3 * static_cast<double>(stats.stages[stage].nanoseconds);
+    }
+    frame.occluder_triangles = stats.occluder_triangles;
+    frame.budget_spent = stats.budget_spent;
+    frame.reasons.resize(now.objectCount());
+    query.reasons(frame.reasons);
+}
+
+VerificationRow rowOf(const FrameVerdict& verdict, const Scene& scene) {
+    VerificationRow row;
+    row.rays = verdict.rays;
+    row.id_samples = verdict.id_samples;
+    std::vector<uint64_t> keys;
+    for (size_t i = 0; i < verdict.seen.size(); ++i)
+        if (verdict.seen[i]) keys.push_back(scene.objects[i].key);
+    std::sort(keys.begin(), keys.end());
+    row.exactly_visible = static_cast<uint64_t>(std::unique(keys.begin(), keys.end()) - keys.begin());
+    std::set<uint64_t> hidden;
+    for (const FalseCull& cull : verdict.false_culls) {
+        const uint64_t key = scene.objects[cull.object].key;
+        hidden.insert(key);
+        row.rows.push_back({cull.object, key, cull.x, cull.y, cull.witness});
+    }
+    row.false_culls = hidden.size();
+    return row;
+}
+
+/// Where the run's other files go, with a slash, or nothing for the current directory.
+std::string directoryOfOutputs(const RunOptions& options) {
+    std::filesystem::path directory;
+    if (!options.report.empty()) directory = options.report;
+    else if (!options.json.empty() && options.json != "-") directory = std::filesystem::path(options.json).parent_path();
+    return directory.empty() ? "" : (directory / "").string();
+}
+
+/// The command that judges one frame again in the same way.
+std::string replayCommand(const RunOptions& options, const CullRun& run, const std::string& camera_file) {
+    std::string command = fmt::format("sightline verify {} --cameras {} --size {}x{} --rays {}", quoted(options.scene),
+                                      quoted(camera_file), run.width, run.height, options.rays);
+    if (run.jitter != View().jitter) command += fmt::format(" --jitter {}", run.jitter);
+    std::string names;
+    for (int stage = 0; stage < kStageCount; ++stage)
+        if (!(run.stages >> stage & 1)) names += (names.empty() ? "" : ",") + std::string(kStageNames[stage]);
+    if (!names.empty()) command += " --skip " + names;
+    return command;
+}
+
+}  // namespace
+
+void forEach(size_t count, uint32_t threads, const std::function<void(size_t)>& work) {
+    std::atomic<size_t> next{0};
+    const auto loop = [&] {
+        for (size_t i = next++; i < count; i = next++) work(i);
+    };
+    std::vector<std::thread> others;
+    for (uint32_t i = 1; i < std::min<size_t>(threads, count); ++i) others.emplace_back(loop);
+    loop();
+    for (std::thread& other : others) other.join();
+}
+
+CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options) {
+    CullRun run;
+    const std::vector<uint32_t> key_order = orderByKey(scene);
+    run.scene = options.scene;
+    run.objects = countKeys(scene, key_order);
+    run.instances = scene.objects.size();
+    run.triangles = drawnTriangles(scene);
+    run.width = options.width;
+    run.height = options.height;
+    run.jitter = options.jitter;
+    run.stages = options.stages;
+    run.repeat = options.repeat;
+    run.frames.resize(path.frames.size());
+
+    LoadedWorld loaded = [&] {
+        Progress progress("preparing", "meshes", scene.meshes.size());
+        return loadWorld(scene, [&](size_t done, size_t total) { progress.set(done, total); });
+    }();
+    const Snapshot now = loaded.world.commit();
+
+    Progress progress("culling", "frames", path.frames.size());
+    const uint32_t threads = std::min<uint32_t>(options.threads, static_cast<uint32_t>(path.frames.size()));
+    std::atomic<size_t> next{0};
+    forEach(threads, threads, [&](size_t) {
+        Query query;
+        for (size_t i = next++; i < path.frames.size(); i = next++) {
+            FrameResult& frame = run.frames[i];
+            frame.camera = path.frames[i];
+            cullFrame(now, run, query, frame);
+            countByKey(scene, key_order, run.stages, frame);
+            progress.step();
+        }
+    });
+    return run;
+}
+
+void verifyPath(const Scene& scene, const RunOptions& options, CullRun& run) {
+    WitnessSettings settings;
+    settings.rays = options.rays;
+    settings.aimed_rays = std::min(settings.aimed_rays, options.rays / 5);
+    run.supersampling = settings.supersampling;
+    const Witness witness(scene);
+    Progress progress("verifying", "frames", run.frames.size());
+    forEach(run.frames.size(), options.threads, [&](size_t i) {
+        FrameResult& frame = run.frames[i];
+        frame.verification = rowOf(witness.judge(viewOf(frame.camera, run), frame.reasons, settings), scene);
+        progress.step();
+    });
+}
+
+Status explainFalseCulls(const Scene& scene, const RunOptions& options, const CullRun& run) {
+    constexpr size_t kMostLines = 20;  // a frame
+    for (size_t i = 0; i < run.frames.size(); ++i) {
+        const FrameResult& frame = run.frames[i];
+        if (!frame.verification || frame.verification->rows.empty()) continue;
+        const std::string file = fmt::format("{}replay-frame-{}.json", directoryOfOutputs(options), i);
+        CameraPath path;
+        path.frames.push_back(frame.camera);
+        if (Status written = writeFileAside(file, cameraPathJson(path)); !written) return written;
+        const auto& rows = frame.verification->rows;
+        for (size_t k = 0; k < std::min(rows.size(), kMostLines); ++k)
+            fmt::print(stderr, "false cull: frame {}: object {} \"{}\" is seen at pixel ({:.3f}, {:.3f}) by {}\n", i,
+                       rows[k].key, scene.objects[rows[k].object].name, rows[k].x, rows[k].y, rows[k].witness);
+        if (rows.size() > kMostLines)
+            fmt::print(stderr, "false cull: frame {}: and {} more\n", i, rows.size() - kMostLines);
+        fmt::print(stderr, "replay: {}\n", replayCommand(options, run, file));
+    }
+    return success();
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,103 @@
+// What a run says to a reader: totals of a path, verdicts of its frames.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/summary.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+namespace sightline::cli {
+namespace {
+
+double share(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
+
+/// 1234567 as "1.23 M".
+std::string rounded(double number) {
+    if (number >= 1e9) return fmt::format("{:.2f} G", number * 1e-9);
+    if (number >= 1e6) return fmt::format("{:.2f} M", number * 1e-6);
+    if (number >= 1e4) return fmt::format("{:.1f} k", number * 1e-3);
+    return fmt::format("{:.4g}", number);
+}
+
+double medianQuery(const CullRun& run) {
+    std::vector<double> times;
+    for (const FrameResult& frame : run.frames) times.push_back(frame.query_microseconds);
+    std::nth_element(times.begin(), times.begin() + static_cast<ptrdiff_t>(times.size() / 2), times.end());
+    return times[times.size() / 2];
+}
+
+void printSums(std::FILE* out, const Verification& sum, const CullRun& run) {
+    fmt::print(out, "verified     {} of {} culled objects were visible, by {} rays and {} id samples\n",
+               grouped(sum.false_culls), grouped(sum.culled), rounded(static_cast<double>(sum.rays)),
+               rounded(static_cast<double>(sum.id_samples)));
+    fmt::print(out, "over-estimate {:.3f}: {} reported, {} exactly visible, over {} frames\n", sum.overEstimate(),
+               grouped(sum.reported), grouped(sum.exactly_visible), run.frames.size());
+}
+
+}  // namespace
+
+void printSummary(std::FILE* out, const CullRun& run) {
+    const auto frames = static_cast<double>(run.frames.size());
+    double visible = 0, triangles = 0, slowest = 0;
+    StageRow sums[kStageCount];
+    bool budget_spent = false;
+    for (const FrameResult& frame : run.frames) {
+        visible += static_cast<double>(frame.visible.size());
+        triangles += static_cast<double>(frame.triangles);
+        slowest = std::max(slowest, frame.query_microseconds);
+        budget_spent |= frame.budget_spent;
+        for (int stage = 0; stage < kStageCount; ++stage) {
+            sums[stage].culled += frame.stages[stage].culled;
+            sums[stage].microseconds += frame.stages[stage].microseconds;
+        }
+    }
+    fmt::print(out, "{}: {} objects, {} triangles; {} frames of {}x{}, means over the frames\n", run.scene,
+               grouped(run.objects), grouped(run.triangles), run.frames.size(), run.width, run.height);
+    fmt::print(out, "visible      {:>10} objects  {:7.3f} %\n", rounded(visible / frames),
+               share(visible / frames, static_cast<double>(run.objects)));
+    for (int stage = 0; stage < kStageCount; ++stage) {
+        if (!(run.stages >> stage & 1)) continue;
+        const double culled = static_cast<double>(sums[stage].culled) / frames;
+        fmt::print(out, "{:<12} {:>10} culled   {:7.3f} %  {:9.1f} us\n", kStageNames[stage], rounded(culled),
+                   share(culled, static_cast<double>(run.objects)), sums[stage].microseconds / frames);
+    }
+    fmt::print(out, "triangles    {:>10} submitted {:6.3f} % of the scene's\n", rounded(triangles / frames),
+               share(triangles / frames, static_cast<double>(run.triangles)));
+    fmt::print(out, "query        {:>10.1f} us median, {:.1f} us at most\n", medianQuery(run), slowest);
+    if (budget_spent) fmt::print(out, "the work budget was spent in some frames: more was kept than need be\n");
+    if (const auto sum = sumVerification(run)) printSums(out, *sum, run);
+}
+
+void printVerdicts(std::FILE* out, const CullRun& run) {
+    for (size_t i = 0; i < run.frames.size(); ++i) {
+        const FrameResult& frame = run.frames[i];
+        const VerificationRow& row = *frame.verification;
+        Verification one;
+        one.reported = frame.visible.size();
+        one.exactly_visible = row.exactly_visible;
+        fmt::print(out, "frame {:>4}: {}, {} false culls, {} reported, {} exactly visible, over-estimate {:.3f}\n", i,
+                   row.false_culls == 0 ? "sound" : "WRONG", row.false_culls, frame.visible.size(),
+                   row.exactly_visible, one.overEstimate());
+    }
+    printSums(out, *sumVerification(run), run);
+}
+
+std::string replayOfRun(const RunOptions& options, bool verify) {
+    std::string command = "sightline cull " + quoted(options.scene);
+    if (!options.cameras.empty()) command += " --cameras " + quoted(options.cameras);
+    if (options.frames > 0) command += fmt::format(" --frames {}", options.frames);
+    if (options.seed_given) command += fmt::format(" --seed {}", options.seed);
+    command += fmt::format(" --size {}x{}", options.width, options.height);
+    const auto list = [&](const char* option, const std::vector<std::string>& names) {
+        if (!names.empty()) command += fmt::format(" {} {}", option, fmt::join(names, ","));
+    };
+    list("--use", options.use);
+    list("--skip", options.skip);
+    if (options.jitter != View().jitter) command += fmt::format(" --jitter {}", options.jitter);
+    if (verify) command += fmt::format(" --verify --rays {}", options.rays);
+    return command;
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,22 @@
+// What a run says to a reader: totals of a path, verdicts of its frames.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+#include "apps/cli/common.h"
+#include "sightline/report/cull_run.h"
+
+namespace sightline::cli {
+
+/// Means over the frames: objects kept, culled by stage, triangles, microseconds; and the verdict if there is one.
+void printSummary(std::FILE* out, const CullRun& run);
+
+/// One line a frame, then the sums. The run must have been verified.
+void printVerdicts(std::FILE* out, const CullRun& run);
+
+/// The command that repeats a run.
+std::string replayOfRun(const RunOptions& options, bool verify);
+
+}  // namespace sightline::cli

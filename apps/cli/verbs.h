@@ -1,0 +1,26 @@
+// The verbs of the command line tool, one file each.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+namespace sightline::cli {
+
+/// Exit codes; others rely on them.
+enum ExitCode : int {
+    kDone = 0,
+    kAnswerIsNo = 1,        ///< verification failed
+    kWrongArguments = 2,
+    kInputUnreadable = 3,
+    kOutputUnwritable = 4,
+};
+
+/// Each adds its verb with its options to the tool. The verb's action sets the exit code.
+void addCull(CLI::App& tool, int& exit_code);
+void addVerify(CLI::App& tool, int& exit_code);
+void addInfo(CLI::App& tool, int& exit_code);
+void addBench(CLI::App& tool, int& exit_code);
+
+}  // namespace sightline::cli

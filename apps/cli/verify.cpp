@@ -1,0 +1,49 @@
+// The verb `verify`: every cull of every frame against two witnesses, and how tight the answer is.
+// SPDX-License-Identifier: MIT
+#include <cstdio>
+#include <memory>
+
+#include <fmt/core.h>
+
+#include "apps/cli/common.h"
+#include "apps/cli/cull_path.h"
+#include "apps/cli/summary.h"
+#include "apps/cli/verbs.h"
+#include "sightline/report/output_file.h"
+
+namespace sightline::cli {
+namespace {
+
+Result<bool> runVerify(const CLI::App& verb, RunOptions& options) {
+    if (Status good = finish(verb, options); !good) return good.error();
+    const Result<Scene> scene = loadScene(options.scene);
+    if (!scene) return scene.error();
+    const Result<CameraPath> path = loadPath(*scene, options);
+    if (!path) return path.error();
+    if (!options.json.empty() && options.json != "-")
+        if (Status writable = canWriteFile(options.json); !writable) return writable.error();
+
+    CullRun run = cullPath(*scene, *path, options);
+    verifyPath(*scene, options, run);
+
+    printVerdicts(options.json == "-" ? stderr : stdout, run);
+    if (Status explained = explainFalseCulls(*scene, options, run); !explained) return explained.error();
+    if (!options.json.empty())
+        if (Status written = writeText(options.json, cullJson(run, *scene)); !written) return written.error();
+    return sumVerification(run)->false_culls == 0;
+}
+
+}  // namespace
+
+void addVerify(CLI::App& tool, int& exit_code) {
+    CLI::App* verb = tool.add_subcommand("verify", "proof run: every cull checked by rays and an id-buffer");
+    const auto options = std::make_shared<RunOptions>();
+    options->repeat = 1;
+    addSceneOptions(*verb, *options);
+    verb->callback([verb, options, &exit_code] {
+        const Result<bool> sound = runVerify(*verb, *options);
+        exit_code = !sound ? report(sound.error()) : *sound ? kDone : kAnswerIsNo;
+    });
+}
+
+}  // namespace sightline::cli

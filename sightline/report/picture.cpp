@@ -1,0 +1,247 @@
+// Pictures of a frame: what the camera sees, and how many surfaces each pixel was drawn for.
+// SPDX-License-Identifier: MIT
+#include "sightline/report/picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sightline/base/random.h"
+#include "sightline/hidden/zbuffer.h"
+
+namespace sightline {
+namespace {
+
+constexpr uint32_t kSamples = 2;  // per pixel and axis
+
+/// False only if no point of the box can be in the view volume.
+bool mayBeInView(const glm::dmat4& clip, const Box3d& box) {
+    int outside[5] = {};
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 p = clip * glm::dvec4(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                                               corner & 4 ? box.max.z : box.min.z, 1.0);
+        const double slack = 1e-9 * (std::abs(p.w) + std::abs(p.x) + std::abs(p.y));
+        outside[0] += p.x < -p.w - slack;
+        outside[1] += p.x > p.w + slack;
+        outside[2] += p.y < -p.w - slack;
+        outside[3] += p.y > p.w + slack;
+        outside[4] += p.z < -p.w - slack;
+    }
+    return std::none_of(std::begin(outside), std::end(outside), [](int count) { return count == 8; });
+}
+
+/// A pleasant colour for a number.
+glm::dvec3 hashedColour(uint64_t key) {
+    Random random(mixSeed(key, 1));
+    const double hue = random.uniform(0, 6), grey = random.uniform(0.45, 0.7);
+    const auto channel = [&](double shift) {
+        const double distance = std::abs(std::fmod(hue + shift, 6.0) - 3.0);
+        return grey * (0.62 + 0.38 * std::clamp(distance - 1.0, 0.0, 1.0));
+    };
+    return {channel(0), channel(4), channel(2)};
+}
+
+glm::dvec3 skyColour(double above_horizon) {
+    const double t = std::clamp(0.5 + 1.2 * above_horizon, 0.0, 1.0);
+    return glm::mix(glm::dvec3(0.80, 0.84, 0.87), glm::dvec3(0.38, 0.55, 0.78), t);
+}
+
+/// Turns samples back into points of eye space.
+class Unprojection {
+public:
+    Unprojection(const View& view, uint32_t width, uint32_t height)
+        : width_(width), height_(height), parallel_(isOrthographic(view)) {
+        // Rows x, y and w (or z, the nearness of a parallel view) of the projection determine the point.
+        const glm::dmat4& p = view.projection;
+        glm::dmat3 rows;
+        for (int column = 0; column < 3; ++column)
+            rows[column] = glm::dvec3(p[column][0], p[column][1], parallel_ ? (column == 2) : p[column][3]);
+        constants_ = glm::dvec3(p[3][0], p[3][1], parallel_ ? 0.0 : p[3][3]);
+        inverse_ = glm::inverse(rows);
+    }
+
+    glm::dvec3 point(uint32_t x, uint32_t y, double nearness) const {
+        const double ndc_x = 2 * (x + 0.5) / width_ - 1, ndc_y = 2 * (y + 0.5) / height_ - 1;
+        const double w = parallel_ ? 1.0 : 1.0 / nearness;
+        return inverse_ * (glm::dvec3(ndc_x * w, ndc_y * w, parallel_ ? nearness : w) - constants_);
+    }
+
+private:
+    double width_, height_;
+    bool parallel_;
+    glm::dmat3 inverse_{1.0};
+    glm::dvec3 constants_{0.0};
+};
+
+uint8_t toByte(double linear) {
+    const double v = std::clamp(linear, 0.0, 1.0);
+    const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+    return static_cast<uint8_t>(255 * encoded + 0.5);
+}
+
+}  // namespace
+
+struct PictureMaker::Drawing {
+    std::vector<Part> parts;  // by DrawItem::id
+    ZBufferImage image;
+
+    uint32_t objectAt(size_t sample) const {
+        const uint32_t id = image.id[sample];
+        return id == ZBufferImage::kNone ? id : parts[id].object;
+    }
+};
+
+PictureMaker::PictureMaker(const Scene& scene) : scene_(scene) {
+    size_t most = 0;
+    for (const Mesh& mesh : scene.meshes) most = std::max(most, mesh.triangles());
+    ones_.assign(most, 1);
+    zeros_.assign(most, 0);
+    Box3d whole;
+    for (const SceneObject& object : scene.objects) {
+        bounds_.push_back(transformBox(scene.meshes[object.mesh].bounds, object.transform));
+        if (bounds_.back().finite()) whole.grow(bounds_.back());
+    }
+    if (!whole.empty()) diagonal_ = std::max(glm::length(whole.size()), 1e-9);
+}
+
+glm::dvec3 PictureMaker::colourOf(const Part& part) const {
+    const SceneObject& object = scene_.objects[part.object];
+    const Primitive& primitive = scene_.meshes[object.mesh].primitives[part.primitive];
+    const glm::dvec3 colour(scene_.materials[primitive.material].base_color);
+    return colour == glm::dvec3(1.0) ? hashedColour(object.key) : colour;
+}
+
+PictureMaker::Drawing PictureMaker::render(const View& view, const std::vector<uint32_t>& objects) const {
+    Drawing drawing;
+    std::vector<DrawItem> items;
+    for (const uint32_t index : objects) {
+        const SceneObject& object = scene_.objects[index];
+        const Mesh& mesh = scene_.meshes[object.mesh];
+        for (uint32_t p = 0; p < mesh.primitives.size(); ++p) {
+            const Primitive& primitive = mesh.primitives[p];
+            const Material& material = scene_.materials[primitive.material];
+            // Masked surfaces are drawn as if they were whole: a picture without foliage would be bare.
+            const bool solid = material.alpha_mode != AlphaMode::kBlend && !material.transmissive;
+            DrawItem item;
+            item.mesh.positions = mesh.positions;
+            item.mesh.indices = std::span(mesh.indices)
+                                    .subspan(size_t{3} * primitive.first_triangle, size_t{3} * primitive.triangle_count);
+            if (material.double_sided) item.double_sided = std::span(ones_).first(primitive.triangle_count);
+            if (!solid) item.writes_depth = std::span(zeros_).first(primitive.triangle_count);
+            item.transform = object.transform;
+            item.id = static_cast<uint32_t>(drawing.parts.size());
+            drawing.parts.push_back({index, p});
+            items.push_back(item);
+        }
+    }
+    ZBufferSettings settings;
+    settings.samples = kSamples;
+    drawing.image = renderZBuffer(items, view, settings);
+    return drawing;
+}
+
+/// Flat shading: the normal comes from the depths of neighbouring samples of the same part.
+Image<Rgb> PictureMaker::shade(const View& view, const Drawing& drawing) const {
+    const ZBufferImage& image = drawing.image;
+    const uint32_t w = image.width, h = image.height;
+    const Unprojection unprojection(view, w, h);
+    const glm::dmat3 to_world = glm::transpose(glm::dmat3(view.view));
+    const glm::dvec3 sun = glm::normalize(glm::dvec3(0.45, 0.75, 0.5));
+    std::vector<glm::dvec3> colours;
+    for (const Part& part : drawing.parts) colours.push_back(colourOf(part));
+
+    const auto sample = [&](uint32_t x, uint32_t y) {
+        const size_t here = size_t{y} * w + x;
+        const glm::dvec3 ray = to_world * unprojection.point(x, y, isOrthographic(view) ? -1.0 : 1.0);
+        const glm::dvec3 sky = skyColour(glm::normalize(ray).y);
+        const uint32_t id = image.id[here];
+        if (id == ZBufferImage::kNone) return sky;
+        const auto neighbour = [&](uint32_t nx, uint32_t ny) {
+            return nx < w && ny < h && image.id[size_t{ny} * w + nx] == id;
+        };
+        const glm::dvec3 point = unprojection.point(x, y, image.depth[here]);
+        const auto slope = [&](uint32_t ax, uint32_t ay, uint32_t bx, uint32_t by) {
+            if (neighbour(ax, ay)) return unprojection.point(ax, ay, image.depth[size_t{ay} * w + ax]) - point;
+            if (neighbour(bx, by)) return point - unprojection.point(bx, by, image.depth[size_t{by} * w + bx]);
+            return glm::dvec3(0.0);
+        };
+        const glm::dvec3 eye_normal = glm::cross(slope(x + 1, y, x - 1, y), slope(x, y + 1, x, y - 1));
+        const double length = glm::length(eye_normal);
+        double light = 0.7;
+        if (length > 0) {
+            const glm::dvec3 normal = to_world * (eye_normal / length);
+            light = 0.34 + 0.16 * (0.5 + 0.5 * normal.y) + 0.62 * std::max(0.0, glm::dot(normal, sun));
+        }
+        const double haze = 0.5 * (1 - std::exp(-1.6 * glm::length(point) / diagonal_));
+        return glm::mix(colours[id] * light, sky, haze);
+    };
+
+    Image<Rgb> out(w / kSamples, h / kSamples);
+    for (uint32_t y = 0; y < out.height; ++y)
+        for (uint32_t x = 0; x < out.width; ++x) {
+            glm::dvec3 sum(0.0);
+            for (uint32_t k = 0; k < kSamples * kSamples; ++k)
+                sum += sample(kSamples * x + k % kSamples, h - 1 - (kSamples * y + k / kSamples));
+            sum /= double(kSamples * kSamples);
+            out.at(x, y) = Rgb(toByte(sum.x), toByte(sum.y), toByte(sum.z));
+        }
+    return out;
+}
+
+namespace {
+
+Image<float> countFragments(const ZBufferImage& image) {
+    Image<float> out(image.width / kSamples, image.height / kSamples);
+    for (uint32_t y = 0; y < out.height * kSamples; ++y)
+        for (uint32_t x = 0; x < out.width * kSamples; ++x)
+            out.at(x / kSamples, out.height - 1 - y / kSamples) +=
+                static_cast<float>(image.generated[size_t{y} * image.width + x]) / (kSamples * kSamples);
+    return out;
+}
+
+}  // namespace
+
+PictureMaker::Frame PictureMaker::draw(const View& view, std::span<const uint8_t> reasons) const {
+    const glm::dmat4 clip = view.projection * view.view;
+    std::vector<uint32_t> all, kept;
+    for (uint32_t i = 0; i < scene_.objects.size(); ++i) {
+        if (bounds_[i].finite() && !mayBeInView(clip, bounds_[i])) continue;
+        all.push_back(i);
+        if (reasons[i] == 0) kept.push_back(i);
+    }
+    const Drawing drawn_all = render(view, all);
+    const Drawing drawn_kept = render(view, kept);
+    Frame frame;
+    frame.shaded = shade(view, drawn_all);
+    frame.all = countFragments(drawn_all.image);
+    frame.kept = countFragments(drawn_kept.image);
+    for (size_t i = 0; i < drawn_all.image.id.size() && frame.same; ++i)
+        frame.same = drawn_all.objectAt(i) == drawn_kept.objectAt(i);
+    return frame;
+}
+
+Rgb heatColour(double part) {
+    // Black, violet, red, orange, pale yellow: lightness rises evenly, so that it reads without colour vision.
+    static constexpr std::array<std::array<double, 3>, 7> kStops = {{{6, 6, 14},
+                                                                     {52, 16, 92},
+                                                                     {122, 28, 109},
+                                                                     {190, 55, 84},
+                                                                     {237, 105, 37},
+                                                                     {251, 180, 26},
+                                                                     {252, 252, 190}}};
+    const double at = std::clamp(part, 0.0, 1.0) * (kStops.size() - 1);
+    const size_t below = std::min(static_cast<size_t>(at), kStops.size() - 2);
+    const double t = at - static_cast<double>(below);
+    Rgb colour;
+    for (int c = 0; c < 3; ++c)
+        colour[c] = static_cast<uint8_t>(kStops[below][c] * (1 - t) + kStops[below + 1][c] * t + 0.5);
+    return colour;
+}
+
+Image<Rgb> heatMap(const Image<float>& counts, double full) {
+    Image<Rgb> out(counts.width, counts.height);
+    for (size_t i = 0; i < counts.pixels.size(); ++i) out.pixels[i] = heatColour(counts.pixels[i] / full);
+    return out;
+}
+
+}  // namespace sightline

@@ -1,0 +1,58 @@
+// Pictures of a frame: what the camera sees, and how many surfaces each pixel was drawn for.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/geom/view.h"
+#include "sightline/report/png.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline {
+
+/// What pictures need to know of a scene, computed once. The scene must outlive it.
+class PictureMaker {
+public:
+    explicit PictureMaker(const Scene& scene);
+
+    const Scene& scene() const { return scene_; }
+    const std::vector<Box3d>& bounds() const { return bounds_; }  ///< world space [size: objects]
+
+    struct Frame {
+        Image<Rgb> shaded;
+        Image<float> all;      ///< fragments generated per pixel when every object is submitted
+        Image<float> kept;     ///< the same for the visible objects alone
+        bool same = true;      ///< both drawings show the same surfaces at every sample
+    };
+
+    /// Draws a frame with 2x2 samples a pixel.
+    /// @param view     its width and height are the picture's
+    /// @param reasons  per object: 0 visible, else culled  [size: objects]
+    Frame draw(const View& view, std::span<const uint8_t> reasons) const;
+
+private:
+    /// A run of triangles of one material in one object.
+    struct Part {
+        uint32_t object = 0, primitive = 0;
+    };
+
+    struct Drawing;
+    Drawing render(const View& view, const std::vector<uint32_t>& objects) const;
+    Image<Rgb> shade(const View& view, const Drawing& drawing) const;
+    glm::dvec3 colourOf(const Part& part) const;
+
+    const Scene& scene_;
+    std::vector<Box3d> bounds_;
+    std::vector<uint8_t> ones_, zeros_;  ///< flags for the triangles of any mesh
+    double diagonal_ = 1;
+};
+
+/// The colour of a number on a scale from 0 to 1, dark to bright.
+Rgb heatColour(double part);
+
+/// A heat map; `full` is the value of the brightest colour, values above share it.
+Image<Rgb> heatMap(const Image<float>& counts, double full);
+
+}  // namespace sightline
