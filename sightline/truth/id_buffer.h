@@ -13,7 +13,7 @@ namespace sightline {
 struct IdBufferSettings {
     uint32_t supersampling = 4;    ///< samples per pixel and axis  [>= 1]
     uint64_t seed = 1;             ///< of the shift, within one sample
-    uint64_t band_samples = 1u << 23;  ///< drawn at once: 12 bytes each
+    uint64_t band_samples = 1u << 24;  ///< drawn at once: 12 bytes each
 };
 
 /// Draws the objects whose boxes meet the frustum and calls seen(object, place) for each one that the image

@@ -42,7 +42,7 @@ struct WitnessSettings {
 };
 
 /// Holds the scene in the form that the witnesses need (an Embree scene and draw lists). The scene must
-/// outlive it. judge() is const and thread-safe; it uses one thread and, for the id-buffer, about 100 MB.
+/// outlive it. judge() is const and thread-safe; it uses one thread and, for the id-buffer, up to 200 MB.
 ///
 /// Neither witness convicts alone: a culled object counts as seen only if the sighting holds in double, relative to
 /// the eye, against all triangles of the scene (exact.h). Surfaces at equal depth, up to 1e-9 of the distance, are
