@@ -18,6 +18,7 @@ struct Vertex {
     static constexpr uint8_t kClip = kNear | kFar | kGuard;
 
     glm::dvec4 clip{0.0};  ///< x, y, the near plane's distance z + w, w
+    glm::dvec2 point{0.0};  ///< on the grid of samples, unless kClip says that it has none yet
     double eye_z = 0;
     uint8_t outside = 0;
 };
@@ -94,15 +95,18 @@ private:
 
     void transformVertices(const DrawItem& item) {
         // The difference of the large translations comes first: what follows is relative to the eye.
-        const glm::dmat3 to_eye = rotation_ * glm::dmat3(item.transform);
-        const glm::dvec3 moved = rotation_ * (glm::dvec3(item.transform[3]) - eye_);
+        const glm::dmat3 turn = rotation_ * glm::dmat3(item.transform);
+        glm::dmat4 to_eye(turn);
+        to_eye[3] = glm::dvec4(rotation_ * (glm::dvec3(item.transform[3]) - eye_), 1.0);
+        const glm::dmat4 to_clip = projection_ * to_eye;
+        const glm::dvec4 depth(to_eye[0].z, to_eye[1].z, to_eye[2].z, to_eye[3].z);
         vertices_.resize(item.mesh.positions.size());
         for (size_t i = 0; i < vertices_.size(); ++i) {
             Vertex& vertex = vertices_[i];
-            const glm::dvec3 eye_space = to_eye * glm::dvec3(item.mesh.positions[i]) + moved;
-            const glm::dvec4 clip = projection_ * glm::dvec4(eye_space, 1.0);
+            const glm::dvec4 position(glm::dvec3(item.mesh.positions[i]), 1.0);
+            const glm::dvec4 clip = to_clip * position;
             vertex.clip = clip;
-            vertex.eye_z = eye_space.z;
+            if (orthographic_) vertex.eye_z = glm::dot(depth, position);
             const double size = std::abs(clip.x) + std::abs(clip.y) + std::abs(clip.z) + std::abs(clip.w);
             uint8_t outside = std::isfinite(size) ? 0 : Vertex::kBroken;
             if (clip.x < low_.x * clip.w) outside |= Vertex::kLeft;
@@ -115,6 +119,7 @@ private:
             if (!(std::abs(clip.x) <= guard && std::abs(clip.y) <= guard && clip.w >= kSmallestW))
                 outside |= Vertex::kGuard;
             vertex.outside = outside;
+            if ((outside & Vertex::kClip) == 0) vertex.point = pointOf(clip);
         }
     }
 
@@ -134,16 +139,17 @@ private:
         const double volume = imageVolume(a, b, c, normal);
         if (volume == 0) return;
         if (!double_sided && (volume > 0) == flipped_) return;
+        glm::dvec2 points[ClipPolygon::kMaxVertices] = {a.point, b.point, c.point};
         ClipPolygon polygon;
         polygon.count = 3;
         polygon.vertices[0] = a.clip;
         polygon.vertices[1] = b.clip;
         polygon.vertices[2] = c.clip;
-        if (((a.outside | b.outside | c.outside) & Vertex::kClip) != 0 && !clipAll(polygon)) return;
-        glm::dvec2 points[ClipPolygon::kMaxVertices];
-        for (int i = 0; i < polygon.count; ++i) {
-            const glm::dvec4& v = polygon.vertices[i];
-            points[i] = (glm::dvec2(v.x / v.w, v.y / v.w) - start_) / scale_ + 0.5;
+        if (((a.outside | b.outside | c.outside) & Vertex::kClip) != 0) {
+            if (!clipAll(polygon)) return;
+            for (int i = 0; i < polygon.count; ++i) points[i] = pointOf(polygon.vertices[i]);
+        } else if (betweenSamples(points)) {
+            return;
         }
         const DepthPlane plane = orthographic_ ? parallelPlane(a, b, c, normal)
                                                : perspectivePlane(normal / volume, polygon);
@@ -157,6 +163,17 @@ private:
             else
                 showSpan(plane, id, row, begin, end);
         });
+    }
+
+    glm::dvec2 pointOf(const glm::dvec4& clip) const {
+        return (glm::dvec2(clip.x / clip.w, clip.y / clip.w) - start_) / scale_ + 0.5;
+    }
+
+    /// True if a small triangle passes between two rows or two columns of samples without touching either.
+    static bool betweenSamples(const glm::dvec2* points) {
+        const glm::dvec2 low = glm::min(glm::min(points[0], points[1]), points[2]) - 0.5;
+        const glm::dvec2 high = glm::max(glm::max(points[0], points[1]), points[2]) - 0.5;
+        return std::ceil(low.x) > high.x || std::ceil(low.y) > high.y;
     }
 
     static bool clipAll(ClipPolygon& polygon) {
