@@ -9,14 +9,24 @@
 
 namespace sightline {
 
-/// A run of triangles that lie close together; drawn, skipped and counted as one.
-struct OccluderCluster {
-    static constexpr uint32_t kMaxVertices = 256;
-    static constexpr uint32_t kMaxTriangles = 128;
+/// A triangle, or two triangles 0 1 2 and 0 2 3 that make a convex and nearly flat quadrangle.
+struct OccluderPolygon {
+    static constexpr uint8_t kNone = 255;
+    uint8_t vertex[4] = {0, 0, 0, kNone};  ///< counted from the cluster's first; the last is kNone in a triangle
+    bool double_sided = false;
 
-    Box3f bounds;                                     ///< of its vertices
-    uint32_t first_vertex = 0, vertex_count = 0;      ///< [limit: <= kMaxVertices]; first is a multiple of 8
-    uint32_t first_triangle = 0, triangle_count = 0;  ///< [limit: <= kMaxTriangles]
+    int corners() const { return vertex[3] == kNone ? 3 : 4; }
+};
+
+/// A run of polygons that lie close together; drawn, skipped and counted as one.
+struct OccluderCluster {
+    static constexpr uint32_t kMaxVertices = 240;
+    static constexpr uint32_t kMaxPolygons = 60;
+
+    Box3f bounds;                                   ///< of its vertices
+    uint32_t first_vertex = 0, vertex_count = 0;    ///< [limit: <= kMaxVertices]; first is a multiple of 8
+    uint32_t first_polygon = 0, polygon_count = 0;  ///< [limit: <= kMaxPolygons]
+    uint32_t triangle_count = 0;
 };
 
 /// Occluding triangles of one mesh in clusters, in object space. Plain data; prepare/occluder.h makes it.
@@ -25,15 +35,16 @@ struct OccluderCluster {
 /// transmissive, skinned or morphed). Positions are the mesh's own, bit for bit: two triangles share an
 /// edge exactly when the end points are equal.
 struct Occluder {
-    static constexpr uint8_t kDoubleSided = 1;
-
-    std::vector<float> x, y, z;      ///< vertices, cluster by cluster, each cluster padded to 8 with its last one
-    std::vector<uint8_t> triangles;  ///< 3 per triangle, counted from the cluster's first vertex
-    std::vector<uint8_t> flags;      ///< per triangle: kDoubleSided or 0
+    std::vector<float> x, y, z;  ///< vertices, cluster by cluster, each cluster padded to 8 with its last one
+    std::vector<OccluderPolygon> polygons;
     std::vector<OccluderCluster> clusters;
-    Box3f bounds;                    ///< of all vertices
+    Box3f bounds;                ///< of all vertices
 
-    uint32_t triangleCount() const { return static_cast<uint32_t>(flags.size()); }
+    uint32_t triangleCount() const {
+        uint32_t count = 0;
+        for (const OccluderCluster& cluster : clusters) count += cluster.triangle_count;
+        return count;
+    }
 };
 
 }  // namespace sightline

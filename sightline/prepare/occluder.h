@@ -1,4 +1,4 @@
-// Makes an occluder from a mesh: its hiding triangles, bit for bit, in clusters of nearby ones.
+// Makes an occluder from a mesh: its hiding triangles, bit for bit, in pairs and clusters.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -13,7 +13,7 @@ namespace sightline {
 ///
 /// Keeps every triangle except those that name a vertex twice or whose positions are not finite.
 /// Positions are kept bit for bit (a negative zero becomes zero); nothing is welded by tolerance.
-/// O(n log n) in the number of triangles.
+/// Triangles that share an edge and make a convex, nearly flat quadrangle are paired. O(n log n).
 ///
 /// @param mesh          object space
 /// @param hides         per triangle: whether it may hide  [size: triangles, or empty for all]

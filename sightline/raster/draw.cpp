@@ -124,14 +124,18 @@ TileMasks classifyPixels(const TilePolygon& p, const PixelOffsets& offsets, floa
     return masks;
 }
 
-/// Adds a seam triangle's pixels to a tile, making its record at the first need.
-void addSeam(DepthTiles& tiles, uint32_t tile, uint64_t mask, const SeamTriangle& triangle, uint32_t& record) {
+/// Adds a seam polygon's pixels to a tile, making its record at the first need.
+void addSeam(DepthTiles& tiles, uint32_t tile, uint64_t mask, const RasterPolygon& raster, const SeamPolygon& source,
+             uint32_t& record) {
     if (record == DepthTiles::kNone) {
-        record = static_cast<uint32_t>(tiles.triangles.size());
-        tiles.triangles.push_back(triangle);
+        record = static_cast<uint32_t>(tiles.polygons.size());
+        tiles.polygons.push_back(source);
+        tiles.polygons.back().raster = raster;
+        setSideKeys(tiles, tiles.polygons.back());
     }
     tiles.entries.push_back({mask, record, tiles.seams[tile]});
     tiles.seams[tile] = static_cast<uint32_t>(tiles.entries.size() - 1);
+    tiles.seam_mask[tile] |= mask;
     tiles.tried[tile] &= ~mask;
 }
 
@@ -157,7 +161,7 @@ TilePolygon seenByTile(const RasterPolygon& polygon, int32_t column, int32_t row
 }
 
 /// A tile that the polygon covers in part, or whose depth it does not simply replace.
-void drawTile(DepthTiles& tiles, const RasterPolygon& polygon, PixelOffsets& offsets, const SeamTriangle& triangle,
+void drawTile(DepthTiles& tiles, const RasterPolygon& polygon, PixelOffsets& offsets, const SeamPolygon& source,
               int32_t column, int32_t row, uint32_t& record) {
     const uint32_t tile = static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(column);
     const TilePolygon p = seenByTile(polygon, column, row);
@@ -171,7 +175,7 @@ void drawTile(DepthTiles& tiles, const RasterPolygon& polygon, PixelOffsets& off
         toPixels(tiles, tile);
         seam &= pixelsNotNearer(tiles.depth.data() + 64 * size_t{tile}, p.nearest);
     }
-    if (seam) addSeam(tiles, tile, seam, triangle, record);
+    if (seam) addSeam(tiles, tile, seam, polygon, source, record);
 }
 
 /// The tile columns of a row of tiles that the edges leave; widened by rounding to whole tiles.
@@ -247,7 +251,7 @@ uint32_t drawChunk(DepthTiles& tiles, const RasterPolygon& polygon, const ChunkS
     return slow;
 }
 
-void drawPolygon(DepthTiles& tiles, const RasterPolygon& polygon, const SeamTriangle& triangle) {
+void drawPolygon(DepthTiles& tiles, const RasterPolygon& polygon, const SeamPolygon& source) {
     uint32_t record = DepthTiles::kNone;
     PixelOffsets offsets;
     ChunkSetup setup;
@@ -265,75 +269,126 @@ void drawPolygon(DepthTiles& tiles, const RasterPolygon& polygon, const SeamTria
             uint32_t slow = drawChunk(tiles, polygon, setup, chunk, row);
             slow &= 0xffu << std::max(0, first - chunk) & 0xffu >> std::max(0, chunk + 7 - last);
             for (; slow; slow &= slow - 1)
-                drawTile(tiles, polygon, offsets, triangle, chunk + std::countr_zero(slow), row, record);
+                drawTile(tiles, polygon, offsets, source, chunk + std::countr_zero(slow), row, record);
         }
     }
 }
 
-void drawClipped(DepthTiles& tiles, const Screen& object, bool reverse, bool both, const DrawnCluster& drawn,
-                 SeamTriangle triangle) {
-    const OccluderCluster& cluster = drawn.occluder->clusters[drawn.cluster];
+/// A cluster's polygons on their way to the tiles.
+struct ClusterDraw {
+    DepthTiles& tiles;
+    const Screen& object;
+    const DrawnCluster& drawn;
+    const double *x, *y, *d;  ///< projected vertices
+    double slack;             ///< a winding is certain if area > slack * perimeter
+};
+
+/// Twice the signed area of three projected corners.
+double areaOf(const ClusterDraw& c, uint8_t i, uint8_t j, uint8_t k) {
+    return (c.x[j] - c.x[i]) * (c.y[k] - c.y[i]) - (c.x[k] - c.x[i]) * (c.y[j] - c.y[i]);
+}
+
+double perimeterOf(const ClusterDraw& c, uint8_t i, uint8_t j, uint8_t k) {
+    const auto side = [&](uint8_t a, uint8_t b) { return std::abs(c.x[b] - c.x[a]) + std::abs(c.y[b] - c.y[a]); };
+    return side(i, j) + side(j, k) + side(k, i);
+}
+
+void drawClipped(const ClusterDraw& c, SeamPolygon source, bool both) {
+    const OccluderCluster& cluster = c.drawn.occluder->clusters[c.drawn.cluster];
     ClippedPolygon clipped;
-    if (reverse) std::swap(triangle.vertex[1], triangle.vertex[2]);
     for (int turn = 0; turn < (both ? 2 : 1); ++turn) {
-        if (turn) std::swap(triangle.vertex[1], triangle.vertex[2]);
-        if (!clipAtNear(object, *drawn.occluder, cluster, triangle.vertex, clipped)) return;
+        if (turn) std::swap(source.vertex[1], source.vertex[2]);
+        if (!clipAtNear(c.object, *c.drawn.occluder, cluster, source.vertex, clipped)) return;
         double area2 = 0;
         for (int i = 2; i < clipped.count; ++i)
             area2 += (clipped.x[i - 1] - clipped.x[0]) * (clipped.y[i] - clipped.y[0]) -
                      (clipped.x[i] - clipped.x[0]) * (clipped.y[i - 1] - clipped.y[0]);
         if (!(area2 > 0)) continue;
         RasterPolygon polygon;
-        if (makeRasterPolygon(clipped.x, clipped.y, clipped.d, clipped.count, drawn.position_error, drawn.depth_error,
-                              tiles.width, tiles.height, polygon)) {
-            triangle.clipped = static_cast<uint32_t>(tiles.clipped.size());
-            tiles.clipped.push_back(clipped);
-            drawPolygon(tiles, polygon, triangle);
+        if (makeRasterPolygon(clipped.x, clipped.y, clipped.d, clipped.count, c.drawn.position_error,
+                              c.drawn.depth_error, c.tiles.width, c.tiles.height, polygon)) {
+            source.clipped = static_cast<uint32_t>(c.tiles.clipped.size());
+            source.corners = static_cast<uint8_t>(clipped.count);
+            c.tiles.clipped.push_back(clipped);
+            drawPolygon(c.tiles, polygon, source);
         }
         return;
     }
 }
 
-void drawTriangles(DepthTiles& tiles, const Screen& object, bool flips, const DrawnCluster& drawn) {
+/// Gathers a polygon's corners and draws it.
+bool makePolygon(const ClusterDraw& c, const SeamPolygon& source, RasterPolygon& polygon) {
+    double x[4], y[4], d[4];
+    for (int k = 0; k < source.corners; ++k) {
+        x[k] = c.x[source.vertex[k]];
+        y[k] = c.y[source.vertex[k]];
+        d[k] = c.d[source.vertex[k]];
+    }
+    return makeRasterPolygon(x, y, d, source.corners, c.drawn.position_error, c.drawn.depth_error, c.tiles.width,
+                             c.tiles.height, polygon);
+}
+
+void drawTriangle(const ClusterDraw& c, SeamPolygon source, bool both) {
+    uint8_t* v = source.vertex;
+    source.corners = 3;
+    const int before = std::isnan(c.x[v[0]]) + std::isnan(c.x[v[1]]) + std::isnan(c.x[v[2]]);
+    if (before) {
+        if (before < 3 && c.drawn.clips) drawClipped(c, source, both);
+        return;
+    }
+    // A sliver's winding is uncertain; it is kept as it stands, for its sides join its neighbours'.
+    if (areaOf(c, v[0], v[1], v[2]) < -c.slack * perimeterOf(c, v[0], v[1], v[2])) {
+        if (!both) return;
+        std::swap(v[1], v[2]);
+    }
+    RasterPolygon polygon;
+    if (makePolygon(c, source, polygon)) drawPolygon(c.tiles, polygon, source);
+}
+
+/// Draws a quadrangle at once if it is surely convex and counter-clockwise, and flat enough for one plane. Returns
+/// false if its triangles have to be drawn one by one.
+bool drawQuad(const ClusterDraw& c, SeamPolygon source, bool both) {
+    constexpr float kFlat = 1e-3f;
+    uint8_t* v = source.vertex;
+    const double first = areaOf(c, v[0], v[1], v[2]), second = areaOf(c, v[0], v[2], v[3]);
+    const double least = c.slack * (perimeterOf(c, v[0], v[1], v[2]) + perimeterOf(c, v[0], v[2], v[3]));
+    if (first < -least && second < -least) {
+        if (!both) return true;
+        std::swap(v[1], v[3]);
+    } else if (!(first > least && second > least)) {  // one may be front and one back; or a vertex has no image
+        return false;
+    }
+    if (!(areaOf(c, v[0], v[1], v[3]) > least && areaOf(c, v[1], v[2], v[3]) > least)) return false;
+    RasterPolygon polygon;
+    if (!makePolygon(c, source, polygon)) return true;
+    if (!(polygon.depth_error <= kFlat * std::abs(polygon.nearest))) return false;
+    drawPolygon(c.tiles, polygon, source);
+    return true;
+}
+
+void drawPolygons(DepthTiles& tiles, const Screen& object, bool flips, const DrawnCluster& drawn) {
     const Occluder& occluder = *drawn.occluder;
     const OccluderCluster& cluster = occluder.clusters[drawn.cluster];
-    const double *px = tiles.px.data() + drawn.first_vertex, *py = tiles.py.data() + drawn.first_vertex,
-                 *pd = tiles.pd.data() + drawn.first_vertex;
+    const ClusterDraw c{tiles, object, drawn, tiles.px.data() + drawn.first_vertex, tiles.py.data() + drawn.first_vertex,
+                        tiles.pd.data() + drawn.first_vertex, 4.0 * (drawn.position_error + 0x1p-16)};
     const bool reverse = flips != object.mirrored;  // front faces come out clockwise
-    const uint8_t* index = occluder.triangles.data() + 3 * size_t{cluster.first_triangle};
-    const uint8_t* flags = occluder.flags.data() + cluster.first_triangle;
-    const double slack = 4.0 * (drawn.position_error + 0x1p-16);
-    for (uint32_t t = 0; t < cluster.triangle_count; ++t, index += 3) {
-        SeamTriangle triangle;
-        triangle.drawn = static_cast<uint32_t>(tiles.drawn.size() - 1);
-        triangle.vertex[0] = index[0];
-        triangle.vertex[1] = index[reverse ? 2 : 1];
-        triangle.vertex[2] = index[reverse ? 1 : 2];
-        const bool both = flags[t] & Occluder::kDoubleSided;
-        double x[3], y[3], d[3];
-        for (int k = 0; k < 3; ++k) x[k] = px[triangle.vertex[k]];
-        if (!(x[0] == x[0] && x[1] == x[1] && x[2] == x[2])) {
-            const bool any = x[0] == x[0] || x[1] == x[1] || x[2] == x[2];
-            if (any && drawn.clips) drawClipped(tiles, object, false, both, drawn, triangle);
+    for (uint32_t p = cluster.first_polygon; p < cluster.first_polygon + cluster.polygon_count; ++p) {
+        const OccluderPolygon& polygon = occluder.polygons[p];
+        SeamPolygon source;
+        source.drawn = static_cast<uint32_t>(tiles.drawn.size() - 1);
+        source.corners = static_cast<uint8_t>(polygon.corners());
+        std::copy(polygon.vertex, polygon.vertex + 4, source.vertex);
+        if (source.corners == 3) {
+            if (reverse) std::swap(source.vertex[1], source.vertex[2]);
+            drawTriangle(c, source, polygon.double_sided);
             continue;
         }
-        for (int k = 0; k < 3; ++k) y[k] = py[triangle.vertex[k]];
-        const double area2 = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
-        if (area2 < 0) {
-            const double perimeter = std::abs(x[1] - x[0]) + std::abs(y[1] - y[0]) + std::abs(x[2] - x[1]) +
-                                     std::abs(y[2] - y[1]) + std::abs(x[0] - x[2]) + std::abs(y[0] - y[2]);
-            // A sliver's winding is uncertain; it is kept as it stands, for its edges join its neighbours'.
-            if (area2 < -slack * perimeter) {
-                if (!both) continue;
-                std::swap(triangle.vertex[1], triangle.vertex[2]);
-                std::swap(x[1], x[2]);
-                std::swap(y[1], y[2]);
-            }
-        }
-        for (int k = 0; k < 3; ++k) d[k] = pd[triangle.vertex[k]];
-        RasterPolygon polygon;
-        if (makeRasterPolygon(x, y, d, 3, drawn.position_error, drawn.depth_error, tiles.width, tiles.height, polygon))
-            drawPolygon(tiles, polygon, triangle);
+        if (reverse) std::swap(source.vertex[1], source.vertex[3]);
+        if (drawQuad(c, source, polygon.double_sided)) continue;
+        drawTriangle(c, source, polygon.double_sided);
+        source.vertex[1] = source.vertex[2];
+        source.vertex[2] = source.vertex[3];
+        drawTriangle(c, source, polygon.double_sided);
     }
 }
 
@@ -348,7 +403,7 @@ void drawClusterKernel(DepthTiles& tiles, const Screen& object, bool flips, cons
     drawn.first_vertex = static_cast<uint32_t>(first);
     projectVertices(object, *drawn.occluder, source, tiles.px.data() + first, tiles.py.data() + first,
                     tiles.pd.data() + first);
-    drawTriangles(tiles, object, flips, drawn);
+    drawPolygons(tiles, object, flips, drawn);
 }
 
 }  // namespace HWY_NAMESPACE

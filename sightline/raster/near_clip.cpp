@@ -50,7 +50,7 @@ bool clipAtNear(const Screen& object, const Occluder& occluder, const OccluderCl
         const int j = (i + 1) % 3;
         if (inside[i]) emit(out, corner[i], vertices[i], vertices[j], false);
         if (inside[i] && !inside[j])  // the near plane's own edge starts here
-            emit(out, cut(corner[i], corner[j], object.near_guard), ClippedPolygon::kOpen, ClippedPolygon::kOpen, true);
+            emit(out, cut(corner[i], corner[j], object.near_guard), 0, 0, true);
         if (!inside[i] && inside[j])
             emit(out, cut(corner[j], corner[i], object.near_guard), vertices[i], vertices[j], false);
     }

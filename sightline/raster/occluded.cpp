@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 
 #include "sightline/raster/tiles.h"
 
@@ -26,12 +28,77 @@ uint64_t openPixels(DepthTiles& tiles, uint32_t tile, const PixelRect& rect, int
     return window & pixelsNotNearer(tiles.depth.data() + 64 * size_t{tile}, rect.nearness);
 }
 
-/// Whether some pixel is open that no seam can close.
-bool surelyOpen(const DepthTiles& tiles, uint32_t tile, uint64_t open) {
-    uint64_t seams = 0;
-    for (uint32_t at = tiles.seams[tile]; at != DepthTiles::kNone; at = tiles.entries[at].next)
-        seams |= tiles.entries[at].mask;
-    return open & (~seams | tiles.tried[tile]);
+/// Covers the pixels that two polygons with a shared side cover between them. A point of a pixel lies on one side or
+/// the other of the shared edge; if the pixel is inside all their other sides, the point is inside that polygon.
+void coverPair(DepthTiles& tiles, uint32_t tile, const SeamPolygon& a, int side_a, const SeamPolygon& b, int side_b) {
+    const double x = 8.0 * (tile % tiles.stride) + 4.0, y = 8.0 * (tile / tiles.stride) + 4.0;
+    struct Line { float a, b, c; };
+    Line lines[6];
+    int count = 0;
+    const auto add = [&](const RasterPolygon& p, int without) {
+        for (int e = 0; e < p.edges; ++e) {
+            if (e == without) continue;
+            const float c = static_cast<float>(p.edge[e].at(x, y));
+            if (c < -4.0f) return false;
+            if (c < 4.0f + p.slack)
+                lines[count++] = {static_cast<float>(p.edge[e].a), static_cast<float>(p.edge[e].b), c};
+        }
+        return true;
+    };
+    if (!add(a.raster, side_a) || !add(b.raster, side_b)) return;
+    TilePlane planes[2];
+    for (int i = 0; i < 2; ++i) {
+        const RasterPolygon& p = i ? b.raster : a.raster;
+        planes[i] = {p.farthest, 0, 0, p.farthest};
+        if (!p.planar) continue;
+        const double tilt = std::abs(p.dx) + std::abs(p.dy), z = p.d0 + p.dx * x + p.dy * y;
+        const double error = p.depth_error + 0x1p-21 * (std::abs(z) + 4.0 * tilt);
+        planes[i] = {static_cast<float>(z - 0.5 * tilt - error), static_cast<float>(p.dx), static_cast<float>(p.dy),
+                     p.farthest};
+    }
+    toPixels(tiles, tile);
+    float* depth = tiles.depth.data() + 64 * size_t{tile};
+    const F8 half;
+    const auto limit = hn::Set(half, 0.5f + std::max(a.raster.slack, b.raster.slack));
+    const auto offset = hn::Iota(half, -3.5f);
+    auto least_depth = hn::Set(half, std::numeric_limits<float>::infinity());
+    for (int row = 0; row < 8; ++row) {
+        const float dy = static_cast<float>(row) - 3.5f;
+        for (size_t h = 0; h < 8; h += hn::Lanes(half)) {
+            const auto dx = hn::Add(offset, hn::Set(half, static_cast<float>(h)));
+            auto least = hn::Set(half, 1e30f);
+            for (int l = 0; l < count; ++l)
+                least = hn::Min(least, hn::Add(hn::Set(half, lines[l].c + lines[l].b * dy),
+                                               hn::Mul(hn::Set(half, lines[l].a), dx)));
+            const auto mask = hn::Ge(least, limit);
+            float* place = depth + 8 * row + h;
+            const auto old = hn::LoadU(half, place);
+            const auto z = hn::Min(planeDepth(half, planes[0], row, dx), planeDepth(half, planes[1], row, dx));
+            const auto raised = hn::IfThenElse(mask, hn::Max(old, z), old);
+            hn::StoreU(raised, half, place);
+            least_depth = hn::Min(least_depth, raised);
+            tiles.covered[tile] |= bitsFromMask(half, mask) << (8 * row + static_cast<int>(h));
+        }
+    }
+    if (tiles.covered[tile] == ~uint64_t{0}) tiles.farthest[tile] = hn::GetLane(hn::MinOfLanes(half, least_depth));
+}
+
+void pairSeamsKernel(DepthTiles& tiles, uint32_t tile) {
+    constexpr int kMaxEntries = 24;  // work cap: of more, the last drawn are paired
+    if (tiles.paired[tile] == tiles.seams[tile]) return;
+    tiles.paired[tile] = tiles.seams[tile];
+    const SeamPolygon* found[kMaxEntries];
+    int count = 0;
+    for (uint32_t at = tiles.seams[tile]; at != DepthTiles::kNone && count < kMaxEntries; at = tiles.entries[at].next) {
+        const SeamPolygon& polygon = tiles.polygons[tiles.entries[at].polygon];
+        if (polygon.raster.complete) found[count++] = &polygon;
+    }
+    for (int i = 0; i < count; ++i)
+        for (int j = i + 1; j < count; ++j) {
+            int side_i, side_j;
+            if (findSharedSide(tiles, *found[i], *found[j], side_i, side_j))
+                coverPair(tiles, tile, *found[i], side_i, *found[j], side_j);
+        }
 }
 
 /// Calls `look` with each tile of the rectangle that is not wholly nearer; stops when it returns false.
@@ -62,10 +129,11 @@ bool isHiddenKernel(DepthTiles& tiles, const PixelRect& rect) {
     const bool closed = forOpenTiles(tiles, rect, [&](uint32_t tile, int32_t column, int32_t row) HWY_ATTR {
         const uint64_t open = openPixels(tiles, tile, rect, column, row);
         undecided |= open != 0;
-        return !open || !surelyOpen(tiles, tile, open);
+        return !(open & (~tiles.seam_mask[tile] | tiles.tried[tile]));
     });
     if (!closed || !undecided) return closed;
     return forOpenTiles(tiles, rect, [&](uint32_t tile, int32_t column, int32_t row) HWY_ATTR {
+        pairSeamsKernel(tiles, tile);
         for (uint64_t open = openPixels(tiles, tile, rect, column, row); open; open &= open - 1) {
             const int bit = std::countr_zero(open);
             if (!resolveSeam(tiles, tile, bit)) return false;
@@ -85,11 +153,14 @@ HWY_AFTER_NAMESPACE();
 namespace sightline {
 
 HWY_EXPORT(isHiddenKernel);
+HWY_EXPORT(pairSeamsKernel);
 HWY_EXPORT(writeOutKernel);
 
 bool isHidden(DepthTiles& tiles, const PixelRect& rect) {
     return HWY_DYNAMIC_DISPATCH(isHiddenKernel)(tiles, rect);
 }
+
+void pairSeams(DepthTiles& tiles, uint32_t tile) { HWY_DYNAMIC_DISPATCH(pairSeamsKernel)(tiles, tile); }
 
 void writeOut(DepthTiles& tiles, uint32_t tile) { HWY_DYNAMIC_DISPATCH(writeOutKernel)(tiles, tile); }
 

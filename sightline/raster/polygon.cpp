@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kFarthestCorner = 0x1p32;  // [pixels]: beyond, a double's step shows in an edge function
 constexpr double kShortestEdge = 0x1p-10;   // [pixels]: shorter edges have no direction to rely on
+constexpr double kLeastHeight = 0.125;      // [pixels]: a triangle that covers a pixel has area / perimeter above it
 constexpr double kEvaluation = 0x1p-16;     // [pixels]: bound on the error of an edge function in float
 
 EdgeFunction makeEdge(double x0, double y0, double x1, double y1, double length) {
@@ -34,7 +35,7 @@ void makePlane(const double* x, const double* y, const double* d, double area2, 
 
 /// For a sliver, of which not even the winding is certain: the band around its longest side.
 void makeBand(const double* x, const double* y, int count, double area2, double slack, RasterPolygon& out) {
-    out.covers = false;
+    out.covers = out.complete = false;
     out.edges = 0;
     double longest = kShortestEdge;
     int at = -1;
@@ -79,9 +80,9 @@ bool makeRasterPolygon(const double* x, const double* y, const double* d, int co
     const double corner_error = size * 0x1p-36 + depth_error;
     out.farthest = static_cast<float>(d_min - corner_error - std::abs(d_min) * 0x1p-22);
     out.nearest = static_cast<float>(d_max + corner_error + std::abs(d_max) * 0x1p-22);
-    // Inside a covered pixel a barycentric coordinate is wrong by at most three position errors over a height of
-    // the triangle that made the plane, which is half a pixel or more: nine such terms, doubled for a quadrangle.
-    out.depth_error = static_cast<float>(corner_error + 36.0 * position_error * (d_max - d_min));
+    // Inside the polygon a barycentric coordinate is wrong by at most three position errors over a height of the
+    // triangle that made the plane, which is kLeastHeight or more: nine such terms, doubled for a quadrangle.
+    double depth_error_sum = corner_error + 18.0 / kLeastHeight * position_error * (d_max - d_min);
     out.slack = static_cast<float>(slack);
 
     out.edges = 0;
@@ -104,8 +105,18 @@ bool makeRasterPolygon(const double* x, const double* y, const double* d, int co
         else out.edge[out.edges++] = makeEdge(x[i], y[i], x[j], y[j], length);
     }
     out.planar = false;
-    if (area2 <= 4.0 * slack * perimeter) makeBand(x, y, count, std::abs(area2), slack, out);
-    else if (out.covers) makePlane(x, y, d, best, widest, out);
+    out.complete = out.edges == count;
+    if (area2 <= 4.0 * slack * perimeter) {
+        makeBand(x, y, count, std::abs(area2), slack, out);
+    } else if (best >= kLeastHeight * perimeter) {
+        makePlane(x, y, d, best, widest, out);
+        // A quadrangle is flat but for this much, and no farther from the plane anywhere.
+        for (int i = 0; i < count; ++i)
+            depth_error_sum += std::abs(out.d0 + out.dx * x[i] + out.dy * y[i] - d[i]);
+    } else {
+        out.covers = false;
+    }
+    out.depth_error = static_cast<float>(depth_error_sum * (1.0 + 0x1p-20));
     return true;
 }
 

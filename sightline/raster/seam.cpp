@@ -29,11 +29,9 @@ struct Point {
 
 /// A polygon as the pixel sees it.
 struct Piece {
-    double x[4], y[4], d[4];
-    Point from[4], to[4];     ///< mesh edge that side i lies on
-    bool open[4];             ///< the side has no partner: the near plane made it
+    double x[4], y[4];
+    const SeamPolygon* polygon;
     int count;
-    const DrawnCluster* drawn;
     double error;   ///< bound on the error of sideAt()
     int group;
     bool alive;
@@ -63,32 +61,34 @@ Point meshPoint(const DrawnCluster& drawn, uint8_t vertex) {
     return {o.x[at], o.y[at], o.z[at]};
 }
 
-void loadPiece(const DepthTiles& tiles, const SeamTriangle& triangle, Piece& piece) {
-    const DrawnCluster& drawn = tiles.drawn[triangle.drawn];
-    piece.drawn = &drawn;
-    piece.error = drawn.position_error + kMargin;
-    piece.alive = true;
-    if (triangle.clipped != SeamTriangle::kWhole) {
-        const ClippedPolygon& c = tiles.clipped[triangle.clipped];
-        piece.count = c.count;
-        for (int i = 0; i < c.count; ++i) {
-            piece.x[i] = c.x[i];
-            piece.y[i] = c.y[i];
-            piece.d[i] = c.d[i];
-            piece.open[i] = c.open[i];
-            if (!c.open[i]) piece.from[i] = meshPoint(drawn, c.from[i]), piece.to[i] = meshPoint(drawn, c.to[i]);
-        }
+/// The mesh edge that a side lies on.
+void edgeOf(const DepthTiles& tiles, const SeamPolygon& polygon, int side, Point& from, Point& to) {
+    const DrawnCluster& drawn = tiles.drawn[polygon.drawn];
+    if (polygon.clipped != SeamPolygon::kWhole) {
+        const ClippedPolygon& clipped = tiles.clipped[polygon.clipped];
+        from = meshPoint(drawn, clipped.from[side]);
+        to = meshPoint(drawn, clipped.to[side]);
         return;
     }
-    piece.count = 3;
-    for (int i = 0; i < 3; ++i) {
-        const size_t at = size_t{drawn.first_vertex} + triangle.vertex[i];
-        piece.x[i] = tiles.px[at];
-        piece.y[i] = tiles.py[at];
-        piece.d[i] = tiles.pd[at];
-        piece.open[i] = false;
-        piece.from[i] = meshPoint(drawn, triangle.vertex[i]);
-        piece.to[i] = meshPoint(drawn, triangle.vertex[(i + 1) % 3]);
+    from = meshPoint(drawn, polygon.vertex[side]);
+    to = meshPoint(drawn, polygon.vertex[side + 1 < polygon.corners ? side + 1 : 0]);
+}
+
+void loadPiece(const DepthTiles& tiles, const SeamPolygon& polygon, Piece& piece) {
+    const DrawnCluster& drawn = tiles.drawn[polygon.drawn];
+    piece.polygon = &polygon;
+    piece.error = drawn.position_error + kMargin;
+    piece.alive = true;
+    piece.count = polygon.corners;
+    for (int i = 0; i < piece.count; ++i) {
+        if (polygon.clipped != SeamPolygon::kWhole) {
+            piece.x[i] = tiles.clipped[polygon.clipped].x[i];
+            piece.y[i] = tiles.clipped[polygon.clipped].y[i];
+        } else {
+            const size_t at = size_t{drawn.first_vertex} + polygon.vertex[i];
+            piece.x[i] = tiles.px[at];
+            piece.y[i] = tiles.py[at];
+        }
     }
 }
 
@@ -141,8 +141,11 @@ bool sameTransform(const DrawnCluster& a, const DrawnCluster& b) {
 }
 
 /// Whether two sides are the same edge run through in opposite directions: exactly, in world space.
-bool areOpposite(const Piece& a, int i, const Piece& b, int j) {
-    return a.from[i] == b.to[j] && a.to[i] == b.from[j] && sameTransform(*a.drawn, *b.drawn);
+bool areOpposite(const DepthTiles& tiles, const SeamPolygon& a, int side_a, const SeamPolygon& b, int side_b) {
+    Point from_a, to_a, from_b, to_b;
+    edgeOf(tiles, a, side_a, from_a, to_a);
+    edgeOf(tiles, b, side_b, from_b, to_b);
+    return from_a == to_b && to_a == from_b && sameTransform(tiles.drawn[a.drawn], tiles.drawn[b.drawn]);
 }
 
 struct Resolver {
@@ -160,14 +163,11 @@ struct Resolver {
             const int first = side_count;
             for (int i = 0; i < piece.count; ++i) {
                 if (!sideMeets(piece, i, x, y)) continue;
-                if (piece.open[i]) {
+                if (piece.polygon->open >> i & 1) {
                     piece.alive = false;
                     break;
                 }
-                const bool forward = less(piece.from[i], piece.to[i]);
-                const Point &low = forward ? piece.from[i] : piece.to[i], &high = forward ? piece.to[i] : piece.from[i];
-                const uint64_t key = hashPoint(high, hashPoint(low, piece.drawn->transform_hash));
-                sides[side_count++] = {key, p, i, forward};
+                sides[side_count++] = {piece.polygon->side_key[i], p, i, (piece.polygon->forward >> i & 1) != 0};
             }
             if (!piece.alive) side_count = first;
         }
@@ -178,7 +178,7 @@ struct Resolver {
 
     /// Pairs each living side with an opposite one, one to one; pieces left with a single side die, and the
     /// pairing is made again until none does.
-    void pairSides() {
+    void pairSides(const DepthTiles& tiles) {
         for (bool again = true; again;) {
             again = false;
             for (int i = 0; i < side_count; ++i) partner[i] = -1;
@@ -186,7 +186,9 @@ struct Resolver {
                 if (partner[i] >= 0 || !pieces[sides[i].piece].alive) continue;
                 for (int j = i + 1; j < side_count && sides[j].key == sides[i].key; ++j) {
                     if (partner[j] >= 0 || !pieces[sides[j].piece].alive) continue;
-                    if (!areOpposite(pieces[sides[i].piece], sides[i].side, pieces[sides[j].piece], sides[j].side))
+                    if (sides[i].forward == sides[j].forward ||
+                        !areOpposite(tiles, *pieces[sides[i].piece].polygon, sides[i].side,
+                                     *pieces[sides[j].piece].polygon, sides[j].side))
                         continue;
                     partner[i] = j;
                     partner[j] = i;
@@ -230,13 +232,8 @@ struct Resolver {
     }
 
     /// No point of the piece inside the pixel is farther.
-    static double farthestIn(const Piece& piece, const DepthTiles& tiles, double x, double y) {
-        RasterPolygon polygon;
-        double least = piece.d[0];
-        for (int i = 1; i < piece.count; ++i) least = std::min(least, piece.d[i]);
-        if (!makeRasterPolygon(piece.x, piece.y, piece.d, piece.count, piece.drawn->position_error,
-                               piece.drawn->depth_error, tiles.width, tiles.height, polygon))
-            return -std::numeric_limits<double>::infinity();
+    static double farthestIn(const Piece& piece, double x, double y) {
+        const RasterPolygon& polygon = piece.polygon->raster;
         if (!polygon.planar) return polygon.farthest;
         const double tilt = std::abs(polygon.dx) + std::abs(polygon.dy);
         const double d = polygon.d0 + polygon.dx * x + polygon.dy * y;
@@ -246,7 +243,7 @@ struct Resolver {
     /// The best depth of any group that covers the pixel; -infinity if none does.
     double resolve(const DepthTiles& tiles, double x, double y) {
         collectSides(x, y);
-        pairSides();
+        pairSides(tiles);
         joinGroups();
         double best = -std::numeric_limits<double>::infinity();
         for (int g = 0; g < piece_count; ++g) {
@@ -254,7 +251,7 @@ struct Resolver {
             double farthest = std::numeric_limits<double>::infinity();
             for (int p = 0; p < piece_count; ++p)
                 if (pieces[p].alive && rootOf(p) == g)
-                    farthest = std::min(farthest, farthestIn(pieces[p], tiles, x, y));
+                    farthest = std::min(farthest, farthestIn(pieces[p], x, y));
             best = std::max(best, farthest);
         }
         return best;
@@ -269,6 +266,36 @@ float roundFarther(double nearness) {
 
 }  // namespace
 
+void setSideKeys(const DepthTiles& tiles, SeamPolygon& polygon) {
+    if (polygon.clipped != SeamPolygon::kWhole)
+        for (int i = 0; i < polygon.corners; ++i)
+            if (tiles.clipped[polygon.clipped].open[i]) polygon.open |= static_cast<uint8_t>(1u << i);
+    for (int i = 0; i < polygon.corners; ++i) {
+        if (polygon.open >> i & 1) continue;
+        Point from, to;
+        edgeOf(tiles, polygon, i, from, to);
+        const bool forward = less(from, to);
+        if (forward) polygon.forward |= static_cast<uint8_t>(1u << i);
+        else std::swap(from, to);
+        polygon.side_key[i] = hashPoint(to, hashPoint(from, tiles.drawn[polygon.drawn].transform_hash));
+    }
+}
+
+bool findSharedSide(const DepthTiles& tiles, const SeamPolygon& a, const SeamPolygon& b, int& side_a, int& side_b) {
+    for (int i = 0; i < a.corners; ++i) {
+        if (a.open >> i & 1) continue;
+        for (int j = 0; j < b.corners; ++j) {
+            if (a.side_key[i] != b.side_key[j] || (b.open >> j & 1) || (a.forward >> i & 1) == (b.forward >> j & 1))
+                continue;
+            if (!areOpposite(tiles, a, i, b, j)) continue;
+            side_a = i;
+            side_b = j;
+            return true;
+        }
+    }
+    return false;
+}
+
 bool resolveSeam(DepthTiles& tiles, uint32_t tile, int bit) {
     const uint64_t pixel = uint64_t{1} << bit;
     const bool before = (tiles.coveredBits(tile) & pixel) != 0;
@@ -279,10 +306,11 @@ bool resolveSeam(DepthTiles& tiles, uint32_t tile, int bit) {
     for (uint32_t at = tiles.seams[tile]; at != DepthTiles::kNone; at = tiles.entries[at].next) {
         if (!(tiles.entries[at].mask & pixel)) continue;
         if (resolver.piece_count == kMaxTriangles) return before;
-        loadPiece(tiles, tiles.triangles[tiles.entries[at].triangle], resolver.pieces[resolver.piece_count++]);
+        loadPiece(tiles, tiles.polygons[tiles.entries[at].polygon], resolver.pieces[resolver.piece_count++]);
     }
     const double x = 8.0 * (tile % tiles.stride) + (bit & 7) + 0.5;
     const double y = 8.0 * (tile / tiles.stride) + (bit >> 3) + 0.5;
+    if (resolver.piece_count < 2) return before;
     const double nearness = resolver.resolve(tiles, x, y);
     if (!(nearness > -std::numeric_limits<double>::infinity())) return before;
     writeOut(tiles, tile);

@@ -20,6 +20,8 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height) {
     form.assign(count, Form::kEmpty);
     tried.assign(count, 0);
     seams.assign(count, kNone);
+    seam_mask.assign(count, 0);
+    paired.assign(count, kNone);
     if (covered.size() < count) {  // these are read only where the form says that they were written
         for (std::vector<float>* plane : {&plane_d, &plane_dx, &plane_dy, &plane_floor}) plane->resize(count);
         covered.resize(count);
@@ -30,7 +32,7 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height) {
     pd.clear();
     drawn.clear();
     clipped.clear();
-    triangles.clear();
+    polygons.clear();
     entries.clear();
     seam_pixels = 0;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sightline/geom/occluder.h"
+#include "sightline/raster/polygon.h"
 #include "sightline/raster/screen.h"
 
 namespace sightline {
@@ -30,28 +31,33 @@ struct DrawnCluster {
     bool clips = true;          ///< the near plane's place is known well enough to clip at it
 };
 
-/// A triangle clipped at the near plane: up to four corners, and for each edge the mesh vertices it lies
-/// between (kOpen for the edge that the near plane made).
+/// A triangle clipped at the near plane: up to four corners, and for each side the mesh vertices that its edge lies
+/// between (none for the side that the near plane made).
 struct ClippedPolygon {
-    static constexpr uint8_t kOpen = 255;
     double x[4], y[4], d[4];
-    uint8_t from[4], to[4];  ///< cluster vertices that edge i (corner i to i + 1) lies between
+    uint8_t from[4], to[4];  ///< cluster vertices that side i (corner i to i + 1) lies between
     bool open[4];
     int count = 0;
 };
 
-/// A triangle that touches pixels which it does not cover alone.
-struct SeamTriangle {
+/// A polygon that touches pixels which it does not cover alone.
+struct SeamPolygon {
     static constexpr uint32_t kWhole = ~0u;
-    uint32_t drawn = 0;           ///< index into DepthTiles::drawn
-    uint32_t clipped = kWhole;    ///< index into DepthTiles::clipped, or kWhole
-    uint8_t vertex[3] = {0, 0, 0};
+
+    RasterPolygon raster;
+    uint64_t side_key[4] = {};  ///< per side a hash of its edge in world space, the same for both directions
+    uint32_t drawn = 0;         ///< index into DepthTiles::drawn
+    uint32_t clipped = kWhole;  ///< index into DepthTiles::clipped, or kWhole
+    uint8_t vertex[4] = {};     ///< cluster vertices, counter-clockwise; not used if clipped
+    uint8_t corners = 3;
+    uint8_t forward = 0;        ///< bit per side: which of the two directions
+    uint8_t open = 0;           ///< bit per side that the near plane made
 };
 
-/// The pixels of one tile that a seam triangle touches.
+/// The pixels of one tile that a seam polygon touches.
 struct SeamEntry {
     uint64_t mask = 0;
-    uint32_t triangle = 0;  ///< index into DepthTiles::triangles
+    uint32_t polygon = 0;   ///< index into DepthTiles::polygons
     uint32_t next = ~0u;    ///< the next entry of the tile
 };
 
@@ -80,6 +86,8 @@ struct DepthTiles {
     std::vector<uint64_t> covered;    ///< bit 8 * row + column; not kept up to date in form kPlane, which is all covered
     std::vector<uint64_t> tried;      ///< seam pixels whose present entries have been resolved
     std::vector<uint32_t> seams;      ///< first SeamEntry, or kNone
+    std::vector<uint64_t> seam_mask;  ///< pixels that some SeamEntry of the tile names
+    std::vector<uint32_t> paired;     ///< the first SeamEntry when pairSeams() last looked
     std::vector<float> depth;         ///< 64 per tile; -infinity where not covered; see Form
 
     uint64_t coveredBits(uint32_t tile) const {
@@ -89,7 +97,7 @@ struct DepthTiles {
     std::vector<double> px, py, pd;        ///< projected vertices of the frame; px is NaN before the near plane
     std::vector<DrawnCluster> drawn;
     std::vector<ClippedPolygon> clipped;
-    std::vector<SeamTriangle> triangles;
+    std::vector<SeamPolygon> polygons;
     std::vector<SeamEntry> entries;
 
     uint64_t seam_pixels = 0;              ///< resolved since the clear
@@ -111,7 +119,16 @@ bool isHidden(DepthTiles& tiles, const PixelRect& rect);
 /// Makes a tile's pixels valid in the depth array.
 void writeOut(DepthTiles& tiles, uint32_t tile);
 
-/// Tries to cover one pixel by the triangles that share it; true if it is covered now.
+/// Fills in the keys of a seam polygon's sides.
+void setSideKeys(const DepthTiles& tiles, SeamPolygon& polygon);
+
+/// Finds a side that two polygons share: the same edge of the world, exactly, run through in opposite directions.
+bool findSharedSide(const DepthTiles& tiles, const SeamPolygon& a, const SeamPolygon& b, int& side_a, int& side_b);
+
+/// Covers the pixels of a tile that two polygons with a shared side cover between them, for all pairs at once.
+void pairSeams(DepthTiles& tiles, uint32_t tile);
+
+/// Tries to cover one pixel by the polygons that share it; true if it is covered now.
 /// @param tile_index  which tile
 /// @param bit         which pixel of it, 0 to 63
 bool resolveSeam(DepthTiles& tiles, uint32_t tile_index, int bit);
