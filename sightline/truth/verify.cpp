@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sightline/base/assert.h"
 #include "sightline/base/random.h"
@@ -24,7 +25,8 @@ constexpr uint8_t kMostTries = 32;
 class Trial {
 public:
     Trial(const SceneFacts& facts, const Sight& sight, std::span<const uint8_t> culled)
-        : sight_(sight), culled_(culled), exact_(facts, sight), tries_(culled.size(), 0), aimed_tries_(culled.size(), 0) {
+        : sight_(sight), culled_(culled), exact_(facts, sight), tries_(culled.size(), 0),
+          aimed_tries_(culled.size(), 0) {
         verdict.seen.assign(culled.size(), 0);
     }
 

@@ -38,8 +38,11 @@ TestMesh randomTriangles(Random& random, int count, double size) {
     for (int i = 0; i < count; ++i) {
         const glm::vec3 center(random.uniform(-4, 4), random.uniform(-4, 4), random.uniform(-8, 3));
         glm::vec3 p[3];
-        for (glm::vec3& v : p)
-            v = center + glm::vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
+        for (glm::vec3& v : p) {
+            v.x = center.x + static_cast<float>(random.uniform(-size, size));
+            v.y = center.y + static_cast<float>(random.uniform(-size, size));
+            v.z = center.z + static_cast<float>(random.uniform(-size, size));
+        }
         mesh.add(p[0], p[1], p[2]);
     }
     return mesh;
@@ -172,7 +175,8 @@ TEST(ZBuffer, CoversClosedSurfaceTwiceAndFrontOnce) {
         for (uint32_t r = 0; r < kRings; ++r)
             for (uint32_t s = 0; s < kSegments; ++s) {
                 const uint32_t a = r * kSegments + s, b = r * kSegments + (s + 1) % kSegments;
-                for (uint32_t index : {a, a + kSegments, b, b, a + kSegments, b + kSegments}) ball.indices.push_back(index);
+                for (uint32_t index : {a, a + kSegments, b, b, a + kSegments, b + kSegments})
+                    ball.indices.push_back(index);
             }
         const std::vector<uint8_t> both(ball.indices.size() / 3, 1);
         View view = makeTestView(perspective(0.8, 1.0, 0.1), 128, 128);
@@ -192,7 +196,8 @@ TEST(ZBuffer, CoversClosedSurfaceTwiceAndFrontOnce) {
 TEST(ZBuffer, ParallelProjectionToInfinityBeginsAtTheEye) {
     const TestMesh behind = square(1, 2), ahead = square(1, -2);
     const uint8_t both[2] = {1, 1};
-    const DrawItem items[2] = {{behind.view(), both, {}, glm::dmat4(1.0), 1}, {ahead.view(), both, {}, glm::dmat4(1.0), 2}};
+    const DrawItem items[2] = {{behind.view(), both, {}, glm::dmat4(1.0), 1},
+                               {ahead.view(), both, {}, glm::dmat4(1.0), 2}};
     const View view = makeTestView(orthographic(1, 4.0 / 3, 0.1, std::numeric_limits<double>::infinity()));
     EXPECT_EQ(centerId(renderZBuffer(items, view)), 2u);
 }
@@ -228,8 +233,9 @@ TEST(ZBuffer, UnwrittenSurfacesAreSeenAndHideNothing) {
     const TestMesh glass = square(1, -2), wall = square(1, -3), hidden = square(0.5f, -4), flush = square(0.5f, -3);
     const uint8_t no[2] = {0, 0};
     // Drawn first, last or between: the answer is the same.
-    std::vector<DrawItem> items = {{glass.view(), {}, no, glm::dmat4(1.0), 0}, {wall.view(), {}, {}, glm::dmat4(1.0), 1},
-                                   {hidden.view(), {}, no, glm::dmat4(1.0), 2}, {flush.view(), {}, no, glm::dmat4(1.0), 3}};
+    std::vector<DrawItem> items = {
+        {glass.view(), {}, no, glm::dmat4(1.0), 0}, {wall.view(), {}, {}, glm::dmat4(1.0), 1},
+        {hidden.view(), {}, no, glm::dmat4(1.0), 2}, {flush.view(), {}, no, glm::dmat4(1.0), 3}};
     for (int i = 0; i < 4; ++i) {
         std::rotate(items.begin(), items.begin() + 1, items.end());
         const ZBufferImage image = renderZBuffer(items, makeTestView(perspective(1.0, 4.0 / 3, 0.1)));

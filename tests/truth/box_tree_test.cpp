@@ -18,7 +18,8 @@ bool overlap(const Box3d& a, const Box3d& b) {
 TEST(BoxTree, FindsAllThatTouch) {
     for (uint64_t seed = 0; seed < 40; ++seed) {
         Random random(seed);
-        const auto point = [&] { return glm::dvec3(random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9)); };
+        const auto number = [&] { return random.uniform(-9, 9); };
+        const auto point = [&] { return glm::dvec3(number(), number(), number()); };
         std::vector<Box3d> boxes(random.below(200));
         for (Box3d& box : boxes) {
             box.grow(point());

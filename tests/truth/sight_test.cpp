@@ -39,7 +39,8 @@ TEST(Sight, RaysPassThroughProjectedPoints) {
             const glm::dvec4 clip = view.projection * view.view * glm::dvec4(eye + point, 1);
             glm::dvec2 place;
             const bool in = sight.project(point, place);
-            const double margin = std::min({clip.w - std::abs(clip.x), clip.w - std::abs(clip.y), clip.w - clip.z, clip.w + clip.z});
+            const double margin = std::min({clip.w - std::abs(clip.x), clip.w - std::abs(clip.y),
+                                            clip.w - clip.z, clip.w + clip.z});
             if (std::abs(margin) < 1e-9) continue;
             ASSERT_EQ(in, margin > 0) << "case " << i;
             if (!in) continue;

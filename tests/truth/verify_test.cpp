@@ -309,7 +309,7 @@ TEST(Witness, NeverAccusesWhatIsEnclosed) {
     RecordProperty("unconfirmed", static_cast<int>(unconfirmed));
 }
 
-/// Transforms that flatten, wholly or nearly, cannot be inverted in float: what they carry is seen and hides all the same.
+/// Transforms that flatten, wholly or nearly, cannot be inverted in float: what they carry is seen and hides.
 TEST(Witness, FlattenedObjectsAreSeenAndHide) {
     for (const double thickness : {0.0, 1e-9, -1e-9}) {
         Scene scene = emptyScene();
