@@ -42,6 +42,9 @@ int runTool(int count, char** words) {
         std::fputs(tool.help().c_str(), stderr);
         return kWrongArguments;
     }
+    const std::string first = words[1];
+    if (first.substr(0, 1) != "-" && !tool.get_subcommand_no_throw(first))
+        return report({Error::Kind::kUsage, "there is no verb \"" + first + "\" (see sightline --help)"});
     try {
         tool.parse(count, words);
     } catch (const CLI::ParseError& error) {

@@ -192,6 +192,9 @@ std::string player(const CullRun& run, const Json& first, size_t pictures, doubl
         const Rgb c = heatColour(i / 12.0);
         stops += fmt::format("{}rgb({},{},{})", i ? "," : "", c.x, c.y, c.z);
     }
+    std::string ticks;
+    for (const double at : {0.0, 0.25, 0.5, 0.75, 1.0})  // the colours stand for square roots
+        ticks += fmt::format("<span>{:.3g}{}</span>", at * at * scale, at < 1 ? "" : " and more");
     return fmt::format(
         R"html(<section class="card" aria-labelledby="h-frames"><h2 id="h-frames">The flight</h2>
 <div class="player"><button type="button" id="play">Play</button>
@@ -207,10 +210,9 @@ std::string player(const CullRun& run, const Json& first, size_t pictures, doubl
 <figcaption>Without culling: <b id="depth-all"></b> a pixel on average</figcaption></figure>
 <figure><img id="heat-kept" alt="Heat map of surfaces drawn for each pixel with culling" src="{}">
 <figcaption>With culling: <b id="depth-kept"></b> a pixel on average</figcaption></figure></div>
-<div class="scale"><span>0</span><span class="bar" style="background:linear-gradient(90deg,{})" role="img" aria-label="Colour scale"></span><span>{} and more</span></div>
-</section>)html",
-        pictures - 1, image("shaded"), image("plan"), legend, image("heat-all"), image("heat-kept"), stops,
-        readable(scale));
+<div class="bar" style="background:linear-gradient(90deg,{})" role="img" aria-label="Colour scale"></div>
+<div class="scale">{}</div></section>)html",
+        pictures - 1, image("shaded"), image("plan"), legend, image("heat-all"), image("heat-kept"), stops, ticks);
 }
 
 std::string stageTable(const CullRun& run, const Means& means) {

@@ -50,8 +50,8 @@ figcaption b { color: var(--ink); font-variant-numeric: tabular-nums; }
 .plan img { background: var(--note-back); image-rendering: auto; border: 1px solid var(--line); }
 .legend { display: flex; flex-wrap: wrap; gap: 4px 16px; font-size: .92rem; color: var(--soft); margin-top: 6px; }
 .legend i { display: inline-block; width: .8em; height: .8em; border-radius: 2px; margin-right: .45em; }
-.scale { display: flex; gap: 10px; align-items: center; margin-top: 12px; font-size: .92rem; color: var(--soft); }
-.scale span.bar { flex: 1; height: 12px; border-radius: 3px; }
+.bar { height: 12px; border-radius: 3px; margin-top: 14px; }
+.scale { display: flex; justify-content: space-between; margin-top: 4px; font-size: .92rem; color: var(--soft); }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
 th, td { text-align: right; padding: 7px 12px; border-bottom: 1px solid var(--line); white-space: nowrap; }

@@ -240,7 +240,7 @@ Rgb heatColour(double part) {
 
 Image<Rgb> heatMap(const Image<float>& counts, double full) {
     Image<Rgb> out(counts.width, counts.height);
-    for (size_t i = 0; i < counts.pixels.size(); ++i) out.pixels[i] = heatColour(counts.pixels[i] / full);
+    for (size_t i = 0; i < counts.pixels.size(); ++i) out.pixels[i] = heatColour(std::sqrt(counts.pixels[i] / full));
     return out;
 }
 

@@ -52,7 +52,8 @@ private:
 /// The colour of a number on a scale from 0 to 1, dark to bright.
 Rgb heatColour(double part);
 
-/// A heat map; `full` is the value of the brightest colour, values above share it.
+/// A heat map on a square-root scale, which tells small counts apart; `full` is the value of the brightest colour,
+/// values above share it.
 Image<Rgb> heatMap(const Image<float>& counts, double full);
 
 }  // namespace sightline

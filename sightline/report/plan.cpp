@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 namespace sightline {
 
@@ -123,13 +123,18 @@ Image<glm::u8vec4> drawPlan(std::span<const Box3d> bounds, std::span<const uint8
         if (box.size().x > 0.6 * area.side && box.size().z > 0.6 * area.side) continue;
         order.push_back(i);
     }
-    const auto size = [&](uint32_t i) { return bounds[i].size().x * bounds[i].size().z; };
-    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return size(a) > size(b); });
-    for (const bool visible : {false, true})
-        for (const uint32_t i : order)
-            if ((reasons[i] == 0) == visible)
-                fill(image, footprint(bounds[i], area, side_pixels),
-                     kPlanPalette[std::min<int>(reasons[i], kPlanColours - 1)]);
+    // Larger ones first, so that nothing small is covered; of about one size, visible ones last.
+    const auto rank = [&](uint32_t i) {
+        const double extent = bounds[i].size().x * bounds[i].size().z;
+        return std::pair(extent > 0 ? -std::ilogb(extent) : 9999, reasons[i] == 0);
+    };
+    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return rank(a) < rank(b); });
+    for (const uint32_t i : order) {
+        const glm::dvec3 size = bounds[i].size();
+        glm::u8vec4 colour = kPlanPalette[std::min<int>(reasons[i], kPlanColours - 1)];
+        if (size.y < 0.05 * std::min(size.x, size.z)) colour.w = colour.w / 3;  // ground and slabs stay in the back
+        fill(image, footprint(bounds[i], area, side_pixels), colour);
+    }
     drawFrustum(image, view, area);
     return image;
 }

@@ -27,8 +27,8 @@ inline constexpr int kPlanColours = 1 + kStageCount;
 extern const glm::u8vec4 kPlanPalette[kPlanColours];
 inline constexpr const char* kPlanNames[kPlanColours] = {"visible", "culled by frustum", "culled by occlusion"};
 
-/// Draws the boxes of the objects, larger ones below smaller ones, visible ones above culled ones; transparent
-/// where there is nothing.
+/// Draws the boxes of the objects, larger ones below smaller ones, flat ones pale; transparent where
+/// there is nothing.
 /// @param reasons  per object: 0 visible, else 1 + Stage  [size: bounds]
 Image<glm::u8vec4> drawPlan(std::span<const Box3d> bounds, std::span<const uint8_t> reasons, const View& view,
                             const PlanArea& area, uint32_t side_pixels);

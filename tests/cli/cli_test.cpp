@@ -1,0 +1,164 @@
+// The command line is a contract: verbs, exit codes, schemas, and who writes where.
+// SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/tool.h"
+
+namespace sightline {
+namespace {
+
+using nlohmann::json;
+
+/// Takes the times out: everything else must be the same from run to run.
+json timeless(json run) {
+    for (json& frame : run["frames"]) {
+        frame.erase("query_microseconds");
+        for (json& stage : frame["stages"]) stage.erase("microseconds");
+    }
+    return run;
+}
+
+class Cli : public Tool {
+protected:
+    json cull(const std::string& arguments) const {
+        const Outcome outcome = run("cull " + arguments + " --json -");
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return json::parse(outcome.out);
+    }
+};
+
+TEST_F(Cli, HelpAndVersionSucceed) {
+    EXPECT_EQ(run("--help").exit_code, 0);
+    EXPECT_NE(run("--version").out.find("sightline 0."), std::string::npos);
+    for (const char* verb : {"cull", "verify", "info", "bench"}) {
+        EXPECT_NE(run("--help").out.find(verb), std::string::npos) << verb;
+        const Outcome help = run(std::string(verb) + " --help");
+        EXPECT_EQ(help.exit_code, 0) << verb;
+        EXPECT_NE(help.out.find("--json"), std::string::npos) << verb;
+    }
+}
+
+TEST_F(Cli, WrongArgumentsExitWithTwo) {
+    EXPECT_EQ(run("").exit_code, 2);
+    expectError("fly city:1:10", 2, "fly");
+    expectError("cull", 2, "SCENE");
+    expectError("cull city:1:10 --wrong", 2, "--wrong");
+    expectError("cull city:1:10 --use frustum,magic", 2, "magic");
+    expectError("cull city:1:10 --skip magic", 2, "magic");
+    expectError("cull city:1:10 --frames 0", 2, "--frames");
+    expectError("cull city:1:10 --frames -4", 2, "--frames");
+    expectError("cull city:1:10 --threads many", 2, "--threads");
+    expectError("cull city:1:10 --cameras a.json --frames 3", 2, "--cameras");
+    expectError("bench nothing", 2, "nothing");
+    for (const char* size : {"12", "0x5", "5x0", "x", "axb", "10x10x10", "99999x10", "-1x5", "10x"})
+        expectError("cull city:1:10 --size=" + std::string(size), 2, "--size");
+    for (const char* city : {"city:", "city:1", "city:1:", "city:1:0", "city:x:5", "city:1:5:6", "city:1:99999999999"})
+        expectError("cull " + std::string(city), 2, city);
+}
+
+TEST_F(Cli, CullWritesTheSchemaToStandardOutputAlone) {
+    const Outcome outcome = run("cull city:1:300 --frames 3 --size 320x180 --verify --rays 20000 --json -");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const json out = json::parse(outcome.out);  // fails if anything else is on standard output
+    EXPECT_EQ(out["schema"], "sightline.cull/1");
+    EXPECT_EQ(out["scene"]["file"], "city:1:300");
+    EXPECT_EQ(out["scene"]["objects"], 300);
+    EXPECT_EQ(out["width"], 320);
+    EXPECT_EQ(out["height"], 180);
+    ASSERT_EQ(out["frames"].size(), 3u);
+    uint64_t reported = 0;
+    for (const json& frame : out["frames"]) {
+        uint64_t culled = 0;
+        for (const json& stage : frame["stages"]) culled += stage["culled"].get<uint64_t>();
+        EXPECT_EQ(frame["visible"].size() + culled, 300u);
+        EXPECT_TRUE(std::is_sorted(frame["visible"].begin(), frame["visible"].end()));
+        EXPECT_TRUE(frame["camera"]["far"].is_null() || frame["camera"]["far"].is_number());
+        EXPECT_LE(frame["triangles"], out["scene"]["triangles"]);
+        reported += frame["visible"].size();
+    }
+    EXPECT_EQ(out["verification"]["false_culls"], 0);
+    EXPECT_EQ(out["verification"]["reported"], reported);
+    EXPECT_GE(out["verification"]["samples"], 1);
+    EXPECT_LE(out["verification"]["exactly_visible"], reported);
+    EXPECT_NE(outcome.err.find("verified"), std::string::npos);  // the summary went there
+}
+
+TEST_F(Cli, ThreadsDoNotChangeTheAnswer) {
+    const std::string common = "city:1:2000 --frames 6 --size 320x180 --repeat 1 --threads ";
+    const json one = timeless(cull(common + "1"));
+    EXPECT_EQ(one, timeless(cull(common + "2")));
+    EXPECT_EQ(one, timeless(cull(common + "7")));
+}
+
+TEST_F(Cli, StagesNarrow) {
+    const std::string common = "city:1:2000 --frames 2 --size 320x180 --repeat 1 ";
+    const json none = cull(common + "--skip frustum,occlusion");
+    const json frustum = cull(common + "--use frustum");
+    const json all = cull(common);
+    for (size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(none["frames"][i]["visible"].size(), 2000u);
+        ASSERT_EQ(frustum["frames"][i]["stages"].size(), 1u);
+        const auto wide = frustum["frames"][i]["visible"].get<std::vector<uint64_t>>();
+        const auto narrow = all["frames"][i]["visible"].get<std::vector<uint64_t>>();
+        EXPECT_LT(wide.size(), 2000u);
+        EXPECT_LT(narrow.size(), wide.size());
+        EXPECT_TRUE(std::includes(wide.begin(), wide.end(), narrow.begin(), narrow.end()));
+    }
+}
+
+TEST_F(Cli, CamerasOfOneRunReplayInAnother) {
+    const json first = cull("city:1:500 --frames 2 --seed 9 --size 200x100 --repeat 1");
+    json path;
+    for (const json& frame : first["frames"]) path["frames"].push_back(frame["camera"]);
+    write("path.json", path.dump());
+    const json second = cull("city:1:500 --cameras path.json --size 200x100 --repeat 1");
+    EXPECT_EQ(timeless(first)["frames"], timeless(second)["frames"]);
+}
+
+TEST_F(Cli, WithoutFramesSixteenAreSeeded) {
+    EXPECT_EQ(cull("city:1:50 --size 64x36 --repeat 1")["frames"].size(), 16u);
+    EXPECT_EQ(timeless(cull("city:1:50 --size 64x36 --repeat 1")),
+              timeless(cull("city:1:50 --size 64x36 --repeat 1 --frames 16 --seed 1")));
+}
+
+TEST_F(Cli, FramesOfACityWalkItsStreets) {
+    const json streets = cull("city:1:50 --frames 3 --size 64x36 --repeat 1");
+    const json larger = cull("city:1:400 --frames 3 --size 64x36 --repeat 1");
+    for (size_t i = 0; i < 3; ++i) EXPECT_EQ(streets["frames"][i]["camera"], larger["frames"][i]["camera"]);
+    const json seeded = cull("city:1:50 --frames 3 --seed 1 --size 64x36 --repeat 1");
+    EXPECT_NE(streets["frames"][0]["camera"], seeded["frames"][0]["camera"]);
+}
+
+TEST_F(Cli, ReportLiesInItsDirectory) {
+    const Outcome outcome = run("cull city:1:200 --frames 2 --size 160x90 --report deep/out");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("visible"), std::string::npos);
+    const std::string page = read(path("deep/out/index.html"));
+    EXPECT_NE(page.find("city:1:200"), std::string::npos);
+    EXPECT_EQ(page.find("http"), std::string::npos);
+    EXPECT_EQ(json::parse(read(path("deep/out/cull.json")))["schema"], "sightline.cull/1");
+}
+
+TEST_F(Cli, VerifyTellsTheOverEstimate) {
+    const Outcome outcome = run("verify city:1:200 --frames 2 --size 160x90 --rays 20000 --json result.json");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("frame    1: sound"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("over-estimate"), std::string::npos);
+    const json out = json::parse(read(path("result.json")));
+    EXPECT_GE(out["verification"]["over_estimate"], 1.0);
+    EXPECT_EQ(out["frames"][0]["verification"]["false_culls"], 0);
+}
+
+TEST_F(Cli, InfoCounts) {
+    const Outcome outcome = run("info city:1:100 --json -");
+    ASSERT_EQ(outcome.exit_code, 0);
+    const json out = json::parse(outcome.out);
+    EXPECT_EQ(out["schema"], "sightline.info/1");
+    EXPECT_EQ(out["objects"], 100);
+    EXPECT_LE(out["triangles"]["occluding"], out["triangles"]["drawn"]);
+    EXPECT_LT(out["bounds"]["min"][0], out["bounds"]["max"][0]);
+    EXPECT_NE(run("info city:1:100").out.find("100"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sightline

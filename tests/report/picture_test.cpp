@@ -1,0 +1,69 @@
+// Pictures show what is there; heat maps count what was drawn.
+// SPDX-License-Identifier: MIT
+#include "sightline/report/picture.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/report/made_run.h"
+
+namespace sightline {
+namespace {
+
+View madeView(const CullRun& run, bool parallel = false) {
+    CameraFrame camera = run.frames[0].camera;
+    if (parallel) camera.orthographic_height = 6;
+    return makeView(camera, run.width, run.height);
+}
+
+float sum(const Image<float>& image) {
+    float total = 0;
+    for (const float value : image.pixels) total += value;
+    return total;
+}
+
+TEST(Picture, CountsHiddenSurfacesOnlyWithoutCulling) {
+    const Scene scene = madeScene();
+    const CullRun run = madeRun(scene);
+    for (const bool parallel : {false, true}) {
+        const PictureMaker::Frame frame = PictureMaker(scene).draw(madeView(run, parallel), run.frames[0].reasons);
+        const uint32_t x = run.width / 2, y = run.height / 2;
+        EXPECT_EQ(frame.all.at(x, y), 2.0f) << parallel;   // the wall and what stands behind it
+        EXPECT_EQ(frame.kept.at(x, y), 1.0f) << parallel;  // the wall
+        EXPECT_EQ(frame.all.at(0, 0), 0.0f) << parallel;
+        EXPECT_GT(sum(frame.all), sum(frame.kept)) << parallel;
+        EXPECT_TRUE(frame.same) << parallel;
+    }
+}
+
+TEST(Picture, NoticesAVisibleObjectThatWasCulled) {
+    const Scene scene = madeScene();
+    const CullRun run = madeRun(scene);
+    const std::vector<uint8_t> reasons = {2, 0, 0, 0};  // the wall itself
+    EXPECT_FALSE(PictureMaker(scene).draw(madeView(run), reasons).same);
+}
+
+TEST(Picture, ShadesSurfacesApartFromTheSky) {
+    const Scene scene = madeScene();
+    const CullRun run = madeRun(scene);
+    const PictureMaker::Frame frame = PictureMaker(scene).draw(madeView(run), run.frames[0].reasons);
+    EXPECT_NE(frame.shaded.at(run.width / 2, run.height / 2), frame.shaded.at(0, run.height / 2));
+}
+
+TEST(Picture, HeatIsBrightestAtItsFullValue) {
+    Image<float> counts(3, 1);
+    counts.pixels = {0, 4, 99};
+    const Image<Rgb> heat = heatMap(counts, 4);
+    EXPECT_EQ(heat.pixels[0], heatColour(0));
+    EXPECT_EQ(heat.pixels[1], heatColour(1));
+    EXPECT_EQ(heat.pixels[2], heatColour(1));
+    int last = -1;
+    for (int i = 0; i <= 20; ++i) {  // lightness rises, for eyes that see no hue
+        const Rgb c = heatColour(i / 20.0);
+        const int light = 299 * c.x + 587 * c.y + 114 * c.z;
+        EXPECT_GT(light, last) << i;
+        last = light;
+    }
+}
+
+}  // namespace
+}  // namespace sightline
