@@ -52,16 +52,22 @@ Crossing cross(const RayFrame& frame, const glm::dvec3 (&corner)[3], double roun
     const double area = ab.x * ac.y - ab.y * ac.x;
     const double nearest = std::min({along[0], along[1], along[2]});
     const double farthest = std::max({along[0], along[1], along[2]});
-    double inside = std::numeric_limits<double>::infinity(), longest = 0;
+    double inside = std::numeric_limits<double>::infinity(), longest = 0, off_longest = 0;
     for (int i = 0; i < 3; ++i) {
         const glm::dvec2 &a = flat[i], &b = flat[(i + 1) % 3];
         const double length = glm::length(b - a);
-        longest = std::max(longest, length);
-        if (length > 0) inside = std::min(inside, (a.x * b.y - a.y * b.x) / length * (area < 0 ? -1.0 : 1.0));
+        if (length == 0) continue;
+        const double off = (a.x * b.y - a.y * b.x) / length;
+        inside = std::min(inside, area < 0 ? -off : off);
+        if (length > longest) {
+            longest = length;
+            off_longest = std::abs(off);
+        }
     }
+    // Seen from its edge a triangle is its longest side, and its sides no longer tell in from out.
     const bool edge_on = std::abs(area) <= 4 * rounding * longest;
-    result.perhaps = inside >= -rounding || edge_on;
-    result.surely = inside > rounding && !edge_on;
+    result.perhaps = edge_on ? off_longest <= 8 * rounding : inside >= -rounding;
+    result.surely = !edge_on && inside > rounding;
     result.front_surely = area < 0 && !edge_on;
     result.front_perhaps = area < 0 || edge_on;
     const glm::dvec3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);

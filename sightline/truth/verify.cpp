@@ -19,7 +19,7 @@ namespace sightline {
 namespace {
 
 /// Sightings of one object that may fail to be confirmed before it is left alone.
-constexpr uint8_t kMostTries = 32;
+constexpr uint8_t kMostTries = 100;
 
 /// Everything that is seen of one frame.
 class Trial {

@@ -322,6 +322,16 @@ TEST(Witness, FlattenedObjectsAreSeenAndHide) {
     }
 }
 
+/// Ten thousand triangles without area, in a real scene, once hid what lay within their boxes from the exact test.
+TEST(Witness, TrianglesWithoutAreaHideNothing) {
+    Scene scene = emptyScene();
+    const uint32_t needles = addMesh(scene, {{-2, -2, 0}, {2, 2, 0}, {0, 0, 0}, {-2, 2, 0}, {2, -2, 0}},
+                                     {0, 1, 2, 3, 4, 4, 0, 0, 0, 1, 2, 0}, 1);
+    addObject(scene, needles, moved({0, 0, -2}));
+    addObject(scene, addBox(scene, glm::vec3(0.5f)), moved({0.1, -0.3, -5}));
+    EXPECT_EQ(accused(scene, usualView(), {0, 1}), Objects{1});
+}
+
 TEST(Witness, SaysWhenItDrawsFewerSamples) {
     Scene scene = emptyScene();
     addObject(scene, addBox(scene, glm::vec3(0.3f)), moved({0, 0, -3}));
