@@ -80,7 +80,7 @@ struct TilePolygon {
     uint32_t cutting = 0; ///< bit per edge that does not contain the whole tile
     float depth = 0;      ///< at the centre, the farthest nearness over a pixel
     float nearest = 0;    ///< no point of the polygon in the tile is nearer
-    uint64_t window = 0;  ///< pixels inside the polygon's bounds
+    uint64_t window = ~uint64_t{0};  ///< pixels inside the polygon's bounds
 };
 
 /// Raises the depths of a tile's pixels that the mask names.
@@ -131,7 +131,6 @@ void addSeam(DepthTiles& tiles, uint32_t tile, uint64_t mask, const RasterPolygo
         record = static_cast<uint32_t>(tiles.polygons.size());
         tiles.polygons.push_back(source);
         tiles.polygons.back().raster = raster;
-        setSideKeys(tiles, tiles.polygons.back());
     }
     tiles.entries.push_back({mask, record, tiles.seams[tile]});
     tiles.seams[tile] = static_cast<uint32_t>(tiles.entries.size() - 1);
@@ -139,33 +138,9 @@ void addSeam(DepthTiles& tiles, uint32_t tile, uint64_t mask, const RasterPolygo
     tiles.tried[tile] &= ~mask;
 }
 
-/// The part of a polygon that one tile sees, worked out from the polygon in double.
-TilePolygon seenByTile(const RasterPolygon& polygon, int32_t column, int32_t row) {
-    const double x = 8.0 * column + 4.0, y = 8.0 * row + 4.0;
-    TilePolygon p;
-    for (int e = 0; e < polygon.edges; ++e) {
-        p.at_center[e] = static_cast<float>(polygon.edge[e].at(x, y));
-        if (p.at_center[e] < 4.0f + polygon.slack) p.cutting |= 1u << e;
-    }
-    p.nearest = polygon.nearest;
-    p.depth = polygon.farthest;
-    if (polygon.planar) {
-        const double tilt = std::abs(polygon.dx) + std::abs(polygon.dy);
-        const double d = polygon.d0 + polygon.dx * x + polygon.dy * y;
-        const double error = polygon.depth_error + 0x1p-21 * (std::abs(d) + 4.0 * tilt);
-        p.nearest = std::min(p.nearest, static_cast<float>(d + 4.0 * tilt + error));
-        p.depth = static_cast<float>(d - 0.5 * tilt - error);
-    }
-    p.window = windowBits(polygon.x0, polygon.y0, polygon.x1, polygon.y1, 8 * column, 8 * row);
-    return p;
-}
-
-/// A tile that the polygon covers in part, or whose depth it does not simply replace.
-void drawTile(DepthTiles& tiles, const RasterPolygon& polygon, PixelOffsets& offsets, const SeamPolygon& source,
-              int32_t column, int32_t row, uint32_t& record) {
-    const uint32_t tile = static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(column);
-    const TilePolygon p = seenByTile(polygon, column, row);
-    if (tiles.farthest[tile] >= p.nearest) return;
+/// Draws into one tile that the polygon covers in part, or whose depth it does not simply replace.
+void drawTile(DepthTiles& tiles, uint32_t tile, const RasterPolygon& polygon, const TilePolygon& p,
+              PixelOffsets& offsets, const SeamPolygon& source, uint32_t& record) {
     if (!offsets.ready) makeOffsets(polygon, offsets);
     TileMasks masks = p.cutting ? classifyPixels(p, offsets, polygon.slack) : TileMasks{p.window, p.window};
     if (!polygon.covers) masks.inner = 0;
@@ -201,59 +176,91 @@ struct ChunkSetup {
     float tilt;        ///< the plane's change over a pixel
 };
 
+/// What a polygon is to eight tiles of a row.
+struct ChunkAnswer {
+    alignas(32) float edge[4][8];  ///< edge functions at the tiles' centres
+    alignas(32) float depth[8];    ///< plane there
+    alignas(32) float nearest[8];  ///< no point of the polygon in the tile is nearer
+    float error = 0;               ///< bound on the error of depth
+    uint32_t slow = 0;             ///< bit per tile to be drawn pixel by pixel
+};
+
 /// Looks at eight tiles at once: leaves out those that the polygon misses or that hide it, replaces the depth of
 /// those that it covers whole and lies in front of, and returns the others.
-uint32_t drawChunk(DepthTiles& tiles, const RasterPolygon& polygon, const ChunkSetup& setup, int32_t chunk, int32_t row) {
-    // Relative to the first tile's centre in double; eight steps from there float rounds by less than the margin.
-    constexpr float kMargin = 0x1p-10f;
+void drawChunk(DepthTiles& tiles, const RasterPolygon& polygon, const ChunkSetup& setup, int32_t chunk, int32_t row,
+               ChunkAnswer& out) {
+    // Values are taken in double at the first tile's centre; over eight steps of at most 8 pixels float rounds by less
+    // than 2^-16 pixels, which RasterPolygon::slack holds with room to spare.
     const double x = 8.0 * chunk + 4.0, y = 8.0 * row + 4.0;
     const F8 d;
     const uint32_t base = static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(chunk);
     float c[4];
     for (int e = 0; e < polygon.edges; ++e) c[e] = static_cast<float>(polygon.edge[e].at(x, y));
-    const double center = polygon.planar ? polygon.d0 + polygon.dx * x + polygon.dy * y : polygon.farthest;
-    const float tilt = setup.tilt, reach = std::abs(static_cast<float>(center)) + 64.0f * tilt;
-    const auto error = hn::Set(d, polygon.depth_error + 0x1p-20f * reach);
-    uint32_t slow = 0;
+    const float center = polygon.planar ? static_cast<float>(polygon.d0 + polygon.dx * x + polygon.dy * y) : polygon.farthest;
+    const float tilt = setup.tilt;
+    out.error = polygon.depth_error + 0x1p-20f * (std::abs(center) + 64.0f * tilt);
+    out.slow = 0;
+    const auto error = hn::Set(d, out.error);
     for (size_t h = 0; h < 8; h += hn::Lanes(d)) {
         const auto step = hn::Iota(d, static_cast<float>(h));
         auto least = hn::Set(d, 1e30f);
-        for (int e = 0; e < polygon.edges; ++e)
-            least = hn::Min(least, hn::Add(hn::Set(d, c[e]), hn::Mul(step, hn::Set(d, setup.step_a[e]))));
-        const auto z = hn::Add(hn::Set(d, static_cast<float>(center)), hn::Mul(step, hn::Set(d, setup.step_d)));
+        for (int e = 0; e < polygon.edges; ++e) {
+            const auto value = hn::Add(hn::Set(d, c[e]), hn::Mul(step, hn::Set(d, setup.step_a[e])));
+            hn::Store(value, d, out.edge[e] + h);
+            least = hn::Min(least, value);
+        }
+        const auto z = hn::Add(hn::Set(d, center), hn::Mul(step, hn::Set(d, setup.step_d)));
         auto nearest = hn::Set(d, polygon.nearest);
         if (polygon.planar) nearest = hn::Min(nearest, hn::Add(hn::Add(z, hn::Set(d, 4.0f * tilt)), error));
-        const auto met = hn::And(hn::Ge(least, hn::Set(d, -4.0f - kMargin - polygon.slack)),
+        hn::Store(z, d, out.depth + h);
+        hn::Store(nearest, d, out.nearest + h);
+        const auto met = hn::And(hn::Ge(least, hn::Set(d, -4.0f - polygon.slack)),
                                  hn::Lt(hn::LoadU(d, tiles.farthest.data() + base + h), nearest));
         uint32_t left = static_cast<uint32_t>(bitsFromMask(d, met));
-        if (left && polygon.covers && polygon.planar) {
+        if (left && polygon.covers) {
             const auto floor = hn::Set(d, polygon.farthest);
             const auto plane = hn::Sub(hn::Sub(z, hn::Set(d, 0.5f * tilt)), error);
-            const auto farthest = hn::Max(hn::Sub(plane, hn::Add(hn::Set(d, 3.5f * tilt), error)), floor);
-            const auto whole = hn::And(hn::And(met, hn::Ge(least, hn::Set(d, 4.0f + kMargin + polygon.slack))),
+            const auto across = hn::Add(hn::Set(d, 3.5f * tilt), error);
+            const auto farthest = hn::Max(hn::Sub(plane, across), floor);
+            const auto whole = hn::And(hn::And(met, hn::Ge(least, hn::Set(d, 4.0f + polygon.slack))),
                                        hn::Ge(farthest, hn::LoadU(d, tiles.nearest.data() + base + h)));
-            const auto put = [&](auto value, std::vector<float>& array) HWY_ATTR {
-                hn::BlendedStore(value, whole, d, array.data() + base + h);
-            };
-            put(plane, tiles.plane_d);
-            put(hn::Set(d, static_cast<float>(polygon.dx)), tiles.plane_dx);
-            put(hn::Set(d, static_cast<float>(polygon.dy)), tiles.plane_dy);
-            put(floor, tiles.plane_floor);
-            put(farthest, tiles.farthest);
-            put(hn::Max(hn::Add(plane, hn::Add(hn::Set(d, 3.5f * tilt), error)), floor), tiles.nearest);
             const uint32_t replaced = static_cast<uint32_t>(bitsFromMask(d, whole));
             left &= ~replaced;
-            for (uint32_t set = replaced; set; set &= set - 1)
-                tiles.form[base + h + static_cast<size_t>(std::countr_zero(set))] = DepthTiles::Form::kPlane;
+            if (replaced) {
+                const auto put = [&](auto value, std::vector<float>& array) HWY_ATTR {
+                    hn::BlendedStore(value, whole, d, array.data() + base + h);
+                };
+                put(plane, tiles.plane_d);
+                put(hn::Set(d, static_cast<float>(polygon.dx)), tiles.plane_dx);
+                put(hn::Set(d, static_cast<float>(polygon.dy)), tiles.plane_dy);
+                put(floor, tiles.plane_floor);
+                put(farthest, tiles.farthest);
+                put(hn::Max(hn::Add(plane, across), floor), tiles.nearest);
+                for (uint32_t set = replaced; set; set &= set - 1)
+                    tiles.form[base + h + static_cast<size_t>(std::countr_zero(set))] = DepthTiles::Form::kPlane;
+            }
         }
-        slow |= left << h;
+        out.slow |= left << h;
     }
-    return slow;
 }
 
-void drawPolygon(DepthTiles& tiles, const RasterPolygon& polygon, const SeamPolygon& source) {
-    uint32_t record = DepthTiles::kNone;
-    PixelOffsets offsets;
+/// One tile's view of a polygon, from its chunk's.
+TilePolygon seenByTile(const RasterPolygon& polygon, const ChunkSetup& setup, const ChunkAnswer& chunk, int at,
+                       int32_t column, int32_t row) {
+    TilePolygon p;
+    for (int e = 0; e < polygon.edges; ++e) {
+        p.at_center[e] = chunk.edge[e][at];
+        p.cutting |= static_cast<uint32_t>(p.at_center[e] < 4.0f + polygon.slack) << e;
+    }
+    p.nearest = chunk.nearest[at];
+    p.depth = polygon.planar ? chunk.depth[at] - 0.5f * setup.tilt - chunk.error : polygon.farthest;
+    const bool within = 8 * column >= polygon.x0 && 8 * column + 7 <= polygon.x1 && 8 * row >= polygon.y0 &&
+                        8 * row + 7 <= polygon.y1;
+    if (!within) p.window = windowBits(polygon.x0, polygon.y0, polygon.x1, polygon.y1, 8 * column, 8 * row);
+    return p;
+}
+
+ChunkSetup makeChunkSetup(const RasterPolygon& polygon) {
     ChunkSetup setup;
     for (int e = 0; e < polygon.edges; ++e) {
         const double a = polygon.edge[e].a;
@@ -262,14 +269,27 @@ void drawPolygon(DepthTiles& tiles, const RasterPolygon& polygon, const SeamPoly
     }
     setup.step_d = polygon.planar ? static_cast<float>(8.0 * polygon.dx) : 0.0f;
     setup.tilt = polygon.planar ? static_cast<float>(std::abs(polygon.dx) + std::abs(polygon.dy)) : 0.0f;
+    return setup;
+}
+
+void drawPolygon(DepthTiles& tiles, const RasterPolygon& polygon, const SeamPolygon& source) {
+    uint32_t record = DepthTiles::kNone;
+    PixelOffsets offsets;
+    const ChunkSetup setup = makeChunkSetup(polygon);
+    const bool wide = (polygon.x1 >> 6) - (polygon.x0 >> 6) > 1;
+    ChunkAnswer answer;
     for (int32_t row = polygon.y0 >> 3; row <= polygon.y1 >> 3; ++row) {
-        int32_t first, last;
-        columnsOfRow(polygon, setup.inverse_a, row, first, last);
+        int32_t first = polygon.x0 >> 3, last = polygon.x1 >> 3;
+        if (wide) columnsOfRow(polygon, setup.inverse_a, row, first, last);
         for (int32_t chunk = first & ~7; chunk <= last; chunk += 8) {
-            uint32_t slow = drawChunk(tiles, polygon, setup, chunk, row);
-            slow &= 0xffu << std::max(0, first - chunk) & 0xffu >> std::max(0, chunk + 7 - last);
-            for (; slow; slow &= slow - 1)
-                drawTile(tiles, polygon, offsets, source, chunk + std::countr_zero(slow), row, record);
+            drawChunk(tiles, polygon, setup, chunk, row, answer);
+            uint32_t slow = answer.slow & 0xffu << std::max(0, first - chunk) & 0xffu >> std::max(0, chunk + 7 - last);
+            for (; slow; slow &= slow - 1) {
+                const int at = std::countr_zero(slow);
+                const uint32_t tile = static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(chunk + at);
+                drawTile(tiles, tile, polygon, seenByTile(polygon, setup, answer, at, chunk + at, row), offsets, source,
+                         record);
+            }
         }
     }
 }

@@ -85,16 +85,25 @@ void coverPair(DepthTiles& tiles, uint32_t tile, const SeamPolygon& a, int side_
 
 void pairSeamsKernel(DepthTiles& tiles, uint32_t tile) {
     constexpr int kMaxEntries = 24;  // work cap: of more, the last drawn are paired
-    if (tiles.paired[tile] == tiles.seams[tile]) return;
+    const uint32_t before = tiles.paired[tile];
+    if (before == tiles.seams[tile]) return;
     tiles.paired[tile] = tiles.seams[tile];
     const SeamPolygon* found[kMaxEntries];
-    int count = 0;
+    uint64_t masks[kMaxEntries];
+    int count = 0, fresh = 0;
+    bool old = false;
     for (uint32_t at = tiles.seams[tile]; at != DepthTiles::kNone && count < kMaxEntries; at = tiles.entries[at].next) {
-        const SeamPolygon& polygon = tiles.polygons[tiles.entries[at].polygon];
-        if (polygon.raster.complete) found[count++] = &polygon;
+        old |= at == before;
+        SeamPolygon& polygon = tiles.polygons[tiles.entries[at].polygon];
+        if (!polygon.raster.complete) continue;
+        setSideKeys(tiles, polygon);
+        masks[count] = tiles.entries[at].mask;
+        found[count++] = &polygon;
+        if (!old) fresh = count;
     }
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < fresh; ++i)  // pairs of old entries were looked at before
         for (int j = i + 1; j < count; ++j) {
+            if (!(masks[i] & masks[j])) continue;
             int side_i, side_j;
             if (findSharedSide(tiles, *found[i], *found[j], side_i, side_j))
                 coverPair(tiles, tile, *found[i], side_i, *found[j], side_j);

@@ -11,7 +11,7 @@ namespace {
 constexpr double kFarthestCorner = 0x1p32;  // [pixels]: beyond, a double's step shows in an edge function
 constexpr double kShortestEdge = 0x1p-10;   // [pixels]: shorter edges have no direction to rely on
 constexpr double kLeastHeight = 0.125;      // [pixels]: a triangle that covers a pixel has area / perimeter above it
-constexpr double kEvaluation = 0x1p-16;     // [pixels]: bound on the error of an edge function in float
+constexpr double kEvaluation = 0x1p-14;     // [pixels]: bound on the error of an edge function in float
 
 EdgeFunction makeEdge(double x0, double y0, double x1, double y1, double length) {
     EdgeFunction e;

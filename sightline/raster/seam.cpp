@@ -267,6 +267,8 @@ float roundFarther(double nearness) {
 }  // namespace
 
 void setSideKeys(const DepthTiles& tiles, SeamPolygon& polygon) {
+    if (polygon.keyed) return;
+    polygon.keyed = true;
     if (polygon.clipped != SeamPolygon::kWhole)
         for (int i = 0; i < polygon.corners; ++i)
             if (tiles.clipped[polygon.clipped].open[i]) polygon.open |= static_cast<uint8_t>(1u << i);
@@ -306,7 +308,9 @@ bool resolveSeam(DepthTiles& tiles, uint32_t tile, int bit) {
     for (uint32_t at = tiles.seams[tile]; at != DepthTiles::kNone; at = tiles.entries[at].next) {
         if (!(tiles.entries[at].mask & pixel)) continue;
         if (resolver.piece_count == kMaxTriangles) return before;
-        loadPiece(tiles, tiles.polygons[tiles.entries[at].polygon], resolver.pieces[resolver.piece_count++]);
+        SeamPolygon& polygon = tiles.polygons[tiles.entries[at].polygon];
+        setSideKeys(tiles, polygon);
+        loadPiece(tiles, polygon, resolver.pieces[resolver.piece_count++]);
     }
     const double x = 8.0 * (tile % tiles.stride) + (bit & 7) + 0.5;
     const double y = 8.0 * (tile / tiles.stride) + (bit >> 3) + 0.5;

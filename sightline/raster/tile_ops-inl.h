@@ -23,14 +23,19 @@ namespace hn = hwy::HWY_NAMESPACE;
 using F8 = hn::CappedTag<float, 8>;
 using F16 = hn::CappedTag<float, 16>;
 
-/// A mask's lanes as bits, lane 0 the lowest.
+/// A mask's lanes as bits, lane 0 the lowest; at most 16. Reads back just the bytes that were written, which a
+/// compiler can keep in a register.
 template <class D, class Mask>
 HWY_INLINE uint64_t bitsFromMask(D d, Mask mask) {
-    uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, mask, bytes);
-    uint64_t bits;
-    std::memcpy(&bits, bytes, sizeof bits);
-    return bits;
+    if constexpr (hn::MaxLanes(D()) > 8) {
+        uint16_t bits;
+        hn::StoreMaskBits(d, mask, reinterpret_cast<uint8_t*>(&bits));
+        return bits;
+    } else {
+        uint8_t bits;
+        hn::StoreMaskBits(d, mask, &bits);
+        return bits;
+    }
 }
 
 template <class D>

@@ -45,7 +45,9 @@ struct SeamPolygon {
     static constexpr uint32_t kWhole = ~0u;
 
     RasterPolygon raster;
-    uint64_t side_key[4] = {};  ///< per side a hash of its edge in world space, the same for both directions
+    uint64_t side_key[4] = {};  ///< per side a hash of its edge in world space, the same for both directions;
+                                ///< set by setSideKeys(), when first needed
+    bool keyed = false;
     uint32_t drawn = 0;         ///< index into DepthTiles::drawn
     uint32_t clipped = kWhole;  ///< index into DepthTiles::clipped, or kWhole
     uint8_t vertex[4] = {};     ///< cluster vertices, counter-clockwise; not used if clipped

@@ -195,8 +195,10 @@ void Query::Impl::offerOccluder(const detail::ObjectRecord& object) {
 }
 
 void Query::Impl::draw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box) {
-    constexpr int kLeastExtent = 2;  // [pixels]: what spans no more covers no pixel, alone or with its neighbours
-    if (!box.doubt && (box.rect.x1 - box.rect.x0 < kLeastExtent || box.rect.y1 - box.rect.y0 < kLeastExtent)) return;
+    // A polygon that spans less than half a tile costs more than the little that it hides is worth.
+    constexpr uint32_t kWorthwhile = 32;  // [pixels a polygon]
+    const uint32_t area = static_cast<uint32_t>((box.rect.x1 - box.rect.x0) * (box.rect.y1 - box.rect.y0));
+    if (!box.doubt && area < kWorthwhile * instance.occluder->clusters[cluster].polygon_count) return;
     if (stats.occluder_triangles >= view.occluder_triangles) {
         stats.budget_spent = true;
         return;
