@@ -32,7 +32,7 @@ struct View {
     uint32_t layers = ~0u;       ///< objects outside these layers are neither reported nor hide
     uint32_t stages = kAllStages;             ///< bits of Stage: which stages may cull
     uint32_t occluder_triangles = 1u << 20;   ///< work budget: triangles that may be rasterized  [limit]
-    uint32_t occlusion_width = 1280;          ///< a wider viewport gets an occlusion buffer of this width  [pixels]
+    uint32_t occlusion_width = 640;           ///< a wider viewport gets an occlusion buffer of this width  [pixels]
     bool time_stages = false;    ///< fill StageStats::nanoseconds (costs some time itself)
 };
 

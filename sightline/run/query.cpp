@@ -60,6 +60,7 @@ struct Query::Impl {
     std::vector<float> depth_image;
     QueryStats stats;
     uint32_t serial = 0;
+    uint32_t undecided = 0;  ///< nodes and objects in line; without any, nothing is left to hide
 
     const detail::SnapshotState& state() const { return snapshot.state(); }
     bool uses(Stage stage) const { return view.stages & stageBit(stage); }
@@ -82,6 +83,7 @@ struct Query::Impl {
 
 void Query::Impl::push(Pending entry) {
     entry.serial = serial++;
+    undecided += entry.kind != Pending::Kind::kCluster;
     pending.push_back(entry);
     std::push_heap(pending.begin(), pending.end());
 }
@@ -104,7 +106,7 @@ void Query::Impl::begin(const Snapshot& now, const View& new_view) {
     snapshot = now;
     view = new_view;
     stats = {};
-    serial = 0;
+    serial = undecided = 0;
     pending.clear();
     instances.clear();
     visible.clear();
@@ -220,7 +222,7 @@ void Query::Impl::visit(const Pending& entry) {
     if (entry.kind == Pending::Kind::kNode) return expand(entry.index, entry.planes);
     const uint32_t item = state().itemOf(state().bvh.order[entry.index]);
     report(item);
-    if (occlusion) offerOccluder(state().object(item));
+    if (occlusion && undecided > 0) offerOccluder(state().object(item));
 }
 
 void Query::Impl::walk() {
@@ -231,10 +233,11 @@ void Query::Impl::walk() {
     of(Stage::kFrustum).doubt += visible.size();
     if (state().bvh.nodes.empty()) return;
     expand(0, static_cast<uint8_t>((1u << frustum.count) - 1));
-    while (!pending.empty()) {
+    while (undecided > 0) {
         std::pop_heap(pending.begin(), pending.end());
         const Pending entry = pending.back();
         pending.pop_back();
+        undecided -= entry.kind != Pending::Kind::kCluster;
         visit(entry);
     }
 }

@@ -65,8 +65,8 @@ public:
     /// @param reasons  [size: Snapshot::objectCount()]
     void reasons(std::span<uint8_t> reasons) const;
 
-    /// The occlusion buffer after the last answer, for pictures: nearness per buffer pixel, row 0 at
-    /// the bottom, 0 where nothing covers the whole pixel.
+    /// The occlusion buffer after the last answer, for pictures: nearness per buffer pixel, row 0 at the bottom, 0
+    /// where nothing is known to cover the whole pixel. Occluders that came after the last object are not in it.
     struct DepthImage { uint32_t width = 0, height = 0; std::span<const float> nearness; };
     DepthImage depthImage();
 
