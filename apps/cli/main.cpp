@@ -43,7 +43,8 @@ int runTool(int count, char** words) {
         return kWrongArguments;
     }
     const std::string first = words[1];
-    if (first.substr(0, 1) != "-" && !tool.get_subcommand_no_throw(first))
+    const auto named = tool.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == first; });
+    if (first.substr(0, 1) != "-" && named.empty())
         return report({Error::Kind::kUsage, "there is no verb \"" + first + "\" (see sightline --help)"});
     try {
         tool.parse(count, words);

@@ -194,7 +194,7 @@ std::string player(const CullRun& run, const Json& first, size_t pictures, doubl
     }
     std::string ticks;
     for (const double at : {0.0, 0.25, 0.5, 0.75, 1.0})  // the colours stand for square roots
-        ticks += fmt::format("<span>{:.3g}{}</span>", at * at * scale, at < 1 ? "" : " and more");
+        ticks += fmt::format("<span>{:.2g}{}</span>", at * at * scale, at < 1 ? "" : " and more");
     return fmt::format(
         R"html(<section class="card" aria-labelledby="h-frames"><h2 id="h-frames">The flight</h2>
 <div class="player"><button type="button" id="play">Play</button>
@@ -261,8 +261,9 @@ std::string charts(const CullRun& run) {
     }
     return fmt::format(
         R"html(<div class="pair"><section class="card" aria-labelledby="h-kept"><h2 id="h-kept">Objects kept</h2>{}<div class="legend">{}</div></section>
-<section class="card" aria-labelledby="h-time"><h2 id="h-time">Query, µs</h2>{}<div class="legend"><span><i class="one"></i>one thread, median of {} runs</span></div></section></div>)html",
-        chartSvg(kept), legend, chartSvg(time), run.repeat);
+<section class="card" aria-labelledby="h-time"><h2 id="h-time">Query, µs</h2>{}<div class="legend"><span><i class="one"></i>one thread, {}</span></div></section></div>)html",
+        chartSvg(kept), legend, chartSvg(time),
+        run.repeat == 1 ? std::string("one run") : fmt::format("median of {} runs", run.repeat));
 }
 
 std::string listed(const std::vector<size_t>& frames) { return fmt::format("{}", fmt::join(frames, ", ")); }
