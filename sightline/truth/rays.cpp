@@ -20,6 +20,11 @@ struct LookContext {
     RaySighting* sighting;
 };
 
+/// Objects are instances or, where they alone use their mesh, geometries of the world scene.
+uint32_t objectOf(unsigned instance, unsigned geometry) {
+    return instance != RTC_INVALID_GEOMETRY_ID ? instance : geometry;
+}
+
 /// Refuses back faces, and notes and refuses what hides nothing. Facing is judged in object space, where a mirrored
 /// instance needs no exception.
 void passThrough(const RTCFilterFunctionNArguments* arguments) {
@@ -39,18 +44,16 @@ void passThrough(const RTCFilterFunctionNArguments* arguments) {
             arguments->valid[i] = 0;
         } else if (facts->hides[triangle] == 0) {
             arguments->valid[i] = 0;
-            context->sighting->passed.push_back({RTCHitN_instID(arguments->hit, arguments->N, i, 0),
-                                                 RTCRayN_tfar(arguments->ray, arguments->N, i)});
+            const uint32_t object = objectOf(RTCHitN_instID(arguments->hit, arguments->N, i, 0),
+                                             RTCHitN_geomID(arguments->hit, arguments->N, i));
+            context->sighting->passed.push_back({object, RTCRayN_tfar(arguments->ray, arguments->N, i)});
         }
     }
 }
 
-/// A scene of one mesh, carried through an affine transform in double.
-/// @param turned  exchange two corners of each triangle
-RTCScene makeMesh(RTCDevice device, const Mesh& mesh, const MeshFacts& facts, const glm::dmat4& transform,
-                  bool turned) {
-    RTCScene scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+/// The triangles of one mesh, carried through an affine transform in double; mirrored ones are turned around.
+RTCGeometry makeGeometry(RTCDevice device, const Mesh& mesh, const MeshFacts& facts, const glm::dmat4& transform) {
+    const bool turned = glm::determinant(glm::dmat3(transform)) < 0;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), mesh.positions.size()));
@@ -66,10 +69,7 @@ RTCScene makeMesh(RTCDevice device, const Mesh& mesh, const MeshFacts& facts, co
     rtcSetGeometryUserData(geometry, const_cast<MeshFacts*>(&facts));
     if (!facts.all_plain) rtcSetGeometryIntersectFilterFunction(geometry, passThrough);
     rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene);
-    return scene;
+    return geometry;
 }
 
 glm::dmat4 translation(const glm::dvec3& by) {
@@ -91,30 +91,38 @@ bool invertible(const glm::dmat4& transform) {
 }  // namespace
 
 struct RayScene::Impl {
-    /// The object's own scene if it needs one, and the transform of its instance, relative to the centre.
-    RTCScene sceneOf(const SceneFacts& facts, uint32_t index, glm::dmat4& transform) {
-        const SceneObject& object = facts.scene().objects[index];
-        const Mesh& mesh = facts.mesh(index);
-        const MeshFacts& mesh_facts = facts.facts(index);
-        transform = object.transform;
-        transform[3] -= glm::dvec4(center, 0.0);
-        if (!invertible(transform)) {
-            const bool turned = glm::determinant(glm::dmat3(transform)) < 0;
-            meshes.push_back(makeMesh(device, mesh, mesh_facts, transform, turned));
-            transform = glm::dmat4(1.0);
-            return meshes.back();
-        }
-        // A mesh is moved to its own centre, so that float keeps its detail wherever it lies.
-        const glm::dvec3 mesh_center = mesh_facts.bounds.center();
-        transform = transform * translation(mesh_center);
-        RTCScene& shared = meshes[object.mesh];
-        if (!shared) shared = makeMesh(device, mesh, mesh_facts, translation(-mesh_center), false);
-        return shared;
+    /// A mesh that several objects share, moved to its own centre so that float keeps its detail wherever it lies.
+    RTCScene sharedScene(const SceneFacts& facts, uint32_t mesh) {
+        RTCScene& scene = meshes[mesh];
+        if (scene) return scene;
+        scene = rtcNewScene(device);
+        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+        const MeshFacts& mesh_facts = facts.meshFacts(mesh);
+        RTCGeometry geometry = makeGeometry(device, facts.scene().meshes[mesh], mesh_facts,
+                                            translation(-mesh_facts.bounds.center()));
+        rtcAttachGeometry(scene, geometry);
+        rtcReleaseGeometry(geometry);
+        rtcCommitScene(scene);
+        return scene;
+    }
+
+    /// @param transform  to the world relative to its centre
+    RTCGeometry makeInstance(const SceneFacts& facts, uint32_t mesh, const glm::dmat4& transform) {
+        const glm::dmat4 from_center = transform * translation(facts.meshFacts(mesh).bounds.center());
+        float columns[12];
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 3; ++row)
+                columns[3 * column + row] = static_cast<float>(from_center[column][row]);
+        RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(instance, sharedScene(facts, mesh));
+        rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+        rtcCommitGeometry(instance);
+        return instance;
     }
 
     RTCDevice device = nullptr;
     RTCScene world = nullptr;
-    std::vector<RTCScene> meshes;  ///< by mesh, then those of single objects
+    std::vector<RTCScene> meshes;
     glm::dvec3 center{0.0};
     double rounding = 0;
 };
@@ -127,20 +135,19 @@ RayScene::RayScene(const SceneFacts& facts) : impl_(std::make_unique<Impl>()) {
     impl_->rounding = 4 * std::numeric_limits<float>::epsilon() * facts.radius();
     const Scene& scene = facts.scene();
     impl_->meshes.assign(scene.meshes.size(), nullptr);
+    std::vector<uint32_t> users(scene.meshes.size(), 0);
+    for (const SceneObject& object : scene.objects) ++users[object.mesh];
     for (uint32_t i = 0; i < scene.objects.size(); ++i) {
         if (facts.box(i).empty()) continue;
-        glm::dmat4 transform;
-        RTCScene mesh = impl_->sceneOf(facts, i, transform);
-        float columns[12];
-        for (int column = 0; column < 4; ++column)
-            for (int row = 0; row < 3; ++row)
-                columns[3 * column + row] = static_cast<float>(transform[column][row]);
-        RTCGeometry instance = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_INSTANCE);
-        rtcSetGeometryInstancedScene(instance, mesh);
-        rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
-        rtcCommitGeometry(instance);
-        rtcAttachGeometryByID(impl_->world, instance, i);
-        rtcReleaseGeometry(instance);
+        const uint32_t mesh = scene.objects[i].mesh;
+        glm::dmat4 transform = scene.objects[i].transform;
+        transform[3] -= glm::dvec4(impl_->center, 0.0);
+        // Objects that span the world, each with its own mesh, would make every ray enter every instance.
+        RTCGeometry geometry = users[mesh] > 1 && invertible(transform)
+                                   ? impl_->makeInstance(facts, mesh, transform)
+                                   : makeGeometry(impl_->device, scene.meshes[mesh], facts.meshFacts(mesh), transform);
+        rtcAttachGeometryByID(impl_->world, geometry, i);
+        rtcReleaseGeometry(geometry);
     }
     rtcCommitScene(impl_->world);
 }
@@ -178,7 +185,7 @@ void RayScene::look(const SightRay& ray, const glm::dvec3& eye, RaySighting& sig
     hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(impl_->world, &context.embree, &hit);
     const bool met = hit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-    sighting.object = met ? hit.hit.instID[0] : RaySighting::kNone;
+    sighting.object = met ? objectOf(hit.hit.instID[0], hit.hit.geomID) : RaySighting::kNone;
     sighting.t = met ? ray.t_near + hit.ray.tfar : ray.t_far;
     // The filter hears of surfaces in any order: those behind the end are not seen.
     std::erase_if(sighting.passed, [&](const RaySighting::Passed& passed) { return passed.t > hit.ray.tfar; });

@@ -23,7 +23,8 @@ struct RaySighting {
     std::vector<Passed> passed;  ///< met before it: seen, but hiding nothing; in no order, may repeat
 };
 
-/// One Embree scene per mesh, one instance per object, relative to the scene's centre. Thread-safe once made.
+/// One Embree scene per shared mesh and one instance per object that shares it, relative to the scene's centre.
+/// Thread-safe once made.
 class RayScene {
 public:
     explicit RayScene(const SceneFacts& facts);

@@ -20,6 +20,8 @@ namespace {
 
 /// Sightings of one object that may fail to be confirmed before it is left alone.
 constexpr uint8_t kMostTries = 100;
+/// The same for points that were aimed at: objects that touch a wall from behind have many that nearly show.
+constexpr uint8_t kMostAimedTries = 32;
 
 /// Everything that is seen of one frame.
 class Trial {
@@ -50,7 +52,7 @@ public:
 
     /// A ray got as far as a point of the object, or nearly.
     void reached(uint32_t object, const Target& target) {
-        if (!open(object) || aimed_tries_[object] >= kMostTries) return;
+        if (!open(object) || aimed_tries_[object] >= kMostAimedTries) return;
         glm::dvec2 place;
         if (exact_.seesPoint(object, target.triangle, target.point, place))
             convict(object, place, "rays");

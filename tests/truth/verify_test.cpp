@@ -102,10 +102,13 @@ TEST(Witness, SeesThroughBackFacesOnly) {
                     transform *= glm::dmat4(std::cos(roll), std::sin(roll), 0, 0, -std::sin(roll), std::cos(roll), 0, 0,
                                             0, 0, 1, 0, 0, 0, 0, 1);
                     if (mirror) transform[0] = -transform[0];
-                    addObject(scene, addSquare(scene, 2, material), transform);
+                    const uint32_t wall = addSquare(scene, 2, material);
+                    addObject(scene, wall, transform);
                     addObject(scene, addBox(scene, glm::vec3(0.3f)), moved({0, 0, -8}));
+                    // A mesh that two objects share is instanced.
+                    addObject(scene, spin % 2 ? wall : addSquare(scene, 2), moved({0, 0, 9}));
                     const bool through = turned && material == 0;
-                    EXPECT_EQ(accused(scene, usualView(), {1, 1}), through ? Objects{1} : Objects{0})
+                    EXPECT_EQ(accused(scene, usualView(), {1, 1, 0}), through ? Objects{1} : Objects{0})
                         << "mirror " << mirror << " spin " << spin << " turned " << turned << " material " << material;
                 }
 }
