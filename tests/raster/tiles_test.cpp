@@ -1,9 +1,8 @@
 // The law of coverage: no ray through a covered pixel gets past the depth that it claims.
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
-
 #include "tests/raster/tiles_fixture.h"
+#include "tests/support_targets.h"
 
 namespace sightline::test {
 namespace {
@@ -170,10 +169,7 @@ TEST(Tiles, AreTheSameFarFromTheOrigin) {
 
 TEST(Tiles, AreTheSameOnEveryInstructionSet) {
     std::vector<float> expected;
-    int targets = 0;
-    const int64_t supported = hwy::SupportedTargets();
-    for (int64_t left = supported; left; left &= left - 1) {
-        hwy::SetSupportedTargetsForTest(left & -left);
+    const int targets = forEachTarget([&](const std::string& target) {
         Random random(15);
         Drawing drawing(smallView(200, 120));
         drawing.draw({makeSheet(random, 40, 30, {-3, -3, -2}, {2, 3, -9}, 0.1f),
@@ -183,11 +179,8 @@ TEST(Tiles, AreTheSameOnEveryInstructionSet) {
         for (uint32_t y = 0; y < drawing.tiles.height; ++y)
             for (uint32_t x = 0; x < drawing.tiles.width; ++x) depths.push_back(drawing.depth(x, y));
         if (expected.empty()) expected = depths;
-        EXPECT_TRUE(depths == expected) << "target " << hwy::TargetName(left & -left);
-        ++targets;
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    RecordProperty("targets", targets);
+        EXPECT_TRUE(depths == expected) << target;
+    });
     EXPECT_GE(targets, 2);
 }
 

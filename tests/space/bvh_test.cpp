@@ -1,0 +1,96 @@
+// The laws of the hierarchy: parents hold their children, each item is there once, refits keep both.
+// SPDX-License-Identifier: MIT
+#include "sightline/space/bvh.h"
+
+#include <gtest/gtest.h>
+
+#include "sightline/base/random.h"
+
+namespace sightline {
+namespace {
+
+std::vector<Box3d> randomBoxes(uint64_t seed, size_t count, double world) {
+    Random random(seed);
+    std::vector<Box3d> boxes;
+    for (size_t i = 0; i < count; ++i) {
+        const glm::dvec3 p(random.uniform(-world, world), random.uniform(-world, world), random.uniform(-world, world));
+        const double size = world * random.uniform(0.0, random.below(20) ? 0.01 : 1.0);
+        boxes.push_back({p, p + glm::dvec3(size, size * random.uniform(), size * random.uniform())});
+    }
+    return boxes;
+}
+
+/// Whether every slot's box holds all boxes below it, and every place is below exactly the slots that say so.
+void expectSound(const Bvh& bvh, const std::vector<Box3d>& boxes) {
+    std::vector<int> met(boxes.size(), 0);
+    for (uint32_t n = 0; n < bvh.nodes.size(); ++n) {
+        const BvhNode& node = bvh.nodes[n];
+        for (uint32_t slot = 0; slot < 8; ++slot) {
+            for (uint32_t place = node.first[slot]; place < node.first[slot] + node.count[slot]; ++place) {
+                const Box3d& box = boxes[bvh.order[place]];
+                for (int axis = 0; axis < 3; ++axis) {
+                    ASSERT_LE(bvh.origin[axis] + node.min[axis][slot], box.min[axis]);
+                    ASSERT_GE(bvh.origin[axis] + node.max[axis][slot], box.max[axis]);
+                }
+            }
+            if (node.count[slot] == 0) continue;
+            if (node.child[slot] & BvhNode::kLeaf) {
+                ASSERT_EQ(node.count[slot], 1u);
+                const uint32_t item = bvh.order[node.child[slot] & ~BvhNode::kLeaf];
+                ++met[item];
+                ASSERT_EQ(bvh.slot[item], n * 8 + slot);
+            } else {
+                ASSERT_EQ(bvh.parent[node.child[slot]], n * 8 + slot);
+            }
+        }
+    }
+    for (int times : met) ASSERT_EQ(times, 1);
+}
+
+TEST(Bvh, HoldsEveryItemOnceInsideAllItsParents) {
+    for (size_t count : {1u, 2u, 7u, 8u, 9u, 63u, 64u, 65u, 1000u, 20000u})
+        expectSound(buildBvh(randomBoxes(count, count, 100.0)), randomBoxes(count, count, 100.0));
+}
+
+TEST(Bvh, HoldsItemsFarFromTheOrigin) {
+    std::vector<Box3d> boxes = randomBoxes(3, 500, 10.0);
+    for (Box3d& box : boxes) {
+        box.min += glm::dvec3(1e9, -1e9, 1e6);
+        box.max += glm::dvec3(1e9, -1e9, 1e6);
+    }
+    expectSound(buildBvh(boxes), boxes);
+}
+
+TEST(Bvh, BuildsOverBoxesInOnePlace) {
+    const std::vector<Box3d> boxes(3000, Box3d{glm::dvec3(1.0), glm::dvec3(2.0)});
+    expectSound(buildBvh(boxes), boxes);
+}
+
+TEST(Bvh, IsEmptyWithoutItems) { EXPECT_TRUE(buildBvh({}).nodes.empty()); }
+
+TEST(Bvh, StaysSoundUnderRefits) {
+    std::vector<Box3d> boxes = randomBoxes(5, 700, 50.0);
+    Bvh bvh = buildBvh(boxes);
+    Random random(6);
+    for (int i = 0; i < 5000; ++i) {
+        const uint32_t item = static_cast<uint32_t>(random.below(boxes.size()));
+        const glm::dvec3 by(random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9));
+        boxes[item].min += by;
+        boxes[item].max += by;
+        refit(bvh, item, boxes[item]);
+    }
+    expectSound(bvh, boxes);
+    EXPECT_GT(surfaceCost(bvh), bvh.built_cost);
+}
+
+TEST(Bvh, RoundsOutwardEvenBetweenFloats) {
+    const Box3d box{glm::dvec3(0.1), glm::dvec3(0.1 + 1e-12)};
+    const Box3f out = roundOutward(box, glm::dvec3(0.0));
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_LE(double(out.min[axis]), box.min[axis]);
+        EXPECT_GE(double(out.max[axis]), box.max[axis]);
+    }
+}
+
+}  // namespace
+}  // namespace sightline
