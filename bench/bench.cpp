@@ -2,11 +2,39 @@
 // SPDX-License-Identifier: MIT
 #include "bench/bench.h"
 
-namespace sightline::bench {
+#include <cstdio>
 
-std::vector<std::string> names() { return {}; }
+#include "bench/cases.h"
+#include "sightline/report/output_file.h"
+
+namespace sightline::bench {
+namespace {
+
+struct Case {
+    const char* name;
+    Table (*measure)(const Options&);
+};
+
+constexpr Case kCases[] = {{"frustum", benchFrustum}, {"occlusion", benchOcclusion}};
+
+}  // namespace
+
+std::vector<std::string> names() {
+    std::vector<std::string> names;
+    for (const Case& c : kCases) names.push_back(c.name);
+    return names;
+}
 
 Status run(const Options& options) {
+    for (const Case& c : kCases) {
+        if (options.name != c.name) continue;
+        const Table table = c.measure(options);
+        const bool json_to_output = options.json == "-";
+        std::fputs(toText(table).c_str(), json_to_output ? stderr : stdout);
+        if (json_to_output) std::fputs(toJson(table).c_str(), stdout);
+        else if (!options.json.empty()) return writeFileAside(options.json, toJson(table));
+        return success();
+    }
     return Error{Error::Kind::kUsage, "bench: there is no case \"" + options.name + "\""};
 }
 

@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "sightline/base/result.h"
+#include "sightline/scene/scene.h"
 
 namespace sightline::bench {
 
 struct Options {
     std::string name;   ///< one of names()
     std::string json;   ///< file for the rows as `sightline.bench/1`; `-`: standard output; empty: none
-    std::string scene;  ///< empty: the case's own scenes
+    const Scene* scene = nullptr;  ///< null: the case's own scenes
     int repeat = 0;     ///< measurements of each value, of which the median counts; 0: the case's own number
 };
 

@@ -18,7 +18,9 @@ EdgeFunction makeEdge(double x0, double y0, double x1, double y1, double length)
     e.a = (y0 - y1) / length;
     e.b = (x1 - x0) / length;
     // Anchored at the end nearer to the buffer, so that a far corner's magnitude does not enter.
-    const bool first = std::abs(x0) + std::abs(y0) <= std::abs(x1) + std::abs(y1);
+    // Chosen without regard to the direction: the same edge the other way round has the same function, negated.
+    const double far0 = std::abs(x0) + std::abs(y0), far1 = std::abs(x1) + std::abs(y1);
+    const bool first = far0 != far1 ? far0 < far1 : x0 != x1 ? x0 < x1 : y0 < y1;
     e.c = -(e.a * (first ? x0 : x1) + e.b * (first ? y0 : y1));
     return e;
 }

@@ -13,8 +13,8 @@
 #include <cstring>
 #include <limits>
 
-#include "sightline/raster/polygon.h"
 #include "sightline/raster/tiles.h"
+#include "sightline/raster/union.h"
 
 namespace sightline {
 namespace {
@@ -240,6 +240,30 @@ struct Resolver {
         return std::max<double>(polygon.farthest, d - 0.5 * tilt - polygon.depth_error - std::abs(d) * 0x1p-40);
     }
 
+    /// The depth at which the pieces' union leaves nothing of the pixel; -infinity if it does leave something. Takes
+    /// in what no shared side joins: T-junctions, and surfaces that overlap.
+    double resolveByUnion(const DepthTiles& tiles, double x, double y) const {
+        constexpr int kMaxPieces = 24;  // work cap
+        UnionPiece found[kMaxPieces];
+        const SeamPolygon* source[kMaxPieces];
+        int count = 0;
+        for (int p = 0; p < piece_count && count < kMaxPieces; ++p) {
+            const SeamPolygon& polygon = *pieces[p].polygon;
+            if (!polygon.raster.complete) continue;
+            source[count] = &polygon;
+            found[count++] = {&polygon.raster, 0, farthestIn(pieces[p], x, y)};
+        }
+        for (int i = 0; i < count; ++i)
+            for (int j = i + 1; j < count; ++j) {
+                int side_i, side_j;
+                if (!findSharedSide(tiles, *source[i], *source[j], side_i, side_j)) continue;
+                found[i].shared |= 1u << side_i;
+                found[j].shared |= 1u << side_j;
+            }
+        std::sort(found, found + count, [](const UnionPiece& a, const UnionPiece& b) { return a.farthest > b.farthest; });
+        return subtractFromPixel(x, y, found, count);
+    }
+
     /// The best depth of any group that covers the pixel; -infinity if none does.
     double resolve(const DepthTiles& tiles, double x, double y) {
         collectSides(x, y);
@@ -315,7 +339,7 @@ bool resolveSeam(DepthTiles& tiles, uint32_t tile, int bit) {
     const double x = 8.0 * (tile % tiles.stride) + (bit & 7) + 0.5;
     const double y = 8.0 * (tile / tiles.stride) + (bit >> 3) + 0.5;
     if (resolver.piece_count < 2) return before;
-    const double nearness = resolver.resolve(tiles, x, y);
+    const double nearness = std::max(resolver.resolve(tiles, x, y), resolver.resolveByUnion(tiles, x, y));
     if (!(nearness > -std::numeric_limits<double>::infinity())) return before;
     writeOut(tiles, tile);
     float* depth = tiles.depth.data() + 64 * size_t{tile};

@@ -38,6 +38,12 @@ struct Pending {
     }
 };
 
+/// A node on the way down, and the frustum planes that it is not inside of.
+struct Visit {
+    uint32_t node = 0;
+    uint8_t planes = 0;
+};
+
 /// Objects that were culled together.
 struct CulledRange {
     uint32_t first = 0, count = 0;
@@ -54,6 +60,7 @@ struct Query::Impl {
     Screen screen;
     DepthTiles tiles;
     std::vector<Pending> pending;
+    std::vector<Visit> visits;
     std::vector<OccluderInstance> instances;
     std::vector<Visible> visible;
     std::vector<CulledRange> culled;
@@ -69,6 +76,8 @@ struct Query::Impl {
     void begin(const Snapshot& now, const View& new_view);
     void keepEverything();
     void walk();
+    void walkFrustumOnly(uint32_t node, uint8_t planes);
+    void reportRange(uint32_t first, uint32_t count);
     void expand(uint32_t node, uint8_t planes);
     void meet(const BvhNode& node, int slot, uint8_t planes, const ScreenAnswer& on_screen);
     void visit(const Pending& entry);
@@ -225,6 +234,31 @@ void Query::Impl::visit(const Pending& entry) {
     if (occlusion && undecided > 0) offerOccluder(state().object(item));
 }
 
+void Query::Impl::reportRange(uint32_t first, uint32_t count) {
+    for (uint32_t place = first; place < first + count; ++place) report(state().itemOf(state().bvh.order[place]));
+}
+
+/// Without the occlusion stage the order does not matter: depth first, and whole subtrees that are inside at once.
+void Query::Impl::walkFrustumOnly(uint32_t root, uint8_t all_planes) {
+    std::vector<Visit>& stack = visits;
+    stack.assign(1, {root, all_planes});
+    while (!stack.empty()) {
+        const Visit visit = stack.back();
+        stack.pop_back();
+        ++stats.nodes_visited;
+        const BvhNode& node = state().bvh.nodes[visit.node];
+        const EyeBoxes boxes = eyeBoxes(node, state().bvh.origin - frustum.eye);
+        const FrustumAnswer answer = testFrustum(frustum, boxes, visit.planes);
+        for (int slot = 0; slot < 8; ++slot) {
+            if (node.count[slot] == 0) continue;
+            if (answer.outside >> slot & 1) cull(node.first[slot], node.count[slot], Stage::kFrustum);
+            else if (answer.planes[slot] == 0 || (node.child[slot] & BvhNode::kLeaf))
+                reportRange(node.first[slot], node.count[slot]);
+            else stack.push_back({node.child[slot], answer.planes[slot]});
+        }
+    }
+}
+
 void Query::Impl::walk() {
     frustum = makeFrustum(view);
     screen = makeScreen(view, std::max(view.occlusion_width, 1u));
@@ -232,7 +266,9 @@ void Query::Impl::walk() {
     for (uint32_t item : state().unbounded) report(item);
     of(Stage::kFrustum).doubt += visible.size();
     if (state().bvh.nodes.empty()) return;
-    expand(0, static_cast<uint8_t>((1u << frustum.count) - 1));
+    const uint8_t planes = static_cast<uint8_t>(uses(Stage::kFrustum) ? (1u << frustum.count) - 1 : 0);
+    if (!uses(Stage::kOcclusion)) return walkFrustumOnly(0, planes);
+    expand(0, planes);
     while (undecided > 0) {
         std::pop_heap(pending.begin(), pending.end());
         const Pending entry = pending.back();

@@ -1,0 +1,16 @@
+// The benchmark cases, one function each.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bench/bench.h"
+#include "bench/table.h"
+
+namespace sightline::bench {
+
+/// A million boxes, 7 % of them in view: corner by corner, p-vertex, flat SIMD, and the hierarchy.
+Table benchFrustum(const Options& options);
+
+/// The whole query while a city grows, beside flat frustum culling; how tight its answer is.
+Table benchOcclusion(const Options& options);
+
+}  // namespace sightline::bench

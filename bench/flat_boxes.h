@@ -1,0 +1,51 @@
+// A world's boxes as flat arrays: what a renderer without a hierarchy culls.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "sightline/cull/frustum.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline::bench {
+
+struct FlatBoxes {
+    std::vector<float> bounds[6];  ///< min x, y, z, max x, y, z, each padded to 16
+    std::vector<uint32_t> kept;    ///< room for an answer
+    BoxArrays arrays;
+
+    explicit FlatBoxes(const std::vector<Box3d>& boxes) {
+        const size_t padded = (boxes.size() + 15) / 16 * 16;
+        Box3d world;
+        for (const Box3d& box : boxes) world.grow(box);
+        arrays.origin = boxes.empty() ? glm::dvec3(0.0) : world.center();
+        arrays.count = boxes.size();
+        for (auto& bound : bounds) bound.assign(padded, 0.0f);
+        kept.resize(padded);
+        for (size_t i = 0; i < boxes.size(); ++i) {
+            const Box3f box = roundOutward(boxes[i], arrays.origin);
+            for (int axis = 0; axis < 3; ++axis) {
+                bounds[axis][i] = box.min[axis];
+                bounds[3 + axis][i] = box.max[axis];
+                arrays.reach = std::max(arrays.reach, std::max(std::abs(box.min[axis]), std::abs(box.max[axis])));
+            }
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            arrays.min[axis] = bounds[axis].data();
+            arrays.max[axis] = bounds[3 + axis].data();
+        }
+    }
+    FlatBoxes(const FlatBoxes&) = delete;  // the arrays point into this object
+};
+
+inline std::vector<Box3d> objectBoxes(const Scene& scene) {
+    std::vector<Box3d> boxes;
+    boxes.reserve(scene.objects.size());
+    for (const SceneObject& object : scene.objects)
+        boxes.push_back(transformBox(scene.meshes[object.mesh].bounds, object.transform));
+    return boxes;
+}
+
+}  // namespace sightline::bench

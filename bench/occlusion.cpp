@@ -1,0 +1,107 @@
+// The whole query while a city grows, beside flat frustum culling; how tight its answer is.
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "bench/cases.h"
+#include "bench/exact_boxes.h"
+#include "bench/flat_boxes.h"
+#include "bench/stopwatch.h"
+#include "sightline/load/load_world.h"
+#include "sightline/load/seeded_cameras.h"
+#include "sightline/run/query.h"
+#include "sightline/scene/city.h"
+
+namespace sightline::bench {
+namespace {
+
+constexpr uint64_t kSeed = 1;
+constexpr uint32_t kWidth = 1280, kHeight = 720;
+
+/// Means over a path, of medians over the repeats.
+struct PathCost {
+    double query = 0, flat = 0;                          ///< [microseconds]
+    double query_triangles = 0, flat_triangles = 0;      ///< submitted
+    double visible = 0;
+};
+
+PathCost measurePath(const Scene& scene, const CameraPath& path, int repeat) {
+    LoadedWorld loaded = loadWorld(scene);
+    const Snapshot now = loaded.world.commit();
+    FlatBoxes flat(objectBoxes(scene));
+    Query query;
+    PathCost sum;
+    for (const CameraFrame& frame : path.frames) {
+        const View view = makeView(frame, kWidth, kHeight);
+        VisibleSet set;
+        size_t kept = 0;
+        const std::vector<double> times = timeInterleaved(
+            {[&] { set = query.visible(now, view); },
+             [&] { kept = cullFrustum(makeFrustum(view), flat.arrays, flat.kept); }}, repeat);
+        sum.query += times[0];
+        sum.flat += times[1];
+        sum.visible += static_cast<double>(set.objects.size());
+        for (const Visible& v : set.objects)
+            sum.query_triangles += static_cast<double>(scene.meshes[scene.objects[v.id.index - 1].mesh].triangles());
+        for (size_t i = 0; i < kept; ++i)
+            sum.flat_triangles += static_cast<double>(scene.meshes[scene.objects[flat.kept[i]].mesh].triangles());
+    }
+    const double n = static_cast<double>(path.frames.size());
+    for (double* value : {&sum.query, &sum.flat, &sum.query_triangles, &sum.flat_triangles, &sum.visible}) *value /= n;
+    return sum;
+}
+
+/// Objects kept, beside what the same box test keeps on an exact z-buffer and what a 4x4 id-buffer shows.
+void measureTightness(const Scene& scene, const CameraPath& path, const std::string& where, Table& table) {
+    LoadedWorld loaded = loadWorld(scene);
+    const Snapshot now = loaded.world.commit();
+    const ExactBoxes exact(scene);
+    Query query;
+    std::vector<uint8_t> reasons(scene.objects.size());
+    double kept = 0, exactly_kept = 0, seen = 0;
+    for (const CameraFrame& frame : path.frames) {
+        const View view = makeView(frame, kWidth, kHeight);
+        kept += static_cast<double>(query.visible(now, view).objects.size());
+        query.reasons(reasons);
+        const ExactBoxes::Answer answer = exact.test(view, 4);
+        for (size_t i = 0; i < reasons.size(); ++i) {
+            exactly_kept += answer.kept[i] && reasons[i] != 1 + static_cast<int>(Stage::kFrustum);
+            seen += answer.seen[i];
+        }
+    }
+    const double n = static_cast<double>(path.frames.size());
+    table.rows.push_back({where, "objects kept", kept / n, "objects", "same boxes, exact z-buffer", exactly_kept / n});
+    table.rows.push_back({where, "objects kept (over-estimate)", kept / n, "objects", "seen by a 4x4 id-buffer", seen / n});
+}
+
+}  // namespace
+
+Table benchOcclusion(const Options& options) {
+    Table table{"occlusion", {}};
+    const int repeat = options.repeat ? options.repeat : 15;
+    if (options.scene) {
+        const CameraPath path = seededCameras(*options.scene, 16, kSeed);
+        const PathCost cost = measurePath(*options.scene, path, repeat);
+        const std::string& where = options.scene->name;
+        table.rows.push_back({where, "whole query", cost.query, "us", "flat frustum, SIMD", cost.flat});
+        table.rows.push_back({where, "triangles submitted", cost.query_triangles, "triangles", "after flat frustum",
+                              cost.flat_triangles});
+        measureTightness(*options.scene, path, where, table);
+        return table;
+    }
+    const CameraPath path = cityStreetPath(kSeed, 16);
+    double smallest = 0;
+    for (uint32_t objects : {1000u, 10000u, 100000u, 1000000u}) {
+        const Scene scene = makeCity(kSeed, objects);
+        const PathCost cost = measurePath(scene, path, repeat);
+        if (objects == 1000) smallest = cost.query;
+        const std::string where = fmt::format("city:{}:{}", kSeed, objects);
+        table.rows.push_back({where, "whole query", cost.query, "us", "flat frustum, SIMD", cost.flat});
+        table.rows.push_back({where, "whole query", cost.query, "us", "city of 1000 objects", smallest});
+        table.rows.push_back({where, "triangles submitted", cost.query_triangles, "triangles", "after flat frustum",
+                              cost.flat_triangles});
+        if (objects == 10000) measureTightness(scene, path, where, table);
+    }
+    return table;
+}
+
+}  // namespace sightline::bench

@@ -1,0 +1,31 @@
+// Times several ways of doing the same work in turn, so that a machine's moods meet them all alike.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <vector>
+
+namespace sightline::bench {
+
+/// Runs each job once to warm up and then all of them `repeat` times, one after the other each time.
+/// @returns each job's median time [microseconds]
+inline std::vector<double> timeInterleaved(const std::vector<std::function<void()>>& jobs, int repeat) {
+    std::vector<std::vector<double>> times(jobs.size());
+    for (int round = -1; round < repeat; ++round)
+        for (size_t i = 0; i < jobs.size(); ++i) {
+            const auto start = std::chrono::steady_clock::now();
+            jobs[i]();
+            const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - start;
+            if (round >= 0) times[i].push_back(took.count());
+        }
+    std::vector<double> medians;
+    for (std::vector<double>& t : times) {
+        std::nth_element(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(t.size() / 2), t.end());
+        medians.push_back(t[t.size() / 2]);
+    }
+    return medians;
+}
+
+}  // namespace sightline::bench

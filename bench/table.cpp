@@ -1,0 +1,50 @@
+// The rows of a benchmark: one measured value each, beside its plain baseline.
+// SPDX-License-Identifier: MIT
+#include "bench/table.h"
+
+#include <bit>
+#include <cstdint>
+#include <fstream>
+#include <thread>
+
+#include <fmt/format.h>
+#include <hwy/targets.h>
+#include <nlohmann/json.hpp>
+
+namespace sightline::bench {
+
+std::string machineName() {
+    std::string model = "unknown processor";
+    std::ifstream info("/proc/cpuinfo");
+    for (std::string line; std::getline(info, line);)
+        if (line.rfind("model name", 0) == 0 && line.find(": ") != std::string::npos) {
+            model = line.substr(line.find(": ") + 2);
+            break;
+        }
+    const int64_t targets = hwy::SupportedTargets();
+    return fmt::format("{}, {}, {} cores", model, hwy::TargetName(targets & -targets), std::thread::hardware_concurrency());
+}
+
+std::string toText(const Table& table) {
+    size_t where = 4, what = 4;
+    for (const Row& row : table.rows) {
+        where = std::max(where, row.where.size());
+        what = std::max(what, row.what.size());
+    }
+    std::string text = fmt::format("bench {} on {}\n", table.name, machineName());
+    for (const Row& row : table.rows)
+        text += fmt::format("{:<{}}  {:<{}}  {:>12.4g} {:<14} {:>7.3f}x of {:.4g}, {}\n", row.where, where, row.what, what,
+                            row.value, row.unit, row.ratio(), row.baseline_value, row.baseline);
+    return text;
+}
+
+std::string toJson(const Table& table) {
+    nlohmann::ordered_json json{{"schema", "sightline.bench/1"}, {"name", table.name}, {"machine", machineName()}};
+    json["rows"] = nlohmann::ordered_json::array();
+    for (const Row& row : table.rows)
+        json["rows"].push_back({{"case", row.where}, {"what", row.what}, {"value", row.value}, {"unit", row.unit},
+                                {"baseline", row.baseline}, {"baseline_value", row.baseline_value}, {"ratio", row.ratio()}});
+    return json.dump(2) + "\n";
+}
+
+}  // namespace sightline::bench

@@ -1,0 +1,37 @@
+// The rows of a benchmark: one measured value each, beside its plain baseline.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sightline/base/result.h"
+
+namespace sightline::bench {
+
+struct Row {
+    std::string where;     ///< the case: a scene or a size
+    std::string what;
+    double value = 0;
+    std::string unit;
+    std::string baseline;  ///< what it is compared with
+    double baseline_value = 0;
+
+    double ratio() const { return baseline_value != 0 ? value / baseline_value : 0; }
+};
+
+struct Table {
+    std::string name;
+    std::vector<Row> rows;
+};
+
+/// Aligned columns for a reader.
+std::string toText(const Table& table);
+
+/// The schema `sightline.bench/1`.
+std::string toJson(const Table& table);
+
+/// This machine in words: processor, instruction set in use, cores.
+std::string machineName();
+
+}  // namespace sightline::bench
