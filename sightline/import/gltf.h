@@ -20,11 +20,17 @@ namespace sightline {
 /// Takes triangle lists, strips and fans (points and lines are left out); 8, 16 and 32-bit indices or none;
 /// sparse, normalised and quantised accessors; KHR_mesh_quantization, EXT_meshopt_compression,
 /// EXT_mesh_gpu_instancing (an object per instance, sharing the key); cameras; doubleSided, alphaMode,
-/// transmission. Skinned and morphed meshes get bounds that hold for every pose and are marked as deforming.
+/// transmission. Skinned and morphed meshes get bounds that hold for every pose and are marked as deforming:
+/// joints turned in any way, translated and scaled as at rest or as an animation asks; morph weights from 0
+/// to 1, their defaults, and what animations make of them. Joints place a skinned mesh, its node does not; with
+/// and without a skin, or with other morph weights, one glTF mesh becomes several. Nodes that animations
+/// move as a whole stay at their rest pose and count as static: who plays the animation moves the object.
+/// Vertices that no triangle uses are dropped. KHR_node_visibility leaves out what it hides.
 ///
 /// Errors are one line that names the file, the fault and its place: truncated or oversized lengths,
 /// indices out of range, positions that are not finite, cyclic nodes, missing buffers, required extensions
-/// that are not known, nothing to draw.
+/// that are not known, nothing to draw. Memory is bounded by 64 MiB plus 512 times the size of the files; buffers
+/// that no triangle needs are not opened.
 Result<Scene> loadGltf(const std::string& path);
 
 /// The same from memory, as a fuzzer needs it. External files are not opened.

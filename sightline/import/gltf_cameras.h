@@ -1,0 +1,20 @@
+// Reads cameras and places them where drawn nodes hold them.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "sightline/import/gltf_nodes.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline::gltf {
+
+/// A camera without its place.
+using CameraSource = SceneCamera;
+
+std::vector<CameraSource> readCameras(const Json& root);
+
+/// One camera for each drawn node that holds one, by node.
+std::vector<SceneCamera> placeCameras(const NodeTree& tree, const std::vector<CameraSource>& cameras);
+
+}  // namespace sightline::gltf

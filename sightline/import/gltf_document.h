@@ -1,0 +1,99 @@
+// The tables that everything in a glTF refers to: buffers, buffer views and accessors, checked against the
+// bytes that exist.
+// SPDX-License-Identifier: MIT
+//
+// Khronos Group. glTF 2.0 Specification, sections 3.6 and 5. 2021.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sightline/import/gltf_container.h"
+#include "sightline/import/gltf_json.h"
+#include "sightline/import/gltf_meshopt.h"
+
+namespace sightline::gltf {
+
+struct Buffer {
+    enum class Source : uint8_t { kNone, kChunk, kUri };
+    Source source = Source::kNone;  ///< kNone: a fallback that nothing may read
+    uint64_t length = 0;            ///< [bytes]
+    bool loaded = false;
+    std::vector<unsigned char> owned;
+    Bytes bytes;  ///< [size: length] once loaded
+};
+
+struct BufferView {
+    uint32_t buffer = 0;
+    uint64_t offset = 0, length = 0;        ///< [bytes] of the buffer, or of the data once decompressed
+    uint32_t stride = 0;                    ///< [bytes]; 0: packed
+    std::optional<Compression> compression;
+    bool decoded = false;
+    std::vector<unsigned char> data;        ///< decompressed
+};
+
+enum class Component : uint16_t {
+    kByte = 5120,
+    kUnsignedByte = 5121,
+    kShort = 5122,
+    kUnsignedShort = 5123,
+    kUnsignedInt = 5125,
+    kFloat = 5126,
+};
+
+/// [bytes] of one component.
+uint32_t componentSize(Component component);
+
+/// A run of elements in a buffer view; no view: zeros.
+struct Elements {
+    std::optional<uint32_t> view;
+    uint64_t offset = 0;  ///< [bytes]
+    Component component = Component::kFloat;
+};
+
+struct Sparse {
+    uint64_t count = 0;
+    Elements indices, values;
+};
+
+struct Accessor {
+    Elements elements;
+    uint64_t count = 0;
+    uint32_t components = 1;  ///< SCALAR 1, VEC2 2, ..., MAT4 16
+    bool normalized = false;
+    std::optional<Sparse> sparse;
+};
+
+/// What is left of the memory that an import may take, in proportion to the bytes that it was given: a
+/// small file cannot ask for a large world by naming one accessor many times.
+class Budget {
+public:
+    void grant(uint64_t input_bytes);
+    /// Throws a Fault if nothing is left.
+    void charge(uint64_t count, uint64_t bytes_each, const std::string& place);
+
+private:
+    uint64_t left_ = uint64_t(64) << 20;
+};
+
+/// The JSON and its tables. Buffers are read and views decompressed when first asked for.
+struct Document {
+    Json root;
+    std::optional<Bytes> chunk;            ///< the GLB's BIN chunk
+    std::optional<std::string> directory;  ///< none: from memory, no files
+    std::vector<Buffer> buffers;
+    std::vector<BufferView> views;
+    std::vector<Accessor> accessors;
+    Budget budget;
+};
+
+/// Fills the tables from `root`. Afterwards each element of each accessor lies inside its view, and each
+/// view inside its buffer.
+void readTables(Document& document);
+
+/// The bytes of a view, decompressed.
+Bytes viewBytes(Document& document, uint32_t view);
+
+}  // namespace sightline::gltf

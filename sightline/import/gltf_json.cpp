@@ -1,0 +1,161 @@
+// Reads typed values out of untrusted JSON; every mistake names its place.
+// SPDX-License-Identifier: MIT
+#include "sightline/import/gltf_json.h"
+
+#include <cmath>
+
+namespace sightline::gltf {
+namespace {
+
+constexpr int kDeepest = 256;
+
+// Before the parser sees the text: what it builds is walked by others, some of them recursive.
+void checkDepth(std::span<const unsigned char> text) {
+    int depth = 0;
+    bool in_string = false;
+    for (size_t i = 0; i < text.size(); ++i) {
+        const unsigned char c = text[i];
+        if (in_string) {
+            if (c == '\\') ++i;
+            if (c == '"') in_string = false;
+        } else if (c == '"') {
+            in_string = true;
+        } else if (c == '[' || c == '{') {
+            if (++depth > kDeepest) fail("", "JSON is nested deeper than {} at byte {}", kDeepest, i);
+        } else if (c == ']' || c == '}') {
+            --depth;
+        }
+    }
+}
+
+uint64_t wholeValue(const Json& value, const char* key, const std::string& place) {
+    constexpr uint64_t kMost = uint64_t(1) << 53;
+    if (value.is_number_unsigned()) {
+        const uint64_t number = value.get<uint64_t>();
+        if (number > kMost) fail(place, "{} is too large: {}", key, number);
+        return number;
+    }
+    if (!value.is_number()) fail(place, "{} is not a number", key);
+    const double number = value.get<double>();
+    if (!(number >= 0 && number <= static_cast<double>(kMost)) || number != std::floor(number))
+        fail(place, "{} is not a whole number in range: {}", key, number);
+    return static_cast<uint64_t>(number);
+}
+
+double finiteValue(const Json& value, const char* key, const std::string& place) {
+    if (!value.is_number()) fail(place, "{} is not a number", key);
+    const double number = value.get<double>();
+    if (!std::isfinite(number)) fail(place, "{} is not finite", key);
+    return number;
+}
+
+uint32_t indexValue(const Json& value, const char* key, size_t count, const std::string& place) {
+    const uint64_t number = wholeValue(value, key, place);
+    if (number >= count) fail(place, "{} out of range: {} of {}", key, number, count);
+    return static_cast<uint32_t>(number);
+}
+
+}  // namespace
+
+Json parseJson(std::span<const unsigned char> text) {
+    checkDepth(text);
+    Json root;
+    try {
+        root = Json::parse(text.data(), text.data() + text.size());
+    } catch (const Json::parse_error& error) {
+        fail("", "not JSON: syntax error at byte {}", error.byte);
+    } catch (const Json::exception&) {
+        fail("", "not JSON: a number is out of range");
+    }
+    if (!root.is_object()) fail("", "not glTF: the JSON is not an object");
+    return root;
+}
+
+const Json* find(const Json& object, const char* key) {
+    if (!object.is_object()) return nullptr;
+    const auto found = object.find(key);
+    return found == object.end() ? nullptr : &*found;
+}
+
+const Json* findObject(const Json& object, const char* key, const std::string& place) {
+    const Json* value = find(object, key);
+    if (value && !value->is_object()) fail(place, "{} is not an object", key);
+    return value;
+}
+
+const Json& table(const Json& object, const char* key, const std::string& place) {
+    static const Json kEmpty = Json::array();
+    const Json* value = find(object, key);
+    if (!value) return kEmpty;
+    if (!value->is_array()) fail(place, "{} is not an array", key);
+    return *value;
+}
+
+const Json& objectAt(const Json& array, size_t index, const std::string& place) {
+    const Json& value = array[index];
+    if (!value.is_object()) fail(place, "is not an object");
+    return value;
+}
+
+const Json* extension(const Json& object, const char* name, const std::string& place) {
+    const Json* all = findObject(object, "extensions", place);
+    return all ? findObject(*all, name, place) : nullptr;
+}
+
+std::optional<double> number(const Json& object, const char* key, const std::string& place) {
+    const Json* value = find(object, key);
+    if (!value) return std::nullopt;
+    return finiteValue(*value, key, place);
+}
+
+std::optional<uint64_t> whole(const Json& object, const char* key, const std::string& place) {
+    const Json* value = find(object, key);
+    if (!value) return std::nullopt;
+    return wholeValue(*value, key, place);
+}
+
+uint64_t requiredWhole(const Json& object, const char* key, const std::string& place) {
+    const Json* value = find(object, key);
+    if (!value) fail(place, "{} is missing", key);
+    return wholeValue(*value, key, place);
+}
+
+std::optional<uint32_t> index(const Json& object, const char* key, size_t count, const std::string& place) {
+    const Json* value = find(object, key);
+    if (!value) return std::nullopt;
+    return indexValue(*value, key, count, place);
+}
+
+uint32_t requiredIndex(const Json& object, const char* key, size_t count, const std::string& place) {
+    const Json* value = find(object, key);
+    if (!value) fail(place, "{} is missing", key);
+    return indexValue(*value, key, count, place);
+}
+
+uint32_t indexAt(const Json& array, size_t element, const char* key, size_t count, const std::string& place) {
+    return indexValue(array[element], key, count, place);
+}
+
+bool flag(const Json& object, const char* key, const std::string& place) {
+    const Json* value = find(object, key);
+    if (!value) return false;
+    if (!value->is_boolean()) fail(place, "{} is neither true nor false", key);
+    return value->get<bool>();
+}
+
+std::string text(const Json& object, const char* key, const std::string& place) {
+    const Json* value = find(object, key);
+    if (!value) return {};
+    if (!value->is_string()) fail(place, "{} is not a string", key);
+    return value->get<std::string>();
+}
+
+bool numbers(const Json& object, const char* key, std::span<double> out, const std::string& place) {
+    const Json* value = find(object, key);
+    if (!value) return false;
+    if (!value->is_array() || value->size() != out.size()) fail(place, "{} is not {} numbers", key, out.size());
+    for (size_t i = 0; i < out.size(); ++i) out[i] = finiteValue((*value)[i], key, place);
+    return true;
+}
+
+}  // namespace sightline::gltf

@@ -1,0 +1,56 @@
+// The node forest: transforms composed in double, parents before children, without recursion.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "sightline/import/gltf_json.h"
+
+namespace sightline::gltf {
+
+constexpr uint32_t kNoNode = 0xffffffff;
+
+struct Node {
+    std::string name;
+    uint32_t parent = kNoNode;
+    std::optional<uint32_t> mesh, skin, camera;
+    glm::dmat4 local{1.0};
+    glm::dmat4 world{1.0};
+    double scale = 1;             ///< the most by which `local` stretches any vector
+    std::vector<float> weights;   ///< of morph targets; empty: the mesh's own
+    bool drawn = false;           ///< the default scene reaches it, and nothing hides it
+};
+
+struct NodeTree {
+    std::vector<Node> nodes;
+    std::vector<uint32_t> order;  ///< all nodes, parents before children
+    std::vector<uint32_t> rank;   ///< where each node stands in `order`
+};
+
+/// How many elements the tables that a node refers to have.
+struct NodeTargets {
+    size_t meshes = 0, skins = 0, cameras = 0;
+};
+
+/// Reads nodes and scenes. A Fault if a node has two parents or is its own ancestor, if a transform is not
+/// finite or not affine, or if a scene's root has a parent.
+NodeTree readNodes(const Json& root, const NodeTargets& targets);
+
+/// Rotation (x, y, z, w), of any length: normalised; all zeros is no rotation.
+glm::dmat3 rotationMatrix(const double rotation[4]);
+
+/// translate * rotate * scale
+glm::dmat4 composeTransform(const double translation[3], const double rotation[4], const double scale[3]);
+
+/// An upper bound on how much the linear part stretches any vector: exact if its columns are orthogonal.
+double largestStretch(const glm::dmat4& matrix);
+
+/// False if any element is NaN or infinite.
+bool finiteMatrix(const glm::dmat4& matrix);
+
+}  // namespace sightline::gltf

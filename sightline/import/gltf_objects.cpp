@@ -1,0 +1,177 @@
+// Turns drawn nodes into a scene: one mesh per shape, one object per node or GPU instance, cameras.
+// SPDX-License-Identifier: MIT
+#include "sightline/import/gltf_objects.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "sightline/import/gltf_accessor.h"
+#include "sightline/import/gltf_cameras.h"
+#include "sightline/import/gltf_deform.h"
+
+namespace sightline::gltf {
+namespace {
+
+/// A mesh as one or more nodes draw it: the same mesh unskinned, under a skin or with other morph weights is another
+/// shape.
+struct Shape {
+    uint32_t mesh = 0;
+    std::optional<uint32_t> skin;
+    std::vector<float> weights;
+    std::vector<uint32_t> nodes;
+
+    bool deforms(const MeshSource& source) const { return skin || source.morphs; }
+};
+
+struct Parts {
+    std::vector<MeshSource> meshes;
+    std::vector<Skin> skins;
+    NodeTree tree;
+    std::vector<Shape> shapes;
+};
+
+std::vector<Shape> gatherShapes(const Parts& parts) {
+    std::vector<Shape> shapes;
+    std::map<std::tuple<uint32_t, uint32_t, std::vector<float>>, size_t> known;
+    for (uint32_t i = 0; i < parts.tree.nodes.size(); ++i) {
+        const Node& node = parts.tree.nodes[i];
+        if (!node.drawn || !node.mesh) continue;
+        const MeshSource& source = parts.meshes[*node.mesh];
+        if (source.primitives.empty()) continue;
+        Shape shape{*node.mesh, source.skinnable ? node.skin : std::nullopt, {}, {}};
+        if (source.morphs) shape.weights = node.weights.empty() ? source.weights : node.weights;
+        const auto [place, fresh] =
+            known.try_emplace({shape.mesh, shape.skin.value_or(kNoNode), shape.weights}, shapes.size());
+        if (fresh) shapes.push_back(std::move(shape));
+        shapes[place->second].nodes.push_back(i);
+    }
+    return shapes;
+}
+
+// What each morph weight of a mesh may be: 0 to 1, its defaults, and what animations make of it.
+std::vector<Range> weightRanges(const Parts& parts, const std::vector<Motion>& motions, const Shape& shape) {
+    std::vector<Range> ranges(parts.meshes[shape.mesh].targets, Range{0, 1});
+    for (size_t t = 0; t < ranges.size() && t < shape.weights.size(); ++t) ranges[t].grow(shape.weights[t]);
+    for (const uint32_t node : shape.nodes)
+        for (size_t t = 0; t < ranges.size() && t < motions[node].weights.size(); ++t) {
+            ranges[t].grow(motions[node].weights[t].low);
+            ranges[t].grow(motions[node].weights[t].high);
+        }
+    return ranges;
+}
+
+std::vector<glm::dmat4> readInstances(Document& document, const Json& json, const std::string& place) {
+    const Json* attributes = findObject(json, "attributes", place);
+    if (!attributes || attributes->empty()) fail(place, "GPU instances without attributes");
+    std::optional<uint64_t> count;
+    for (const auto& [name, value] : attributes->items()) {
+        const uint32_t accessor = requiredIndex(*attributes, name.c_str(), document.accessors.size(), place);
+        const uint64_t elements = document.accessors[accessor].count;
+        if (count && *count != elements) fail(place, "GPU instance attributes of {} and {} elements", *count, elements);
+        count = elements;
+    }
+    const auto read = [&](const char* name, uint32_t components) {
+        const auto accessor = index(*attributes, name, document.accessors.size(), place);
+        return accessor ? decodeFloats(document, *accessor, components, name) : std::vector<float>{};
+    };
+    const std::vector<float> translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4),
+                             scales = read("SCALE", 3);
+    document.budget.charge(*count, sizeof(glm::dmat4) + sizeof(SceneObject), place);
+    std::vector<glm::dmat4> out(*count);
+    for (size_t i = 0; i < out.size(); ++i) {
+        double translation[3] = {0, 0, 0}, rotation[4] = {0, 0, 0, 1}, scale[3] = {1, 1, 1};
+        for (size_t c = 0; c < 3 && !translations.empty(); ++c) translation[c] = translations[i * 3 + c];
+        for (size_t c = 0; c < 4 && !rotations.empty(); ++c) rotation[c] = rotations[i * 4 + c];
+        for (size_t c = 0; c < 3 && !scales.empty(); ++c) scale[c] = scales[i * 3 + c];
+        out[i] = composeTransform(translation, rotation, scale);
+    }
+    return out;
+}
+
+void addObject(Scene& scene, uint32_t node, uint32_t mesh, const glm::dmat4& transform, const std::string& name) {
+    const std::string place = at("nodes", node);
+    if (!finiteMatrix(transform)) fail(place, "its world transform is not finite");
+    const Box3d box = transformBox(scene.meshes[mesh].bounds, transform);
+    if (!box.finite()) fail(place, "its bounds in the world are not finite");
+    scene.objects.push_back({node, mesh, transform, name});
+}
+
+// The objects of one node; `shape_transform` replaces the node's own where joints place the mesh.
+void addNode(Document& document, const Parts& parts, uint32_t index, uint32_t mesh,
+             const std::optional<glm::dmat4>& shape_transform, Scene& scene) {
+    const Node& node = parts.tree.nodes[index];
+    const std::string place = at("nodes", index);
+    const std::string& name = node.name.empty() ? scene.meshes[mesh].name : node.name;
+    const Json& json = table(document.root, "nodes")[index];
+    const Json* instancing = extension(json, "EXT_mesh_gpu_instancing", place);
+    if (!instancing) {
+        addObject(scene, index, mesh, shape_transform.value_or(node.world), name);
+        return;
+    }
+    if (shape_transform) fail(place, "a skinned mesh has no GPU instances");
+    for (const glm::dmat4& instance : readInstances(document, *instancing, place))
+        addObject(scene, index, mesh, node.world * instance, name);
+}
+
+void addShape(Document& document, const Parts& parts, const std::vector<Motion>& motions, const Shape& shape,
+              MeshBuilder& builder, Scene& scene) {
+    const MeshSource& source = parts.meshes[shape.mesh];
+    const std::string place = at("meshes", shape.mesh);
+    BuiltMesh built = builder.build(source, shape.deforms(source));
+    if (built.mesh.indices.empty()) return;
+    std::optional<glm::dmat4> transform;
+    if (shape.deforms(source)) {
+        document.budget.charge(source.targets, sizeof(Range), place);
+        const MorphReach reach =
+            morphReach(document, built, shape.weights, weightRanges(parts, motions, shape));
+        if (shape.skin) {
+            const glm::dvec3 anchor =
+                applySkin(document, parts.tree, motions, parts.skins[*shape.skin], reach, place, built);
+            transform = glm::dmat4(1.0);
+            (*transform)[3] = glm::dvec4(anchor, 1.0);
+        } else {
+            applyMorph(reach, place, built.mesh);
+        }
+    }
+    const uint32_t mesh = static_cast<uint32_t>(scene.meshes.size());
+    scene.meshes.push_back(std::move(built.mesh));
+    for (const uint32_t node : shape.nodes) addNode(document, parts, node, mesh, transform, scene);
+}
+
+}  // namespace
+
+Scene makeScene(Document& document) {
+    Scene scene;
+    Materials materials = readMaterials(document.root);
+    Parts parts;
+    parts.meshes = readMeshes(document, materials);
+    const std::vector<CameraSource> cameras = readCameras(document.root);
+    const size_t nodes = table(document.root, "nodes").size();
+    parts.skins = readSkins(document, nodes);
+    parts.tree = readNodes(document.root, {parts.meshes.size(), parts.skins.size(), cameras.size()});
+    parts.shapes = gatherShapes(parts);
+    scene.materials = std::move(materials.list);
+
+    MeshBuilder builder(document);
+    bool deforms = false;
+    for (const Shape& shape : parts.shapes) {
+        builder.expect(parts.meshes[shape.mesh]);
+        deforms |= shape.deforms(parts.meshes[shape.mesh]);
+    }
+    std::vector<Motion> motions;
+    if (deforms) {
+        std::vector<size_t> targets;
+        for (const MeshSource& mesh : parts.meshes) targets.push_back(mesh.targets);
+        motions = readMotions(document, parts.tree, targets);
+    }
+    for (const Shape& shape : parts.shapes) addShape(document, parts, motions, shape, builder, scene);
+    if (scene.objects.empty()) fail("", "draws nothing: no triangle in the scene that it shows");
+    std::stable_sort(scene.objects.begin(), scene.objects.end(),
+                     [](const SceneObject& a, const SceneObject& b) { return a.key < b.key; });
+    scene.cameras = placeCameras(parts.tree, cameras);
+    return scene;
+}
+
+}  // namespace sightline::gltf

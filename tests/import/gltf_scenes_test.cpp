@@ -1,0 +1,45 @@
+// Real scenes load, with the objects and triangles that their list says.
+// SPDX-License-Identifier: MIT
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "sightline/import/gltf.h"
+
+namespace sightline {
+namespace {
+
+struct Listed {
+    const char* file;
+    size_t objects;
+    double thousand_triangles;  // as the list rounds them
+};
+
+constexpr Listed kListed[] = {
+    {"bimwhale-tall-building", 164, 5},  {"dense-spot", 1, 6},
+    {"aws-small-house", 85, 146},        {"bsi-duplex", 692, 27},
+    {"gazebo-willowgarage", 248, 14},    {"sauer-pandora", 206, 61},
+    {"2CylinderEngine", 67, 121},        {"gazebo-pr2", 51, 70},
+    {"cityjson-vienna", 490, 40},        {"redeclipse-auster", 375, 47},
+    {"polyhaven-dutch-ship", 3, 69},     {"playcanvas-cave", 1, 595},
+    {"nibs-clinic-mep", 15861, 1350},
+};
+
+TEST(GltfScenes, LoadWithTheListedObjects) {
+    const std::filesystem::path folder = std::filesystem::path(SIGHTLINE_SHARED_DIR) / "scenes";
+    if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "no scenes in ../shared";
+    for (const Listed& listed : kListed) {
+        const std::filesystem::path file = folder / (std::string(listed.file) + ".glb");
+        const Result<Scene> scene = loadGltf(file.string());
+        ASSERT_TRUE(scene.ok()) << scene.error().message;
+        EXPECT_EQ(scene->objects.size(), listed.objects) << file;
+        EXPECT_NEAR(static_cast<double>(drawnTriangles(*scene)) / 1000, listed.thousand_triangles,
+                    0.02 * listed.thousand_triangles + 0.5)
+            << file;
+        EXPECT_TRUE(worldBounds(*scene).finite()) << file;
+    }
+}
+
+}  // namespace
+}  // namespace sightline
