@@ -31,7 +31,8 @@ struct Skin {
 
 std::vector<Skin> readSkins(const Document& document, size_t nodes);
 
-/// Poses a skinned mesh: positions of the rest pose in the world's axes, relative to `anchor`, and bounds of every pose.
+/// Poses a skinned mesh: positions of the rest pose in the world's axes, relative to an anchor, and bounds of
+/// every pose.
 ///
 /// A pose may turn every joint in any way; a node is translated and scaled as at rest or as some animation
 /// asks. So a point that hangs from a chain of nodes stays in a ball around the uppermost moving node, of
