@@ -196,14 +196,14 @@ std::string player(const CullRun& run, const Json& first, size_t pictures, doubl
     for (const double at : {0.0, 0.25, 0.5, 0.75, 1.0})  // the colours stand for square roots
         ticks += fmt::format("<span>{:.2g}{}</span>", at * at * scale, at < 1 ? "" : " and more");
     return fmt::format(
-        R"html(<section class="card" aria-labelledby="h-frames"><h2 id="h-frames">The flight</h2>
+        R"html(<section class="card" aria-labelledby="h-frames"><h2 id="h-frames">Frame by frame</h2>
 <div class="player"><button type="button" id="play">Play</button>
 <label for="frame" class="soft">Frame</label><input type="range" id="frame" min="0" max="{}" value="0" step="1">
 <output id="at" for="frame"></output></div>
 <div class="stage"><figure><img id="shaded" alt="The scene as the camera sees it" src="{}">
 <figcaption><b id="kept"></b>. <span id="same"></span></figcaption></figure>
 <figure class="plan"><img id="plan" alt="The scene from above, objects coloured by what culled them" src="{}">
-<figcaption>From above, around the flight; the camera's view in red.<div class="legend">{}</div></figcaption></figure></div>
+<figcaption>From above, around the cameras; this view in red.<div class="legend">{}</div></figcaption></figure></div>
 </section>
 <section class="card" aria-labelledby="h-heat"><h2 id="h-heat">Depth complexity: surfaces drawn for a pixel</h2>
 <div class="pair"><figure><img id="heat-all" alt="Heat map of surfaces drawn for each pixel without culling" src="{}">
@@ -230,7 +230,7 @@ std::string stageTable(const CullRun& run, const Means& means) {
     }
     return fmt::format(
         R"html(<section class="card" aria-labelledby="h-stages"><h2 id="h-stages">What each stage did</h2><div class="scroll"><table>
-<thead><tr><th></th><th colspan="4" scope="colgroup">this frame</th><th colspan="4" scope="colgroup" class="apart">mean over the flight</th></tr>
+<thead><tr><th></th><th colspan="4" scope="colgroup">this frame</th><th colspan="4" scope="colgroup" class="apart">mean over the frames</th></tr>
 <tr><th scope="col">stage</th><th scope="col">tested</th><th scope="col">culled</th><th scope="col">in doubt</th><th scope="col">µs</th>
 <th scope="col" class="apart">tested</th><th scope="col">culled</th><th scope="col">in doubt</th><th scope="col">µs</th></tr></thead>
 <tbody>{}<tr><td>whole query</td><td>{}</td><td id="query-culled"></td><td></td><td id="query-time"></td>
@@ -318,7 +318,8 @@ std::string reportPage(const Scene& scene, const CullRun& run, const PageSetting
 
     std::string json = data.dump(-1, ' ', true, Json::error_handler_t::replace);
     for (size_t at = json.find("</"); at != std::string::npos; at = json.find("</", at)) json.replace(at, 2, "<\\/");
-    const std::string name = escapeHtml(run.scene);
+    const size_t slash = run.scene.rfind('/');
+    const std::string name = escapeHtml(slash == std::string::npos ? run.scene : run.scene.substr(slash + 1));
     std::string page = fmt::format(
         R"html(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
