@@ -26,8 +26,8 @@ struct Wheel {
     double total() const { return sums.empty() ? 0 : sums.back(); }
     uint32_t choose(Random& random) const {
         const double at = random.uniform() * total();
-        const auto found = std::upper_bound(sums.begin(), sums.end(), at);
-        return static_cast<uint32_t>(std::min<ptrdiff_t>(found - sums.begin(), static_cast<ptrdiff_t>(sums.size()) - 1));
+        const auto found = static_cast<size_t>(std::upper_bound(sums.begin(), sums.end(), at) - sums.begin());
+        return static_cast<uint32_t>(std::min(found, sums.size() - 1));
     }
 };
 
@@ -36,7 +36,10 @@ glm::dmat3 cofactors(const glm::dmat3& m) {
     return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
 }
 
-double frobenius(const glm::dmat3& m) { return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2])); }
+/// The Frobenius norm: no vector grows by more.
+double norm(const glm::dmat3& m) {
+    return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
+}
 
 struct SurfacePoint { glm::dvec3 position, normal; };
 
@@ -48,7 +51,7 @@ public:
     explicit Surface(const Scene& scene) : scene_(scene), triangles_(scene.meshes.size()) {
         for (const SceneObject& object : scene.objects) {
             const Wheel& mesh = meshWheel(object.mesh);
-            const double weight = frobenius(cofactors(glm::dmat3(object.transform))) * mesh.total();
+            const double weight = norm(cofactors(glm::dmat3(object.transform))) * mesh.total();
             objects_.add(std::isfinite(weight) ? weight : 0);
         }
     }
@@ -73,7 +76,7 @@ public:
             const glm::dvec3 mapped = map * normal;
             const double length = glm::length(mapped);
             // A transform that flattens all its triangles would be refused for ever.
-            if (chance * frobenius(map) * glm::length(normal) > length && tries < 1000) continue;
+            if (chance * norm(map) * glm::length(normal) > length && tries < 1000) continue;
             if (!(length > 0)) return {glm::dvec3(object.transform * glm::dvec4(a, 1)), {0, 1, 0}};
             const double side = glm::determinant(linear) < 0 ? -1 : 1;
             return {glm::dvec3(object.transform * glm::dvec4(a + u * ab + v * ac, 1)), mapped * (side / length)};

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kEyeHeight = 1.7;  // [metres]
 constexpr double kTurn = 6;         // how far from a corner the walk begins to turn  [metres]
+constexpr double kGlance = 0.25;    // the tangent by which the walker looks towards the market on the left
 
 struct Step { glm::dvec2 at, heading; };
 
@@ -71,7 +72,7 @@ CameraPath cityStreetPath(uint64_t seed, uint32_t frames) {
         const double share = static_cast<double>(i) / frames, progress = 4 * share + start;
         const Step step = stepAt(progress >= 4 ? progress - 4 : progress);
         const glm::dvec2 ahead = step.heading / glm::length(step.heading), aside(-ahead.y, ahead.x);
-        const glm::dvec2 look = ahead + aside * (pan * sway(7 * share + phase));
+        const glm::dvec2 look = ahead + aside * (pan * sway(7 * share + phase) - kGlance);
         CameraFrame& frame = path.frames[i];
         frame.eye = {step.at.x, kEyeHeight, step.at.y};
         frame.target = {step.at.x + 10 * look.x, kEyeHeight + 0.5, step.at.y + 10 * look.y};

@@ -56,8 +56,9 @@ void putRow(const Library& library, Random& random, const Heights& heights, cons
             Planter& planter) {
     const double roll = random.uniform();
     const bool tower = roll < heights.towers;
-    const Building& building = tower ? choose(library, random, Kind::kTower, width, heights.tower_low, heights.tower_high)
-                                     : choose(library, random, Kind::kRow, width, heights.low, heights.high);
+    const Building& building =
+        tower ? choose(library, random, Kind::kTower, width, heights.tower_low, heights.tower_high)
+              : choose(library, random, Kind::kRow, width, heights.low, heights.high);
     const double middle = s + 0.5 * width, stretch = (width + kPartyWall) / building.width;
     const double tall = random.uniform(0.97, 1.03);
     const double setback = random.uniform(0, 0.375);
@@ -72,8 +73,9 @@ void putRow(const Library& library, Random& random, const Heights& heights, cons
 void fillRow(const Library& library, Random& random, const Heights& heights, double distance, const Side& side,
              double leg, Planter& planter) {
     const double length = side.length - 2 * leg;
-    const int least = static_cast<int>(std::ceil(length / 27.5));
-    const int count = least + (length > 30 ? static_cast<int>(random.below(2)) : 0);
+    const int least = static_cast<int>(std::ceil(length / 19));
+    // Three or so, of 12 to 27 m; one in the short sides of a narrow plot.
+    const int count = least + (length > 30 ? 1 - static_cast<int>(random.below(3)) : 0);
     std::vector<double> widths(static_cast<size_t>(count));
     double sum = 0;
     for (double& width : widths) {
@@ -127,9 +129,8 @@ std::vector<Rectangle> plotsOf(const Block& block, bool split, int turn) {
     const double reach = 0.5 * block.size() - kFrontage, lane = 0.5 * kAlley;
     const glm::dvec2 middle(block.x, block.z), corner(reach, reach);
     if (!split) return {{middle - corner, middle + corner}};
-    if (turn % 2 == 0)
-        return {{middle - corner, middle + glm::dvec2(-lane, reach)}, {middle + glm::dvec2(lane, -reach), middle + corner}};
-    return {{middle - corner, middle + glm::dvec2(reach, -lane)}, {middle + glm::dvec2(-reach, lane), middle + corner}};
+    const glm::dvec2 first_end = turn % 2 == 0 ? glm::dvec2(-lane, reach) : glm::dvec2(reach, -lane);
+    return {{middle - corner, middle + first_end}, {middle - first_end, middle + corner}};
 }
 
 void fillBuildings(const Library& library, Random& random, const Block& block, bool split, int turn,
@@ -153,13 +154,15 @@ void fillBlock(const Library& library, uint64_t seed, const Block& block, Plante
     const int turn = static_cast<int>(random.below(4));
     const bool old_town = block.distance2 < static_cast<int64_t>(kOldTown * kOldTown);
     const bool split = !block.small && random.below(3) == 0 && !old_town;
+    const bool market = block.distance2 == 0;
     const bool square = block.small && random.below(5) < 2;
     const Item ground = block.small ? kGroundSmall : split ? kGroundSplit : kGroundLarge;
     planter.put(ground, {block.x, block.z}, 0, split && turn % 2 == 1 ? 1 : 0);
-    if (square) fillSquare(random, block, planter);
+    if (market) fillMarket(random, planter);
+    else if (square) fillSquare(random, block, planter);
     else fillBuildings(library, random, block, split, turn, planter);
     fillStreets(random, block, split, turn, planter);
-    if (!block.small) fillYards(random, block, split, turn, planter);
+    if (!block.small && !market) fillYards(random, block, split, turn, old_town, planter);
 }
 
 }  // namespace sightline::city

@@ -23,15 +23,18 @@ private:
     std::vector<SceneObject>* objects_;
 };
 
-/// Ground and buildings with what stands on their roofs, or a square; then streets and yards. All of it depends
-/// on the seed and the block alone.
+/// Ground and buildings with what stands on their roofs, or a square, or the market; then streets and yards. All of
+/// it depends on the seed and the block alone.
 void fillBlock(const Library& library, uint64_t seed, const Block& block, Planter& planter);
 
 /// The parts of fillBlock.
 void fillBuildings(const Library& library, Random& random, const Block& block, bool split, int turn, Planter& planter);
 void fillSquare(Random& random, const Block& block, Planter& planter);
 void fillStreets(Random& random, const Block& block, bool split, int turn, Planter& planter);
-void fillYards(Random& random, const Block& block, bool split, int turn, Planter& planter);
+void fillYards(Random& random, const Block& block, bool split, int turn, bool bare, Planter& planter);
+
+/// The market in the middle of the city: what its visitors see does not depend on the city's size.
+void fillMarket(Random& random, Planter& planter);
 
 /// The parts of a large block between streets and lane, bounded by the fronts.
 std::vector<Rectangle> plotsOf(const Block& block, bool split, int turn);

@@ -10,7 +10,7 @@
 namespace sightline::city {
 namespace {
 
-constexpr double kGroundFloor = 4.25, kStorey = 3.25;  // [metres]
+constexpr double kGroundFloor = 4.25;  // [metres]
 
 /// What a building's look is drawn from; the numbers are taken in a fixed order.
 struct Style {
@@ -26,10 +26,14 @@ struct Style {
 Style drawStyle(Random& random, int storeys) {
     constexpr uint32_t kWalls[] = {kSand, kRose, kBrick, kStone, kOchre, kGrey, kWhite};
     Style style;
-    style.materials = {kWalls[random.below(7)], kShade, kGravel, kGlass};
+    constexpr uint32_t kNiches[] = {kShade, kStone, kTrim};
+    style.materials.wall = kWalls[random.below(7)];
+    style.materials.bay = kNiches[random.below(3)];
+    style.materials.roof = kGravel;
+    style.materials.glass = kGlass;
     style.roof_cover = random.below(2) ? kTiles : kSlate;
     style.depth = 0.5 + 0.25 * static_cast<double>(random.below(4));
-    style.glazed = random.below(3) != 0;
+    style.glazed = random.below(6) != 0;
     style.pitched = random.below(5) < 3 && storeys <= 7;
     style.rows = 2 + static_cast<int>(random.below(2));
     style.extra = static_cast<uint32_t>(random.below(1 << 16));
@@ -92,14 +96,15 @@ void addRow(Library& library, Random& random, double width, int storeys) {
     const Style style = drawStyle(random, storeys);
     const double eaves = eavesHeight(storeys), half = 0.5 * width;
     const bool oriels = style.extra % 5 == 0;
-    const int bays = width < 12 ? 1 : width < 17 ? 2 : 3;
-    const int rows = bays == 3 ? 2 : style.rows;
+    const int bays = width < 12 ? 2 : width < 20 ? 3 : 4;
+    const int rows = bays > 2 ? 1 : style.rows;
     MeshBuilder mesh;
-    const Wall front{bays, 1.5, oriels ? -0.75 : style.depth, style.glazed};
+    const Wall front{bays, 1.375, oriels ? -0.75 : style.depth, style.glazed};
     const Wall back{1, 0.375 * width, 1.0, false};
     addBody(mesh, style.materials, rectangle(-half, half, -kRowDepth, 0),
             facadeLevels(oriels ? 3.75 : 0.0, eaves, rows, !oriels), {front, {}, back, {}});
-    if (oriels) addBox(mesh, style.materials.wall, {-half + 0.0625, 0, -kRowDepth + 0.0625}, {half - 0.0625, 4, -0.0625});
+    if (oriels)  // the ground floor lies a little inside
+        addBox(mesh, style.materials.wall, {-half + 0.0625, 0, -kRowDepth + 0.0625}, {half - 0.0625, 4, -0.0625});
     addBox(mesh, kTrim, {-half - 0.03125, eaves - 0.875, -kRowDepth - 0.25}, {half + 0.03125, eaves - 0.375, 0.4375});
     if (style.pitched) {
         addRoof(mesh, style, -half + 0.0625, half - 0.0625, -kRowDepth, 0, eaves);
@@ -120,7 +125,7 @@ void addCourt(Library& library, Random& random, int storeys) {
     const Wall wing{1, 1.75, style.depth, style.glazed}, court{2, 1.25, style.depth, style.glazed};
     addBody(mesh, style.materials,
             {{-half, 0}, {-5, 0}, {-5, -5}, {5, -5}, {5, 0}, {half, 0}, {half, -kRowDepth}, {-half, -kRowDepth}},
-            facadeLevels(0, eaves, 2, false), {wing, {}, court, {}, wing, {}, {}, {}});
+            facadeLevels(0, eaves, 1, true), {wing, {}, court, {}, wing, {}, {}, {}});
     for (const double side : {-1.0, 1.0}) {
         const double inner = side * 4.75, outer = side * (half + 0.03125);
         addBox(mesh, kTrim, {std::min(inner, outer), eaves - 0.875, -4.75},
@@ -136,7 +141,7 @@ void addGateway(Library& library, Random& random, int storeys) {
     const double eaves = eavesHeight(storeys), width = 18, half = 0.5 * width;
     MeshBuilder mesh;
     const Wall front{1, 1.75, style.depth, style.glazed};
-    const std::vector<double> levels = facadeLevels(0, eaves, style.rows, true);
+    const std::vector<double> levels = facadeLevels(0, eaves, 1, true);
     addBody(mesh, style.materials, rectangle(-half, -2, -kRowDepth, 0), levels, {front, {}, {}, {}});
     addBody(mesh, style.materials, rectangle(2, half, -kRowDepth, 0), levels, {front, {}, {}, {}});
     addBox(mesh, style.materials.wall, {-3, 4.5, -kRowDepth + 0.25}, {3, eaves - 0.25, -0.25});
@@ -149,7 +154,7 @@ void addTower(Library& library, Random& random, double width, int storeys) {
     const Style style = drawStyle(random, storeys);
     const double podium = eavesHeight(6), top = eavesHeight(storeys), half = 0.5 * width;
     MeshBuilder mesh;
-    const Wall front{2, 2, style.depth, style.glazed}, side{1, 2.5, style.depth, style.glazed};
+    const Wall front{2, 2, style.depth, style.glazed}, side{1, 2.5, style.depth, false};
     addBody(mesh, style.materials, rectangle(-half, half, -kRowDepth, 0), facadeLevels(0, podium, 1, true),
             {front, {}, {}, {}});
     const Wall shaft{2, 1.5, 0.75, false};
@@ -187,7 +192,7 @@ void addPalace(Library& library, Random& random, int storeys) {
     const Style style = drawStyle(random, storeys);
     const double eaves = eavesHeight(storeys), half = 0.5 * kIslandSize;
     MeshBuilder mesh;
-    const Wall wing{1, 2, style.depth, style.glazed}, flank{2, 3, style.depth, style.glazed};
+    const Wall wing{1, 2, style.depth, style.glazed}, flank{1, 6, style.depth, style.glazed};
     addBody(mesh, style.materials,
             {{-half, half}, {-5, half}, {-5, -3}, {5, -3}, {5, half}, {half, half}, {half, -half}, {-half, -half}},
             facadeLevels(0, eaves, 1, true), {wing, {}, {}, {}, wing, flank, {}, flank});

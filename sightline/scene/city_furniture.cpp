@@ -12,7 +12,7 @@ namespace {
 // All stand on y = 0 with their front to +z, unless said otherwise.
 
 /// The asphalt under a block, up to the middle of the streets, and the pavements on it.
-/// @param lanes  gap along z through the middle of the pavement; 0: none
+/// @param lane  gap along z through the middle of the pavement; 0: none
 MeshBuilder ground(double size, double lane) {
     MeshBuilder mesh;
     const double half = 0.5 * size, kerb = half - kKerb;
@@ -111,8 +111,10 @@ MeshBuilder fence() {
         mesh.quad(kMesh, {x - 0.03125, 0.125, 0}, {x + 0.03125, 0.125, 0}, {x + 0.03125, 1.625, 0},
                   {x - 0.03125, 1.625, 0});
     }
-    for (const double y : {0.1875, 1.5}) mesh.quad(kMesh, {-3, y, 0.015625}, {3, y, 0.015625}, {3, y + 0.0625, 0.015625},
-                                                 {-3, y + 0.0625, 0.015625});
+    for (const double y : {0.1875, 1.5}) {
+        const double z = 0.015625, top = y + 0.0625;
+        mesh.quad(kMesh, {-3, y, z}, {3, y, z}, {3, top, z}, {-3, top, z});
+    }
     return mesh;
 }
 

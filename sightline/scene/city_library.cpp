@@ -32,9 +32,11 @@ std::vector<Material> makeMaterials() {
     set(kMetal, "painted metal", 0.18f, 0.24f, 0.22f);
     set(kWood, "wood", 0.52f, 0.36f, 0.22f);
     set(kBark, "bark", 0.36f, 0.28f, 0.21f);
-    for (Material* leaf : {&set(kLeaf, "leaves", 0.33f, 0.52f, 0.20f), &set(kDarkLeaf, "dark leaves", 0.20f, 0.40f, 0.19f)}) {
-        leaf->alpha_mode = AlphaMode::kMask;
-        leaf->double_sided = true;
+    set(kLeaf, "leaves", 0.33f, 0.52f, 0.20f);
+    set(kDarkLeaf, "dark leaves", 0.20f, 0.40f, 0.19f);
+    for (const MaterialId leaf : {kLeaf, kDarkLeaf}) {
+        materials[leaf].alpha_mode = AlphaMode::kMask;
+        materials[leaf].double_sided = true;
     }
     set(kRed, "red paint", 0.72f, 0.13f, 0.12f);
     set(kBlue, "blue paint", 0.15f, 0.28f, 0.58f);

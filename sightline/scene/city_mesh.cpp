@@ -4,6 +4,7 @@
 // Gary Meisters. Polygons Have Ears. 1975.
 #include "sightline/scene/city_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -11,6 +12,9 @@
 
 namespace sightline::city {
 namespace {
+
+constexpr double kTransom = 0.25;  // half the height left open between panes  [metres]
+constexpr int kMostPanes = 4;     // in a bay
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
@@ -54,9 +58,14 @@ void addBay(MeshBuilder& mesh, const BodyMaterials& materials, const std::array<
     }
     mesh.quad(materials.bay, inner[0], inner[1], inner[2], inner[3]);
     if (!wall.glazed || wall.depth <= 0) return;
-    std::array<glm::dvec3, 4> pane = cell;
-    for (glm::dvec3& corner : pane) corner -= normal * (0.5 * wall.depth);
-    mesh.quad(materials.glass, pane[0], pane[1], pane[2], pane[3]);
+    const double height = cell[3].y - cell[0].y;
+    const int panes = std::clamp(static_cast<int>(height / kStorey + 0.5), 1, kMostPanes);
+    const glm::dvec3 set_back = normal * (0.5 * wall.depth);
+    for (int pane = 0; pane < panes; ++pane) {
+        const double low = height * pane / panes + kTransom, high = height * (pane + 1) / panes - kTransom;
+        const auto at = [&](int corner, double y) { return cell[corner] - set_back + glm::dvec3(0, y, 0); };
+        mesh.quad(materials.glass, at(0, low), at(1, low), at(1, high), at(0, high));
+    }
 }
 
 }  // namespace

@@ -37,6 +37,8 @@ void addBox(MeshBuilder& mesh, uint32_t material, const glm::dvec3& min, const g
 
 /// Right-handed axes of an extrusion: an outline lies in (u, v), counter-clockwise, and is carried along w.
 struct Frame { glm::dvec3 origin, u, v, w; };
+inline constexpr double kStorey = 3.25;  ///< height of a storey [metres]
+
 inline constexpr Frame kUpright{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}};    ///< outlines (z, x), carried up
 inline constexpr Frame kAcross{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};    ///< profiles (z, y), carried to -x
 inline constexpr Frame kSideways{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};   ///< profiles (x, y), carried to +z
@@ -62,7 +64,7 @@ struct Wall {
     int bays = 0;         ///< 0: plain
     double pier = 0;      ///< width of the plain strips between and beside the bays  [metres]
     double depth = 0;     ///< of the bays; negative stands out                       [metres, != 0]
-    bool glazed = false;  ///< a pane closes each bay half-way
+    bool glazed = false;  ///< up to four panes close each bay half-way, about one per storey
 };
 
 struct BodyMaterials { uint32_t wall, bay, roof, glass; };

@@ -22,7 +22,8 @@ void parkCars(Random& random, const Side& side, bool opens, Planter& planter) {
         const Item car = carOf(random);
         const int turned = random.below(4) == 0 ? 2 : 0;
         const double shift = random.uniform(-0.5, 0.5);
-        if (parked && !laneAt(side, opens, s, 7)) planter.put(car, side.at(s + shift, kParking), 0, side.quarter + turned);
+        if (!parked || laneAt(side, opens, s, 7)) continue;
+        planter.put(car, side.at(s + shift, kParking), 0, side.quarter + turned);
     }
 }
 
@@ -53,7 +54,8 @@ void fillStreet(Random& random, const Side& side, Item tree, bool opens, Planter
         if (s + kTreeStep <= side.length - 10) putBetween(random, side, s, step % 2 == 0, planter);
     }
     parkCars(random, side, opens, planter);
-    for (const double s : {5.5, 7.0, side.length - 5.5}) planter.put(kBollard, side.at(s, -kKerb - 0.375), kPavement, 0);
+    for (const double s : {5.5, 7.0, side.length - 5.5})
+        planter.put(kBollard, side.at(s, -kKerb - 0.375), kPavement, 0);
     if (random.below(3) == 0) planter.put(kCrossing, side.at(9, 0), 0, side.quarter + 1);
     if (random.below(2) == 0) planter.put(kSign, side.at(side.length - 8, kKerbLine), kPavement, side.quarter + 1);
 }
@@ -95,18 +97,46 @@ void fillSquare(Random& random, const Block& block, Planter& planter) {
     }
 }
 
-void fillYards(Random& random, const Block& block, bool split, int turn, Planter& planter) {
+void fillMarket(Random& random, Planter& planter) {
+    planter.put(kMonument, {0, 0}, kPavement, 0, glm::dvec3(1.5));
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        const Side side = sideOf({glm::dvec2(-40.0), glm::dvec2(40.0)}, quarter);
+        planter.put(kLawn, side.at(21, -21), kPavement, quarter, {30, 1, 30});
+        planter.put(kKiosk, side.at(40, -8), kPavement, quarter);
+        for (int i = 0; i < 6; ++i) {  // an avenue of trees around the market, and a path to its middle
+            const double scale = random.uniform(0.9, 1.1);
+            const int turn = static_cast<int>(random.below(4));
+            planter.put(kPlaneTree, side.at(4 + 13 * i + (i > 2 ? 7 : 0), 0), kPavement, turn, {scale, scale, scale});
+        }
+        for (int i = 0; i < 4; ++i) {
+            const Item tree = random.below(3) == 0 ? kPoplar : kLimeTree;
+            const double x = random.uniform(-4, 4), z = random.uniform(-4, 4);
+            planter.put(tree, side.at(13.0 + 16 * (i % 2) + x, -13.0 - 16 * (i / 2) + z), kPavement, i);
+        }
+        for (int i = 0; i < 4; ++i) {
+            planter.put(kHedge, side.at(8 + 8.0 * i, -4.5), kPavement, quarter, {i % 2 ? -1.0 : 1.0, 1, 1});
+            planter.put(kBench, side.at(12 + 8.0 * i, -3.5), kPavement, quarter);
+        }
+        for (int i = 0; i < 3; ++i) {
+            planter.put(kLamp, side.at(37.5, -14.0 - 8 * i), kPavement, quarter + 3);
+            planter.put(kPlanter, side.at(42.5, -12.0 - 8 * i), kPavement, quarter + 1);
+            planter.put(i == 1 ? kBicycleStand : kBin, side.at(48 + 9.0 * i, -3.5), kPavement, quarter);
+        }
+    }
+}
+
+void fillYards(Random& random, const Block& block, bool split, int turn, bool bare, Planter& planter) {
     for (const Rectangle& plot : plotsOf(block, split, turn)) {
         const glm::dvec2 middle = 0.5 * (plot.min + plot.max), size = plot.max - plot.min - 2 * (kRowDepth + 1);
         planter.put(kLawn, middle, kPavement, 0, {size.x - 2, 1, size.y - 2});
-        const int trees = split ? 5 : 9;
+        const int trees = bare ? 3 : split ? 5 : 9;
         for (int i = 0; i < trees; ++i) {
             const double x = random.uniform(-0.45, 0.45), z = random.uniform(-0.45, 0.45);
             const double scale = random.uniform(0.7, 1.1);
             const Item tree = static_cast<Item>(kPlaneTree + random.below(3));
             planter.put(tree, middle + glm::dvec2(x * size.x, z * size.y), kPavement, i % 4, {scale, scale, scale});
         }
-        const int others = split ? 4 : 8;
+        const int others = bare ? 2 : split ? 4 : 8;
         for (int i = 0; i < others; ++i) {
             constexpr Item kChoice[] = {kShed, kFence, kHedge, kBench, kBin, kFence};
             const Item item = kChoice[random.below(6)];
