@@ -47,9 +47,10 @@ glm::dmat4 orthographic(double height, double aspect, double z_near, double z_fa
     m[1][1] = 2.0 / height;
     m[3][3] = 1.0;
     if (std::isinf(z_far)) {
-        // z = -1 at the near plane and falls short of 1 at any depth that double can tell apart.
-        m[2][2] = -0x1p-60;
-        m[3][2] = -1.0 - z_near * 0x1p-60;
+        // z = -1 at the near plane and 1 at 2^31 world units: small enough a slope for any world, and large enough for
+        // the near plane to be known to a millionth of a unit.
+        m[2][2] = -0x1p-30;
+        m[3][2] = -1.0 - z_near * 0x1p-30;
     } else {
         m[2][2] = -2.0 / (z_far - z_near);
         m[3][2] = -(z_far + z_near) / (z_far - z_near);

@@ -32,7 +32,7 @@ struct View {
     uint32_t layers = ~0u;       ///< objects outside these layers are neither reported nor hide
     uint32_t stages = kAllStages;             ///< bits of Stage: which stages may cull
     uint32_t occluder_triangles = 1u << 20;   ///< work budget: triangles that may be rasterized  [limit]
-    uint32_t occlusion_width = 640;           ///< a wider viewport gets an occlusion buffer of this width  [pixels]
+    uint32_t occlusion_width = 960;           ///< a wider viewport gets an occlusion buffer of this width  [pixels]
     bool time_stages = false;    ///< fill StageStats::nanoseconds (costs some time itself)
 };
 
@@ -47,7 +47,7 @@ glm::dmat4 perspective(double fov_y, double aspect, double z_near,
                        double z_far = std::numeric_limits<double>::infinity());
 
 /// @param height  full height of the view volume [world units]
-/// z_far may be infinity: objects are then never culled for their depth.
+/// z_far may be infinity, which stands for 2^31 world units here.
 glm::dmat4 orthographic(double height, double aspect, double z_near, double z_far);
 
 /// The eye of a perspective view, or, for an orthographic one, the origin of its eye space.

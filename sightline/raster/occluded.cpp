@@ -132,12 +132,13 @@ HWY_INLINE bool forOpenTiles(DepthTiles& tiles, const PixelRect& rect, Look look
     return true;
 }
 
-bool isHiddenKernel(DepthTiles& tiles, const PixelRect& rect) {
+bool isHiddenKernel(DepthTiles& tiles, const PixelRect& rect, Seams seams) {
     // First the cheap answer: one pixel that stays open makes the rectangle visible.
     bool undecided = false;
     const bool closed = forOpenTiles(tiles, rect, [&](uint32_t tile, int32_t column, int32_t row) HWY_ATTR {
         const uint64_t open = openPixels(tiles, tile, rect, column, row);
         undecided |= open != 0;
+        if (seams == Seams::kLeave) return !open;
         return !(open & (~tiles.seam_mask[tile] | tiles.tried[tile]));
     });
     if (!closed || !undecided) return closed;
@@ -145,7 +146,7 @@ bool isHiddenKernel(DepthTiles& tiles, const PixelRect& rect) {
         pairSeamsKernel(tiles, tile);
         for (uint64_t open = openPixels(tiles, tile, rect, column, row); open; open &= open - 1) {
             const int bit = std::countr_zero(open);
-            if (!resolveSeam(tiles, tile, bit)) return false;
+            if (!resolveSeam(tiles, tile, bit, rect.nearness)) return false;
             if (!(tiles.depth[64 * size_t{tile} + static_cast<size_t>(bit)] > rect.nearness)) return false;
         }
         return true;
@@ -165,8 +166,8 @@ HWY_EXPORT(isHiddenKernel);
 HWY_EXPORT(pairSeamsKernel);
 HWY_EXPORT(writeOutKernel);
 
-bool isHidden(DepthTiles& tiles, const PixelRect& rect) {
-    return HWY_DYNAMIC_DISPATCH(isHiddenKernel)(tiles, rect);
+bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams) {
+    return HWY_DYNAMIC_DISPATCH(isHiddenKernel)(tiles, rect, seams);
 }
 
 void pairSeams(DepthTiles& tiles, uint32_t tile) { HWY_DYNAMIC_DISPATCH(pairSeamsKernel)(tiles, tile); }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "sightline/geom/occluder.h"
@@ -96,6 +97,12 @@ struct DepthTiles {
         return form[tile] == Form::kPlane ? ~uint64_t{0} : form[tile] == Form::kEmpty ? 0 : covered[tile];
     }
 
+    /// Of a pixel of a tile in form kPixels or kEmpty.
+    float depthAt(uint32_t tile, int bit) const {
+        return form[tile] == Form::kPixels ? depth[64 * size_t{tile} + static_cast<size_t>(bit)]
+                                           : -std::numeric_limits<float>::infinity();
+    }
+
     std::vector<double> px, py, pd;        ///< projected vertices of the frame; px is NaN before the near plane
     std::vector<DrawnCluster> drawn;
     std::vector<ClippedPolygon> clipped;
@@ -115,8 +122,14 @@ struct DepthTiles {
 /// @param flips   the object's transform mirrors: its counter-clockwise triangles are back faces
 void drawCluster(DepthTiles& tiles, const Screen& object, bool flips, const DrawnCluster& cluster);
 
-/// Whether the buffer surely hides everything in the rectangle. Resolves the seam pixels that decide.
-bool isHidden(DepthTiles& tiles, const PixelRect& rect);
+/// What to do where only pixels that polygons share stand between an answer and a rectangle.
+enum class Seams : uint8_t {
+    kResolve,  ///< resolve those that decide, and remember them
+    kLeave,    ///< take them for open: cheaper, and good enough to decide whether to draw something
+};
+
+/// Whether the buffer surely hides everything in the rectangle.
+bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams = Seams::kResolve);
 
 /// Makes a tile's pixels valid in the depth array.
 void writeOut(DepthTiles& tiles, uint32_t tile);
@@ -131,8 +144,8 @@ bool findSharedSide(const DepthTiles& tiles, const SeamPolygon& a, const SeamPol
 void pairSeams(DepthTiles& tiles, uint32_t tile);
 
 /// Tries to cover one pixel by the polygons that share it; true if it is covered now.
-/// @param tile_index  which tile
-/// @param bit         which pixel of it, 0 to 63
-bool resolveSeam(DepthTiles& tiles, uint32_t tile_index, int bit);
+/// @param bit     which pixel of the tile, 0 to 63
+/// @param wanted  the nearness that would do: the dearer methods are tried only if the cheaper ones fall short of it
+bool resolveSeam(DepthTiles& tiles, uint32_t tile, int bit, float wanted);
 
 }  // namespace sightline

@@ -206,10 +206,8 @@ void Query::Impl::offerOccluder(const detail::ObjectRecord& object) {
 }
 
 void Query::Impl::draw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box) {
-    // A polygon that spans less than half a tile costs more than the little that it hides is worth.
-    constexpr uint32_t kWorthwhile = 32;  // [pixels a polygon]
-    const uint32_t area = static_cast<uint32_t>((box.rect.x1 - box.rect.x0) * (box.rect.y1 - box.rect.y0));
-    if (!box.doubt && area < kWorthwhile * instance.occluder->clusters[cluster].polygon_count) return;
+    constexpr int32_t kLeastExtent = 4;  // [pixels]: what is smaller hides next to nothing
+    if (!box.doubt && box.rect.x1 - box.rect.x0 < kLeastExtent && box.rect.y1 - box.rect.y0 < kLeastExtent) return;
     if (stats.occluder_triangles >= view.occluder_triangles) {
         stats.budget_spent = true;
         return;
@@ -223,7 +221,7 @@ void Query::Impl::visit(const Pending& entry) {
         BoxAnswer box;
         box.rect = entry.rect;
         box.doubt = !entry.testable;
-        if (box.doubt || !isHidden(tiles, box.rect)) draw(instances[entry.owner], entry.index, box);
+        if (box.doubt || !isHidden(tiles, box.rect, Seams::kLeave)) draw(instances[entry.owner], entry.index, box);
         return;
     }
     if (occlusion && entry.testable && isHidden(tiles, entry.rect))

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -45,7 +46,7 @@ struct Drawing {
     bool resolve(uint32_t x, uint32_t y) {
         const uint32_t tile = y / 8 * tiles.stride + x / 8, bit = y % 8 * 8 + x % 8;
         if (tiles.coveredBits(tile) >> bit & 1) return true;
-        return resolveSeam(tiles, tile, static_cast<int>(bit));
+        return resolveSeam(tiles, tile, static_cast<int>(bit), std::numeric_limits<float>::infinity());
     }
 
     void resolveAll() {
