@@ -324,10 +324,12 @@ void setSideKeys(const DepthTiles& tiles, SeamPolygon& polygon) {
         if (forward) polygon.forward |= static_cast<uint8_t>(1u << i);
         else std::swap(from, to);
         polygon.side_key[i] = hashPoint(to, hashPoint(from, tiles.drawn[polygon.drawn].transform_hash));
+        polygon.key_bits |= uint64_t{1} << (polygon.side_key[i] & 63);
     }
 }
 
 bool findSharedSide(const DepthTiles& tiles, const SeamPolygon& a, const SeamPolygon& b, int& side_a, int& side_b) {
+    if (!(a.key_bits & b.key_bits)) return false;
     for (int i = 0; i < a.corners; ++i) {
         if (a.open >> i & 1) continue;
         for (int j = 0; j < b.corners; ++j) {

@@ -48,6 +48,7 @@ struct SeamPolygon {
     RasterPolygon raster;
     uint64_t side_key[4] = {};  ///< per side a hash of its edge in world space, the same for both directions;
                                 ///< set by setSideKeys(), when first needed
+    uint64_t key_bits = 0;      ///< bit (key mod 64) of each side: polygons without a common bit share no side
     bool keyed = false;
     uint32_t drawn = 0;         ///< index into DepthTiles::drawn
     uint32_t clipped = kWhole;  ///< index into DepthTiles::clipped, or kWhole

@@ -224,7 +224,9 @@ void Query::Impl::visit(const Pending& entry) {
         if (box.doubt || !isHidden(tiles, box.rect, Seams::kLeave)) draw(instances[entry.owner], entry.index, box);
         return;
     }
-    if (occlusion && entry.testable && isHidden(tiles, entry.rect))
+    // A node in doubt is opened: its children's smaller rectangles need fewer seams.
+    const Seams seams = entry.kind == Pending::Kind::kNode ? Seams::kLeave : Seams::kResolve;
+    if (occlusion && entry.testable && isHidden(tiles, entry.rect, seams))
         return cull(entry.first, entry.count, Stage::kOcclusion);
     if (entry.kind == Pending::Kind::kNode) return expand(entry.index, entry.planes);
     const uint32_t item = state().itemOf(state().bvh.order[entry.index]);
