@@ -59,8 +59,8 @@ glm::dmat4 orthographic(double height, double aspect, double z_near, double z_fa
 }
 
 glm::dvec3 eyePosition(const View& view) {
-    const glm::dmat3 rotation(view.view);
-    return -(glm::transpose(rotation) * glm::dvec3(view.view[3]));
+    // The inverse, not the transpose: a matrix that was rounded to float is not quite a rotation.
+    return -(glm::inverse(glm::dmat3(view.view)) * glm::dvec3(view.view[3]));
 }
 
 bool isOrthographic(const View& view) {
