@@ -20,7 +20,7 @@ ExactBoxes::ExactBoxes(const Scene& scene) : scene_(scene), boxes_(objectBoxes(s
 }
 
 ExactBoxes::Answer ExactBoxes::test(const View& view, uint32_t supersampling) const {
-    const Screen screen = makeScreen(view, view.occlusion_width);
+    const Screen screen = makeScreen(view, view.occlusion_size);
     const Frustum frustum = makeFrustum(view);
     std::vector<DrawItem> items;
     FlatBoxes flat(boxes_);

@@ -72,7 +72,7 @@ bool isUsable(const View& view) {
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row)
             if (!std::isfinite(view.view[column][row]) || !std::isfinite(view.projection[column][row])) return false;
-    if (view.width == 0 || view.height == 0) return false;
+    if (view.width == 0 || view.height == 0 || !(view.jitter >= 0.0 && view.jitter <= 1e6)) return false;
     const double determinant = glm::determinant(view.projection);
     return std::isfinite(determinant) && determinant != 0.0;
 }

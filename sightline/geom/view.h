@@ -28,11 +28,12 @@ struct View {
     glm::dmat4 projection{1.0};  ///< eye to clip
     uint32_t width = 1280;       ///< of the viewport                             [pixels, >= 1]
     uint32_t height = 720;       ///<                                             [pixels, >= 1]
-    double jitter = 0.5;         ///< largest shift of the image that the frame may use  [pixels, >= 0]
+    double jitter = 0.5;         ///< largest shift of the image that the frame may use  [pixels, 0 to 1e6]
     uint32_t layers = ~0u;       ///< objects outside these layers are neither reported nor hide
     uint32_t stages = kAllStages;             ///< bits of Stage: which stages may cull
     uint32_t occluder_triangles = 1u << 20;   ///< work budget: triangles that may be rasterized  [limit]
-    uint32_t occlusion_width = 960;           ///< a wider viewport gets an occlusion buffer of this width  [pixels]
+    uint32_t occlusion_size = 960;            ///< longer side of the occlusion buffer; a viewport that is smaller
+                                              ///< gets its own size  [pixels, limit: 1 to 8192]
     bool time_stages = false;    ///< fill StageStats::nanoseconds (costs some time itself)
 };
 
@@ -56,7 +57,8 @@ glm::dvec3 eyePosition(const View& view);
 /// True if clip w is the same for all points: parallel projection.
 bool isOrthographic(const View& view);
 
-/// True if all matrices are finite, the viewport has pixels, and the projection can be inverted.
+/// True if all matrices are finite, the viewport has pixels, the jitter is in its range, and the projection can be
+/// inverted.
 bool isUsable(const View& view);
 
 }  // namespace sightline

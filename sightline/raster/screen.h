@@ -26,8 +26,8 @@ struct Screen {
 };
 
 /// @param view       isUsable(view)
-/// @param max_width  wider viewports get a buffer of this width, and a height in proportion  [pixels]
-Screen makeScreen(const View& view, uint32_t max_width);
+/// @param max_size  the buffer's longer side is no longer than this, rounded up to whole tiles  [pixels, 1 to 8192]
+Screen makeScreen(const View& view, uint32_t max_size);
 
 /// The rows for positions in object space: position -> transform -> minus eye -> rows.
 Screen objectScreen(const Screen& screen, const glm::dmat4& transform);

@@ -261,7 +261,7 @@ void Query::Impl::walkFrustumOnly(uint32_t root, uint8_t all_planes) {
 
 void Query::Impl::walk() {
     frustum = makeFrustum(view);
-    screen = makeScreen(view, std::max(view.occlusion_width, 1u));
+    screen = makeScreen(view, view.occlusion_size);
     if (uses(Stage::kOcclusion)) tiles.clear(screen.width, screen.height);
     for (uint32_t item : state().unbounded) report(item);
     of(Stage::kFrustum).doubt += visible.size();

@@ -257,6 +257,19 @@ TEST(Query, ASpentBudgetKeepsMoreAndSaysSo) {
     EXPECT_LE(poor.occluder_triangles, 40u + 2 * OccluderCluster::kMaxPolygons);
 }
 
+TEST(Query, TakesViewportsOfAnyShape) {
+    MadeWorld made;
+    made.fill(4, 100, {0, 0, 0});
+    const Snapshot now = made.world.commit();
+    Query query;
+    for (const auto& [width, height] : {std::pair{1u, 4000000000u}, {4000000000u, 1u}, {1u, 1u}, {65535u, 65535u}}) {
+        const View view = viewFrom({3, 0, 3}, {1, 0, -0.4}, 60, width, height);
+        const VisibleSet set = query.visible(now, view);
+        EXPECT_LE(set.objects.size(), 100u) << width << "x" << height;
+        EXPECT_EQ(set.stats.visible + set.stats.stages[0].culled + set.stats.stages[1].culled, 100u);
+    }
+}
+
 TEST(Query, KeepsWhateverItCannotJudge) {
     MadeWorld made;
     made.add({-5, -5, -10}, {5, 5, -9});
@@ -276,6 +289,9 @@ TEST(Query, KeepsWhateverItCannotJudge) {
     EXPECT_EQ(set.objects.size(), 4u);
     EXPECT_EQ(set.stats.stages[0].doubt, 3u);
     view.view[3].x = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(query.visible(now, view).objects.size(), 4u);
+    view = viewFrom({100, 0, 0}, {1, 0, 0});
+    view.jitter = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(query.visible(now, view).objects.size(), 4u);
     view = viewFrom({100, 0, 0}, {1, 0, 0});
     view.width = 0;
