@@ -54,24 +54,34 @@ void projectVertices(const Screen& object, const Occluder& occluder, const Occlu
 struct PixelOffsets {
     alignas(64) float edge[4][64];
     alignas(64) float depth[64];
-    bool ready = false;
+    bool edges_ready = false, depth_ready = false;
 };
 
-void makeOffsets(const RasterPolygon& polygon, PixelOffsets& out) {
+/// a x + b y at the centres of a tile's pixels, relative to its own.
+void fillOffsets(double a, double b, float* values) {
     const F16 d;
-    const auto fill = [&](double a, double b, float* values) HWY_ATTR {
-        for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
-            const auto place = hn::Iota(d, static_cast<float>(i));
-            const auto row = hn::Floor(hn::Mul(place, hn::Set(d, 0.125f)));
-            const auto x = hn::Sub(hn::Sub(place, hn::Mul(row, hn::Set(d, 8.0f))), hn::Set(d, 3.5f));
-            const auto y = hn::Sub(row, hn::Set(d, 3.5f));
-            hn::Store(hn::Add(hn::Mul(x, hn::Set(d, static_cast<float>(a))), hn::Mul(y, hn::Set(d, static_cast<float>(b)))),
-                      d, values + i);
-        }
-    };
-    for (int e = 0; e < polygon.edges; ++e) fill(polygon.edge[e].a, polygon.edge[e].b, out.edge[e]);
-    fill(polygon.planar ? polygon.dx : 0.0, polygon.planar ? polygon.dy : 0.0, out.depth);
-    out.ready = true;
+    for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
+        const auto place = hn::Iota(d, static_cast<float>(i));
+        const auto row = hn::Floor(hn::Mul(place, hn::Set(d, 0.125f)));
+        const auto x = hn::Sub(hn::Sub(place, hn::Mul(row, hn::Set(d, 8.0f))), hn::Set(d, 3.5f));
+        const auto y = hn::Sub(row, hn::Set(d, 3.5f));
+        hn::Store(hn::Add(hn::Mul(x, hn::Set(d, static_cast<float>(a))), hn::Mul(y, hn::Set(d, static_cast<float>(b)))), d,
+                  values + i);
+    }
+}
+
+const PixelOffsets& withEdges(const RasterPolygon& polygon, PixelOffsets& offsets) {
+    for (int e = 0; e < polygon.edges && !offsets.edges_ready; ++e)
+        fillOffsets(polygon.edge[e].a, polygon.edge[e].b, offsets.edge[e]);
+    offsets.edges_ready = true;
+    return offsets;
+}
+
+const PixelOffsets& withDepth(const RasterPolygon& polygon, PixelOffsets& offsets) {
+    if (!offsets.depth_ready)
+        fillOffsets(polygon.planar ? polygon.dx : 0.0, polygon.planar ? polygon.dy : 0.0, offsets.depth);
+    offsets.depth_ready = true;
+    return offsets;
 }
 
 /// One tile's view of a polygon.
@@ -141,11 +151,11 @@ void addSeam(DepthTiles& tiles, uint32_t tile, uint64_t mask, const RasterPolygo
 /// Draws into one tile that the polygon covers in part, or whose depth it does not simply replace.
 void drawTile(DepthTiles& tiles, uint32_t tile, const RasterPolygon& polygon, const TilePolygon& p,
               PixelOffsets& offsets, const SeamPolygon& source, uint32_t& record) {
-    if (!offsets.ready) makeOffsets(polygon, offsets);
-    TileMasks masks = p.cutting ? classifyPixels(p, offsets, polygon.slack) : TileMasks{p.window, p.window};
+    TileMasks masks{p.window, p.window};
+    if (p.cutting) masks = classifyPixels(p, withEdges(polygon, offsets), polygon.slack);
     if (!polygon.covers) masks.inner = 0;
     uint64_t seam = masks.outer & ~masks.inner;
-    if (masks.inner) coverPixels(tiles, tile, p.depth, polygon.farthest, offsets.depth, masks.inner);
+    if (masks.inner) coverPixels(tiles, tile, p.depth, polygon.farthest, withDepth(polygon, offsets).depth, masks.inner);
     if (seam & tiles.coveredBits(tile)) {
         toPixels(tiles, tile);
         seam &= pixelsNotNearer(tiles.depth.data() + 64 * size_t{tile}, p.nearest);
@@ -170,7 +180,7 @@ void columnsOfRow(const RasterPolygon& polygon, const double* inverse_a, int32_t
 
 /// What changes from tile to tile along a row.
 struct ChunkSetup {
-    double inverse_a[4];  ///< 0 for an edge too level to bound a row
+    double inverse_a[4];  ///< of wide polygons; 0 for an edge too level to bound a row
     float step_a[4];   ///< edge functions' change from one tile to the next
     float step_d;      ///< the plane's
     float tilt;        ///< the plane's change over a pixel
@@ -260,12 +270,12 @@ TilePolygon seenByTile(const RasterPolygon& polygon, const ChunkSetup& setup, co
     return p;
 }
 
-ChunkSetup makeChunkSetup(const RasterPolygon& polygon) {
+ChunkSetup makeChunkSetup(const RasterPolygon& polygon, bool wide) {
     ChunkSetup setup;
     for (int e = 0; e < polygon.edges; ++e) {
         const double a = polygon.edge[e].a;
         setup.step_a[e] = static_cast<float>(8.0 * a);
-        setup.inverse_a[e] = std::abs(a) < 1e-6 ? 0.0 : 1.0 / a;
+        if (wide) setup.inverse_a[e] = std::abs(a) < 1e-6 ? 0.0 : 1.0 / a;
     }
     setup.step_d = polygon.planar ? static_cast<float>(8.0 * polygon.dx) : 0.0f;
     setup.tilt = polygon.planar ? static_cast<float>(std::abs(polygon.dx) + std::abs(polygon.dy)) : 0.0f;
@@ -275,8 +285,8 @@ ChunkSetup makeChunkSetup(const RasterPolygon& polygon) {
 void drawPolygon(DepthTiles& tiles, const RasterPolygon& polygon, const SeamPolygon& source) {
     uint32_t record = DepthTiles::kNone;
     PixelOffsets offsets;
-    const ChunkSetup setup = makeChunkSetup(polygon);
     const bool wide = (polygon.x1 >> 6) - (polygon.x0 >> 6) > 1;
+    const ChunkSetup setup = makeChunkSetup(polygon, wide);
     ChunkAnswer answer;
     for (int32_t row = polygon.y0 >> 3; row <= polygon.y1 >> 3; ++row) {
         int32_t first = polygon.x0 >> 3, last = polygon.x1 >> 3;

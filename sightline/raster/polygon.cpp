@@ -15,8 +15,9 @@ constexpr double kEvaluation = 0x1p-14;     // [pixels]: bound on the error of a
 
 EdgeFunction makeEdge(double x0, double y0, double x1, double y1, double length) {
     EdgeFunction e;
-    e.a = (y0 - y1) / length;
-    e.b = (x1 - x0) / length;
+    const double scale = 1.0 / length;
+    e.a = (y0 - y1) * scale;
+    e.b = (x1 - x0) * scale;
     // Anchored at the end nearer to the buffer, so that a far corner's magnitude does not enter.
     // Chosen without regard to the direction: the same edge the other way round has the same function, negated.
     const double far0 = std::abs(x0) + std::abs(y0), far1 = std::abs(x1) + std::abs(y1);
@@ -29,8 +30,9 @@ EdgeFunction makeEdge(double x0, double y0, double x1, double y1, double length)
 void makePlane(const double* x, const double* y, const double* d, double area2, int c, RasterPolygon& out) {
     const double ux = x[c - 1] - x[0], uy = y[c - 1] - y[0], ud = d[c - 1] - d[0];
     const double vx = x[c] - x[0], vy = y[c] - y[0], vd = d[c] - d[0];
-    out.dx = (ud * vy - vd * uy) / area2;
-    out.dy = (vd * ux - ud * vx) / area2;
+    const double scale = 1.0 / area2;
+    out.dx = (ud * vy - vd * uy) * scale;
+    out.dy = (vd * ux - ud * vx) * scale;
     out.d0 = d[0] - out.dx * x[0] - out.dy * y[0];
     out.planar = std::isfinite(out.d0) && std::isfinite(out.dx) && std::isfinite(out.dy);
 }
@@ -73,10 +75,10 @@ bool makeRasterPolygon(const double* x, const double* y, const double* d, int co
     if (!(x_max + slack >= 0 && y_max + slack >= 0 && x_min - slack < width && y_min - slack < height)) return false;
     if (!(x_min > -kFarthestCorner && y_min > -kFarthestCorner && x_max < kFarthestCorner && y_max < kFarthestCorner))
         return false;
-    out.x0 = static_cast<int32_t>(std::max(0.0, std::floor(x_min - slack)));
-    out.y0 = static_cast<int32_t>(std::max(0.0, std::floor(y_min - slack)));
-    out.x1 = static_cast<int32_t>(std::min(width - 1.0, std::floor(x_max + slack)));
-    out.y1 = static_cast<int32_t>(std::min(height - 1.0, std::floor(y_max + slack)));
+    out.x0 = static_cast<int32_t>(std::max(0.0, x_min - slack));  // not negative: truncation is the floor
+    out.y0 = static_cast<int32_t>(std::max(0.0, y_min - slack));
+    out.x1 = static_cast<int32_t>(std::min(width - 1.0, x_max + slack));
+    out.y1 = static_cast<int32_t>(std::min(height - 1.0, y_max + slack));
 
     const double size = std::max(std::abs(d_min), std::abs(d_max));
     const double corner_error = size * 0x1p-36 + depth_error;
