@@ -77,7 +77,7 @@ std::vector<To> decode(Document& document, uint32_t index, Convert&& convert) {
     decodeRun(document, sparse.values, sparse.count, components, values.data(), convert);
     for (size_t i = 0; i < places.size(); ++i) {
         if (places[i] >= accessor.count)
-            fail(place + ".sparse", "index out of range: {} of {}", places[i], accessor.count);
+            fail(place + ".sparse", "index {} is out of range of {} elements", places[i], accessor.count);
         std::copy_n(values.begin() + static_cast<ptrdiff_t>(i * components), components,
                     out.begin() + static_cast<ptrdiff_t>(size_t(places[i]) * components));
     }

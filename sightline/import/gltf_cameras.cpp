@@ -45,6 +45,13 @@ CameraSource readCamera(const Json& json, const std::string& place) {
     return camera;
 }
 
+// A scale of zero, as some files hide a node with, leaves a camera without a direction.
+bool looksSomewhere(const glm::dmat4& world) {
+    const double up = glm::length(glm::dvec3(world[1])), back = glm::length(glm::dvec3(world[2]));
+    if (!(up > 0 && back > 0 && std::isfinite(up) && std::isfinite(back))) return false;
+    return glm::length(glm::cross(glm::dvec3(world[1]) / up, glm::dvec3(world[2]) / back)) > 1e-9;
+}
+
 }  // namespace
 
 std::vector<CameraSource> readCameras(const Json& root) {
@@ -63,6 +70,7 @@ std::vector<SceneCamera> placeCameras(const NodeTree& tree, const std::vector<Ca
         const Node& node = tree.nodes[i];
         if (!node.drawn || !node.camera) continue;
         if (!finiteMatrix(node.world)) fail(at("nodes", i), "its world transform is not finite");
+        if (!looksSomewhere(node.world)) continue;
         out.push_back(cameras[*node.camera]);
         out.back().transform = node.world;
         if (!node.name.empty()) out.back().name = node.name;

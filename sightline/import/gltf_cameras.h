@@ -14,7 +14,7 @@ using CameraSource = SceneCamera;
 
 std::vector<CameraSource> readCameras(const Json& root);
 
-/// One camera for each drawn node that holds one, by node.
+/// One camera for each drawn node that holds one, by node; a node that is flattened to nothing holds none.
 std::vector<SceneCamera> placeCameras(const NodeTree& tree, const std::vector<CameraSource>& cameras);
 
 }  // namespace sightline::gltf

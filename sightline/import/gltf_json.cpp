@@ -51,7 +51,7 @@ double finiteValue(const Json& value, const char* key, const std::string& place)
 
 uint32_t indexValue(const Json& value, const char* key, size_t count, const std::string& place) {
     const uint64_t number = wholeValue(value, key, place);
-    if (number >= count) fail(place, "{} out of range: {} of {}", key, number, count);
+    if (number >= count) fail(place, "{} {} is out of range of {}", key, number, count);
     return static_cast<uint32_t>(number);
 }
 

@@ -33,15 +33,31 @@ void readColor(const Json* owner, const char* key, Material& material, const std
                                static_cast<float>(color[2]), static_cast<float>(color[3])};
 }
 
-Material readMaterial(const Json& json, const std::string& place) {
+// Many writers add the extension with a factor of 0, which is an ordinary opaque surface.
+bool transmits(const Json& json, const std::string& place) {
+    const Json* transmission = extension(json, "KHR_materials_transmission", place);
+    if (!transmission) return false;
+    return number(*transmission, "transmissionFactor", place).value_or(0) > 0 ||
+           find(*transmission, "transmissionTexture");
+}
+
+// An animation may reach any factor of any material.
+bool animatesFactors(const Json& root) {
+    for (const Json& name : table(root, "extensionsUsed"))
+        if (name == "KHR_animation_pointer") return true;
+    return false;
+}
+
+Material readMaterial(const Json& json, bool animated_factors, const std::string& place) {
     Material material;
     material.name = text(json, "name", place);
     material.alpha_mode = readAlphaMode(json, place);
     material.alpha_cutoff = static_cast<float>(number(json, "alphaCutoff", place).value_or(0.5));
     material.double_sided = flag(json, "doubleSided", place);
-    // Whatever its factor says now: it may be animated or textured, and none of these surfaces may hide.
-    material.transmissive = extension(json, "KHR_materials_transmission", place) ||
-                            extension(json, "KHR_materials_diffuse_transmission", place);
+    material.transmissive = animated_factors ? extension(json, "KHR_materials_transmission", place) != nullptr
+                                             : transmits(json, place);
+    // Thin and rare: none of these hides, whatever its factor.
+    if (extension(json, "KHR_materials_diffuse_transmission", place)) material.transmissive = true;
     if (const Json* glossiness = extension(json, "KHR_materials_pbrSpecularGlossiness", place))
         readColor(glossiness, "diffuseFactor", material, place);
     readColor(findObject(json, "pbrMetallicRoughness", place), "baseColorFactor", material, place);
@@ -58,9 +74,10 @@ Materials readMaterials(const Json& root) {
         out.list.push_back({});
         out.first = 1;
     }
+    const bool animated_factors = animatesFactors(root);
     for (size_t i = 0; i < array.size(); ++i) {
         const std::string place = at("materials", i);
-        out.list.push_back(readMaterial(objectAt(array, i, place), place));
+        out.list.push_back(readMaterial(objectAt(array, i, place), animated_factors, place));
     }
     return out;
 }

@@ -85,7 +85,7 @@ std::vector<uint32_t> readCorners(Document& document, const PrimitiveSource& sou
     corners = decodeIntegers(document, *source.indices, 1, "indices");
     const auto largest = std::max_element(corners.begin(), corners.end());
     if (largest != corners.end() && *largest >= vertices)
-        fail(at("accessors", *source.indices), "indices out of range: {} of {} vertices", *largest, vertices);
+        fail(at("accessors", *source.indices), "index {} is out of range of {} vertices", *largest, vertices);
     return corners;
 }
 

@@ -14,6 +14,9 @@
 namespace sightline::gltf {
 namespace {
 
+constexpr double kFarthest = 1e100;  // squares and volumes of what is nearer stay finite
+constexpr uint64_t kMostInstances = 50'000'000;  // of one node
+
 /// A mesh as one or more nodes draw it: the same mesh unskinned, under a skin or with other morph weights is another
 /// shape.
 struct Shape {
@@ -78,7 +81,8 @@ std::vector<glm::dmat4> readInstances(Document& document, const Json& json, cons
     };
     const std::vector<float> translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4),
                              scales = read("SCALE", 3);
-    document.budget.charge(*count, sizeof(glm::dmat4) + sizeof(SceneObject), place);
+    if (*count > kMostInstances) fail(place, "{} GPU instances are more than {}", *count, kMostInstances);
+    document.budget.charge(*count, sizeof(glm::dmat4), place);
     std::vector<glm::dmat4> out(*count);
     for (size_t i = 0; i < out.size(); ++i) {
         double translation[3] = {0, 0, 0}, rotation[4] = {0, 0, 0, 1}, scale[3] = {1, 1, 1};
@@ -90,11 +94,15 @@ std::vector<glm::dmat4> readInstances(Document& document, const Json& json, cons
     return out;
 }
 
-void addObject(Scene& scene, uint32_t node, uint32_t mesh, const glm::dmat4& transform, const std::string& name) {
+void addObject(Document& document, Scene& scene, uint32_t node, uint32_t mesh, const glm::dmat4& transform,
+               const std::string& name) {
     const std::string place = at("nodes", node);
+    document.budget.charge(1, sizeof(SceneObject) + name.size(), place);
     if (!finiteMatrix(transform)) fail(place, "its world transform is not finite");
     const Box3d box = transformBox(scene.meshes[mesh].bounds, transform);
-    if (!box.finite()) fail(place, "its bounds in the world are not finite");
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(box.min[axis] >= -kFarthest && box.max[axis] <= kFarthest))
+            fail(place, "its bounds in the world are too large");
     scene.objects.push_back({node, mesh, transform, name});
 }
 
@@ -107,18 +115,19 @@ void addNode(Document& document, const Parts& parts, uint32_t index, uint32_t me
     const Json& json = table(document.root, "nodes")[index];
     const Json* instancing = extension(json, "EXT_mesh_gpu_instancing", place);
     if (!instancing) {
-        addObject(scene, index, mesh, shape_transform.value_or(node.world), name);
+        addObject(document, scene, index, mesh, shape_transform.value_or(node.world), name);
         return;
     }
     if (shape_transform) fail(place, "a skinned mesh has no GPU instances");
     for (const glm::dmat4& instance : readInstances(document, *instancing, place))
-        addObject(scene, index, mesh, node.world * instance, name);
+        addObject(document, scene, index, mesh, node.world * instance, name);
 }
 
 void addShape(Document& document, const Parts& parts, const std::vector<Motion>& motions, const Shape& shape,
               MeshBuilder& builder, Scene& scene) {
     const MeshSource& source = parts.meshes[shape.mesh];
     const std::string place = at("meshes", shape.mesh);
+    document.budget.charge(1, sizeof(Mesh) + source.name.size(), place);
     BuiltMesh built = builder.build(source, shape.deforms(source));
     if (built.mesh.indices.empty()) return;
     std::optional<glm::dmat4> transform;

@@ -83,7 +83,7 @@ std::vector<InfluenceSet> readSets(Document& document, const PrimitiveSource& pr
             if (set.weights[i] < 0)
                 fail(at("accessors", weight_accessor), "weight {} of vertex {} is negative", set.weights[i], i / 4);
             if (set.weights[i] > 0 && set.joints[i] >= joints)
-                fail(at("accessors", joint_accessor), "joint out of range: {} of {}", set.joints[i], joints);
+                fail(at("accessors", joint_accessor), "joint {} is out of range of {}", set.joints[i], joints);
         }
     }
     return sets;

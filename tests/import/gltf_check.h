@@ -1,0 +1,65 @@
+// What must hold for every scene that the glTF reader hands out, whatever it was made from.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "sightline/base/result.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline::test {
+
+inline std::string meshFault(const Scene& scene, const Mesh& mesh) {
+    if (mesh.indices.empty() || mesh.indices.size() % 3 != 0) return "indices are no triangles";
+    for (const uint32_t index : mesh.indices)
+        if (index >= mesh.positions.size()) return "an index is out of range";
+    if (!mesh.bounds.finite()) return "bounds are not finite";
+    for (const glm::vec3& position : mesh.positions)
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!std::isfinite(position[axis])) return "a position is not finite";
+            if (position[axis] < mesh.bounds.min[axis] || position[axis] > mesh.bounds.max[axis])
+                return "a position is out of bounds";
+        }
+    uint64_t triangles = 0;
+    for (const Primitive& primitive : mesh.primitives) {
+        if (primitive.first_triangle != triangles) return "primitives leave a gap";
+        if (primitive.material >= scene.materials.size()) return "a material is out of range";
+        triangles += primitive.triangle_count;
+    }
+    return triangles == mesh.triangles() ? "" : "primitives do not cover the triangles";
+}
+
+/// Empty, or what is wrong with the scene.
+inline std::string sceneFault(const Scene& scene) {
+    if (scene.materials.empty()) return "no material";
+    if (scene.objects.empty()) return "no object";
+    for (const Mesh& mesh : scene.meshes)
+        if (const std::string fault = meshFault(scene, mesh); !fault.empty()) return fault;
+    for (const SceneObject& object : scene.objects) {
+        if (object.mesh >= scene.meshes.size()) return "a mesh is out of range";
+        if (!transformBox(scene.meshes[object.mesh].bounds, object.transform).finite()) return "an object is not finite";
+        for (int column = 0; column < 4; ++column)
+            if (object.transform[column][3] != (column == 3 ? 1 : 0)) return "a transform is not affine";
+    }
+    for (const SceneCamera& camera : scene.cameras) {
+        if ((camera.fov_y > 0) == (camera.orthographic_height > 0)) return "a camera is of neither kind";
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row)
+                if (!std::isfinite(camera.transform[column][row])) return "a camera is not finite";
+        if (!(glm::length(glm::cross(glm::dvec3(camera.transform[1]), glm::dvec3(camera.transform[2]))) > 0))
+            return "a camera looks nowhere";
+    }
+    return worldBounds(scene).finite() ? "" : "the world is not finite";
+}
+
+/// Empty, or what is wrong with the message of an error: it must be one line that begins with the file's name.
+inline std::string messageFault(const Error& error, const std::string& name) {
+    if (error.kind != Error::Kind::kInput) return "is not an input's fault";
+    if (!error.message.starts_with(name + ": ")) return "does not name the file";
+    for (const char c : error.message)
+        if (static_cast<unsigned char>(c) < 0x20) return "is not one line";
+    return "";
+}
+
+}  // namespace sightline::test

@@ -1,0 +1,29 @@
+// Small valid files, one for each thing that the glTF reader understands: tests read them, and the fuzzer starts from them.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gltf_builder.h"
+
+namespace sightline::test {
+
+struct Sample {
+    std::string name;
+    std::string bytes;
+};
+
+/// All of them; each loads.
+std::vector<Sample> gltfSamples();
+
+/// The one of that name; an empty text if there is none.
+std::string gltfSample(const std::string& name);
+
+/// The groups that gltfSamples gathers.
+void addGeometrySamples(std::vector<Sample>& out);
+void addNodeSamples(std::vector<Sample>& out);
+void addCompressedSamples(std::vector<Sample>& out);
+void addDeformingSamples(std::vector<Sample>& out);
+
+}  // namespace sightline::test
