@@ -36,7 +36,9 @@ if [ -n "$full" ]; then
 
     step "fuzzer, one minute"
     build fuzz
-    tests/fuzz/run 60
+    mkdir -p build/fuzz/found
+    build/fuzz/tests/fuzz/sightline_fuzz_gltf -max_total_time=60 -max_len=4096 -dict=tests/fuzz/gltf.dict \
+        -artifact_prefix=build/fuzz/ build/fuzz/found tests/fuzz/corpus/gltf
 fi
 
 step "release"

@@ -2,8 +2,7 @@
 
 # A library target sightline_NAME (alias sightline::NAME); folders add their files to it.
 function(sightline_library name)
-  file(TOUCH ${CMAKE_BINARY_DIR}/empty.cpp)
-  add_library(sightline_${name} STATIC ${CMAKE_BINARY_DIR}/empty.cpp)
+  add_library(sightline_${name} STATIC)
   add_library(sightline::${name} ALIAS sightline_${name})
   set_target_properties(sightline_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_include_directories(sightline_${name} PUBLIC

@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "sightline/base/result.h"
 #include "sightline/scene/camera_path.h"
 #include "sightline/scene/scene.h"
+
+namespace CLI {
+class App;
+}
 
 namespace sightline::cli {
 

@@ -1,10 +1,9 @@
 // The verb `cull`: the visible set along a camera path, measured, proved and reported as asked for.
 // SPDX-License-Identifier: MIT
-#include <cmath>
 #include <cstdio>
 #include <memory>
 
-#include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include "apps/cli/common.h"
 #include "apps/cli/cull_path.h"

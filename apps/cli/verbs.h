@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <functional>
-
-#include <CLI/CLI.hpp>
+namespace CLI {
+class App;
+}
 
 namespace sightline::cli {
 

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <memory>
 
-#include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include "apps/cli/common.h"
 #include "apps/cli/cull_path.h"
