@@ -13,7 +13,7 @@ namespace sightline::gltf {
 
 /// Where morph targets may take the vertices of a mesh.
 struct MorphReach {
-    std::vector<glm::dvec3> rest, low, high;  ///< [size: vertices]; low <= high on each axis
+    std::vector<glm::dvec3> rest, low, high;  ///< [size: vertices]; finite, low <= high on each axis
 };
 
 /// @param rest    weights of the rest pose; missing ones are 0
@@ -22,7 +22,7 @@ MorphReach morphReach(Document& document, const BuiltMesh& built, const std::vec
                       const std::vector<Range>& ranges);
 
 /// Makes a mesh that only morphs: positions of the rest pose, bounds of all.
-void applyMorph(const MorphReach& reach, const std::string& place, Mesh& mesh);
+void applyMorph(const MorphReach& reach, Mesh& mesh);
 
 struct Skin {
     std::vector<uint32_t> joints;  ///< nodes

@@ -3,6 +3,7 @@
 #include "sightline/import/gltf_json.h"
 
 #include <cmath>
+#include <limits>
 
 namespace sightline::gltf {
 namespace {
@@ -156,6 +157,16 @@ bool numbers(const Json& object, const char* key, std::span<double> out, const s
     if (!value->is_array() || value->size() != out.size()) fail(place, "{} is not {} numbers", key, out.size());
     for (size_t i = 0; i < out.size(); ++i) out[i] = finiteValue((*value)[i], key, place);
     return true;
+}
+
+std::vector<float> floats(const Json& object, const char* key, const std::string& place) {
+    std::vector<float> out;
+    for (const Json& element : table(object, key, place)) {
+        const double value = finiteValue(element, key, place);
+        if (std::abs(value) > std::numeric_limits<float>::max()) fail(place, "{} is too large for a float", key);
+        out.push_back(static_cast<float>(value));
+    }
+    return out;
 }
 
 }  // namespace sightline::gltf

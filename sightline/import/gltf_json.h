@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -54,5 +55,8 @@ std::string text(const Json& object, const char* key, const std::string& place);
 
 /// Fills `out` from an array of exactly that many finite numbers; false if the member is absent.
 bool numbers(const Json& object, const char* key, std::span<double> out, const std::string& place);
+
+/// An array of any number of floats; empty if the member is absent.
+std::vector<float> floats(const Json& object, const char* key, const std::string& place);
 
 }  // namespace sightline::gltf

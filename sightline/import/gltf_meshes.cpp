@@ -99,10 +99,7 @@ std::vector<MeshSource> readMeshes(const Document& document, const Materials& ma
         const Json& json = objectAt(array, i, place);
         MeshSource& mesh = out[i];
         mesh.name = text(json, "name", place);
-        const Json& weights = table(json, "weights", place);
-        std::vector<double> values(weights.size());
-        numbers(json, "weights", values, place);
-        mesh.weights.assign(values.begin(), values.end());
+        mesh.weights = floats(json, "weights", place);
         const Json& primitives = table(json, "primitives", place);
         for (size_t p = 0; p < primitives.size(); ++p) {
             const std::string primitive_place = place + at(".primitives", p);

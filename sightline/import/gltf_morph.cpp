@@ -22,6 +22,15 @@ void addTarget(const std::vector<float>& displacements, const VertexRun& run, do
     }
 }
 
+bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+// Here, vertex by vertex: a box that grows would lose a NaN.
+void checkFinite(const MorphReach& reach, const BuiltMesh& built) {
+    for (size_t i = 0; i < reach.rest.size(); ++i)
+        if (!finite(reach.low[i]) || !finite(reach.high[i]) || !finite(glm::dvec3(glm::vec3(reach.rest[i]))))
+            fail(built.runs[0].primitive->place, "its morph targets leave what a float can hold");
+}
+
 }  // namespace
 
 MorphReach morphReach(Document& document, const BuiltMesh& built, const std::vector<float>& rest,
@@ -44,10 +53,11 @@ MorphReach morphReach(Document& document, const BuiltMesh& built, const std::vec
                       t < rest.size() ? rest[t] : 0.0, t < ranges.size() ? ranges[t] : Range{0, 1}, out);
         }
     }
+    checkFinite(out, built);
     return out;
 }
 
-void applyMorph(const MorphReach& reach, const std::string& place, Mesh& mesh) {
+void applyMorph(const MorphReach& reach, Mesh& mesh) {
     mesh.deforms = true;
     mesh.bounds = {};
     for (size_t i = 0; i < reach.rest.size(); ++i) {
@@ -56,7 +66,6 @@ void applyMorph(const MorphReach& reach, const std::string& place, Mesh& mesh) {
         mesh.bounds.grow(reach.high[i]);
         mesh.bounds.grow(glm::dvec3(mesh.positions[i]));
     }
-    if (!mesh.bounds.finite()) fail(place, "its morph targets leave what a float can hold");
     // A renderer adds the targets up in single precision.
     const glm::dvec3 slack = 1e-5 * glm::max(glm::abs(mesh.bounds.min), glm::abs(mesh.bounds.max));
     mesh.bounds.min -= slack;

@@ -59,11 +59,7 @@ void readNode(const Json& json, uint32_t i, const NodeTargets& targets, std::vec
     node.mesh = index(json, "mesh", targets.meshes, place);
     node.skin = index(json, "skin", targets.skins, place);
     node.camera = index(json, "camera", targets.cameras, place);
-    if (const Json* weights = find(json, "weights")) {
-        std::vector<double> values(weights->size());
-        numbers(json, "weights", values, place);
-        node.weights.assign(values.begin(), values.end());
-    }
+    node.weights = floats(json, "weights", place);
     readTransform(json, node, place);
     readChildren(json, i, nodes, place);
 }

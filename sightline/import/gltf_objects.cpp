@@ -141,7 +141,7 @@ void addShape(Document& document, const Parts& parts, const std::vector<Motion>&
             transform = glm::dmat4(1.0);
             (*transform)[3] = glm::dvec4(anchor, 1.0);
         } else {
-            applyMorph(reach, place, built.mesh);
+            applyMorph(reach, built.mesh);
         }
     }
     const uint32_t mesh = static_cast<uint32_t>(scene.meshes.size());
