@@ -22,6 +22,18 @@ HWY_BEFORE_NAMESPACE();
 namespace sightline {
 namespace HWY_NAMESPACE {
 
+/// The centres of a tile's pixels, relative to its own.
+alignas(64) constexpr float kPixelX[64] = {
+    -3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f, -3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f,
+    -3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f, -3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f,
+    -3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f, -3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f,
+    -3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f, -3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f};
+alignas(64) constexpr float kPixelY[64] = {
+    -3.5f, -3.5f, -3.5f, -3.5f, -3.5f, -3.5f, -3.5f, -3.5f, -2.5f, -2.5f, -2.5f, -2.5f, -2.5f, -2.5f, -2.5f, -2.5f,
+    -1.5f, -1.5f, -1.5f, -1.5f, -1.5f, -1.5f, -1.5f, -1.5f, -0.5f, -0.5f, -0.5f, -0.5f, -0.5f, -0.5f, -0.5f, -0.5f,
+    0.5f,  0.5f,  0.5f,  0.5f,  0.5f,  0.5f,  0.5f,  0.5f,  1.5f,  1.5f,  1.5f,  1.5f,  1.5f,  1.5f,  1.5f,  1.5f,
+    2.5f,  2.5f,  2.5f,  2.5f,  2.5f,  2.5f,  2.5f,  2.5f,  3.5f,  3.5f,  3.5f,  3.5f,  3.5f,  3.5f,  3.5f,  3.5f};
+
 using D8 = hn::CappedTag<double, 8>;
 
 /// Projects a cluster's vertices into px, py, pd; those before the near guard get a NaN.
@@ -50,60 +62,28 @@ void projectVertices(const Screen& object, const Occluder& occluder, const Occlu
     }
 }
 
-/// What a polygon's edge functions and its plane add to a tile centre's values at each of its 64 pixels.
-struct PixelOffsets {
-    alignas(64) float edge[4][64];
-    alignas(64) float depth[64];
-    bool edges_ready = false, depth_ready = false;
-};
-
-/// a x + b y at the centres of a tile's pixels, relative to its own.
-void fillOffsets(double a, double b, float* values) {
-    const F16 d;
-    for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
-        const auto place = hn::Iota(d, static_cast<float>(i));
-        const auto row = hn::Floor(hn::Mul(place, hn::Set(d, 0.125f)));
-        const auto x = hn::Sub(hn::Sub(place, hn::Mul(row, hn::Set(d, 8.0f))), hn::Set(d, 3.5f));
-        const auto y = hn::Sub(row, hn::Set(d, 3.5f));
-        hn::Store(hn::Add(hn::Mul(x, hn::Set(d, static_cast<float>(a))), hn::Mul(y, hn::Set(d, static_cast<float>(b)))), d,
-                  values + i);
-    }
-}
-
-const PixelOffsets& withEdges(const RasterPolygon& polygon, PixelOffsets& offsets) {
-    for (int e = 0; e < polygon.edges && !offsets.edges_ready; ++e)
-        fillOffsets(polygon.edge[e].a, polygon.edge[e].b, offsets.edge[e]);
-    offsets.edges_ready = true;
-    return offsets;
-}
-
-const PixelOffsets& withDepth(const RasterPolygon& polygon, PixelOffsets& offsets) {
-    if (!offsets.depth_ready)
-        fillOffsets(polygon.planar ? polygon.dx : 0.0, polygon.planar ? polygon.dy : 0.0, offsets.depth);
-    offsets.depth_ready = true;
-    return offsets;
-}
-
 /// One tile's view of a polygon.
 struct TilePolygon {
-    float at_center[4];   ///< edge functions there
-    uint32_t cutting = 0; ///< bit per edge that does not contain the whole tile
-    float depth = 0;      ///< at the centre, the farthest nearness over a pixel
+    float a[4], b[4], at_center[4];  ///< of the edges that do not contain the whole tile
+    int cutting = 0;      ///< how many those are
+    TilePlane plane;      ///< the farthest nearness over each pixel
     float nearest = 0;    ///< no point of the polygon in the tile is nearer
     uint64_t window = ~uint64_t{0};  ///< pixels inside the polygon's bounds
 };
 
 /// Raises the depths of a tile's pixels that the mask names.
-void coverPixels(DepthTiles& tiles, uint32_t tile, float center, float floor, const float* offsets, uint64_t mask) {
+void coverPixels(DepthTiles& tiles, uint32_t tile, const TilePlane& plane, uint64_t mask) {
     const F16 d;
     toPixels(tiles, tile);
     float* depth = tiles.depth.data() + 64 * size_t{tile};
+    const auto center = hn::Set(d, plane.d), floor = hn::Set(d, plane.floor);
+    const auto dx = hn::Set(d, plane.dx), dy = hn::Set(d, plane.dy);
     auto least = hn::Set(d, std::numeric_limits<float>::infinity());
     for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
-        const uint64_t part = mask >> i;
-        const auto z = hn::Max(hn::Add(hn::Set(d, center), hn::Load(d, offsets + i)), hn::Set(d, floor));
+        const auto across = hn::Add(hn::Mul(dx, hn::Load(d, kPixelX + i)), hn::Mul(dy, hn::Load(d, kPixelY + i)));
+        const auto z = hn::Max(hn::Add(center, across), floor);
         const auto old = hn::LoadU(d, depth + i);
-        const auto raised = hn::IfThenElse(maskFromBits(d, part), hn::Max(old, z), old);
+        const auto raised = hn::IfThenElse(maskFromBits(d, mask >> i), hn::Max(old, z), old);
         hn::StoreU(raised, d, depth + i);
         least = hn::Min(least, raised);
     }
@@ -116,15 +96,18 @@ struct TileMasks {
     uint64_t inner = 0, outer = 0;
 };
 
-TileMasks classifyPixels(const TilePolygon& p, const PixelOffsets& offsets, float slack) {
+TileMasks classifyPixels(const RasterPolygon& polygon, const TilePolygon& p) {
     const F16 d;
-    const auto inside = hn::Set(d, 0.5f + slack), touches = hn::Set(d, -0.5f - slack);
+    const uint64_t lanes = hn::Lanes(d) < 64 ? (uint64_t{1} << hn::Lanes(d)) - 1 : ~uint64_t{0};
+    const auto inside = hn::Set(d, 0.5f + polygon.slack), touches = hn::Set(d, -0.5f - polygon.slack);
     TileMasks masks;
     for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
+        if (!(p.window >> i & lanes)) continue;
+        const auto x = hn::Load(d, kPixelX + i), y = hn::Load(d, kPixelY + i);
         auto least = hn::Set(d, 1e30f);
-        for (uint32_t left = p.cutting; left; left &= left - 1) {
-            const int e = std::countr_zero(left);
-            least = hn::Min(least, hn::Add(hn::Set(d, p.at_center[e]), hn::Load(d, offsets.edge[e] + i)));
+        for (int e = 0; e < p.cutting; ++e) {
+            const auto across = hn::Add(hn::Mul(hn::Set(d, p.a[e]), x), hn::Mul(hn::Set(d, p.b[e]), y));
+            least = hn::Min(least, hn::Add(hn::Set(d, p.at_center[e]), across));
         }
         masks.inner |= bitsFromMask(d, hn::Ge(least, inside)) << i;
         masks.outer |= bitsFromMask(d, hn::Ge(least, touches)) << i;
@@ -150,12 +133,12 @@ void addSeam(DepthTiles& tiles, uint32_t tile, uint64_t mask, const RasterPolygo
 
 /// Draws into one tile that the polygon covers in part, or whose depth it does not simply replace.
 void drawTile(DepthTiles& tiles, uint32_t tile, const RasterPolygon& polygon, const TilePolygon& p,
-              PixelOffsets& offsets, const SeamPolygon& source, uint32_t& record) {
+              const SeamPolygon& source, uint32_t& record) {
     TileMasks masks{p.window, p.window};
-    if (p.cutting) masks = classifyPixels(p, withEdges(polygon, offsets), polygon.slack);
+    if (p.cutting) masks = classifyPixels(polygon, p);
     if (!polygon.covers) masks.inner = 0;
     uint64_t seam = masks.outer & ~masks.inner;
-    if (masks.inner) coverPixels(tiles, tile, p.depth, polygon.farthest, withDepth(polygon, offsets).depth, masks.inner);
+    if (masks.inner) coverPixels(tiles, tile, p.plane, masks.inner);
     if (seam & tiles.coveredBits(tile)) {
         toPixels(tiles, tile);
         seam &= pixelsNotNearer(tiles.depth.data() + 64 * size_t{tile}, p.nearest);
@@ -259,11 +242,16 @@ TilePolygon seenByTile(const RasterPolygon& polygon, const ChunkSetup& setup, co
                        int32_t column, int32_t row) {
     TilePolygon p;
     for (int e = 0; e < polygon.edges; ++e) {
-        p.at_center[e] = chunk.edge[e][at];
-        p.cutting |= static_cast<uint32_t>(p.at_center[e] < 4.0f + polygon.slack) << e;
+        if (chunk.edge[e][at] >= 4.0f + polygon.slack) continue;
+        p.a[p.cutting] = static_cast<float>(polygon.edge[e].a);
+        p.b[p.cutting] = static_cast<float>(polygon.edge[e].b);
+        p.at_center[p.cutting++] = chunk.edge[e][at];
     }
     p.nearest = chunk.nearest[at];
-    p.depth = polygon.planar ? chunk.depth[at] - 0.5f * setup.tilt - chunk.error : polygon.farthest;
+    p.plane = {polygon.farthest, 0, 0, polygon.farthest};
+    if (polygon.planar)
+        p.plane = {chunk.depth[at] - 0.5f * setup.tilt - chunk.error, static_cast<float>(polygon.dx),
+                   static_cast<float>(polygon.dy), polygon.farthest};
     const bool within = 8 * column >= polygon.x0 && 8 * column + 7 <= polygon.x1 && 8 * row >= polygon.y0 &&
                         8 * row + 7 <= polygon.y1;
     if (!within) p.window = windowBits(polygon.x0, polygon.y0, polygon.x1, polygon.y1, 8 * column, 8 * row);
@@ -284,7 +272,6 @@ ChunkSetup makeChunkSetup(const RasterPolygon& polygon, bool wide) {
 
 void drawPolygon(DepthTiles& tiles, const RasterPolygon& polygon, const SeamPolygon& source) {
     uint32_t record = DepthTiles::kNone;
-    PixelOffsets offsets;
     const bool wide = (polygon.x1 >> 6) - (polygon.x0 >> 6) > 1;
     const ChunkSetup setup = makeChunkSetup(polygon, wide);
     ChunkAnswer answer;
@@ -297,8 +284,7 @@ void drawPolygon(DepthTiles& tiles, const RasterPolygon& polygon, const SeamPoly
             for (; slow; slow &= slow - 1) {
                 const int at = std::countr_zero(slow);
                 const uint32_t tile = static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(chunk + at);
-                drawTile(tiles, tile, polygon, seenByTile(polygon, setup, answer, at, chunk + at, row), offsets, source,
-                         record);
+                drawTile(tiles, tile, polygon, seenByTile(polygon, setup, answer, at, chunk + at, row), source, record);
             }
         }
     }
