@@ -105,8 +105,7 @@ TEST(GltfBadInput, References) {
     expectJsonSpoilt("/meshes/0/primitives/0/attributes/POSITION", 9,
                      "meshes[0].primitives[0]: POSITION 9 is out of range of 2");
     expectJsonSpoilt("/meshes/0/primitives/0/indices", 2, "meshes[0].primitives[0]: indices 2 is out of range of 2");
-    expectJsonSpoilt("/meshes/0/primitives/0/material", 0,
-                     "meshes[0].primitives[0]: material 0 is out of range of 0");
+    expectJsonSpoilt("/meshes/0/primitives/0/material", 0, "meshes[0].primitives[0]: material 0 is out of range of 0");
     expectJsonSpoilt("/accessors/1/bufferView", 7, "accessors[1]: bufferView 7 is out of range of 2");
     expectJsonSpoilt("/bufferViews/1/buffer", 1, "bufferViews[1]: buffer 1 is out of range of 1");
     expectJsonSpoilt("/accessors/0/componentType", 5124, "accessors[0]: componentType 5124 is not known");
@@ -138,8 +137,11 @@ TEST(GltfBadInput, Transforms) {
 }
 
 TEST(GltfBadInput, NodeGraphs) {
-    expectSpoilt([](GltfBuilder& b) { b.json["nodes"] = {{{"children", {1}}}, {{"children", {0}}}}; },
-                 "nodes[0]: is its own ancestor");
+    expectSpoilt(
+        [](GltfBuilder& b) {
+            b.json["nodes"] = {{{"children", {1}}}, {{"children", {0}}}};
+        },
+        "nodes[0]: is its own ancestor");
     expectJsonSpoilt("/nodes/0/children", {0}, "nodes[0]: is its own ancestor");
     expectSpoilt(
         [](GltfBuilder& b) {
@@ -216,15 +218,26 @@ TEST(GltfBadInput, SkinsAndMorphs) {
     expectError(parse(b.glb()), "meshes[0].primitives[0].targets[0]: moves 1 vertices of 3");
 
     GltfBuilder skinned;
-    const Json attributes = {
-        {"POSITION", skinned.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0})},
-        {"JOINTS_0", skinned.accessor<uint8_t>("VEC4", {0, 0, 0, 0, 9, 0, 0, 0, 0, 0, 0, 0})},
-        {"WEIGHTS_0", skinned.accessor<float>("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0})}};
+    const Json attributes = {{"POSITION", skinned.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0})},
+                             {"JOINTS_0", skinned.accessor<uint8_t>("VEC4", {0, 0, 0, 0, 9, 0, 0, 0, 0, 0, 0, 0})},
+                             {"WEIGHTS_0", skinned.accessor<float>("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0})}};
     skinned.node({{"mesh", skinned.mesh(0, -1, {{"attributes", attributes}})}, {"skin", 0}});
     skinned.add("skins", {{"joints", {0}}});
     expectError(parse(skinned.glb()), "accessors[1]: joint 9 is out of range of 1");
     skinned.json["skins"][0]["joints"] = Json::array();
     expectError(parse(skinned.glb()), "skins[0]: has no joints");
+}
+
+TEST(GltfBadInput, MorphWeightsBeyondFloat) {
+    GltfBuilder b;
+    b.node({{"mesh", b.triangleMesh()}});
+    const uint32_t target = b.accessor<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
+    b.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", target}}};
+    b.json["meshes"][0]["weights"] = {1e300};
+    expectError(parse(b.glb()), "meshes[0]: weights is too large for a float");
+    b.json["meshes"][0]["weights"] = {0};
+    b.json["nodes"][0]["weights"] = {-1e300};
+    expectError(parse(b.glb()), "nodes[0]: weights is too large for a float");
 }
 
 // Files of a test, gone afterwards.
