@@ -8,7 +8,7 @@ namespace sightline::city {
 namespace {
 
 constexpr double kOldTown = 130;     // within this distance of the middle: whole blocks, high roofs  [metres]
-constexpr double kPartyWall = 0.0625;  // neighbours overlap by this                                  [metres]
+constexpr double kPartyWall = 0.5;   // neighbours overlap by this                                    [metres]
 
 /// Roofs sink from the middle outward: what a street's fronts hide in a small city, they hide in a large one.
 struct Heights { int low, high; double towers; int tower_low, tower_high; };

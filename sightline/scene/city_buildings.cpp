@@ -10,7 +10,7 @@
 namespace sightline::city {
 namespace {
 
-constexpr double kGroundFloor = 4.25;  // [metres]
+constexpr double kGroundFloor = 4.25, kStorey = 3.25;  // heights  [metres]
 
 /// What a building's look is drawn from; the numbers are taken in a fixed order.
 struct Style {
@@ -19,7 +19,6 @@ struct Style {
     double depth = 0.75;  ///< of the bays
     bool glazed = false;
     bool pitched = false;
-    int rows = 2;         ///< of bays
     uint32_t extra = 0;   ///< free choice of the builder
 };
 
@@ -35,29 +34,11 @@ Style drawStyle(Random& random, int storeys) {
     style.depth = 0.5 + 0.25 * static_cast<double>(random.below(4));
     style.glazed = random.below(6) != 0;
     style.pitched = random.below(5) < 3 && storeys <= 7;
-    style.rows = 2 + static_cast<int>(random.below(2));
     style.extra = static_cast<uint32_t>(random.below(1 << 16));
     return style;
 }
 
 double eavesHeight(int storeys) { return kGroundFloor + (storeys - 1) * kStorey; }
-
-/// Foot, shop windows, then rows of tall bays up to the eaves; without shops the ground floor is plain.
-std::vector<double> facadeLevels(double foot, double eaves, int rows, bool shops) {
-    std::vector<double> levels{foot};
-    double start = foot + 0.75;
-    if (shops) {
-        levels.insert(levels.end(), {foot + 0.5, foot + 3.5});
-        start = foot + kGroundFloor + 0.5;
-    }
-    const double step = (eaves - 1.25 - start) / rows;
-    for (int row = 0; row < rows; ++row) {
-        levels.push_back(start + row * step);
-        levels.push_back(start + (row + 1) * step - 0.75);
-    }
-    levels.push_back(eaves);
-    return levels;
-}
 
 /// A rectangle counter-clockwise from above: front edge first, then right, back, left.
 std::vector<glm::dvec2> rectangle(double left, double right, double back, double front) {
@@ -92,20 +73,22 @@ void finish(Library& library, const MeshBuilder& mesh, Building building, const 
     library.buildings.push_back(building);
 }
 
+/// A ground floor and, over it, loggias or oriels that a cornice closes above; or an arcade under plain storeys' bays.
 void addRow(Library& library, Random& random, double width, int storeys) {
     const Style style = drawStyle(random, storeys);
     const double eaves = eavesHeight(storeys), half = 0.5 * width;
-    const bool oriels = style.extra % 5 == 0;
-    const int bays = width < 12 ? 2 : width < 20 ? 3 : 4;
-    const int rows = bays > 2 ? 1 : style.rows;
+    const bool oriels = style.extra % 5 == 0, arcade = style.extra % 5 == 1;
+    const int bays = width < 12 ? 1 : width < 20 ? 2 : 3;
     MeshBuilder mesh;
-    const Wall front{bays, 1.375, oriels ? -0.75 : style.depth, style.glazed};
-    const Wall back{1, 0.375 * width, 1.0, false};
-    addBody(mesh, style.materials, rectangle(-half, half, -kRowDepth, 0),
-            facadeLevels(oriels ? 3.75 : 0.0, eaves, rows, !oriels), {front, {}, back, {}});
-    if (oriels)  // the ground floor lies a little inside
-        addBox(mesh, style.materials.wall, {-half + 0.0625, 0, -kRowDepth + 0.0625}, {half - 0.0625, 4, -0.0625});
-    addBox(mesh, kTrim, {-half - 0.03125, eaves - 0.875, -kRowDepth - 0.25}, {half + 0.03125, eaves - 0.375, 0.4375});
+    const Wall front{bays, bays == 1 ? 2.25 : 1.75, oriels ? -0.75 : style.depth, style.glazed};
+    const Wall back{bays < 3 ? 1 : 0, 0.375 * width, 1.0, false};
+    addBody(mesh, style.materials, rectangle(-half, half, -kRowDepth, 0), arcade ? 3.25 : 3.75, eaves,
+            {front, {}, back, {}});
+    const uint32_t base = style.extra % 4 < 2 ? static_cast<uint32_t>(kStone) : style.materials.wall;
+    addBox(mesh, base, {-half - 0.03125, 0, -kRowDepth - 0.0625},
+           {half + 0.03125, 4, arcade ? -1.5 : oriels ? -0.0625 : 0.0625});
+    addBox(mesh, kTrim, {-half - 0.03125, eaves - 0.875, -kRowDepth - 0.25},
+           {half + 0.03125, eaves - 0.375, oriels ? 1.0 : 0.4375});
     if (style.pitched) {
         addRoof(mesh, style, -half + 0.0625, half - 0.0625, -kRowDepth, 0, eaves);
     } else if (style.extra % 3 == 0) {  // a set-back top storey
@@ -122,10 +105,10 @@ void addCourt(Library& library, Random& random, int storeys) {
     const Style style = drawStyle(random, storeys);
     const double eaves = eavesHeight(storeys), width = 27, half = 0.5 * width;
     MeshBuilder mesh;
-    const Wall wing{1, 1.75, style.depth, style.glazed}, court{2, 1.25, style.depth, style.glazed};
+    const Wall wing{1, 2.25, style.depth, style.glazed}, court{1, 2, style.depth, style.glazed};
     addBody(mesh, style.materials,
             {{-half, 0}, {-5, 0}, {-5, -5}, {5, -5}, {5, 0}, {half, 0}, {half, -kRowDepth}, {-half, -kRowDepth}},
-            facadeLevels(0, eaves, 1, true), {wing, {}, court, {}, wing, {}, {}, {}});
+            0, eaves, {wing, {}, court, {}, wing, {}, {}, {}});
     for (const double side : {-1.0, 1.0}) {
         const double inner = side * 4.75, outer = side * (half + 0.03125);
         addBox(mesh, kTrim, {std::min(inner, outer), eaves - 0.875, -4.75},
@@ -141,9 +124,8 @@ void addGateway(Library& library, Random& random, int storeys) {
     const double eaves = eavesHeight(storeys), width = 18, half = 0.5 * width;
     MeshBuilder mesh;
     const Wall front{1, 1.75, style.depth, style.glazed};
-    const std::vector<double> levels = facadeLevels(0, eaves, 1, true);
-    addBody(mesh, style.materials, rectangle(-half, -2, -kRowDepth, 0), levels, {front, {}, {}, {}});
-    addBody(mesh, style.materials, rectangle(2, half, -kRowDepth, 0), levels, {front, {}, {}, {}});
+    addBody(mesh, style.materials, rectangle(-half, -2, -kRowDepth, 0), 0, eaves, {front, {}, {}, {}});
+    addBody(mesh, style.materials, rectangle(2, half, -kRowDepth, 0), 0, eaves, {front, {}, {}, {}});
     addBox(mesh, style.materials.wall, {-3, 4.5, -kRowDepth + 0.25}, {3, eaves - 0.25, -0.25});
     addBox(mesh, kTrim, {-half - 0.03125, eaves - 0.875, -kRowDepth - 0.25}, {half + 0.03125, eaves - 0.375, 0.4375});
     addRoof(mesh, style, -half + 0.0625, half - 0.0625, -kRowDepth, 0, eaves);
@@ -154,12 +136,10 @@ void addTower(Library& library, Random& random, double width, int storeys) {
     const Style style = drawStyle(random, storeys);
     const double podium = eavesHeight(6), top = eavesHeight(storeys), half = 0.5 * width;
     MeshBuilder mesh;
-    const Wall front{2, 2, style.depth, style.glazed}, side{1, 2.5, style.depth, false};
-    addBody(mesh, style.materials, rectangle(-half, half, -kRowDepth, 0), facadeLevels(0, podium, 1, true),
-            {front, {}, {}, {}});
-    const Wall shaft{2, 1.5, 0.75, false};
-    addBody(mesh, style.materials, rectangle(-half + 1.5, half - 1.5, -kRowDepth + 0.5, -1.5),
-            facadeLevels(podium - 0.5, top, 1, false), {shaft, side, shaft, side});
+    const Wall front{2, 2, style.depth, style.glazed}, shaft{1, 4, 0.75, style.glazed};
+    addBody(mesh, style.materials, rectangle(-half, half, -kRowDepth, 0), 0, podium, {front, {}, {}, {}});
+    addBody(mesh, style.materials, rectangle(-half + 1.5, half - 1.5, -kRowDepth + 0.5, -1.5), podium - 0.5, top,
+            {shaft, {}, shaft, {}});
     addBox(mesh, kTrim, {-half + 1.25, top - 0.875, -kRowDepth + 0.25}, {half - 1.25, top - 0.375, -1.25});
     addBox(mesh, style.materials.wall, {-half + 4, top - 0.5, -kRowDepth + 2.5}, {half - 4, top + 3.25, -3.5});
     finish(library, mesh, {0, Kind::kTower, storeys, width, top + 3.25, false}, "tower");
@@ -168,22 +148,23 @@ void addTower(Library& library, Random& random, double width, int storeys) {
 void addCorner(Library& library, Random& random, int storeys) {
     const Style style = drawStyle(random, storeys);
     const double eaves = eavesHeight(storeys), leg = kCornerLeg, depth = kRowDepth;
+    const bool pitched = style.pitched, turret = style.extra % 2 == 0;
     MeshBuilder mesh;
-    const Wall front{2, 2, style.depth, style.glazed};
-    addBody(mesh, style.materials, {{-leg, 0}, {0, 0}, {0, -leg}, {-depth, -leg}, {-depth, -depth}, {-leg, -depth}},
-            facadeLevels(0, eaves, 1, true), {front, front, {}, {}, {}, {}});
+    const Wall main{turret ? 1 : 2, turret ? 4.0 : 2.5, style.depth, style.glazed};
+    const Wall side{1, 4, style.depth, style.glazed};
+    addBody(mesh, style.materials, {{-leg, 0}, {0, 0}, {0, -leg}, {-depth, -leg}, {-depth, -depth}, {-leg, -depth}}, 0,
+            eaves, {main, side, {}, {}, {}, {}});
     addPrism(mesh, kTrim, kUpright,
              {{0.4375, -leg - 0.03125}, {0.4375, 0.4375}, {-leg - 0.03125, 0.4375}, {-leg - 0.03125, -4},
               {-4, -4}, {-4, -leg - 0.03125}}, eaves - 0.875, eaves - 0.375);
-    const bool pitched = style.pitched;
     if (pitched) {
         addRoof(mesh, style, -leg + 0.0625, -0.5, -depth, 0, eaves);
         addCrossRoof(mesh, style, -depth, 0, -leg + 0.0625, -0.5, eaves);
     } else {
         addBox(mesh, kGrey, {-9, eaves - 0.25, -9}, {-5, eaves + 2.25, -5});
     }
-    if (style.extra % 2 == 0)  // a turret over the street corner
-        addTurned(mesh, kTrim, {-1, 0, -1}, 8, {{1.75, kGroundFloor}, {1.75, eaves + 2}, {0, eaves + 5.5}});
+    if (turret)  // over the street corner
+        addTurned(mesh, kTrim, {-1, 0, -1}, 6, {{1.75, kGroundFloor}, {1.75, eaves + 2}, {0, eaves + 5.5}});
     finish(library, mesh, {0, Kind::kCorner, storeys, leg, pitched ? eaves + 1 : eaves, pitched}, "corner");
 }
 
@@ -192,10 +173,10 @@ void addPalace(Library& library, Random& random, int storeys) {
     const Style style = drawStyle(random, storeys);
     const double eaves = eavesHeight(storeys), half = 0.5 * kIslandSize;
     MeshBuilder mesh;
-    const Wall wing{1, 2, style.depth, style.glazed}, flank{1, 6, style.depth, style.glazed};
+    const Wall court{1, 2.5, style.depth, style.glazed}, flank{1, 6, style.depth, style.glazed};
     addBody(mesh, style.materials,
             {{-half, half}, {-5, half}, {-5, -3}, {5, -3}, {5, half}, {half, half}, {half, -half}, {-half, -half}},
-            facadeLevels(0, eaves, 1, true), {wing, {}, {}, {}, wing, flank, {}, flank});
+            0, eaves, {{}, {}, court, {}, {}, flank, flank, flank});
     addCrossRoof(mesh, style, -half, -5, -half + 0.25, half - 0.25, eaves);
     addCrossRoof(mesh, style, 5, half, -half + 0.25, half - 0.25, eaves);
     addRoof(mesh, style, -half + 0.5, half - 0.5, -half, -3, eaves);
@@ -206,9 +187,8 @@ void addHall(Library& library, Random& random, int storeys) {
     const Style style = drawStyle(random, storeys);
     const double eaves = eavesHeight(storeys), half = 0.5 * kIslandSize;
     MeshBuilder mesh;
-    const Wall front{2, 2.5, style.depth, style.glazed}, flank{1, 4, style.depth, style.glazed};
-    addBody(mesh, style.materials, rectangle(-half, half, -half, half), facadeLevels(0, eaves, 1, true),
-            {front, flank, front, flank});
+    const Wall front{1, 4, style.depth, style.glazed};
+    addBody(mesh, style.materials, rectangle(-half, half, -half, half), 0, eaves, {front, front, front, front});
     addBox(mesh, kTrim, {-half - 0.4375, eaves - 0.875, -half - 0.4375}, {half + 0.4375, eaves - 0.375, half + 0.4375});
     addBox(mesh, kWhite, {-half + 3, eaves - 0.5, -half + 4}, {half - 3, eaves + 3.25, half - 4});
     finish(library, mesh, {0, Kind::kIsland, storeys, kIslandSize, eaves + 3.25, false}, "hall");
@@ -218,13 +198,12 @@ void addChurch(Library& library, Random& random) {
     const Style style = drawStyle(random, 5);
     const double half = 0.5 * kIslandSize, eaves = 13;
     MeshBuilder mesh;
-    const Wall flank{2, 2, 0.5, true};
-    addBody(mesh, style.materials, rectangle(-6, 6, -half, half - 5), facadeLevels(0, eaves, 1, false),
-            {{}, flank, {}, flank});
+    const Wall flank{1, 4, 0.5, true};
+    addBody(mesh, style.materials, rectangle(-6, 6, -half, half - 5), 0, eaves, {{}, flank, {}, flank});
     addPrism(mesh, kSlate, kSideways, {{-6.5, eaves - 0.125}, {6.5, eaves - 0.125}, {0, eaves + 8}}, -half + 0.25,
              half - 5.25);
     addBox(mesh, style.materials.wall, {-3.5, 0, half - 8}, {3.5, 28, half - 1});
-    addTurned(mesh, kCopper, {0, 0, half - 4.5}, 8, {{3.25, 27.5}, {2.5, 31}, {0, 42}});
+    addTurned(mesh, kCopper, {0, 0, half - 4.5}, 6, {{3.25, 27.5}, {2.5, 31}, {0, 42}});
     addBox(mesh, style.materials.wall, {-10, 0, -8}, {10, 11, -1});
     finish(library, mesh, {0, Kind::kIsland, 5, kIslandSize, eaves + 5, true}, "church");
 }

@@ -11,12 +11,14 @@ namespace {
 
 // All stand on y = 0 with their front to +z, unless said otherwise.
 
-/// The asphalt under a block, up to the middle of the streets, and the pavements on it.
+/// The asphalt under a block, a little past the middle of the streets so that it overlaps its neighbours', and the
+/// pavements on it.
 /// @param lane  gap along z through the middle of the pavement; 0: none
 MeshBuilder ground(double size, double lane) {
     MeshBuilder mesh;
     const double half = 0.5 * size, kerb = half - kKerb;
-    mesh.quad(kAsphalt, {-half, 0, half}, {half, 0, half}, {half, 0, -half}, {-half, 0, -half});
+    const double edge = half + 0.1875;
+    mesh.quad(kAsphalt, {-edge, 0, edge}, {edge, 0, edge}, {edge, 0, -edge}, {-edge, 0, -edge});
     if (lane == 0) {
         addBox(mesh, kPaving, {-kerb, -0.25, -kerb}, {kerb, kPavement, kerb});
     } else {
@@ -36,16 +38,17 @@ MeshBuilder crossing() {
     MeshBuilder mesh;
     for (int stripe = 0; stripe < 6; ++stripe) {
         const double x = -3.25 + 1.25 * stripe;
-        addBox(mesh, kPaint, {x, 0, -1.5}, {x + 0.5, 0.015625, 1.5});
+        const double y = 0.015625;
+        mesh.quad(kPaint, {x, y, 1.5}, {x + 0.5, y, 1.5}, {x + 0.5, y, -1.5}, {x, y, -1.5});
     }
     return mesh;
 }
 
 /// A trunk and a crown of crossed leafy shells.
-MeshBuilder tree(uint32_t leaf, int sides, const std::vector<Ring>& crown) {
+MeshBuilder tree(uint32_t leaf, const std::vector<Ring>& crown) {
     MeshBuilder mesh;
-    addTurned(mesh, kBark, {0, 0, 0}, 6, {{0.1875, 0}, {0.125, crown.front().y + 0.75}});
-    addTurned(mesh, leaf, {0, 0, 0}, sides, crown);
+    addTurned(mesh, kBark, {0, 0, 0}, 3, {{0.25, 0}, {0, crown[2].y}});
+    addTurned(mesh, leaf, {0, 0, 0}, 6, crown);
     const Ring &low = crown[1], &high = crown[crown.size() - 2];
     for (const glm::dvec3& across : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1)})
         mesh.quad(leaf, -across * (0.875 * low.radius) + glm::dvec3(0, low.y, 0),
@@ -64,52 +67,48 @@ MeshBuilder hedge() {
 
 MeshBuilder lamp() {
     MeshBuilder mesh;
-    addTurned(mesh, kMetal, {0, 0, 0}, 6, {{0.1875, 0}, {0.125, 0.75}, {0.0625, 1}, {0.046875, 6}});
-    addBox(mesh, kMetal, {-0.03125, 5.875, -0.03125}, {0.03125, 5.9375, 1.5});
-    addBox(mesh, kMetal, {-0.15625, 5.8125, 0.9375}, {0.15625, 5.96875, 1.625});
-    addBox(mesh, kLight, {-0.125, 5.75, 1}, {0.125, 5.84375, 1.5625});
+    addTurned(mesh, kMetal, {0, 0, 0}, 3, {{0.15625, 0}, {0.0625, 6}});
+    addPrism(mesh, kMetal, kAcross, {{-0.0625, 5.9375}, {1.625, 5.8125}, {1.625, 5.96875}}, -0.15625, 0.15625);
+    addBox(mesh, kLight, {-0.125, 5.75, 1}, {0.125, 5.875, 1.5625});
     return mesh;
 }
 
 MeshBuilder bench() {
     MeshBuilder mesh;
-    for (const double x : {-0.75, 0.625}) addBox(mesh, kMetal, {x, 0, -0.25}, {x + 0.125, 0.40625, 0.25});
-    for (const double z : {-0.25, 0.0625}) addBox(mesh, kWood, {-1, 0.4375, z}, {1, 0.5, z + 0.21875});
-    for (const double y : {0.59375, 0.78125}) addBox(mesh, kWood, {-1, y, -0.3125}, {1, y + 0.15625, -0.265625});
+    addPrism(mesh, kMetal, kAcross, {{-0.25, 0}, {0.25, 0}, {0, 0.46875}}, -0.75, 0.75);
+    addPrism(mesh, kWood, kAcross,
+             {{-0.3125, 0.4375}, {0.28125, 0.4375}, {0.28125, 0.5}, {-0.25, 0.5}, {-0.25, 0.9375}, {-0.3125, 0.9375}},
+             -1, 1);
     return mesh;
 }
 
 MeshBuilder bin() {
     MeshBuilder mesh;
-    addTurned(mesh, kMetal, {0, 0, 0}, 8, {{0.21875, 0}, {0.25, 0.75}, {0.28125, 0.8125}, {0.1875, 0.9375}, {0, 1}});
+    addTurned(mesh, kMetal, {0, 0, 0}, 6, {{0.21875, 0}, {0.28125, 0.9375}});
     return mesh;
 }
 
 MeshBuilder hydrant() {
     MeshBuilder mesh;
-    addTurned(mesh, kRed, {0, 0, 0}, 8, {{0.1875, 0}, {0.125, 0.0625}, {0.125, 0.5625}, {0.15625, 0.625}, {0, 0.8125}});
-    addBox(mesh, kRed, {-0.21875, 0.375, -0.0625}, {0.21875, 0.5, 0.0625});
-    addBox(mesh, kSilver, {-0.0625, 0.34375, -0.09375}, {0.0625, 0.46875, 0.1875});
+    addTurned(mesh, kRed, {0, 0, 0}, 4, {{0.1875, 0}, {0.15625, 0.625}, {0, 0.8125}});
+    addPrism(mesh, kSilver, kAcross, {{-0.078125, 0.375}, {0.078125, 0.375}, {0, 0.53125}}, -0.21875, 0.21875);
     return mesh;
 }
 
 MeshBuilder bollard() {
     MeshBuilder mesh;
-    addTurned(mesh, kMetal, {0, 0, 0}, 6, {{0.09375, 0}, {0.078125, 0.8125}, {0.109375, 0.875}, {0, 1}});
+    addTurned(mesh, kMetal, {0, 0, 0}, 4, {{0.09375, 0}, {0.109375, 0.875}, {0, 1}});
     return mesh;
 }
 
-/// Six metres of mesh panels between posts; the panels are drawn from both sides.
+/// Six metres of flat bars between posts; the bars are drawn from both sides.
 MeshBuilder fence() {
     MeshBuilder mesh;
-    for (int post = 0; post < 4; ++post) {
-        const double x = -3 + 2 * post;
-        addBox(mesh, kMetal, {x - 0.046875, 0, -0.046875}, {x + 0.046875, 1.75, 0.046875});
-    }
-    for (int bar = 0; bar < 24; ++bar) {
-        const double x = -2.875 + 0.25 * bar;
-        mesh.quad(kMesh, {x - 0.03125, 0.125, 0}, {x + 0.03125, 0.125, 0}, {x + 0.03125, 1.625, 0},
-                  {x - 0.03125, 1.625, 0});
+    for (const double x : {-3.0, 3.0}) addTurned(mesh, kMetal, {x, 0, 0}, 3, {{0.0625, 0}, {0.0625, 1.75}});
+    for (int bar = 0; bar < 8; ++bar) {
+        const double x = -2.625 + 0.75 * bar;
+        mesh.quad(kMesh, {x - 0.09375, 0.125, 0}, {x + 0.09375, 0.125, 0}, {x + 0.09375, 1.625, 0},
+                  {x - 0.09375, 1.625, 0});
     }
     for (const double y : {0.1875, 1.5}) {
         const double z = 0.015625, top = y + 0.0625;
@@ -120,7 +119,7 @@ MeshBuilder fence() {
 
 MeshBuilder sign() {
     MeshBuilder mesh;
-    addTurned(mesh, kSilver, {0, 0, 0}, 6, {{0.046875, 0}, {0.046875, 2.75}});
+    addTurned(mesh, kSilver, {0, 0, 0}, 3, {{0.046875, 0}, {0.046875, 2.75}});
     const std::vector<glm::dvec2> rim = regularPolygon(8);
     for (size_t i = 1; i + 1 < rim.size(); ++i) {
         const auto at = [&](size_t k) { return glm::dvec3(0.3125 * rim[k].x, 2.375 + 0.3125 * rim[k].y, 0.0625); };
@@ -131,20 +130,20 @@ MeshBuilder sign() {
 
 MeshBuilder kiosk() {
     MeshBuilder mesh;
-    addTurned(mesh, kMetal, {0, 0, 0}, 8, {{1.25, 0}, {1.25, 2.5}});
-    addTurned(mesh, kCopper, {0, 0, 0}, 8, {{1.5, 2.4375}, {1.5, 2.625}, {0.5, 3.25}, {0, 3.75}});
-    addBox(mesh, kWood, {-0.75, 0.875, 0.75}, {0.75, 1.0, 1.4375});
-    mesh.quad(kGlass, {-0.5, 1.0625, 1.1875}, {0.5, 1.0625, 1.1875}, {0.5, 2.125, 1.1875}, {-0.5, 2.125, 1.1875});
+    addTurned(mesh, kMetal, {0, 0, 0}, 6, {{1.25, 0}, {1.25, 2.5}});
+    addTurned(mesh, kCopper, {0, 0, 0}, 6, {{1.625, 2.4375}, {0, 3.75}});
+    addPrism(mesh, kWood, kAcross, {{0.625, 0.75}, {1.4375, 1}, {0.625, 1}}, -0.75, 0.75);
+    mesh.quad(kGlass, {-0.5, 1.0625, 1.3125}, {0.5, 1.0625, 1.3125}, {0.5, 2.125, 1.3125}, {-0.5, 2.125, 1.3125});
     return mesh;
 }
 
 /// A stop with a roof and panes on three sides.
 MeshBuilder shelter() {
     MeshBuilder mesh;
-    for (const double x : {-1.9375, 1.8125})
-        for (const double z : {-0.6875, 0.5625}) addBox(mesh, kMetal, {x, 0, z}, {x + 0.125, 2.375, z + 0.125});
+    for (const double x : {-1.8125, 1.8125})
+        addTurned(mesh, kMetal, {x, 0, -0.625}, 3, {{0.09375, 0}, {0.09375, 2.375}});
     addBox(mesh, kMetal, {-2.0625, 2.34375, -0.8125}, {2.0625, 2.46875, 0.8125});
-    addBox(mesh, kWood, {-1.5, 0.4375, -0.5625}, {1.5, 0.5, -0.1875});
+    addPrism(mesh, kWood, kAcross, {{-0.5625, 0.375}, {-0.1875, 0.5}, {-0.5625, 0.5}}, -1.5, 1.5);
     mesh.quad(kGlass, {-1.75, 0.25, -0.625}, {1.75, 0.25, -0.625}, {1.75, 2.25, -0.625}, {-1.75, 2.25, -0.625});
     for (const double x : {-1.875, 1.875})
         mesh.quad(kGlass, {x, 0.25, 0.5}, {x, 0.25, -0.5}, {x, 2.25, -0.5}, {x, 2.25, 0.5});
@@ -155,15 +154,11 @@ MeshBuilder shelter() {
 MeshBuilder car(uint32_t paint) {
     MeshBuilder mesh;
     addPrism(mesh, paint, kSideways,
-             {{-2.125, 0.3125}, {2.125, 0.3125}, {2.1875, 0.625}, {2.0625, 0.84375}, {1.1875, 0.96875}, {0.5, 1.4375},
-              {-1.125, 1.46875}, {-1.8125, 1.0}, {-2.1875, 0.9375}}, -0.84375, 0.84375);
-    const std::vector<glm::dvec2> circle = regularPolygon(8);
-    for (const double x : {-1.3125, 1.3125})
-        for (const double z : {-0.90625, 0.71875}) {
-            std::vector<glm::dvec2> wheel;
-            for (const glm::dvec2& c : circle) wheel.push_back({x + 0.3125 * c.x, 0.3125 + 0.3125 * c.y});
-            addPrism(mesh, kRubber, kSideways, wheel, z, z + 0.1875);
-        }
+             {{-2.125, 0.3125}, {2.1875, 0.3125}, {2.125, 0.84375}, {1.1875, 0.96875}, {0.5, 1.4375}, {-1.125, 1.46875},
+              {-2.1875, 0.9375}}, -0.84375, 0.84375);
+    for (const double x : {-1.3125, 1.3125})  // of each axle's wheels, what shows under the body and beside it
+        addPrism(mesh, kRubber, kSideways,
+                 {{x - 0.1875, 0}, {x + 0.1875, 0}, {x + 0.34375, 0.40625}, {x - 0.34375, 0.40625}}, -0.90625, 0.90625);
     mesh.quad(kGlass, {-1.0, 1.03125, 0.859375}, {0.875, 1.03125, 0.859375}, {0.375, 1.375, 0.859375},
               {-0.9375, 1.375, 0.859375});
     mesh.quad(kGlass, {0.875, 1.03125, -0.859375}, {-1.0, 1.03125, -0.859375}, {-0.9375, 1.375, -0.859375},
@@ -176,7 +171,7 @@ MeshBuilder car(uint32_t paint) {
 MeshBuilder planter() {
     MeshBuilder mesh;
     addBox(mesh, kStone, {-0.625, 0, -0.375}, {0.625, 0.5, 0.375});
-    addTurned(mesh, kLeaf, {0, 0, 0}, 6, {{0, 0.375}, {0.5, 0.6875}, {0.3125, 1.0625}, {0, 1.1875}});
+    addTurned(mesh, kLeaf, {0, 0, 0}, 6, {{0, 0.375}, {0.5, 0.75}, {0, 1.1875}});
     return mesh;
 }
 
@@ -185,42 +180,42 @@ MeshBuilder awning() {
     MeshBuilder mesh;
     mesh.quad(kCloth, {-1.75, 2.625, 1.25}, {1.75, 2.625, 1.25}, {1.75, 3.25, 0}, {-1.75, 3.25, 0});
     mesh.quad(kCloth, {-1.75, 2.375, 1.25}, {1.75, 2.375, 1.25}, {1.75, 2.625, 1.25}, {-1.75, 2.625, 1.25});
-    for (const double x : {-1.6875, 1.625}) addBox(mesh, kMetal, {x, 2.5625, -0.125}, {x + 0.0625, 2.59375, 1.1875});
+    addPrism(mesh, kMetal, kAcross, {{-0.125, 2.5}, {1.1875, 2.5625}, {-0.125, 2.5625}}, -1.625, 1.625);
     return mesh;
 }
 
+/// Three flat hoops on a rail, drawn from both sides.
 MeshBuilder bicycleStand() {
     MeshBuilder mesh;
+    addBox(mesh, kSilver, {-0.875, 0, -0.046875}, {0.9375, 0.0625, 0.046875});
     for (int hoop = 0; hoop < 3; ++hoop) {
         const double x = -0.75 + 0.75 * hoop;
-        for (const double z : {-0.34375, 0.28125}) addBox(mesh, kSilver, {x, 0, z}, {x + 0.0625, 0.78125, z + 0.0625});
-        addBox(mesh, kSilver, {x - 0.015625, 0.765625, -0.359375}, {x + 0.078125, 0.84375, 0.359375});
+        for (const double z : {-0.34375, 0.28125})
+            mesh.quad(kMesh, {x, 0, z + 0.0625}, {x, 0, z}, {x, 0.78125, z}, {x, 0.78125, z + 0.0625});
+        mesh.quad(kMesh, {x, 0.78125, 0.34375}, {x, 0.78125, -0.34375}, {x, 0.84375, -0.34375}, {x, 0.84375, 0.34375});
     }
     return mesh;
 }
 
 MeshBuilder chimney() {
     MeshBuilder mesh;
-    addBox(mesh, kBrick, {-0.5, -1, -0.375}, {0.5, 2.75, 0.375});
-    for (const double x : {-0.25, 0.25})
-        addTurned(mesh, kTiles, {x, 0, 0}, 6, {{0.15625, 2.6875}, {0.125, 3.25}});
+    addTurned(mesh, kBrick, {0, 0, 0}, 4, {{0.625, -1}, {0.625, 2.75}, {0, 3.25}});
     return mesh;
 }
 
-/// A water tank on legs.
+/// A water tank on two trestles.
 MeshBuilder tank() {
     MeshBuilder mesh;
-    for (const double x : {-0.875, 0.75})
-        for (const double z : {-0.875, 0.75}) addBox(mesh, kMetal, {x, -0.125, z}, {x + 0.125, 1.5, z + 0.125});
-    addTurned(mesh, kWood, {0, 0, 0}, 8, {{1.25, 1.4375}, {1.25, 3.5}});
-    addTurned(mesh, kSlate, {0, 0, 0}, 8, {{1.375, 3.4375}, {0, 4.25}});
+    for (const double x : {-0.75, 0.625})
+        addPrism(mesh, kMetal, kAcross, {{-1, -0.125}, {1, -0.125}, {0, 1.625}}, -x - 0.125, -x);
+    addTurned(mesh, kWood, {0, 0, 0}, 6, {{1.25, 1.4375}, {1.25, 3.5}, {0, 4.25}});
     return mesh;
 }
 
 MeshBuilder cooler() {
     MeshBuilder mesh;
     addBox(mesh, kSilver, {-0.875, -0.125, -0.625}, {0.875, 1.125, 0.625});
-    addTurned(mesh, kBlack, {0, 0, 0}, 8, {{0.5, 1.0625}, {0.5, 1.25}});
+    addTurned(mesh, kBlack, {0, 0, 0}, 6, {{0.5, 1.0625}, {0.5, 1.25}});
     return mesh;
 }
 
@@ -237,7 +232,7 @@ MeshBuilder monument() {
     addBox(mesh, kStone, {-2.5, 0, -2.5}, {2.5, 0.375, 2.5});
     addBox(mesh, kStone, {-1.75, 0.25, -1.75}, {1.75, 0.75, 1.75});
     addBox(mesh, kTrim, {-1, 0.625, -1}, {1, 3.25, 1});
-    addTurned(mesh, kStone, {0, 0, 0}, 8, {{0.75, 3.125}, {0.4375, 10}, {0, 11}});
+    addTurned(mesh, kStone, {0, 0, 0}, 4, {{0.75, 3.125}, {0.4375, 10}, {0, 11}});
     return mesh;
 }
 
@@ -253,9 +248,9 @@ void addItems(Library& library) {
     add(kGroundSmall, "small ground", ground(kSmallBlock, 0));
     add(kLawn, "lawn", lawn());
     add(kCrossing, "crossing", crossing());
-    add(kPlaneTree, "plane tree", tree(kLeaf, 8, {{0, 2.75}, {1.5, 3.5}, {2.125, 5}, {1.5, 6.75}, {0, 7.75}}));
-    add(kLimeTree, "lime tree", tree(kDarkLeaf, 8, {{0, 2.5}, {1.375, 3.25}, {1.625, 4.5}, {0.75, 6.5}, {0, 7.25}}));
-    add(kPoplar, "poplar", tree(kDarkLeaf, 6, {{0, 1.5}, {0.875, 2.5}, {1.125, 5}, {0.625, 9}, {0, 11}}));
+    add(kPlaneTree, "plane tree", tree(kLeaf, {{0, 2.75}, {2.125, 4.25}, {1.75, 6.25}, {0, 7.75}}));
+    add(kLimeTree, "lime tree", tree(kDarkLeaf, {{0, 2.5}, {1.75, 3.75}, {1.0, 6}, {0, 7.25}}));
+    add(kPoplar, "poplar", tree(kDarkLeaf, {{0, 1.5}, {1.125, 3.5}, {0.875, 8}, {0, 11}}));
     add(kHedge, "hedge", hedge());
     add(kLamp, "lamp", lamp());
     add(kBench, "bench", bench());

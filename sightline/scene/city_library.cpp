@@ -48,7 +48,7 @@ std::vector<Material> makeMaterials() {
     set(kCloth, "awning cloth", 0.70f, 0.22f, 0.20f).double_sided = true;
     set(kCopper, "copper", 0.36f, 0.62f, 0.54f);
     set(kLight, "lamp glass", 0.98f, 0.95f, 0.80f);
-    set(kPaint, "road paint", 0.95f, 0.95f, 0.93f);
+    set(kPaint, "road paint", 0.95f, 0.95f, 0.93f).double_sided = true;
     return materials;
 }
 

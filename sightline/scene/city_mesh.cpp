@@ -4,7 +4,6 @@
 // Gary Meisters. Polygons Have Ears. 1975.
 #include "sightline/scene/city_mesh.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -13,8 +12,7 @@
 namespace sightline::city {
 namespace {
 
-constexpr double kTransom = 0.25;  // half the height left open between panes  [metres]
-constexpr int kMostPanes = 4;     // in a bay
+constexpr double kSill = 0.75, kLintel = 1.25;  // left open under and over a pane  [metres]
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
@@ -31,42 +29,8 @@ glm::dvec3 place(const Frame& frame, const glm::dvec2& point, double along) {
     return frame.origin + frame.u * point.x + frame.v * point.y + frame.w * along;
 }
 
-/// The positions along a wall of the given length where bays begin and end.
-std::vector<double> bayCuts(const Wall& wall, double length) {
-    std::vector<double> cuts{0};
-    if (wall.bays > 0) {
-        const double width = (length - (wall.bays + 1) * wall.pier) / wall.bays;
-        SIGHTLINE_ASSERT(width > 0);
-        for (int bay = 0; bay < wall.bays; ++bay) {
-            const double start = wall.pier + bay * (width + wall.pier);
-            cuts.push_back(start);
-            cuts.push_back(start + width);
-        }
-    }
-    cuts.push_back(length);
-    return cuts;
-}
-
-/// A niche (or, with negative depth, an oriel) in the cell a b c d of a wall with outward normal n.
-void addBay(MeshBuilder& mesh, const BodyMaterials& materials, const std::array<glm::dvec3, 4>& cell,
-            const glm::dvec3& normal, const Wall& wall) {
-    std::array<glm::dvec3, 4> inner = cell;
-    for (glm::dvec3& corner : inner) corner -= normal * wall.depth;
-    for (int i = 0; i < 4; ++i) {
-        const int next = (i + 1) % 4;
-        mesh.quad(materials.bay, cell[i], cell[next], inner[next], inner[i]);
-    }
-    mesh.quad(materials.bay, inner[0], inner[1], inner[2], inner[3]);
-    if (!wall.glazed || wall.depth <= 0) return;
-    const double height = cell[3].y - cell[0].y;
-    const int panes = std::clamp(static_cast<int>(height / kStorey + 0.5), 1, kMostPanes);
-    const glm::dvec3 set_back = normal * (0.5 * wall.depth);
-    for (int pane = 0; pane < panes; ++pane) {
-        const double low = height * pane / panes + kTransom, high = height * (pane + 1) / panes - kTransom;
-        const auto at = [&](int corner, double y) { return cell[corner] - set_back + glm::dvec3(0, y, 0); };
-        mesh.quad(materials.glass, at(0, low), at(1, low), at(1, high), at(0, high));
-    }
-}
+/// A corner of a body's plan, and the material of the face that follows it.
+struct PlanCorner { glm::dvec2 at; uint32_t material; };
 
 }  // namespace
 
@@ -124,6 +88,10 @@ void addPrism(MeshBuilder& mesh, uint32_t material, const Frame& frame, const st
 
 std::vector<glm::dvec2> regularPolygon(int sides) {
     constexpr double kHalfRoot2 = 0.70710678118654752440, kHalfRoot3 = 0.86602540378443864676;
+    if (sides == 3) return {{1, 0}, {-0.5, kHalfRoot3}, {-0.5, -kHalfRoot3}};
+    if (sides == 4)
+        return {{kHalfRoot2, kHalfRoot2}, {-kHalfRoot2, kHalfRoot2}, {-kHalfRoot2, -kHalfRoot2},
+                {kHalfRoot2, -kHalfRoot2}};
     if (sides == 6)
         return {{1, 0}, {0.5, kHalfRoot3}, {-0.5, kHalfRoot3}, {-1, 0}, {-0.5, -kHalfRoot3}, {0.5, -kHalfRoot3}};
     return {{1, 0}, {kHalfRoot2, kHalfRoot2}, {0, 1}, {-kHalfRoot2, kHalfRoot2},
@@ -151,37 +119,42 @@ void addTurned(MeshBuilder& mesh, uint32_t material, const glm::dvec3& center, i
     }
 }
 
-void addBody(MeshBuilder& mesh, const BodyMaterials& materials, const std::vector<glm::dvec2>& outline,
-             const std::vector<double>& levels, const std::vector<Wall>& walls) {
-    SIGHTLINE_ASSERT(levels.size() >= 2 && levels.size() % 2 == 0 && walls.size() == outline.size());
-    std::vector<glm::dvec2> rim;  // (z, x): all the vertices along the foot and the eaves
+void addBody(MeshBuilder& mesh, const BodyMaterials& materials, const std::vector<glm::dvec2>& outline, double foot,
+             double eaves, const std::vector<Wall>& walls) {
+    SIGHTLINE_ASSERT(walls.size() == outline.size() && foot < eaves);
+    const auto stand = [](const glm::dvec2& at, double y) { return glm::dvec3(at.x, y, at.y); };
+    std::vector<PlanCorner> plan;
     for (size_t i = 0; i < outline.size(); ++i) {
+        const Wall& wall = walls[i];
         const glm::dvec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
         const double length = glm::length(b - a);
-        const glm::dvec2 direction = (b - a) / length;
-        const glm::dvec3 normal(-direction.y, 0, direction.x);
-        const std::vector<double> cuts = bayCuts(walls[i], length);
-        const auto corner = [&](size_t column, size_t level) {
-            // The last corner is the next wall's first, bit for bit.
-            const glm::dvec2 at = column + 1 == cuts.size() ? b : a + direction * cuts[column];
-            return glm::dvec3(at.x, levels[level], at.y);
-        };
-        for (size_t column = 0; column + 1 < cuts.size(); ++column) {
-            const glm::dvec3 foot = corner(column, 0);
-            rim.push_back({foot.z, foot.x});
-            for (size_t level = 0; level + 1 < levels.size(); ++level) {
-                const std::array<glm::dvec3, 4> cell{corner(column, level), corner(column + 1, level),
-                                                     corner(column + 1, level + 1), corner(column, level + 1)};
-                if (column % 2 == 1 && level % 2 == 1) addBay(mesh, materials, cell, normal, walls[i]);
-                else mesh.quad(materials.wall, cell[0], cell[1], cell[2], cell[3]);
-            }
+        const glm::dvec2 direction = (b - a) / length, inward(direction.y, -direction.x);
+        plan.push_back({a, materials.wall});
+        const double width = wall.bays > 0 ? (length - (wall.bays + 1) * wall.pier) / wall.bays : 1;
+        SIGHTLINE_ASSERT(width > 0);
+        for (int bay = 0; bay < wall.bays; ++bay) {
+            const glm::dvec2 start = a + direction * (wall.pier + bay * (width + wall.pier));
+            const glm::dvec2 end = start + direction * width, set_back = inward * (0.5 * wall.depth);
+            plan.push_back({start, materials.bay});
+            plan.push_back({start + inward * wall.depth, materials.bay});
+            plan.push_back({end + inward * wall.depth, materials.bay});
+            plan.push_back({end, materials.wall});
+            if (!wall.glazed || wall.depth <= 0) continue;
+            const double low = foot + kSill, high = eaves - kLintel;
+            mesh.quad(materials.glass, stand(start + set_back, low), stand(end + set_back, low),
+                      stand(end + set_back, high), stand(start + set_back, high));
         }
     }
-    const double foot = levels.front(), eaves = levels.back();
+    std::vector<glm::dvec2> rim;  // (z, x)
+    for (size_t i = 0; i < plan.size(); ++i) {
+        const glm::dvec2 &p = plan[i].at, &q = plan[(i + 1) % plan.size()].at;
+        rim.push_back({p.y, p.x});
+        mesh.quad(plan[i].material, stand(p, foot), stand(q, foot), stand(q, eaves), stand(p, eaves));
+    }
     for (const auto& [a, b, c] : triangulate(rim)) {
-        const glm::dvec2 &p = rim[a], &q = rim[b], &r = rim[c];
-        mesh.triangle(materials.roof, {p.y, eaves, p.x}, {q.y, eaves, q.x}, {r.y, eaves, r.x});
-        mesh.triangle(materials.wall, {p.y, foot, p.x}, {r.y, foot, r.x}, {q.y, foot, q.x});
+        const glm::dvec2 &p = plan[a].at, &q = plan[b].at, &r = plan[c].at;
+        mesh.triangle(materials.roof, stand(p, eaves), stand(q, eaves), stand(r, eaves));
+        mesh.triangle(materials.wall, stand(p, foot), stand(r, foot), stand(q, foot));
     }
 }
 

@@ -37,7 +37,6 @@ void addBox(MeshBuilder& mesh, uint32_t material, const glm::dvec3& min, const g
 
 /// Right-handed axes of an extrusion: an outline lies in (u, v), counter-clockwise, and is carried along w.
 struct Frame { glm::dvec3 origin, u, v, w; };
-inline constexpr double kStorey = 3.25;  ///< height of a storey [metres]
 
 inline constexpr Frame kUpright{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}};    ///< outlines (z, x), carried up
 inline constexpr Frame kAcross{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};    ///< profiles (z, y), carried to -x
@@ -52,30 +51,30 @@ struct Ring { double radius, y; };
 
 /// A closed solid turned about the vertical through `center`: rings from below to above; a radius of 0 at
 /// either end is a tip, otherwise the end is flat.
-/// @param sides  6 or 8
+/// @param sides  3, 4, 6 or 8
 void addTurned(MeshBuilder& mesh, uint32_t material, const glm::dvec3& center, int sides,
                const std::vector<Ring>& rings);
 
-/// The corners of a regular polygon of 6 or 8 sides and radius 1, counter-clockwise.
+/// The corners of a regular polygon of 3, 4, 6 or 8 sides and radius 1, counter-clockwise. A square's sides
+/// lie along the axes.
 std::vector<glm::dvec2> regularPolygon(int sides);
 
-/// How one wall of a body is broken up.
+/// How one wall of a body is broken up: by bays as tall as the body, so that every face is one large rectangle.
 struct Wall {
     int bays = 0;         ///< 0: plain
     double pier = 0;      ///< width of the plain strips between and beside the bays  [metres]
     double depth = 0;     ///< of the bays; negative stands out                       [metres, != 0]
-    bool glazed = false;  ///< up to four panes close each bay half-way, about one per storey
+    bool glazed = false;  ///< one pane closes each bay half-way
 };
 
 struct BodyMaterials { uint32_t wall, bay, roof, glass; };
 
-/// A closed body over an outline, with bays in its walls. Bays of two walls that meet in a corner keep
+/// A closed upright body over an outline, with bays in its walls. Bays of two walls that meet in a corner keep
 /// clear of each other if each pier is wider than the depth.
 /// @param outline  (x, z), counter-clockwise as seen from above
-/// @param levels   heights, rising: the foot, then bottom and top of each row of bays, then the eaves  [size: even]
 /// @param walls    wall i stands between corners i and i + 1  [size: outline]
-void addBody(MeshBuilder& mesh, const BodyMaterials& materials, const std::vector<glm::dvec2>& outline,
-             const std::vector<double>& levels, const std::vector<Wall>& walls);
+void addBody(MeshBuilder& mesh, const BodyMaterials& materials, const std::vector<glm::dvec2>& outline, double foot,
+             double eaves, const std::vector<Wall>& walls);
 
 /// Triangles that cover a simple polygon without cutting its edges; no triangle is degenerate, and
 /// vertices on a straight line are used like any other.

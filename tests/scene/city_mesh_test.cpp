@@ -71,8 +71,8 @@ TEST(CityMesh, MeshesAreWholeAndWithinTheirSizes) {
         for (size_t i = 0; i < library.meshes.size(); ++i) {
             const Mesh& mesh = library.meshes[i];
             const bool building = i >= kItemCount;
-            EXPECT_GE(mesh.triangles(), building ? 30u : 12u) << mesh.name;
-            EXPECT_LE(mesh.triangles(), building ? 400u : 200u) << mesh.name << ", seed " << seed;
+            EXPECT_GE(mesh.triangles(), building ? 60u : 12u) << mesh.name;
+            EXPECT_LE(mesh.triangles(), building ? 150u : 60u) << mesh.name << ", seed " << seed;
             uint32_t covered = 0;
             for (const Primitive& primitive : mesh.primitives) {
                 EXPECT_EQ(primitive.first_triangle, covered) << mesh.name;
