@@ -25,8 +25,8 @@ bool isHarmless(const std::string& name) {
     constexpr std::array kExact = {"KHR_mesh_quantization", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing",
                                    "KHR_node_visibility",   "KHR_animation_pointer",   "MSFT_texture_dds",
                                    "EXT_mesh_features",     "EXT_structural_metadata", "EXT_instance_features"};
-    constexpr std::array kPrefixes = {"KHR_texture_", "EXT_texture_", "KHR_materials_", "EXT_materials_",
-                                      "ADOBE_materials_", "KHR_lights_", "EXT_lights_", "KHR_xmp"};
+    constexpr std::array kPrefixes = {"KHR_texture_",     "EXT_texture_", "KHR_materials_", "EXT_materials_",
+                                      "ADOBE_materials_", "KHR_lights_",  "EXT_lights_",    "KHR_xmp"};
     for (const char* exact : kExact)
         if (name == exact) return true;
     for (const char* prefix : kPrefixes)
@@ -75,15 +75,11 @@ Result<Scene> guarded(const std::string& name, Read&& read) {
     std::string what;
     try {
         return read();
-    } catch (const Fault& fault) {
-        what = fault.message;
-    } catch (const std::bad_alloc&) {
+    } catch (const Fault& fault) { what = fault.message; } catch (const std::bad_alloc&) {
         what = "needs more memory than there is";
     } catch (const std::length_error&) {
         what = "needs more memory than there is";
-    } catch (const std::exception& error) {
-        what = std::string("cannot be read: ") + error.what();
-    }
+    } catch (const std::exception& error) { what = std::string("cannot be read: ") + error.what(); }
     return Error{Error::Kind::kInput, printable(name + ": " + what, std::string::npos)};
 }
 

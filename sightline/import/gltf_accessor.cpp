@@ -18,12 +18,24 @@ static_assert(std::endian::native == std::endian::little, "glTF's buffers are li
 template <class Use>
 void withType(Component component, Use&& use) {
     switch (component) {
-        case Component::kByte: use(int8_t{}); break;
-        case Component::kUnsignedByte: use(uint8_t{}); break;
-        case Component::kShort: use(int16_t{}); break;
-        case Component::kUnsignedShort: use(uint16_t{}); break;
-        case Component::kUnsignedInt: use(uint32_t{}); break;
-        case Component::kFloat: use(float{}); break;
+        case Component::kByte:
+            use(int8_t{});
+            break;
+        case Component::kUnsignedByte:
+            use(uint8_t{});
+            break;
+        case Component::kShort:
+            use(int16_t{});
+            break;
+        case Component::kUnsignedShort:
+            use(uint16_t{});
+            break;
+        case Component::kUnsignedInt:
+            use(uint32_t{});
+            break;
+        case Component::kFloat:
+            use(float{});
+            break;
     }
 }
 
@@ -95,8 +107,7 @@ std::vector<float> decodeFloats(Document& document, uint32_t index, uint32_t com
     const Accessor& accessor = document.accessors[index];
     const std::string place = at("accessors", index);
     checkComponents(accessor, components, what, place);
-    if (accessor.elements.component == Component::kUnsignedInt)
-        fail(place, "{} cannot be 32-bit integers", what);
+    if (accessor.elements.component == Component::kUnsignedInt) fail(place, "{} cannot be 32-bit integers", what);
     const bool normalized = accessor.normalized;
     std::vector<float> out =
         decode<float>(document, index, [normalized](auto value) { return toFloat(value, normalized); });

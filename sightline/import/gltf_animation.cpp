@@ -48,7 +48,7 @@ std::optional<Channel> readChannel(const Json& json, size_t nodes, const std::st
 // a stretch carry its excess, so that whichever is the extreme counts it.
 struct Keys {
     size_t width = 0;
-    std::vector<float> values;  // [size: width * keys]
+    std::vector<float> values;   // [size: width * keys]
     std::vector<double> excess;  // [size: width * keys], zeros unless the curve is a cubic spline
 
     size_t count() const { return width == 0 ? 0 : values.size() / width; }
@@ -116,8 +116,8 @@ void growWeights(Document& document, const Keys& keys, size_t targets, Motion& m
     }
 }
 
-void applyChannel(Document& document, const Json& samplers, const Json& json, const Channel& channel,
-                  size_t targets, Motion& motion, const std::string& animation, const std::string& place) {
+void applyChannel(Document& document, const Json& samplers, const Json& json, const Channel& channel, size_t targets,
+                  Motion& motion, const std::string& animation, const std::string& place) {
     const auto keys = [&](size_t width, uint32_t components) {
         return readKeys(document, samplers, json, width, components, animation, place);
     };
@@ -169,8 +169,8 @@ std::vector<Motion> readMotions(Document& document, const NodeTree& tree, const 
             const std::optional<Channel> channel = readChannel(objectAt(channels, c, place), tree.nodes.size(), place);
             if (!channel) continue;
             const std::optional<uint32_t> mesh = tree.nodes[channel->node].mesh;
-            applyChannel(document, samplers, channels[c], *channel, mesh ? targets[*mesh] : 0,
-                         motions[channel->node], animation, place);
+            applyChannel(document, samplers, channels[c], *channel, mesh ? targets[*mesh] : 0, motions[channel->node],
+                         animation, place);
         }
     }
     return motions;

@@ -14,7 +14,10 @@ namespace sightline::gltf {
 
 struct Range {
     double low = 0, high = 0;
-    void grow(double value) { low = value < low ? value : low; high = value > high ? value : high; }
+    void grow(double value) {
+        low = value < low ? value : low;
+        high = value > high ? value : high;
+    }
 };
 
 /// What a node may do: its rest pose and whatever the animations ask of it.

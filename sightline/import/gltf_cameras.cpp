@@ -38,10 +38,8 @@ CameraSource readCamera(const Json& json, const std::string& place) {
     if (type != "perspective" && type != "orthographic") fail(place, "type '{}' is not known", printable(type));
     const Json* lens = findObject(json, type.c_str(), place);
     if (!lens) fail(place, "{} is missing", type);
-    if (type == "perspective")
-        readPerspective(*lens, camera, place + ".perspective");
-    else
-        readOrthographic(*lens, camera, place + ".orthographic");
+    if (type == "perspective") readPerspective(*lens, camera, place + ".perspective");
+    else readOrthographic(*lens, camera, place + ".orthographic");
     return camera;
 }
 

@@ -138,9 +138,9 @@ std::vector<unsigned char> readFile(const std::string& path, const std::string& 
 
 bool isDataUri(const std::string& uri) {
     const std::string_view scheme = "data:";
-    return uri.size() >= scheme.size() &&
-           std::equal(scheme.begin(), scheme.end(), uri.begin(),
-                      [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
+    return uri.size() >= scheme.size() && std::equal(scheme.begin(), scheme.end(), uri.begin(), [](char a, char b) {
+               return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b);
+           });
 }
 
 std::vector<unsigned char> decodeDataUri(const std::string& uri, const std::string& place) {

@@ -54,8 +54,8 @@ void readViews(Document& document) {
         view.stride = static_cast<uint32_t>(stride);
         if (const Json* meshopt = extension(json, "EXT_meshopt_compression", place)) {
             view.compression = readCompression(*meshopt, document.buffers.size(), place);
-            checkRange(view.compression->offset, view.compression->length,
-                       document.buffers[view.compression->buffer], place);
+            checkRange(view.compression->offset, view.compression->length, document.buffers[view.compression->buffer],
+                       place);
             view.length = view.compression->decodedSize();
         } else {
             checkRange(view.offset, view.length, document.buffers[view.buffer], place);
@@ -96,8 +96,7 @@ void checkElements(const Document& document, const Elements& elements, uint64_t 
 Sparse readSparse(const Document& document, const Json& json, const Accessor& accessor, const std::string& place) {
     Sparse sparse;
     sparse.count = requiredWhole(json, "count", place);
-    if (sparse.count > accessor.count)
-        fail(place, "replaces {} elements of {}", sparse.count, accessor.count);
+    if (sparse.count > accessor.count) fail(place, "replaces {} elements of {}", sparse.count, accessor.count);
     const auto part = [&](const char* key, Elements& out) {
         const Json* member = findObject(json, key, place);
         if (!member) fail(place, "{} is missing", key);
@@ -174,11 +173,14 @@ Bytes bufferBytes(Document& document, uint32_t index) {
 uint32_t componentSize(Component component) {
     switch (component) {
         case Component::kByte:
-        case Component::kUnsignedByte: return 1;
+        case Component::kUnsignedByte:
+            return 1;
         case Component::kShort:
-        case Component::kUnsignedShort: return 2;
+        case Component::kUnsignedShort:
+            return 2;
         case Component::kUnsignedInt:
-        case Component::kFloat: return 4;
+        case Component::kFloat:
+            return 4;
     }
     return 4;
 }
@@ -202,8 +204,8 @@ Bytes viewBytes(Document& document, uint32_t index) {
     if (!view.compression) return bufferBytes(document, view.buffer).subspan(view.offset, view.length);
     if (!view.decoded) {
         const std::string place = at("bufferViews", index);
-        const Bytes source = bufferBytes(document, view.compression->buffer)
-                                 .subspan(view.compression->offset, view.compression->length);
+        const Bytes source =
+            bufferBytes(document, view.compression->buffer).subspan(view.compression->offset, view.compression->length);
         document.budget.charge(view.length, 1, place);
         view.data = decompress(*view.compression, source, place);
         view.decoded = true;

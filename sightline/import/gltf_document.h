@@ -27,11 +27,11 @@ struct Buffer {
 
 struct BufferView {
     uint32_t buffer = 0;
-    uint64_t offset = 0, length = 0;        ///< [bytes] of the buffer, or of the data once decompressed
-    uint32_t stride = 0;                    ///< [bytes]; 0: packed
+    uint64_t offset = 0, length = 0;  ///< [bytes] of the buffer, or of the data once decompressed
+    uint32_t stride = 0;              ///< [bytes]; 0: packed
     std::optional<Compression> compression;
     bool decoded = false;
-    std::vector<unsigned char> data;        ///< decompressed
+    std::vector<unsigned char> data;  ///< decompressed
 };
 
 enum class Component : uint16_t {

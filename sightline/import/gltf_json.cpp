@@ -65,9 +65,7 @@ Json parseJson(std::span<const unsigned char> text) {
         root = Json::parse(text.data(), text.data() + text.size());
     } catch (const Json::parse_error& error) {
         fail("", "not JSON: syntax error at byte {}", error.byte);
-    } catch (const Json::exception&) {
-        fail("", "not JSON: a number is out of range");
-    }
+    } catch (const Json::exception&) { fail("", "not JSON: a number is out of range"); }
     if (!root.is_object()) fail("", "not glTF: the JSON is not an object");
     return root;
 }

@@ -29,8 +29,8 @@ AlphaMode readAlphaMode(const Json& json, const std::string& place) {
 void readColor(const Json* owner, const char* key, Material& material, const std::string& place) {
     double color[4];
     if (owner && numbers(*owner, key, color, place))
-        material.base_color = {static_cast<float>(color[0]), static_cast<float>(color[1]),
-                               static_cast<float>(color[2]), static_cast<float>(color[3])};
+        material.base_color = {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2]),
+                               static_cast<float>(color[3])};
 }
 
 // Many writers add the extension with a factor of 0, which is an ordinary opaque surface.
@@ -54,8 +54,8 @@ Material readMaterial(const Json& json, bool animated_factors, const std::string
     material.alpha_mode = readAlphaMode(json, place);
     material.alpha_cutoff = static_cast<float>(number(json, "alphaCutoff", place).value_or(0.5));
     material.double_sided = flag(json, "doubleSided", place);
-    material.transmissive = animated_factors ? extension(json, "KHR_materials_transmission", place) != nullptr
-                                             : transmits(json, place);
+    material.transmissive =
+        animated_factors ? extension(json, "KHR_materials_transmission", place) != nullptr : transmits(json, place);
     // Thin and rare: none of these hides, whatever its factor.
     if (extension(json, "KHR_materials_diffuse_transmission", place)) material.transmissive = true;
     if (const Json* glossiness = extension(json, "KHR_materials_pbrSpecularGlossiness", place))

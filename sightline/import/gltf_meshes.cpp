@@ -66,10 +66,8 @@ std::vector<uint32_t> triangleCorners(std::vector<uint32_t> corners, uint32_t mo
     out.reserve((corners.size() - 2) * 3);
     for (size_t i = 0; i + 2 < corners.size(); ++i) {
         const size_t odd = i % 2;
-        if (mode == kTriangleStrip)
-            out.insert(out.end(), {corners[i], corners[i + 1 + odd], corners[i + 2 - odd]});
-        else
-            out.insert(out.end(), {corners[i + 1], corners[i + 2], corners[0]});
+        if (mode == kTriangleStrip) out.insert(out.end(), {corners[i], corners[i + 1 + odd], corners[i + 2 - odd]});
+        else out.insert(out.end(), {corners[i + 1], corners[i + 2], corners[0]});
     }
     return out;
 }
@@ -103,8 +101,8 @@ std::vector<MeshSource> readMeshes(const Document& document, const Materials& ma
         const Json& primitives = table(json, "primitives", place);
         for (size_t p = 0; p < primitives.size(); ++p) {
             const std::string primitive_place = place + at(".primitives", p);
-            auto primitive = readPrimitive(document, objectAt(primitives, p, primitive_place), materials,
-                                           primitive_place);
+            auto primitive =
+                readPrimitive(document, objectAt(primitives, p, primitive_place), materials, primitive_place);
             if (!primitive) continue;
             mesh.targets = std::max(mesh.targets, primitive->targets.size());
             mesh.skinnable |= !primitive->influences.empty();
@@ -139,8 +137,8 @@ void MeshBuilder::addPrimitive(const PrimitiveSource& source, bool keep_runs, Bu
         positions.id.resize(positions.epoch.size());
         positions.decoded = true;
     }
-    const std::vector<uint32_t> corners = triangleCorners(
-        readCorners(document_, source, static_cast<uint32_t>(positions.epoch.size())), source.mode);
+    const std::vector<uint32_t> corners =
+        triangleCorners(readCorners(document_, source, static_cast<uint32_t>(positions.epoch.size())), source.mode);
     document_.budget.charge(corners.size(), sizeof(uint32_t) + sizeof(glm::vec3), source.place);
 
     Mesh& mesh = out.mesh;
@@ -151,8 +149,8 @@ void MeshBuilder::addPrimitive(const PrimitiveSource& source, bool keep_runs, Bu
         out.runs.push_back({&source, static_cast<uint32_t>(mesh.positions.size()), {}});
     }
     if (!corners.empty())
-        mesh.primitives.push_back({static_cast<uint32_t>(mesh.triangles()),
-                                   static_cast<uint32_t>(corners.size() / 3), source.material});
+        mesh.primitives.push_back(
+            {static_cast<uint32_t>(mesh.triangles()), static_cast<uint32_t>(corners.size() / 3), source.material});
     for (const uint32_t corner : corners) {
         if (positions.epoch[corner] != epoch_) {
             positions.epoch[corner] = epoch_;

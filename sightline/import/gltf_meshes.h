@@ -20,9 +20,9 @@ struct PrimitiveSource {
     uint32_t mode = 4;
     std::optional<uint32_t> indices;
     uint32_t positions = 0;
-    uint32_t material = 0;                                    ///< in Scene::materials
-    std::vector<std::pair<uint32_t, uint32_t>> influences;    ///< joints and weights, set by set
-    std::vector<std::optional<uint32_t>> targets;             ///< displacements of the morph targets
+    uint32_t material = 0;                                  ///< in Scene::materials
+    std::vector<std::pair<uint32_t, uint32_t>> influences;  ///< joints and weights, set by set
+    std::vector<std::optional<uint32_t>> targets;           ///< displacements of the morph targets
 };
 
 struct MeshSource {
@@ -40,8 +40,8 @@ std::vector<MeshSource> readMeshes(const Document& document, const Materials& ma
 /// Where the vertices of a primitive came from.
 struct VertexRun {
     const PrimitiveSource* primitive = nullptr;
-    uint32_t first = 0;               ///< in Mesh::positions
-    std::vector<uint32_t> source;     ///< index in the primitive's accessors, vertex by vertex
+    uint32_t first = 0;            ///< in Mesh::positions
+    std::vector<uint32_t> source;  ///< index in the primitive's accessors, vertex by vertex
 };
 
 struct BuiltMesh {

@@ -10,9 +10,12 @@ namespace {
 // The densest that each codec packs: blocks of 16 equal bytes take two bits, a triangle or an index a byte.
 bool canHold(const Compression& c) {
     switch (c.mode) {
-        case Compression::Mode::kAttributes: return c.decodedSize() / 64 <= c.length;
-        case Compression::Mode::kTriangles: return c.count / 3 <= c.length;
-        case Compression::Mode::kIndices: return c.count <= c.length;
+        case Compression::Mode::kAttributes:
+            return c.decodedSize() / 64 <= c.length;
+        case Compression::Mode::kTriangles:
+            return c.count / 3 <= c.length;
+        case Compression::Mode::kIndices:
+            return c.count <= c.length;
     }
     return false;
 }
@@ -22,10 +25,8 @@ void checkShape(const Compression& c, const std::string& place) {
     using Mode = Compression::Mode;
     using Filter = Compression::Filter;
     bool right = false;
-    if (c.mode == Mode::kAttributes)
-        right = c.stride >= 4 && c.stride <= 256 && c.stride % 4 == 0;
-    else
-        right = c.stride == 2 || c.stride == 4;
+    if (c.mode == Mode::kAttributes) right = c.stride >= 4 && c.stride <= 256 && c.stride % 4 == 0;
+    else right = c.stride == 2 || c.stride == 4;
     if (c.mode != Mode::kAttributes && c.filter != Filter::kNone) fail(place, "meshopt filters indices");
     if (c.filter == Filter::kOctahedral) right = c.stride == 4 || c.stride == 8;
     if (c.filter == Filter::kQuaternion) right = c.stride == 8;
@@ -86,10 +87,17 @@ std::vector<unsigned char> decompress(const Compression& c, Bytes source, const 
     }
     if (failed) fail(place, "meshopt data is damaged");
     switch (c.filter) {
-        case Compression::Filter::kNone: break;
-        case Compression::Filter::kOctahedral: meshopt_decodeFilterOct(out.data(), c.count, c.stride); break;
-        case Compression::Filter::kQuaternion: meshopt_decodeFilterQuat(out.data(), c.count, c.stride); break;
-        case Compression::Filter::kExponential: meshopt_decodeFilterExp(out.data(), c.count, c.stride); break;
+        case Compression::Filter::kNone:
+            break;
+        case Compression::Filter::kOctahedral:
+            meshopt_decodeFilterOct(out.data(), c.count, c.stride);
+            break;
+        case Compression::Filter::kQuaternion:
+            meshopt_decodeFilterQuat(out.data(), c.count, c.stride);
+            break;
+        case Compression::Filter::kExponential:
+            meshopt_decodeFilterExp(out.data(), c.count, c.stride);
+            break;
     }
     return out;
 }

@@ -138,12 +138,11 @@ NodeTree readNodes(const Json& root, const NodeTargets& targets) {
 }
 
 glm::dmat3 rotationMatrix(const double rotation[4]) {
-    const double largest = std::max({std::abs(rotation[0]), std::abs(rotation[1]), std::abs(rotation[2]),
-                                     std::abs(rotation[3])});
+    const double largest =
+        std::max({std::abs(rotation[0]), std::abs(rotation[1]), std::abs(rotation[2]), std::abs(rotation[3])});
     if (largest == 0) return glm::dmat3(1.0);
     // Twice, so that neither huge nor tiny components leave the range in between.
-    double x = rotation[0] / largest, y = rotation[1] / largest, z = rotation[2] / largest,
-           w = rotation[3] / largest;
+    double x = rotation[0] / largest, y = rotation[1] / largest, z = rotation[2] / largest, w = rotation[3] / largest;
     const double length = std::sqrt(x * x + y * y + z * z + w * w);
     x /= length, y /= length, z /= length, w /= length;
     glm::dmat3 m;

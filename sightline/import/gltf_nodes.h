@@ -21,9 +21,9 @@ struct Node {
     std::optional<uint32_t> mesh, skin, camera;
     glm::dmat4 local{1.0};
     glm::dmat4 world{1.0};
-    double scale = 1;             ///< the most by which `local` stretches any vector
-    std::vector<float> weights;   ///< of morph targets; empty: the mesh's own
-    bool drawn = false;           ///< the default scene reaches it, and nothing hides it
+    double scale = 1;            ///< the most by which `local` stretches any vector
+    std::vector<float> weights;  ///< of morph targets; empty: the mesh's own
+    bool drawn = false;          ///< the default scene reaches it, and nothing hides it
 };
 
 struct NodeTree {

@@ -15,7 +15,7 @@ namespace sightline::gltf {
 namespace {
 
 constexpr double kFarthest = 1e100;  // squares and volumes of what is nearer stay finite
-constexpr uint64_t kMostInstances = 50'000'000;  // of one node
+constexpr uint64_t kMostObjects = 50'000'000;
 
 /// A mesh as one or more nodes draw it: the same mesh unskinned, under a skin or with other morph weights is another
 /// shape.
@@ -81,7 +81,7 @@ std::vector<glm::dmat4> readInstances(Document& document, const Json& json, cons
     };
     const std::vector<float> translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4),
                              scales = read("SCALE", 3);
-    if (*count > kMostInstances) fail(place, "{} GPU instances are more than {}", *count, kMostInstances);
+    if (*count > kMostObjects) fail(place, "{} GPU instances are more than {}", *count, kMostObjects);
     document.budget.charge(*count, sizeof(glm::dmat4), place);
     std::vector<glm::dmat4> out(*count);
     for (size_t i = 0; i < out.size(); ++i) {
@@ -98,6 +98,7 @@ void addObject(Document& document, Scene& scene, uint32_t node, uint32_t mesh, c
                const std::string& name) {
     const std::string place = at("nodes", node);
     document.budget.charge(1, sizeof(SceneObject) + name.size(), place);
+    if (scene.objects.size() >= kMostObjects) fail(place, "the scene draws more than {} objects", kMostObjects);
     if (!finiteMatrix(transform)) fail(place, "its world transform is not finite");
     const Box3d box = transformBox(scene.meshes[mesh].bounds, transform);
     for (int axis = 0; axis < 3; ++axis)
@@ -133,8 +134,7 @@ void addShape(Document& document, const Parts& parts, const std::vector<Motion>&
     std::optional<glm::dmat4> transform;
     if (shape.deforms(source)) {
         document.budget.charge(source.targets, sizeof(Range), place);
-        const MorphReach reach =
-            morphReach(document, built, shape.weights, weightRanges(parts, motions, shape));
+        const MorphReach reach = morphReach(document, built, shape.weights, weightRanges(parts, motions, shape));
         if (shape.skin) {
             const glm::dvec3 anchor =
                 applySkin(document, parts.tree, motions, parts.skins[*shape.skin], reach, place, built);

@@ -114,9 +114,9 @@ void poseRun(const std::vector<InfluenceSet>& sets, const VertexRun& run, const 
 // A node above or among the joints.
 struct Step {
     uint32_t node = kNoNode;
-    double reach = -1;        // in the node's own frame; < 0: nothing hangs from it
+    double reach = -1;  // in the node's own frame; < 0: nothing hangs from it
     bool moves = false;
-    bool carried = false;     // something above it moves
+    bool carried = false;  // something above it moves
 };
 
 class Reach {

@@ -38,7 +38,8 @@ inline std::string sceneFault(const Scene& scene) {
         if (const std::string fault = meshFault(scene, mesh); !fault.empty()) return fault;
     for (const SceneObject& object : scene.objects) {
         if (object.mesh >= scene.meshes.size()) return "a mesh is out of range";
-        if (!transformBox(scene.meshes[object.mesh].bounds, object.transform).finite()) return "an object is not finite";
+        if (!transformBox(scene.meshes[object.mesh].bounds, object.transform).finite())
+            return "an object is not finite";
         for (int column = 0; column < 4; ++column)
             if (object.transform[column][3] != (column == 3 ? 1 : 0)) return "a transform is not affine";
     }

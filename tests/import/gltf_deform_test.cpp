@@ -31,8 +31,7 @@ TEST(GltfDeform, BoundsASkinByItsStretchedChain) {
 // The elbow's places span a box whose far corner is (2, 4, 0), and it grows to twice its size: 2 * 3 beyond that.
 TEST(GltfDeform, CountsAnimatedTranslationsAndScales) {
     const double reach = std::sqrt(20.0) + 6;
-    expectBox(boundsOf(loadSample("skin_animated.glb"), 0), glm::dvec3(0, 10, 0) - reach,
-              glm::dvec3(0, 10, 0) + reach);
+    expectBox(boundsOf(loadSample("skin_animated.glb"), 0), glm::dvec3(0, 10, 0) - reach, glm::dvec3(0, 10, 0) + reach);
 }
 
 TEST(GltfDeform, KeepsASkinnedAndAPlainUseApart) {

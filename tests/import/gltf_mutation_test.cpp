@@ -23,11 +23,21 @@ std::string mutated(std::string bytes, Random& random) {
         const size_t at = random.below(bytes.size());
         const size_t length = std::min<size_t>(1 + random.below(16), bytes.size() - at);
         switch (random.below(6)) {
-            case 0: bytes[at] = char(bytes[at] ^ 1 << random.below(8)); break;
-            case 1: bytes[at] = char(random.next()); break;
-            case 2: bytes.replace(at, length, length, "\xff\x00\x7f\x80"[random.below(4)]); break;
-            case 3: bytes.erase(at, length); break;
-            case 4: bytes.insert(at, bytes.substr(at, length)); break;
+            case 0:
+                bytes[at] = char(bytes[at] ^ 1 << random.below(8));
+                break;
+            case 1:
+                bytes[at] = char(random.next());
+                break;
+            case 2:
+                bytes.replace(at, length, length, "\xff\x00\x7f\x80"[random.below(4)]);
+                break;
+            case 3:
+                bytes.erase(at, length);
+                break;
+            case 4:
+                bytes.insert(at, bytes.substr(at, length));
+                break;
             default:
                 // A digit elsewhere keeps the JSON whole and changes what it says.
                 if (const size_t digit = bytes.find_first_of("0123456789", at); digit != std::string::npos)

@@ -49,9 +49,7 @@ TEST(GltfNodes, NormalizesRotations) {
     expectCorners(cornersOf(load(b.glb()), 0), {{0, 0, 0}, {0, 1, 0}, {-1, 0, 0}});
 }
 
-TEST(GltfNodes, ShowsTheMarkedScene) {
-    EXPECT_EQ(keysOf(loadSample("scene_marked.glb")), (std::vector<uint64_t>{1}));
-}
+TEST(GltfNodes, ShowsTheMarkedScene) { EXPECT_EQ(keysOf(loadSample("scene_marked.glb")), (std::vector<uint64_t>{1})); }
 
 TEST(GltfNodes, ShowsAllScenesIfNoneIsMarked) {
     EXPECT_EQ(keysOf(loadSample("scenes_unmarked.glb")), (std::vector<uint64_t>{0, 1}));

@@ -20,8 +20,7 @@ std::string indexed() {
 // Six vertices in a zigzag, in one of the modes.
 std::string zigzag(int mode, bool indices) {
     GltfBuilder b;
-    const uint32_t positions =
-        b.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0, 1, 2, 0});
+    const uint32_t positions = b.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0, 1, 2, 0});
     const int accessor = indices ? int(b.accessor<uint8_t>("SCALAR", {0, 1, 2, 3, 4, 5})) : -1;
     b.node({{"mesh", b.mesh(positions, accessor, {{"mode", mode}})}});
     return b.glb();
@@ -31,7 +30,8 @@ std::string pointsAndLines() {
     GltfBuilder b;
     const uint32_t positions = b.accessor("VEC3", kSquare);
     Json primitives = Json::array();
-    for (const int mode : {0, 1, 4, 2, 3}) primitives.push_back({{"attributes", {{"POSITION", positions}}}, {"mode", mode}});
+    for (const int mode : {0, 1, 4, 2, 3})
+        primitives.push_back({{"attributes", {{"POSITION", positions}}}, {"mode", mode}});
     b.node({{"mesh", b.add("meshes", {{"primitives", primitives}})}});
     const uint32_t lines = b.mesh(positions, -1, {{"mode", 1}});
     b.node({{"mesh", lines}});
@@ -64,8 +64,9 @@ std::string interleaved() {
     GltfBuilder b;
     const std::vector<float> data = {0, 0, 0, 9, 9, 1, 0, 0, 9, 9, 0, 1, 0, 9, 9};
     const uint32_t view = b.view(GltfBuilder::raw(data), 20);
-    const uint32_t positions = b.add(
-        "accessors", {{"bufferView", view}, {"byteOffset", 0}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
+    const uint32_t positions =
+        b.add("accessors",
+              {{"bufferView", view}, {"byteOffset", 0}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
     b.node({{"mesh", b.mesh(positions)}});
     return b.glb();
 }
@@ -118,11 +119,12 @@ std::string scenes(int marked, bool any) {
 std::string cameras() {
     GltfBuilder b;
     b.node({{"mesh", b.triangleMesh()}});
-    b.add("cameras", {{"name", "lens"}, {"type", "perspective"},
+    b.add("cameras", {{"name", "lens"},
+                      {"type", "perspective"},
                       {"perspective", {{"yfov", 0.5}, {"znear", 0.25}, {"zfar", 50}, {"aspectRatio", 2}}}});
     b.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.5}}}});
-    b.add("cameras", {{"type", "orthographic"},
-                      {"orthographic", {{"xmag", 3}, {"ymag", 2}, {"znear", 0}, {"zfar", 9}}}});
+    b.add("cameras",
+          {{"type", "orthographic"}, {"orthographic", {{"xmag", 3}, {"ymag", 2}, {"znear", 0}, {"zfar", 9}}}});
     b.node({{"camera", 0}, {"translation", {1, 2, 3}}});
     b.node({{"camera", 1}, {"name", "watch"}});
     b.node({{"camera", 2}});
@@ -134,10 +136,10 @@ std::string instances() {
     GltfBuilder b;
     b.json["extensionsUsed"] = b.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
     const uint32_t mesh = b.triangleMesh();
-    const Json attributes = {{"TRANSLATION", b.accessor<float>("VEC3", {0, 0, 0, 5, 0, 0, 0, 7, 0})},
-                             {"ROTATION", b.accessor<int16_t>(
-                                  "VEC4", {0, 0, 0, 32767, 0, 0, 23170, 23170, 0, 0, 0, 32767}, true)},
-                             {"SCALE", b.accessor<float>("VEC3", {1, 1, 1, 2, 2, 2, -1, 1, 1})}};
+    const Json attributes = {
+        {"TRANSLATION", b.accessor<float>("VEC3", {0, 0, 0, 5, 0, 0, 0, 7, 0})},
+        {"ROTATION", b.accessor<int16_t>("VEC4", {0, 0, 0, 32767, 0, 0, 23170, 23170, 0, 0, 0, 32767}, true)},
+        {"SCALE", b.accessor<float>("VEC3", {1, 1, 1, 2, 2, 2, -1, 1, 1})}};
     b.node({{"name", "plain"}, {"mesh", mesh}});
     b.node({{"name", "grove"},
             {"mesh", mesh},

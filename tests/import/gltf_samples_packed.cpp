@@ -17,10 +17,13 @@ struct Packer {
     uint32_t view(const std::string& packed, size_t count, size_t stride, const char* mode, const char* filter) {
         const uint32_t view = b.view(packed);
         Json& json = b.json["bufferViews"][view];
-        json["extensions"]["EXT_meshopt_compression"] = {
-            {"buffer", 0},     {"byteOffset", json["byteOffset"]}, {"byteLength", packed.size()},
-            {"count", count},  {"byteStride", stride},             {"mode", mode},
-            {"filter", filter}};
+        json["extensions"]["EXT_meshopt_compression"] = {{"buffer", 0},
+                                                         {"byteOffset", json["byteOffset"]},
+                                                         {"byteLength", packed.size()},
+                                                         {"count", count},
+                                                         {"byteStride", stride},
+                                                         {"mode", mode},
+                                                         {"filter", filter}};
         json["buffer"] = 1;
         json["byteOffset"] = fallback;
         json["byteLength"] = count * stride;
@@ -84,12 +87,9 @@ std::string packedInstances() {
     std::vector<int8_t> octahedral(8);
     meshopt_encodeFilterQuat(quaternions.data(), 2, 8, 16, rotations.data());
     meshopt_encodeFilterOct(octahedral.data(), 2, 4, 8, directions.data());
-    const uint32_t translation =
-        p.accessor(p.vertices(octahedral.data(), 2, 4, "OCTAHEDRAL"), 5120, 2, "VEC3", true);
-    const uint32_t rotation =
-        p.accessor(p.vertices(quaternions.data(), 2, 8, "QUATERNION"), 5122, 2, "VEC4", true);
-    const uint32_t mesh =
-        p.b.mesh(p.accessor(p.vertices(kSquare.data(), 4, 12, "NONE"), 5126, 4, "VEC3"));
+    const uint32_t translation = p.accessor(p.vertices(octahedral.data(), 2, 4, "OCTAHEDRAL"), 5120, 2, "VEC3", true);
+    const uint32_t rotation = p.accessor(p.vertices(quaternions.data(), 2, 8, "QUATERNION"), 5122, 2, "VEC4", true);
+    const uint32_t mesh = p.b.mesh(p.accessor(p.vertices(kSquare.data(), 4, 12, "NONE"), 5126, 4, "VEC3"));
     const Json attributes = {{"TRANSLATION", translation}, {"ROTATION", rotation}};
     p.b.node({{"mesh", mesh}, {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", attributes}}}}}});
     return p.glb();
@@ -103,11 +103,10 @@ struct Arm {
     Arm() {
         const uint32_t positions = b.accessor<float>("VEC3", {0, 0, 0, 5, 0, 0, 2, 1, 0});
         const uint32_t joints = b.accessor<uint8_t>("VEC4", {0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0});
-        const uint32_t weights =
-            b.accessor<uint8_t>("VEC4", {255, 0, 0, 0, 255, 0, 0, 0, 127, 128, 0, 0}, true);
-        mesh = b.mesh(positions, -1, {{"attributes",
-                                       {{"POSITION", positions}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}}});
-        const uint32_t binds = b.accessor<float>("MAT4", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,   //
+        const uint32_t weights = b.accessor<uint8_t>("VEC4", {255, 0, 0, 0, 255, 0, 0, 0, 127, 128, 0, 0}, true);
+        mesh = b.mesh(positions, -1,
+                      {{"attributes", {{"POSITION", positions}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}}});
+        const uint32_t binds = b.accessor<float>("MAT4", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,  //
                                                           1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -2, 0, 0, 1});
         b.node({{"name", "root joint"}, {"translation", {0, 10, 0}}, {"children", {1}}});
         b.node({{"name", "elbow"}, {"translation", {2, 0, 0}}});
@@ -148,8 +147,7 @@ struct Face {
         const uint32_t positions = b.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0});
         const uint32_t lift = b.accessor<float>("VEC3", {0, 0, 2, 0, 0, 2, 0, 0, 2});
         const uint32_t shrink = b.accessor<float>("VEC3", {0, 0, 0, -4, 0, 0, 0, 0, 0});
-        const uint32_t mesh =
-            b.mesh(positions, -1, {{"targets", {{{"POSITION", lift}}, {{"POSITION", shrink}}}}});
+        const uint32_t mesh = b.mesh(positions, -1, {{"targets", {{{"POSITION", lift}}, {{"POSITION", shrink}}}}});
         b.json["meshes"][mesh]["weights"] = {0.5, 0};
         b.node({{"mesh", mesh}, {"translation", {10, 0, 0}}});
     }
@@ -157,9 +155,8 @@ struct Face {
     void animate(const char* interpolation, const std::vector<float>& values) {
         const uint32_t times = b.accessor<float>("SCALAR", {0, 1});
         const uint32_t output = b.accessor("SCALAR", values);
-        b.add("animations",
-              {{"samplers", {{{"input", times}, {"output", output}, {"interpolation", interpolation}}}},
-               {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}});
+        b.add("animations", {{"samplers", {{{"input", times}, {"output", output}, {"interpolation", interpolation}}}},
+                             {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}});
     }
 };
 

@@ -17,12 +17,12 @@ struct Listed {
 };
 
 constexpr Listed kListed[] = {
-    {"bimwhale-tall-building", 164, 5},  {"dense-spot", 1, 6},
-    {"aws-small-house", 85, 146},        {"bsi-duplex", 692, 27},
-    {"gazebo-willowgarage", 248, 14},    {"sauer-pandora", 206, 61},
-    {"2CylinderEngine", 67, 121},        {"gazebo-pr2", 51, 70},
-    {"cityjson-vienna", 490, 40},        {"redeclipse-auster", 375, 47},
-    {"polyhaven-dutch-ship", 3, 69},     {"playcanvas-cave", 1, 595},
+    {"bimwhale-tall-building", 164, 5}, {"dense-spot", 1, 6},
+    {"aws-small-house", 85, 146},       {"bsi-duplex", 692, 27},
+    {"gazebo-willowgarage", 248, 14},   {"sauer-pandora", 206, 61},
+    {"2CylinderEngine", 67, 121},       {"gazebo-pr2", 51, 70},
+    {"cityjson-vienna", 490, 40},       {"redeclipse-auster", 375, 47},
+    {"polyhaven-dutch-ship", 3, 69},    {"playcanvas-cave", 1, 595},
     {"nibs-clinic-mep", 15861, 1350},
 };
 
