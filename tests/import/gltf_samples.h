@@ -1,4 +1,4 @@
-// Small valid files, one for each thing that the glTF reader understands: tests read them, and the fuzzer starts from them.
+// Small valid files, one for each thing that the glTF reader understands: tests read them, the fuzzer starts there.
 // SPDX-License-Identifier: MIT
 #pragma once
 
