@@ -60,14 +60,11 @@ MorphReach morphReach(Document& document, const BuiltMesh& built, const std::vec
 void applyMorph(const MorphReach& reach, Mesh& mesh) {
     mesh.deforms = true;
     mesh.bounds = {};
-    bool finite = true;
     for (size_t i = 0; i < reach.rest.size(); ++i) {
         mesh.positions[i] = glm::vec3(reach.rest[i]);
         mesh.bounds.grow(reach.low[i]);
         mesh.bounds.grow(reach.high[i]);
         mesh.bounds.grow(glm::dvec3(mesh.positions[i]));
-        // A box passes over a NaN that it is grown by.
-        for (int axis = 0; axis < 3; ++axis) finite &= std::isfinite(mesh.positions[i][axis]);
     }
     // A renderer adds the targets up in single precision.
     const glm::dvec3 slack = 1e-5 * glm::max(glm::abs(mesh.bounds.min), glm::abs(mesh.bounds.max));
