@@ -23,7 +23,7 @@ tools/setup ${full:+--full}
 
 if [ -n "$full" ]; then
     step "format"
-    git ls-files '*.h' '*.cpp' | xargs clang-format-14 --dry-run --Werror
+    tools/format --check
 
     for preset in asan tsan; do
         step "$preset"

@@ -25,7 +25,7 @@
 namespace sightline::cli {
 namespace {
 
-constexpr uint32_t kLargestSide = 16384;    // [pixels]
+constexpr uint32_t kLargestSide = 16384;  // [pixels]
 constexpr uint32_t kMostFrames = 1000000;
 constexpr uint32_t kMostThreads = 1024;
 
@@ -79,20 +79,29 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
     verb.add_option("--cameras", options.cameras, "camera path (JSON)")->type_name("PATH.json");
     verb.add_option("--frames", options.frames,
                     "so many seeded cameras; a city without --seed is walked along its streets")
-        ->check(CLI::Range(1u, kMostFrames))->type_name("N");
+        ->check(CLI::Range(1u, kMostFrames))
+        ->type_name("N");
     verb.add_option("--seed", options.seed, "of the seeded cameras")->type_name("S")->capture_default_str();
     verb.add_option("--size", options.size, "of the viewport [pixels]")->type_name("WxH")->capture_default_str();
     verb.add_option("--threads", options.threads, "share the frames among so many threads (default: one a core)")
-        ->check(CLI::Range(1u, kMostThreads))->type_name("N");
+        ->check(CLI::Range(1u, kMostThreads))
+        ->type_name("N");
     verb.add_option("--repeat", options.repeat, "queries a frame; times are their medians")
-        ->check(CLI::Range(1, 100000))->type_name("N")->capture_default_str();
+        ->check(CLI::Range(1, 100000))
+        ->type_name("N")
+        ->capture_default_str();
     verb.add_option("--use", options.use, "only these stages, separated by commas (" + stageNames() + ")")
-        ->delimiter(',')->type_name("LIST");
+        ->delimiter(',')
+        ->type_name("LIST");
     verb.add_option("--skip", options.skip, "not these stages")->delimiter(',')->type_name("LIST");
     verb.add_option("--jitter", options.jitter, "largest shift of the image that the answer must hold for")
-        ->check(CLI::Range(0.0, 1024.0))->type_name("PX")->capture_default_str();
+        ->check(CLI::Range(0.0, 1024.0))
+        ->type_name("PX")
+        ->capture_default_str();
     verb.add_option("--rays", options.rays, "that the first witness casts for a frame")
-        ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))->type_name("N")->capture_default_str();
+        ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
+        ->type_name("N")
+        ->capture_default_str();
     verb.add_option("--json", options.json, "write the result as JSON (-: standard output)")->type_name("FILE");
 }
 
@@ -146,9 +155,12 @@ int report(const Error& error) {
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
     fmt::print(stderr, "sightline: {}\n", line);
     switch (error.kind) {
-        case Error::Kind::kUsage: return kWrongArguments;
-        case Error::Kind::kOutput: return kOutputUnwritable;
-        case Error::Kind::kInput: break;
+        case Error::Kind::kUsage:
+            return kWrongArguments;
+        case Error::Kind::kOutput:
+            return kOutputUnwritable;
+        case Error::Kind::kInput:
+            break;
     }
     return kInputUnreadable;
 }

@@ -19,20 +19,20 @@ namespace sightline::cli {
 /// Options of every verb that moves a camera through a scene.
 struct RunOptions {
     std::string scene;
-    std::string cameras;          ///< file; empty: none
-    uint32_t frames = 0;          ///< 0: not given
+    std::string cameras;  ///< file; empty: none
+    uint32_t frames = 0;  ///< 0: not given
     uint64_t seed = 1;
     bool seed_given = false;
     std::string size = "1280x720";
     uint32_t width = 1280, height = 720;  ///< from `size`
-    uint32_t threads = 0;         ///< 0: all cores
+    uint32_t threads = 0;                 ///< 0: all cores
     int repeat = 3;
     std::vector<std::string> use, skip;
-    uint32_t stages = 0;          ///< from `use` and `skip`
+    uint32_t stages = 0;  ///< from `use` and `skip`
     double jitter = 0.5;
     uint64_t rays = 1000000;
-    std::string json;             ///< file, `-`, or empty
-    std::string report;           ///< directory, or empty
+    std::string json;    ///< file, `-`, or empty
+    std::string report;  ///< directory, or empty
 };
 
 void addSceneOptions(CLI::App& verb, RunOptions& options);

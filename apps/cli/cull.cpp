@@ -70,8 +70,9 @@ void addCull(CLI::App& tool, int& exit_code) {
     CLI::App* verb = tool.add_subcommand("cull", "the visible set along a camera path");
     const auto options = std::make_shared<CullOptions>();
     addSceneOptions(*verb, *options);
-    verb->add_flag("--verify", options->verify, "let rays and an id-buffer judge every frame; exit code 1 if "
-                                                "anything visible was culled");
+    verb->add_flag("--verify", options->verify,
+                   "let rays and an id-buffer judge every frame; exit code 1 if "
+                   "anything visible was culled");
     verb->add_option("--report", options->report, "write DIR/index.html, one page with pictures, and DIR/cull.json")
         ->type_name("DIR");
     verb->callback([verb, options, &exit_code] {

@@ -56,7 +56,10 @@ void cullFrame(const Snapshot& now, const CullRun& run, Query& query, FrameResul
 VerificationRow rowOf(const FrameVerdict& verdict, const Scene& scene) {
     VerificationRow row;
     row.rays = verdict.rays;
+    row.aimed_rays = verdict.aimed_rays;
     row.id_samples = verdict.id_samples;
+    row.supersampling = verdict.supersampling;
+    row.unconfirmed = verdict.unconfirmed;
     std::vector<uint64_t> keys;
     for (size_t i = 0; i < verdict.seen.size(); ++i)
         if (verdict.seen[i]) keys.push_back(scene.objects[i].key);
@@ -76,7 +79,8 @@ VerificationRow rowOf(const FrameVerdict& verdict, const Scene& scene) {
 std::string directoryOfOutputs(const RunOptions& options) {
     std::filesystem::path directory;
     if (!options.report.empty()) directory = options.report;
-    else if (!options.json.empty() && options.json != "-") directory = std::filesystem::path(options.json).parent_path();
+    else if (!options.json.empty() && options.json != "-")
+        directory = std::filesystem::path(options.json).parent_path();
     return directory.empty() ? "" : (directory / "").string();
 }
 
@@ -145,7 +149,6 @@ void verifyPath(const Scene& scene, const RunOptions& options, CullRun& run) {
     WitnessSettings settings;
     settings.rays = options.rays;
     settings.aimed_rays = std::min(settings.aimed_rays, options.rays / 5);
-    run.supersampling = settings.supersampling;
     const Witness witness(scene);
     Progress progress("verifying", "frames", run.frames.size());
     forEach(run.frames.size(), options.threads, [&](size_t i) {

@@ -69,9 +69,12 @@ Json infoJson(const Scene& scene, const std::string& file, const SceneFacts& fac
     out["meshes"] = scene.meshes.size();
     out["materials"] = scene.materials.size();
     out["cameras"] = scene.cameras.size();
-    out["triangles"] = {{"drawn", facts.drawn},         {"stored", facts.stored},
-                        {"occluding", facts.hiding},    {"masked", facts.masked},
-                        {"blended", facts.blended},     {"transmissive", facts.transmissive},
+    out["triangles"] = {{"drawn", facts.drawn},
+                        {"stored", facts.stored},
+                        {"occluding", facts.hiding},
+                        {"masked", facts.masked},
+                        {"blended", facts.blended},
+                        {"transmissive", facts.transmissive},
                         {"double_sided", facts.double_sided}};
     if (bounds.empty()) return out;
     out["bounds"] = {{"min", {bounds.min.x, bounds.min.y, bounds.min.z}},

@@ -30,8 +30,13 @@ bool wantsColour() {
 }  // namespace
 
 Progress::Progress(std::string what, std::string unit, size_t total)
-    : what_(std::move(what)), unit_(std::move(unit)), total_(total), terminal_(isatty(STDERR_FILENO)),
-      colour_(terminal_ && wantsColour()), start_(Clock::now()), last_(start_) {}
+    : what_(std::move(what)),
+      unit_(std::move(unit)),
+      total_(total),
+      terminal_(isatty(STDERR_FILENO)),
+      colour_(terminal_ && wantsColour()),
+      start_(Clock::now()),
+      last_(start_) {}
 
 Progress::~Progress() {
     if (terminal_ && shown_) std::fputs("\r\033[K", stderr);

@@ -78,8 +78,8 @@ void printVerdicts(std::FILE* out, const CullRun& run) {
         one.reported = frame.visible.size();
         one.exactly_visible = row.exactly_visible;
         fmt::print(out, "frame {:>4}: {}, {} false culls, {} reported, {} exactly visible, over-estimate {:.3f}\n", i,
-                   row.false_culls == 0 ? "sound" : "WRONG", row.false_culls, frame.visible.size(),
-                   row.exactly_visible, one.overEstimate());
+                   row.false_culls == 0 ? "sound" : "WRONG", row.false_culls, frame.visible.size(), row.exactly_visible,
+                   one.overEstimate());
     }
     printSums(out, *sumVerification(run), run);
 }

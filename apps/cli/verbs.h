@@ -11,7 +11,7 @@ namespace sightline::cli {
 /// Exit codes; others rely on them.
 enum ExitCode : int {
     kDone = 0,
-    kAnswerIsNo = 1,        ///< verification failed
+    kAnswerIsNo = 1,  ///< verification failed
     kWrongArguments = 2,
     kInputUnreadable = 3,
     kOutputUnwritable = 4,

@@ -40,7 +40,8 @@ std::string gridLines(double most, double step) {
 std::string frameTicks(size_t frames) {
     std::string out;
     const size_t last = frames - 1;
-    const size_t step = std::max<size_t>(1, static_cast<size_t>(gridStep(static_cast<double>(std::max<size_t>(last, 4)))));
+    const size_t step =
+        std::max<size_t>(1, static_cast<size_t>(gridStep(static_cast<double>(std::max<size_t>(last, 4)))));
     for (size_t frame = 0; frame <= last; frame += step)
         out += fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
                            xOf(static_cast<double>(frame), frames), kHeight - 10, frame);
@@ -94,12 +95,23 @@ std::string escapeHtml(const std::string& text) {
     std::string out;
     for (const char c : text) {
         switch (c) {
-            case '&': out += "&amp;"; break;
-            case '<': out += "&lt;"; break;
-            case '>': out += "&gt;"; break;
-            case '"': out += "&quot;"; break;
-            case '\'': out += "&#39;"; break;
-            default: out += c;
+            case '&':
+                out += "&amp;";
+                break;
+            case '<':
+                out += "&lt;";
+                break;
+            case '>':
+                out += "&gt;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            case '\'':
+                out += "&#39;";
+                break;
+            default:
+                out += c;
         }
     }
     return out;
@@ -118,10 +130,10 @@ std::string chartSvg(const Chart& chart) {
     std::string out = fmt::format("<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kWidth,
                                   kHeight, escapeHtml(chart.title));
     out += gridLines(most, step) + frameTicks(frames);
-    out += fmt::format("<line class=\"now\" id=\"{}-now\" x1=\"{}\" x2=\"{}\" y1=\"{}\" y2=\"{}\" data-left=\"{}\" "
-                       "data-right=\"{}\"/>",
-                       chart.id, kLeft, kLeft, kTop, kHeight - kBottom, xOf(0, frames),
-                       xOf(static_cast<double>(frames - 1), frames));
+    out += fmt::format(
+        "<line class=\"now\" id=\"{}-now\" x1=\"{}\" x2=\"{}\" y1=\"{}\" y2=\"{}\" data-left=\"{}\" "
+        "data-right=\"{}\"/>",
+        chart.id, kLeft, kLeft, kTop, kHeight - kBottom, xOf(0, frames), xOf(static_cast<double>(frames - 1), frames));
     for (const ChartSeries& series : chart.series) out += seriesLine(series, most);
     return out + tooltips(chart, frames) + "</svg>";
 }

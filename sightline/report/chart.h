@@ -15,9 +15,9 @@ struct ChartSeries {
 
 /// Values over frames, on one axis that begins at zero.
 struct Chart {
-    std::string id;     ///< of the marker that shows the frame in the player: `ID-now`
+    std::string id;  ///< of the marker that shows the frame in the player: `ID-now`
     std::string title;
-    std::string unit;   ///< of the values, for titles and tooltips
+    std::string unit;  ///< of the values, for titles and tooltips
     std::vector<ChartSeries> series;
 };
 

@@ -55,7 +55,10 @@ Json verificationJson(const VerificationRow& verification, const FrameResult& fr
     Json out;
     out["false_culls"] = verification.false_culls;
     out["samples"] = verification.rays;
+    out["aimed_samples"] = verification.aimed_rays;
     out["id_samples"] = verification.id_samples;
+    out["supersampling"] = verification.supersampling;
+    out["unconfirmed"] = verification.unconfirmed;
     out["exactly_visible"] = verification.exactly_visible;
     out["reported"] = frame.visible.size();
     out["list"] = Json::array();
@@ -97,19 +100,25 @@ double Verification::overEstimate() const {
 }
 
 std::optional<Verification> sumVerification(const CullRun& run) {
-    Verification sum;
-    bool any = false;
+    std::optional<Verification> sum;
     for (const FrameResult& frame : run.frames) {
         if (!frame.verification) continue;
-        any = true;
-        sum.false_culls += frame.verification->false_culls;
-        sum.rays += frame.verification->rays;
-        sum.id_samples += frame.verification->id_samples;
-        sum.exactly_visible += frame.verification->exactly_visible;
-        sum.reported += frame.visible.size();
-        sum.culled += run.objects - frame.visible.size();
+        const VerificationRow& row = *frame.verification;
+        if (!sum) {
+            sum.emplace();
+            sum->least_supersampling = row.supersampling;
+        }
+        sum->false_culls += row.false_culls;
+        sum->rays += row.rays;
+        sum->aimed_rays += row.aimed_rays;
+        sum->id_samples += row.id_samples;
+        sum->unconfirmed += row.unconfirmed;
+        sum->least_supersampling = std::min(sum->least_supersampling, row.supersampling);
+        sum->most_supersampling = std::max(sum->most_supersampling, row.supersampling);
+        sum->exactly_visible += row.exactly_visible;
+        sum->reported += frame.visible.size();
+        sum->culled += run.objects - frame.visible.size();
     }
-    if (!any) return std::nullopt;
     return sum;
 }
 
@@ -159,10 +168,8 @@ void countByKey(const Scene& scene, const std::vector<uint32_t>& key_order, uint
 std::string cullJson(const CullRun& run, const Scene& scene) {
     Json head;
     head["schema"] = "sightline.cull/1";
-    head["scene"] = {{"file", run.scene},
-                     {"objects", run.objects},
-                     {"instances", run.instances},
-                     {"triangles", run.triangles}};
+    head["scene"] = {
+        {"file", run.scene}, {"objects", run.objects}, {"instances", run.instances}, {"triangles", run.triangles}};
     head["width"] = run.width;
     head["height"] = run.height;
     head["jitter"] = run.jitter;
@@ -179,7 +186,9 @@ std::string cullJson(const CullRun& run, const Scene& scene) {
         verification["samples"] = sum->rays;
         verification["exactly_visible"] = sum->exactly_visible;
         verification["reported"] = sum->reported;
+        verification["aimed_samples"] = sum->aimed_rays;
         verification["id_samples"] = sum->id_samples;
+        verification["unconfirmed"] = sum->unconfirmed;
         verification["culled"] = sum->culled;
         verification["over_estimate"] = std::isfinite(sum->overEstimate()) ? Json(sum->overEstimate()) : Json(nullptr);
         text += ",\n\"verification\": " + dump(verification);

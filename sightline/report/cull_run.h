@@ -18,51 +18,53 @@ namespace sightline {
 struct StageRow {
     uint64_t tested = 0;
     uint64_t culled = 0;
-    uint64_t doubt = 0;       ///< kept because the stage could not decide; counts objects
+    uint64_t doubt = 0;  ///< kept because the stage could not decide; counts objects
     double microseconds = 0;
 };
 
 /// A culled object that a witness saw.
 struct FalseCullRow {
-    uint32_t object = 0;   ///< index into Scene::objects
+    uint32_t object = 0;  ///< index into Scene::objects
     uint64_t key = 0;
-    double x = 0, y = 0;   ///< [pixels from the left and the top]
+    double x = 0, y = 0;  ///< [pixels from the left and the top]
     std::string witness;
 };
 
 /// What the witnesses said about one frame. Counts keys.
 struct VerificationRow {
-    uint64_t false_culls = 0;      ///< keys of `rows`
-    uint64_t rays = 0;
+    uint64_t false_culls = 0;  ///< keys of `rows`
+    uint64_t rays = 0;         ///< aimed ones included
+    uint64_t aimed_rays = 0;   ///< at culled objects
     uint64_t id_samples = 0;
+    uint32_t supersampling = 0;  ///< samples of the id-buffer per pixel and axis
+    uint64_t unconfirmed = 0;    ///< sightings of culled objects that exact arithmetic did not bear out
     uint64_t exactly_visible = 0;
     std::vector<FalseCullRow> rows;
 };
 
 struct FrameResult {
     CameraFrame camera;
-    std::vector<uint64_t> visible;      ///< keys, ascending, each once
-    std::vector<uint8_t> reasons;       ///< per object: 0 visible, else 1 + Stage  [size: Scene::objects]
+    std::vector<uint64_t> visible;  ///< keys, ascending, each once
+    std::vector<uint8_t> reasons;   ///< per object: 0 visible, else 1 + Stage  [size: Scene::objects]
     StageRow stages[kStageCount];
-    uint64_t objects_visible = 0;       ///< objects, not keys
-    uint64_t triangles = 0;             ///< of the visible objects: what a renderer would submit
-    uint64_t occluder_triangles = 0;    ///< rasterized by the query
+    uint64_t objects_visible = 0;     ///< objects, not keys
+    uint64_t triangles = 0;           ///< of the visible objects: what a renderer would submit
+    uint64_t occluder_triangles = 0;  ///< rasterized by the query
     bool budget_spent = false;
-    double query_microseconds = 0;      ///< median over the repeats
+    double query_microseconds = 0;  ///< median over the repeats
     std::optional<VerificationRow> verification;
 };
 
 struct CullRun {
-    std::string scene;        ///< as it was named by the user
-    std::string command;      ///< that repeats this run
-    uint64_t objects = 0;     ///< distinct keys
-    uint64_t instances = 0;   ///< drawn objects; more than `objects` where several share a key
-    uint64_t triangles = 0;   ///< drawn if nothing were culled
+    std::string scene;       ///< as it was named by the user
+    std::string command;     ///< that repeats this run
+    uint64_t objects = 0;    ///< distinct keys
+    uint64_t instances = 0;  ///< drawn objects; more than `objects` where several share a key
+    uint64_t triangles = 0;  ///< drawn if nothing were culled
     uint32_t width = 0, height = 0;
-    double jitter = 0;        ///< [pixels]
+    double jitter = 0;             ///< [pixels]
     uint32_t stages = kAllStages;  ///< bits of Stage in use
     int repeat = 1;
-    uint32_t supersampling = 0;    ///< of the id-buffer, per axis; 0 without verification
     std::vector<FrameResult> frames;
 };
 
@@ -70,6 +72,8 @@ struct CullRun {
 struct Verification {
     uint64_t false_culls = 0, rays = 0, id_samples = 0, exactly_visible = 0, reported = 0;
     uint64_t culled = 0;  ///< object-frames that were judged
+    uint64_t aimed_rays = 0, unconfirmed = 0;
+    uint32_t least_supersampling = 0, most_supersampling = 0;
     /// Reported over exactly visible; 1 if neither saw anything.
     double overEstimate() const;
 };

@@ -44,7 +44,8 @@ struct Shot {
 };
 
 View pictureView(const CullRun& run, const FrameResult& frame, const PageSettings& settings) {
-    const double scale = std::min({double(settings.picture_width) / run.width, double(settings.picture_limit) / run.height});
+    const double scale =
+        std::min({double(settings.picture_width) / run.width, double(settings.picture_limit) / run.height});
     View view = makeView(frame.camera, run.width, run.height);  // the projection keeps the frame's aspect
     view.width = std::max(1u, static_cast<uint32_t>(std::lround(run.width * scale)));
     view.height = std::max(1u, static_cast<uint32_t>(std::lround(run.height * scale)));
@@ -78,7 +79,8 @@ std::vector<Shot> drawShots(const Scene& scene, const CullRun& run, const PageSe
 /// The value that both heat maps of all shots show brightest: one pixel in 500 may lie above it.
 double heatScale(const std::vector<Shot>& shots) {
     std::vector<float> values;
-    for (const Shot& shot : shots) values.insert(values.end(), shot.drawn.all.pixels.begin(), shot.drawn.all.pixels.end());
+    for (const Shot& shot : shots)
+        values.insert(values.end(), shot.drawn.all.pixels.begin(), shot.drawn.all.pixels.end());
     if (values.empty()) return 1;
     const auto place = values.begin() + static_cast<ptrdiff_t>((values.size() - 1) * 499 / 500);
     std::nth_element(values.begin(), place, values.end());
@@ -91,8 +93,9 @@ Json shotTexts(const Shot& shot, const CullRun& run) {
     Json texts;
     texts["at"] = fmt::format("frame {} of {}", shot.frame, run.frames.size());
     texts["kept"] = fmt::format("{} of {} objects kept", number(frame.visible.size()), number(run.objects));
-    if (frame.verification) texts["kept"] = texts["kept"].get<std::string>() +
-        fmt::format(", {} exactly visible", number(frame.verification->exactly_visible));
+    if (frame.verification)
+        texts["kept"] = texts["kept"].get<std::string>() +
+                        fmt::format(", {} exactly visible", number(frame.verification->exactly_visible));
     texts["depth-all"] = fmt::format("{:.2f}", mean(shot.drawn.all));
     texts["depth-kept"] = fmt::format("{:.2f}", mean(shot.drawn.kept));
     texts["same"] = shot.drawn.same ? "The picture with culling is the same, sample by sample."
@@ -134,15 +137,15 @@ std::string verdict(const CullRun& run) {
                "two witnesses judge every cull.</span></div>";
     const bool sound = sum->false_culls == 0;
     return fmt::format(
-        "<div class=\"verdict {}\" role=\"status\"><strong>{} of {} culled objects {} visible</strong><span>proof by {} "
-        "rays and {} id-buffer samples over {} frames</span></div>",
-        sound ? "good" : "bad", number(sum->false_culls), number(sum->culled), sum->false_culls == 1 || sound ? "was" : "were",
-        number(sum->rays), number(sum->id_samples), run.frames.size());
+        "<div class=\"verdict {}\" role=\"status\"><strong>{} of {} culled objects {} visible</strong>"
+        "<span>proof by {} rays and {} id-buffer samples over {} frames</span></div>",
+        sound ? "good" : "bad", number(sum->false_culls), number(sum->culled),
+        sum->false_culls == 1 || sound ? "was" : "were", number(sum->rays), number(sum->id_samples), run.frames.size());
 }
 
 struct Means {
     double visible = 0, triangles = 0, median_query = 0;
-    StageRow stages[kStageCount];   // sums, not means
+    StageRow stages[kStageCount];  // sums, not means
 };
 
 Means meansOf(const CullRun& run) {
@@ -185,7 +188,8 @@ std::string player(const CullRun& run, const Json& first, size_t pictures, doubl
     for (int i = 0; i < kPlanColours; ++i) {
         if (i > 0 && !(run.stages >> (i - 1) & 1)) continue;
         const glm::u8vec4 c = kPlanPalette[i];
-        legend += fmt::format("<span><i style=\"background:rgb({},{},{})\"></i>{}</span>", c.x, c.y, c.z, kPlanNames[i]);
+        legend +=
+            fmt::format("<span><i style=\"background:rgb({},{},{})\"></i>{}</span>", c.x, c.y, c.z, kPlanNames[i]);
     }
     std::string stops;
     for (int i = 0; i <= 12; ++i) {
@@ -229,13 +233,16 @@ std::string stageTable(const CullRun& run, const Means& means) {
             average(sum.doubt), sum.microseconds / frames);
     }
     return fmt::format(
-        R"html(<section class="card" aria-labelledby="h-stages"><h2 id="h-stages">What each stage did</h2><div class="scroll"><table>
-<thead><tr><th></th><th colspan="4" scope="colgroup">this frame</th><th colspan="4" scope="colgroup" class="apart">mean over the frames</th></tr>
-<tr><th scope="col">stage</th><th scope="col">tested</th><th scope="col">culled</th><th scope="col">in doubt</th><th scope="col">µs</th>
-<th scope="col" class="apart">tested</th><th scope="col">culled</th><th scope="col">in doubt</th><th scope="col">µs</th></tr></thead>
+        R"html(<section class="card" aria-labelledby="h-stages"><h2 id="h-stages">What each stage did</h2>
+<div class="scroll"><table><thead><tr><th></th><th colspan="4" scope="colgroup">this frame</th>
+<th colspan="4" scope="colgroup" class="apart">mean over the frames</th></tr>
+<tr><th scope="col">stage</th><th scope="col">tested</th><th scope="col">culled</th><th scope="col">in doubt</th>
+<th scope="col">µs</th><th scope="col" class="apart">tested</th><th scope="col">culled</th>
+<th scope="col">in doubt</th><th scope="col">µs</th></tr></thead>
 <tbody>{}<tr><td>whole query</td><td>{}</td><td id="query-culled"></td><td></td><td id="query-time"></td>
 <td class="apart">{}</td><td>{}</td><td></td><td>{:.1f}</td></tr></tbody></table></div>
-<p class="soft">An object in doubt is kept. The stages are timed in a run of their own, the whole query without that; its mean here is the median.</p>
+<p class="soft">An object in doubt is kept. The stages are timed in a run of their own, the whole query without that;
+in place of its mean the median stands.</p>
 <h2>Triangles submitted against triangles in the scene</h2>
 <div class="share" role="img" aria-label="{} of the triangles"><div style="width:{:.4f}%"></div></div>
 <p>{} of {} triangles a frame: {}</p></section>)html",
@@ -260,13 +267,21 @@ std::string charts(const CullRun& run) {
         legend += "<span><i class=\"two\"></i>exactly visible, as the witnesses saw it</span>";
     }
     return fmt::format(
-        R"html(<div class="pair"><section class="card" aria-labelledby="h-kept"><h2 id="h-kept">Objects kept</h2>{}<div class="legend">{}</div></section>
-<section class="card" aria-labelledby="h-time"><h2 id="h-time">Query, µs</h2>{}<div class="legend"><span><i class="one"></i>one thread, {}</span></div></section></div>)html",
+        R"html(<div class="pair"><section class="card" aria-labelledby="h-kept"><h2 id="h-kept">Objects kept</h2>{}
+<div class="legend">{}</div></section>
+<section class="card" aria-labelledby="h-time"><h2 id="h-time">Query, µs</h2>{}
+<div class="legend"><span><i class="one"></i>one thread, {}</span></div></section></div>)html",
         chartSvg(kept), legend, chartSvg(time),
         run.repeat == 1 ? std::string("one run") : fmt::format("median of {} runs", run.repeat));
 }
 
 std::string listed(const std::vector<size_t>& frames) { return fmt::format("{}", fmt::join(frames, ", ")); }
+
+std::string samplesPerPixel(const Verification& sum) {
+    if (sum.least_supersampling == sum.most_supersampling)
+        return fmt::format("{0}×{0} a pixel", sum.most_supersampling);
+    return fmt::format("{0}×{0} to {1}×{1} a pixel", sum.least_supersampling, sum.most_supersampling);
+}
 
 std::string howVerified(const CullRun& run, const std::vector<size_t>& pictured) {
     const auto row = [](const std::string& term, const std::string& text) {
@@ -274,24 +289,32 @@ std::string howVerified(const CullRun& run, const std::vector<size_t>& pictured)
     };
     std::string out = "<section class=\"card\" aria-labelledby=\"h-how\"><h2 id=\"h-how\">How it was verified</h2><dl>";
     if (const auto sum = sumVerification(run)) {
-        out += row("First witness", fmt::format("{} rays through exact geometry, spread over each frame and aimed at what was "
-                                                "culled. Single-sided back faces are passed through; masked and blended "
-                                                "surfaces are seen and passed.", number(sum->rays)));
-        out += row("Second witness", fmt::format("an id-buffer at up to {}×{} samples a pixel, drawn by a plain z-buffer that shares "
-                                                 "no code with the culling: {} samples.", run.supersampling, run.supersampling,
-                                                 number(sum->id_samples)));
-        out += row("Judged", fmt::format("{} times an object was culled in a frame; {} of them were seen by a witness.",
-                                         number(sum->culled), number(sum->false_culls)));
-        out += row("Over-estimate", fmt::format("{} objects reported, {} seen by a witness: {:.3f}.", number(sum->reported),
-                                                number(sum->exactly_visible), sum->overEstimate()));
+        out += row("First witness",
+                   fmt::format("{} rays, {} of them aimed at what was culled, the others spread over the frames. "
+                               "Single-sided back faces are passed through; masked and blended surfaces are seen and "
+                               "passed.",
+                               number(sum->rays), number(sum->aimed_rays)));
+        out +=
+            row("Second witness", fmt::format("an id-buffer of {} samples, {}, drawn by a plain z-buffer that shares "
+                                              "no code with the culling.",
+                                              number(sum->id_samples), samplesPerPixel(*sum)));
+        out +=
+            row("Judged", fmt::format("{} times an object was culled in a frame; {} of them were seen by a witness. {} "
+                                      "sightings did not hold in exact arithmetic: edges that graze, and surfaces "
+                                      "that float cannot tell apart.",
+                                      number(sum->culled), number(sum->false_culls), number(sum->unconfirmed)));
+        out +=
+            row("Over-estimate", fmt::format("{} objects reported, {} seen by a witness: {:.3f}.",
+                                             number(sum->reported), number(sum->exactly_visible), sum->overEstimate()));
     } else {
         out += row("Verified", "no; <code>--verify</code> was not given");
     }
-    out += row("Image shift", fmt::format("the answers hold for any shift of the image by up to {} pixels", run.jitter));
+    out +=
+        row("Image shift", fmt::format("the answers hold for any shift of the image by up to {} pixels", run.jitter));
     if (!run.command.empty()) out += row("Repeat it", "<code>" + escapeHtml(run.command) + "</code>");
-    out += row("Pictures", pictured.size() == run.frames.size()
-                               ? "every frame"
-                               : fmt::format("{} of {} frames: {}", pictured.size(), run.frames.size(), listed(pictured)));
+    out += row("Pictures", pictured.size() == run.frames.size() ? "every frame"
+                                                                : fmt::format("{} of {} frames: {}", pictured.size(),
+                                                                              run.frames.size(), listed(pictured)));
     out += row("Numbers", "in <code>cull.json</code> beside this page");
     return out + "</dl></section>";
 }
@@ -324,7 +347,8 @@ std::string reportPage(const Scene& scene, const CullRun& run, const PageSetting
         R"html(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{} – Sightline</title><style>{}</style></head><body>
-<header class="page"><h1>{}</h1><p class="soft">{} objects, {} triangles; {} frames of {} × {}</p>{}</header><main>)html",
+<header class="page"><h1>{}</h1><p class="soft">{} objects, {} triangles; {} frames of {} × {}</p>{}</header>
+<main>)html",
         name, kPageStyle, name, number(run.objects), number(run.triangles), run.frames.size(), run.width, run.height,
         verdict(run));
     page += tiles(run, means);

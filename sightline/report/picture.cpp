@@ -124,8 +124,9 @@ PictureMaker::Drawing PictureMaker::render(const View& view, const std::vector<u
             const bool solid = material.alpha_mode != AlphaMode::kBlend && !material.transmissive;
             DrawItem item;
             item.mesh.positions = mesh.positions;
-            item.mesh.indices = std::span(mesh.indices)
-                                    .subspan(size_t{3} * primitive.first_triangle, size_t{3} * primitive.triangle_count);
+            item.mesh.indices =
+                std::span(mesh.indices)
+                    .subspan(size_t{3} * primitive.first_triangle, size_t{3} * primitive.triangle_count);
             if (material.double_sided) item.double_sided = std::span(ones_).first(primitive.triangle_count);
             if (!solid) item.writes_depth = std::span(zeros_).first(primitive.triangle_count);
             item.transform = object.transform;
@@ -222,13 +223,8 @@ PictureMaker::Frame PictureMaker::draw(const View& view, std::span<const uint8_t
 
 Rgb heatColour(double part) {
     // Black, violet, red, orange, pale yellow: lightness rises evenly, so that it reads without colour vision.
-    static constexpr std::array<std::array<double, 3>, 7> kStops = {{{6, 6, 14},
-                                                                     {52, 16, 92},
-                                                                     {122, 28, 109},
-                                                                     {190, 55, 84},
-                                                                     {237, 105, 37},
-                                                                     {251, 180, 26},
-                                                                     {252, 252, 190}}};
+    static constexpr std::array<std::array<double, 3>, 7> kStops = {
+        {{6, 6, 14}, {52, 16, 92}, {122, 28, 109}, {190, 55, 84}, {237, 105, 37}, {251, 180, 26}, {252, 252, 190}}};
     const double at = std::clamp(part, 0.0, 1.0) * (kStops.size() - 1);
     const size_t below = std::min(static_cast<size_t>(at), kStops.size() - 2);
     const double t = at - static_cast<double>(below);

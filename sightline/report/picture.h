@@ -22,9 +22,9 @@ public:
 
     struct Frame {
         Image<Rgb> shaded;
-        Image<float> all;      ///< fragments generated per pixel when every object is submitted
-        Image<float> kept;     ///< the same for the visible objects alone
-        bool same = true;      ///< both drawings show the same surfaces at every sample
+        Image<float> all;   ///< fragments generated per pixel when every object is submitted
+        Image<float> kept;  ///< the same for the visible objects alone
+        bool same = true;   ///< both drawings show the same surfaces at every sample
     };
 
     /// Draws a frame with 2x2 samples a pixel.

@@ -19,8 +19,7 @@ struct Rect {
 Rect footprint(const Box3d& box, const PlanArea& area, uint32_t side) {
     const double scale = side / area.side, limit = side + 1.0;
     const auto pixel = [&](double v) { return static_cast<int>(std::floor(std::clamp(v * scale, -2.0, limit))); };
-    return {pixel(box.min.x - area.x), pixel(box.min.z - area.z), pixel(box.max.x - area.x),
-            pixel(box.max.z - area.z)};
+    return {pixel(box.min.x - area.x), pixel(box.min.z - area.z), pixel(box.max.x - area.x), pixel(box.max.z - area.z)};
 }
 
 glm::u8vec4 darker(const glm::u8vec4& colour) {

@@ -17,10 +17,9 @@ TEST_F(BadInput, UnreadableScenesExitWithThree) {
     write("nothing.gltf", R"({"asset": {"version": "2.0"}})");
     write("scene.obj", "v 0 0 0");
     fs::create_directories(path("folder.glb"));
-    for (const char* file : {"missing.glb", "empty.glb", "text.glb", "cut.glb", "list.gltf", "nothing.gltf", "scene.obj",
-                             "folder.glb", "."})
-        for (const char* verb : {"cull", "verify", "info"})
-            expectError(std::string(verb) + " " + file, 3, file);
+    for (const char* file : {"missing.glb", "empty.glb", "text.glb", "cut.glb", "list.gltf", "nothing.gltf",
+                             "scene.obj", "folder.glb", "."})
+        for (const char* verb : {"cull", "verify", "info"}) expectError(std::string(verb) + " " + file, 3, file);
     expectError("cull ''", 3, "\"\"");
 }
 
@@ -59,7 +58,9 @@ TEST_F(BadInput, AFailedRunLeavesTheOldFile) {
     EXPECT_EQ(read(path("old.json")), "old");
 }
 
-TEST_F(BadInput, AnErrorStaysOneLineWhateverTheName) { expectError("cull \"$(printf 'two\\nlines.glb')\"", 3, "lines.glb"); }
+TEST_F(BadInput, AnErrorStaysOneLineWhateverTheName) {
+    expectError("cull \"$(printf 'two\\nlines.glb')\"", 3, "lines.glb");
+}
 
 }  // namespace
 }  // namespace sightline

@@ -41,9 +41,9 @@ TEST_F(CullPath, FalseCullIsNamedWithItsPlaceAndItsReplay) {
     testing::internal::CaptureStderr();
     ASSERT_TRUE(explainFalseCulls(wrong.scene, wrong.options, wrong.run).ok());
     const std::string said = testing::internal::GetCapturedStderr();
-    for (const char* word : {"frame 1", "object 7", "\"a lamp\"", "(12.500, 99.250)", "rays",
-                             "sightline verify 'my scene.glb' --cameras ", "replay-frame-1.json", "--size 640x360",
-                             "--rays 1234", "--jitter 0.25", "--skip occlusion"})
+    for (const char* word :
+         {"frame 1", "object 7", "\"a lamp\"", "(12.500, 99.250)", "rays", "sightline verify 'my scene.glb' --cameras ",
+          "replay-frame-1.json", "--size 640x360", "--rays 1234", "--jitter 0.25", "--skip occlusion"})
         EXPECT_NE(said.find(word), std::string::npos) << word << " in\n" << said;
 
     const Result<CameraPath> camera = readCameraPath(path("replay-frame-1.json"));

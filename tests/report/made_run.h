@@ -49,7 +49,6 @@ inline CullRun madeRun(const Scene& scene, size_t frames = 2) {
     run.width = 64;
     run.height = 36;
     run.jitter = 0.5;
-    run.supersampling = 4;
     for (size_t i = 0; i < frames; ++i) {
         FrameResult frame;
         frame.camera.eye = {0.01 * double(i), 0, 6};
@@ -60,6 +59,7 @@ inline CullRun madeRun(const Scene& scene, size_t frames = 2) {
         countByKey(scene, order, run.stages, frame);
         VerificationRow row;
         row.rays = 1000;
+        row.supersampling = 4;
         row.id_samples = 64 * 36 * 16;
         row.exactly_visible = 2;
         frame.verification = row;
