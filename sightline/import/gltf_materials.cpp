@@ -33,31 +33,15 @@ void readColor(const Json* owner, const char* key, Material& material, const std
                                static_cast<float>(color[3])};
 }
 
-// Many writers add the extension with a factor of 0, which is an ordinary opaque surface.
-bool transmits(const Json& json, const std::string& place) {
-    const Json* transmission = extension(json, "KHR_materials_transmission", place);
-    if (!transmission) return false;
-    return number(*transmission, "transmissionFactor", place).value_or(0) > 0 ||
-           find(*transmission, "transmissionTexture");
-}
-
-// An animation may reach any factor of any material.
-bool animatesFactors(const Json& root) {
-    for (const Json& name : table(root, "extensionsUsed"))
-        if (name == "KHR_animation_pointer") return true;
-    return false;
-}
-
-Material readMaterial(const Json& json, bool animated_factors, const std::string& place) {
+Material readMaterial(const Json& json, const std::string& place) {
     Material material;
     material.name = text(json, "name", place);
     material.alpha_mode = readAlphaMode(json, place);
     material.alpha_cutoff = static_cast<float>(number(json, "alphaCutoff", place).value_or(0.5));
     material.double_sided = flag(json, "doubleSided", place);
-    material.transmissive =
-        animated_factors ? extension(json, "KHR_materials_transmission", place) != nullptr : transmits(json, place);
-    // Thin and rare: none of these hides, whatever its factor.
-    if (extension(json, "KHR_materials_diffuse_transmission", place)) material.transmissive = true;
+    // Whatever its factor, which a texture, an animation or the application may change: none of these hides.
+    for (const char* name : {"KHR_materials_transmission", "KHR_materials_diffuse_transmission"})
+        if (extension(json, name, place)) material.transmissive = true;
     if (const Json* glossiness = extension(json, "KHR_materials_pbrSpecularGlossiness", place))
         readColor(glossiness, "diffuseFactor", material, place);
     readColor(findObject(json, "pbrMetallicRoughness", place), "baseColorFactor", material, place);
@@ -74,10 +58,9 @@ Materials readMaterials(const Json& root) {
         out.list.push_back({});
         out.first = 1;
     }
-    const bool animated_factors = animatesFactors(root);
     for (size_t i = 0; i < array.size(); ++i) {
         const std::string place = at("materials", i);
-        out.list.push_back(readMaterial(objectAt(array, i, place), animated_factors, place));
+        out.list.push_back(readMaterial(objectAt(array, i, place), place));
     }
     return out;
 }
