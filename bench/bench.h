@@ -11,10 +11,10 @@
 namespace sightline::bench {
 
 struct Options {
-    std::string name;   ///< one of names()
-    std::string json;   ///< file for the rows as `sightline.bench/1`; `-`: standard output; empty: none
+    std::string name;              ///< one of names()
+    std::string json;              ///< file for the rows as `sightline.bench/1`; `-`: standard output; empty: none
     const Scene* scene = nullptr;  ///< null: the case's own scenes
-    int repeat = 0;     ///< measurements of each value, of which the median counts; 0: the case's own number
+    int repeat = 0;                ///< measurements of each value, of which the median counts; 0: the case's own number
 };
 
 /// The cases that run() knows, in alphabetical order.

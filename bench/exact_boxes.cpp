@@ -59,7 +59,8 @@ ExactBoxes::Answer ExactBoxes::test(const View& view, uint32_t supersampling) co
         if (box.doubt || box.outside) continue;
         for (int32_t y = box.rect.y0; y <= box.rect.y1 && !answer.kept[i]; ++y)
             for (int32_t x = box.rect.x0; x <= box.rect.x1 && !answer.kept[i]; ++x)
-                answer.kept[i] = image.depth[static_cast<size_t>(y) * image.width + static_cast<size_t>(x)] <= box.rect.nearness;
+                answer.kept[i] =
+                    image.depth[static_cast<size_t>(y) * image.width + static_cast<size_t>(x)] <= box.rect.nearness;
     }
     return answer;
 }

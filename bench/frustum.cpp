@@ -22,7 +22,9 @@ std::vector<Box3d> randomBoxes(size_t count) {
     return boxes;
 }
 
-struct PlainPlane { float n[3], d; };
+struct PlainPlane {
+    float n[3], d;
+};
 
 std::vector<PlainPlane> plainPlanes(const Frustum& frustum) {
     std::vector<PlainPlane> planes;
@@ -35,7 +37,8 @@ std::vector<PlainPlane> plainPlanes(const Frustum& frustum) {
 }
 
 /// All eight corners against each plane, one box after the other.
-size_t cullByCorners(const std::vector<PlainPlane>& planes, const std::vector<Box3f>& boxes, std::vector<uint32_t>& kept) {
+size_t cullByCorners(const std::vector<PlainPlane>& planes, const std::vector<Box3f>& boxes,
+                     std::vector<uint32_t>& kept) {
     size_t count = 0;
     for (size_t i = 0; i < boxes.size(); ++i) {
         bool outside = false;
@@ -55,7 +58,8 @@ size_t cullByCorners(const std::vector<PlainPlane>& planes, const std::vector<Bo
 }
 
 /// The corner farthest inside each plane, one box after the other.
-size_t cullByPVertex(const std::vector<PlainPlane>& planes, const std::vector<Box3f>& boxes, std::vector<uint32_t>& kept) {
+size_t cullByPVertex(const std::vector<PlainPlane>& planes, const std::vector<Box3f>& boxes,
+                     std::vector<uint32_t>& kept) {
     size_t count = 0;
     for (size_t i = 0; i < boxes.size(); ++i) {
         bool outside = false;
@@ -98,11 +102,11 @@ Table benchFrustum(const Options& options) {
     std::vector<uint32_t> kept(boxes.size() + 16);
     Query query;
     size_t by_query = 0, by_flat = 0;
-    const std::vector<double> times = timeInterleaved(
-        {[&] { cullByCorners(planes, plain, kept); }, [&] { cullByPVertex(planes, plain, kept); },
-         [&] { by_flat = cullFrustum(frustum, flat.arrays, flat.kept); },
-         [&] { by_query = query.visible(now, view).objects.size(); }},
-        options.repeat ? options.repeat : 15);
+    const std::vector<double> times =
+        timeInterleaved({[&] { cullByCorners(planes, plain, kept); }, [&] { cullByPVertex(planes, plain, kept); },
+                         [&] { by_flat = cullFrustum(frustum, flat.arrays, flat.kept); },
+                         [&] { by_query = query.visible(now, view).objects.size(); }},
+                        options.repeat ? options.repeat : 15);
     const std::string where = options.scene ? options.scene->name : "1,000,000 boxes";
     const double per_box = 1e3 / static_cast<double>(std::max<size_t>(boxes.size(), 1));
     Table table{"frustum", {}};
@@ -113,8 +117,8 @@ Table benchFrustum(const Options& options) {
     row("flat, SIMD", times[2], "eight corners, one by one", times[0]);
     row("hierarchy, plane masks, whole query", times[3], "eight corners, one by one", times[0]);
     row("hierarchy, plane masks, whole query", times[3], "flat, SIMD", times[2]);
-    table.rows.push_back({where, "kept by the hierarchy", static_cast<double>(by_query), "boxes", "kept by the flat list",
-                          static_cast<double>(by_flat)});
+    table.rows.push_back({where, "kept by the hierarchy", static_cast<double>(by_query), "boxes",
+                          "kept by the flat list", static_cast<double>(by_flat)});
     return table;
 }
 

@@ -19,8 +19,8 @@ constexpr uint32_t kWidth = 1280, kHeight = 720;
 
 /// Means over a path, of medians over the repeats.
 struct PathCost {
-    double query = 0, flat = 0;                          ///< [microseconds]
-    double query_triangles = 0, flat_triangles = 0;      ///< submitted
+    double query = 0, flat = 0;                      ///< [microseconds]
+    double query_triangles = 0, flat_triangles = 0;  ///< submitted
     double visible = 0;
 };
 
@@ -34,9 +34,10 @@ PathCost measurePath(const Scene& scene, const CameraPath& path, int repeat) {
         const View view = makeView(frame, kWidth, kHeight);
         VisibleSet set;
         size_t kept = 0;
-        const std::vector<double> times = timeInterleaved(
-            {[&] { set = query.visible(now, view); },
-             [&] { kept = cullFrustum(makeFrustum(view), flat.arrays, flat.kept); }}, repeat);
+        const std::vector<double> times =
+            timeInterleaved({[&] { set = query.visible(now, view); },
+                             [&] { kept = cullFrustum(makeFrustum(view), flat.arrays, flat.kept); }},
+                            repeat);
         sum.query += times[0];
         sum.flat += times[1];
         sum.visible += static_cast<double>(set.objects.size());
@@ -70,7 +71,8 @@ void measureTightness(const Scene& scene, const CameraPath& path, const std::str
     }
     const double n = static_cast<double>(path.frames.size());
     table.rows.push_back({where, "objects kept", kept / n, "objects", "same boxes, exact z-buffer", exactly_kept / n});
-    table.rows.push_back({where, "objects kept (over-estimate)", kept / n, "objects", "seen by a 4x4 id-buffer", seen / n});
+    table.rows.push_back(
+        {where, "objects kept (over-estimate)", kept / n, "objects", "seen by a 4x4 id-buffer", seen / n});
 }
 
 }  // namespace

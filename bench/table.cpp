@@ -22,7 +22,8 @@ std::string machineName() {
             break;
         }
     const int64_t targets = hwy::SupportedTargets();
-    return fmt::format("{}, {}, {} cores", model, hwy::TargetName(targets & -targets), std::thread::hardware_concurrency());
+    return fmt::format("{}, {}, {} cores", model, hwy::TargetName(targets & -targets),
+                       std::thread::hardware_concurrency());
 }
 
 std::string toText(const Table& table) {
@@ -33,8 +34,8 @@ std::string toText(const Table& table) {
     }
     std::string text = fmt::format("bench {} on {}\n", table.name, machineName());
     for (const Row& row : table.rows)
-        text += fmt::format("{:<{}}  {:<{}}  {:>12.4g} {:<14} {:>7.3f}x of {:.4g}, {}\n", row.where, where, row.what, what,
-                            row.value, row.unit, row.ratio(), row.baseline_value, row.baseline);
+        text += fmt::format("{:<{}}  {:<{}}  {:>12.4g} {:<14} {:>7.3f}x of {:.4g}, {}\n", row.where, where, row.what,
+                            what, row.value, row.unit, row.ratio(), row.baseline_value, row.baseline);
     return text;
 }
 
@@ -42,8 +43,13 @@ std::string toJson(const Table& table) {
     nlohmann::ordered_json json{{"schema", "sightline.bench/1"}, {"name", table.name}, {"machine", machineName()}};
     json["rows"] = nlohmann::ordered_json::array();
     for (const Row& row : table.rows)
-        json["rows"].push_back({{"case", row.where}, {"what", row.what}, {"value", row.value}, {"unit", row.unit},
-                                {"baseline", row.baseline}, {"baseline_value", row.baseline_value}, {"ratio", row.ratio()}});
+        json["rows"].push_back({{"case", row.where},
+                                {"what", row.what},
+                                {"value", row.value},
+                                {"unit", row.unit},
+                                {"baseline", row.baseline},
+                                {"baseline_value", row.baseline_value},
+                                {"ratio", row.ratio()}});
     return json.dump(2) + "\n";
 }
 

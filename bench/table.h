@@ -10,7 +10,7 @@
 namespace sightline::bench {
 
 struct Row {
-    std::string where;     ///< the case: a scene or a size
+    std::string where;  ///< the case: a scene or a size
     std::string what;
     double value = 0;
     std::string unit;

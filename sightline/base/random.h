@@ -34,8 +34,6 @@ private:
 };
 
 /// One well-mixed number from two, for a stream per (seed, place).
-inline uint64_t mixSeed(uint64_t seed, uint64_t place) {
-    return Random(seed ^ (place * 0xd6e8feb86659fd93ull)).next();
-}
+inline uint64_t mixSeed(uint64_t seed, uint64_t place) { return Random(seed ^ (place * 0xd6e8feb86659fd93ull)).next(); }
 
 }  // namespace sightline

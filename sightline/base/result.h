@@ -31,14 +31,23 @@ public:
     bool ok() const { return state_.index() == 0; }
     explicit operator bool() const { return ok(); }
 
-    T& value() { SIGHTLINE_ASSERT(ok()); return *std::get_if<0>(&state_); }
-    const T& value() const { SIGHTLINE_ASSERT(ok()); return *std::get_if<0>(&state_); }
+    T& value() {
+        SIGHTLINE_ASSERT(ok());
+        return *std::get_if<0>(&state_);
+    }
+    const T& value() const {
+        SIGHTLINE_ASSERT(ok());
+        return *std::get_if<0>(&state_);
+    }
     T& operator*() { return value(); }
     const T& operator*() const { return value(); }
     T* operator->() { return &value(); }
     const T* operator->() const { return &value(); }
 
-    const Error& error() const { SIGHTLINE_ASSERT(!ok()); return *std::get_if<1>(&state_); }
+    const Error& error() const {
+        SIGHTLINE_ASSERT(!ok());
+        return *std::get_if<1>(&state_);
+    }
 
 private:
     std::variant<T, Error> state_;

@@ -53,7 +53,7 @@ void testFrustumKernel(const Frustum& frustum, const EyeBoxes& boxes, uint32_t a
                 const auto n = hn::Set(d, static_cast<float>(p[axis]));
                 const auto a = hn::Mul(n, hn::Load(d, boxes.min[axis] + i));
                 const auto b = hn::Mul(n, hn::Load(d, boxes.max[axis] + i));
-                far_sum = hn::Add(far_sum, hn::Max(a, b));   // the corner farthest inside
+                far_sum = hn::Add(far_sum, hn::Max(a, b));  // the corner farthest inside
                 near_sum = hn::Add(near_sum, hn::Min(a, b));
                 size = hn::Add(size, hn::Max(hn::Abs(a), hn::Abs(b)));
             }

@@ -39,7 +39,7 @@ struct BoxArrays {
     const float* max[3];  ///< [size: count rounded up to 16]
     size_t count = 0;
     glm::dvec3 origin{0.0};
-    float reach = 0;      ///< no bound is farther from the origin on any axis
+    float reach = 0;  ///< no bound is farther from the origin on any axis
 };
 
 /// Writes the indices of the boxes that may touch the frustum, in rising order, and returns how many.

@@ -196,8 +196,8 @@ OccluderInstance makeOccluderInstance(const Screen& screen, const Occluder& occl
     }
     const double world_error = size * 0x1p-49;  // sixteen roundings of 2^-53
     const auto errorOf = [&](const glm::dvec4& row) { return world_error * glm::length(glm::dvec3(row)); };
-    instance.pixel_error = errorOf(screen.x) + errorOf(screen.y) +
-                           2.0 * std::max(screen.width, screen.height) * errorOf(screen.w);
+    instance.pixel_error =
+        errorOf(screen.x) + errorOf(screen.y) + 2.0 * std::max(screen.width, screen.height) * errorOf(screen.w);
     instance.depth_error = screen.perspective ? errorOf(screen.w) : errorOf(screen.d);
     instance.clips = 4.0 * errorOf(screen.near) < screen.near_guard;
     return instance;

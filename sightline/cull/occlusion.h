@@ -35,11 +35,11 @@ struct OccluderInstance {
     const Occluder* occluder = nullptr;
     const glm::dmat4* transform = nullptr;  ///< must outlive the frame
     uint64_t transform_hash = 0;
-    Screen screen;              ///< objectScreen() of the transform
-    bool flips = false;         ///< the transform's determinant is negative
-    double pixel_error = 0;     ///< bound on the rounding of a projected vertex at w = 1 [pixels]
-    double depth_error = 0;     ///< bound on the rounding of its w, or of its depth in parallel projection
-    bool clips = false;         ///< and of its distance from the near plane: small against the near guard
+    Screen screen;           ///< objectScreen() of the transform
+    bool flips = false;      ///< the transform's determinant is negative
+    double pixel_error = 0;  ///< bound on the rounding of a projected vertex at w = 1 [pixels]
+    double depth_error = 0;  ///< bound on the rounding of its w, or of its depth in parallel projection
+    bool clips = false;      ///< and of its distance from the near plane: small against the near guard
 };
 
 OccluderInstance makeOccluderInstance(const Screen& screen, const Occluder& occluder, const glm::dmat4& transform);

@@ -38,7 +38,7 @@ struct Occluder {
     std::vector<float> x, y, z;  ///< vertices, cluster by cluster, each cluster padded to 8 with its last one
     std::vector<OccluderPolygon> polygons;
     std::vector<OccluderCluster> clusters;
-    Box3f bounds;                ///< of all vertices
+    Box3f bounds;  ///< of all vertices
 
     uint32_t triangleCount() const {
         uint32_t count = 0;

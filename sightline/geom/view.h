@@ -24,17 +24,17 @@ inline constexpr uint32_t kAllStages = (1u << kStageCount) - 1;
 /// translation); the projection may be perspective or orthographic, off-centre, with a finite or an
 /// infinite far plane. Anything that is not finite makes every object visible.
 struct View {
-    glm::dmat4 view{1.0};        ///< world to eye                                [rigid]
-    glm::dmat4 projection{1.0};  ///< eye to clip
-    uint32_t width = 1280;       ///< of the viewport                             [pixels, >= 1]
-    uint32_t height = 720;       ///<                                             [pixels, >= 1]
-    double jitter = 0.5;         ///< largest shift of the image that the frame may use  [pixels, 0 to 1e6]
-    uint32_t layers = ~0u;       ///< objects outside these layers are neither reported nor hide
-    uint32_t stages = kAllStages;             ///< bits of Stage: which stages may cull
-    uint32_t occluder_triangles = 1u << 20;   ///< work budget: triangles that may be rasterized  [limit]
-    uint32_t occlusion_size = 640;            ///< longer side of the occlusion buffer; a viewport that is smaller
-                                              ///< gets its own size  [pixels, limit: 1 to 8192]
-    bool time_stages = false;    ///< fill StageStats::nanoseconds (costs some time itself)
+    glm::dmat4 view{1.0};                    ///< world to eye                                [rigid]
+    glm::dmat4 projection{1.0};              ///< eye to clip
+    uint32_t width = 1280;                   ///< of the viewport                             [pixels, >= 1]
+    uint32_t height = 720;                   ///<                                             [pixels, >= 1]
+    double jitter = 0.5;                     ///< largest shift of the image that the frame may use  [pixels, 0 to 1e6]
+    uint32_t layers = ~0u;                   ///< objects outside these layers are neither reported nor hide
+    uint32_t stages = kAllStages;            ///< bits of Stage: which stages may cull
+    uint32_t occluder_triangles = 1u << 20;  ///< work budget: triangles that may be rasterized  [limit]
+    uint32_t occlusion_size = 640;           ///< longer side of the occlusion buffer; a viewport that is smaller
+                                             ///< gets its own size  [pixels, limit: 1 to 8192]
+    bool time_stages = false;                ///< fill StageStats::nanoseconds (costs some time itself)
 };
 
 /// Right-handed, y up in clip space; up need not be orthogonal to the direction. If up is parallel

@@ -66,8 +66,7 @@ int32_t firstSampleRightOf(glm::dvec2 a, glm::dvec2 b, int32_t row, int32_t widt
     const double nearest = std::rint(x);
     const double doubt = 0x1p-47 * (std::abs(a.x) + std::abs(b.x) + 1.0);
     double first = std::ceil(x);
-    if (std::abs(x - nearest) <= doubt)
-        first = orientation(a, b, {nearest + 0.5, y}) <= 0 ? nearest : nearest + 1;
+    if (std::abs(x - nearest) <= doubt) first = orientation(a, b, {nearest + 0.5, y}) <= 0 ? nearest : nearest + 1;
     return first < 0 ? 0 : first > width ? width : static_cast<int32_t>(first);
 }
 

@@ -17,7 +17,7 @@ struct Vertex {
     static constexpr uint8_t kReject = kLeft | kRight | kBottom | kTop | kNear | kFar | kBroken;
     static constexpr uint8_t kClip = kNear | kFar | kGuard;
 
-    glm::dvec4 clip{0.0};  ///< x, y, the near plane's distance z + w, w
+    glm::dvec4 clip{0.0};   ///< x, y, the near plane's distance z + w, w
     glm::dvec2 point{0.0};  ///< on the grid of samples, unless kClip says that it has none yet
     double eye_z = 0;
     uint8_t outside = 0;
@@ -36,8 +36,12 @@ constexpr double kSmallestW = 1e-30;
 class Renderer {
 public:
     Renderer(const View& view, const ZBufferSettings& settings, ZBufferImage& image)
-        : settings_(settings), image_(image), orthographic_(isOrthographic(view)), eye_(eyePosition(view)),
-          rotation_(glm::dmat3(view.view)), projection_(view.projection) {
+        : settings_(settings),
+          image_(image),
+          orthographic_(isOrthographic(view)),
+          eye_(eyePosition(view)),
+          rotation_(glm::dmat3(view.view)),
+          projection_(view.projection) {
         // z and w are summed as rows: a parallel projection to infinity has a z that double cannot tell from -w.
         for (int column = 0; column < 4; ++column) projection_[column][2] += projection_[column][3];
         // The usual projection turns a right-handed eye space into a left-handed clip space.
@@ -133,8 +137,7 @@ private:
         return glm::dot(normal, p);
     }
 
-    void drawTriangle(const Vertex& a, const Vertex& b, const Vertex& c, bool double_sided, uint32_t id,
-                      bool writing) {
+    void drawTriangle(const Vertex& a, const Vertex& b, const Vertex& c, bool double_sided, uint32_t id, bool writing) {
         glm::dvec3 normal;
         const double volume = imageVolume(a, b, c, normal);
         if (volume == 0) return;
@@ -151,18 +154,16 @@ private:
         } else if (betweenSamples(points)) {
             return;
         }
-        const DepthPlane plane = orthographic_ ? parallelPlane(a, b, c, normal)
-                                               : perspectivePlane(normal / volume, polygon);
+        const DepthPlane plane =
+            orthographic_ ? parallelPlane(a, b, c, normal) : perspectivePlane(normal / volume, polygon);
         const int32_t first_row = static_cast<int32_t>(image_.first_row);
         const int32_t end_row = first_row + static_cast<int32_t>(image_.height);
         const std::span<const glm::dvec2> outline(points, static_cast<size_t>(polygon.count));
         scanPolygon(outline, first_row, end_row, static_cast<int32_t>(image_.width),
                     [&](int32_t row, int32_t begin, int32_t end) {
-            if (writing)
-                writeSpan(plane, id, row, begin, end);
-            else
-                showSpan(plane, id, row, begin, end);
-        });
+                        if (writing) writeSpan(plane, id, row, begin, end);
+                        else showSpan(plane, id, row, begin, end);
+                    });
     }
 
     glm::dvec2 pointOf(const glm::dvec4& clip) const {
@@ -178,8 +179,8 @@ private:
 
     static bool clipAll(ClipPolygon& polygon) {
         const glm::dvec4 planes[ClipPolygon::kMaxPlanes] = {
-            {0, 0, 1, 0}, {0, 0, -1, 2}, {0, 0, 0, 1}, {1, 0, 0, kGuardBand}, {-1, 0, 0, kGuardBand},
-            {0, 1, 0, kGuardBand}, {0, -1, 0, kGuardBand}};
+            {0, 0, 1, 0},           {0, 0, -1, 2},         {0, 0, 0, 1},          {1, 0, 0, kGuardBand},
+            {-1, 0, 0, kGuardBand}, {0, 1, 0, kGuardBand}, {0, -1, 0, kGuardBand}};
         for (const glm::dvec4& plane : planes) {
             ClipPolygon rest;
             clipToPlane(polygon, plane, rest);
@@ -209,8 +210,7 @@ private:
         const double w = a.clip.w;
         const glm::dvec2 ab = glm::dvec2(b.clip - a.clip), ac = glm::dvec2(c.clip - a.clip);
         const double ab_z = b.eye_z - a.eye_z, ac_z = c.eye_z - a.eye_z;
-        const glm::dvec2 gradient =
-            w / normal.z * glm::dvec2(ab_z * ac.y - ac_z * ab.y, ac_z * ab.x - ab_z * ac.x);
+        const glm::dvec2 gradient = w / normal.z * glm::dvec2(ab_z * ac.y - ac_z * ab.y, ac_z * ab.x - ab_z * ac.x);
         DepthPlane plane;
         plane.per_sample = gradient.x * scale_.x;
         plane.per_row = gradient.y * scale_.y;

@@ -55,7 +55,10 @@ double enterBox(const Box3d& box, const glm::dvec3& origin, const glm::dvec3& in
 /// lower the limit.
 template <class Visit>
 void walk(const ProbeTree& tree, const ProbeRay& ray, const double& limit, Visit&& visit) {
-    struct Entry { double t; uint32_t node; };
+    struct Entry {
+        double t;
+        uint32_t node;
+    };
     Entry stack[ProbeTree::kMaxDepth + 2];
     uint32_t size = 0;
     const glm::dvec3 inverse = 1.0 / ray.direction;
@@ -92,9 +95,8 @@ ProbeTree::ProbeTree(std::span<const Box3d> boxes) {
     for (const Box3d& box : boxes) centers.grow(box.center());
     std::vector<Coded> coded(boxes.size());
     for (uint32_t i = 0; i < coded.size(); ++i) coded[i] = {mortonCode(boxes[i].center(), centers), i};
-    std::sort(coded.begin(), coded.end(), [](const Coded& a, const Coded& b) {
-        return std::tie(a.code, a.box) < std::tie(b.code, b.box);
-    });
+    std::sort(coded.begin(), coded.end(),
+              [](const Coded& a, const Coded& b) { return std::tie(a.code, a.box) < std::tie(b.code, b.box); });
     order_.resize(coded.size());
     for (size_t i = 0; i < coded.size(); ++i) order_[i] = coded[i].box;
     nodes_.reserve(coded.size());

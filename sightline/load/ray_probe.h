@@ -20,7 +20,9 @@
 namespace sightline {
 
 /// All points origin + t * direction; the direction need not be of unit length.
-struct ProbeRay { glm::dvec3 origin, direction; };
+struct ProbeRay {
+    glm::dvec3 origin, direction;
+};
 
 struct ProbeHit {
     double t = std::numeric_limits<double>::infinity();
@@ -46,7 +48,10 @@ public:
     std::span<const uint32_t> order() const { return order_; }
 
 private:
-    struct Coded { uint64_t code; uint32_t box; };
+    struct Coded {
+        uint64_t code;
+        uint32_t box;
+    };
     void build(uint32_t node, uint32_t first, uint32_t last, std::span<const Coded> coded,
                std::span<const Box3d> boxes);
 

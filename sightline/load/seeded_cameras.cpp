@@ -41,7 +41,9 @@ double norm(const glm::dmat3& m) {
     return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
 }
 
-struct SurfacePoint { glm::dvec3 position, normal; };
+struct SurfacePoint {
+    glm::dvec3 position, normal;
+};
 
 /// Points on all drawn triangles by their area in the world, without visiting every instance's triangles: an
 /// instance is chosen by a bound on its area (the mesh's own times the norm of the cofactors) and the triangle by its

@@ -20,8 +20,14 @@ struct Box {
     bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
     Vector center() const { return T(0.5) * min + T(0.5) * max; }
     Vector size() const { return max - min; }
-    void grow(const Vector& point) { min = glm::min(min, point); max = glm::max(max, point); }
-    void grow(const Box& other) { min = glm::min(min, other.min); max = glm::max(max, other.max); }
+    void grow(const Vector& point) {
+        min = glm::min(min, point);
+        max = glm::max(max, point);
+    }
+    void grow(const Box& other) {
+        min = glm::min(min, other.min);
+        max = glm::max(max, other.max);
+    }
     /// False if any bound is NaN or infinite; an empty box is not finite.
     bool finite() const {
         for (int axis = 0; axis < 3; ++axis)

@@ -10,7 +10,9 @@
 namespace sightline {
 namespace {
 
-bool less(const glm::vec3& a, const glm::vec3& b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; }
+bool less(const glm::vec3& a, const glm::vec3& b) {
+    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
 
 /// The position as it is kept: a negative zero becomes zero, so that equal positions have equal bits.
 glm::vec3 position(const MeshView& mesh, uint32_t vertex) { return mesh.positions[vertex] + glm::vec3(0.0f); }
@@ -40,7 +42,9 @@ std::vector<uint32_t> sortIntoRuns(const MeshView& mesh, std::vector<MeshPolygon
         for (int k = 0; k < polygon.corners; ++k) sum += position(mesh, polygon.vertex[k]);
         sorted.push_back({sum / static_cast<float>(polygon.corners), polygon});
     }
-    struct Range { uint32_t first, last; };
+    struct Range {
+        uint32_t first, last;
+    };
     std::vector<Range> stack{{0, static_cast<uint32_t>(sorted.size())}};
     std::vector<uint32_t> ends;
     while (!stack.empty()) {
@@ -103,8 +107,7 @@ void addCluster(Occluder& out, const MeshView& mesh, std::span<const MeshPolygon
 
 }  // namespace
 
-Occluder prepareOccluder(const MeshView& mesh, std::span<const uint8_t> hides,
-                         std::span<const uint8_t> double_sided) {
+Occluder prepareOccluder(const MeshView& mesh, std::span<const uint8_t> hides, std::span<const uint8_t> double_sided) {
     std::vector<uint32_t> triangles;
     for (uint32_t triangle = 0; triangle < mesh.triangles(); ++triangle)
         if ((hides.empty() || hides[triangle]) && isUsable(mesh, triangle)) triangles.push_back(triangle);

@@ -68,7 +68,8 @@ std::vector<Candidate> findCandidates(const MeshView& mesh, std::span<const uint
             const HalfEdge &a = edges[i], &b = edges[j];
             if (a.forward == b.forward || a.triangle == b.triangle) continue;
             if (!kind.empty() && kind[a.triangle] != kind[b.triangle]) continue;
-            const glm::dvec3 along = glm::dvec3(corner(mesh, a.triangle, a.side + 1) - corner(mesh, a.triangle, a.side));
+            const glm::dvec3 along =
+                glm::dvec3(corner(mesh, a.triangle, a.side + 1) - corner(mesh, a.triangle, a.side));
             Candidate c{glm::dot(along, along), a.triangle, b.triangle, a.side, b.side};
             if (makesQuad(mesh, c)) candidates.push_back(c);
         }
@@ -91,11 +92,14 @@ std::vector<MeshPolygon> pairTriangles(const MeshView& mesh, std::span<const uin
         if (taken[c.a] || taken[c.b]) continue;
         taken[c.a] = taken[c.b] = 1;
         // a runs along the shared side from its side_a to the next corner: the diagonal is next -> ... -> side_a.
-        polygons.push_back({{index(c.a, c.side_a + 1), index(c.a, c.side_a + 2), index(c.a, c.side_a),
-                             index(c.b, c.side_b + 2)}, c.a, 4});
+        polygons.push_back(
+            {{index(c.a, c.side_a + 1), index(c.a, c.side_a + 2), index(c.a, c.side_a), index(c.b, c.side_b + 2)},
+             c.a,
+             4});
     }
     for (uint32_t triangle : triangles)
-        if (!taken[triangle]) polygons.push_back({{index(triangle, 0), index(triangle, 1), index(triangle, 2), 0}, triangle, 3});
+        if (!taken[triangle])
+            polygons.push_back({{index(triangle, 0), index(triangle, 1), index(triangle, 2), 0}, triangle, 3});
     return polygons;
 }
 

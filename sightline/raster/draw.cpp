@@ -65,9 +65,9 @@ void projectVertices(const Screen& object, const Occluder& occluder, const Occlu
 /// One tile's view of a polygon.
 struct TilePolygon {
     float a[4], b[4], at_center[4];  ///< of the edges that do not contain the whole tile
-    int cutting = 0;      ///< how many those are
-    TilePlane plane;      ///< the farthest nearness over each pixel
-    float nearest = 0;    ///< no point of the polygon in the tile is nearer
+    int cutting = 0;                 ///< how many those are
+    TilePlane plane;                 ///< the farthest nearness over each pixel
+    float nearest = 0;               ///< no point of the polygon in the tile is nearer
     uint64_t window = ~uint64_t{0};  ///< pixels inside the polygon's bounds
 };
 
@@ -164,9 +164,9 @@ void columnsOfRow(const RasterPolygon& polygon, const double* inverse_a, int32_t
 /// What changes from tile to tile along a row.
 struct ChunkSetup {
     double inverse_a[4];  ///< of wide polygons; 0 for an edge too level to bound a row
-    float step_a[4];   ///< edge functions' change from one tile to the next
-    float step_d;      ///< the plane's
-    float tilt;        ///< the plane's change over a pixel
+    float step_a[4];      ///< edge functions' change from one tile to the next
+    float step_d;         ///< the plane's
+    float tilt;           ///< the plane's change over a pixel
 };
 
 /// What a polygon is to eight tiles of a row.
@@ -189,7 +189,8 @@ void drawChunk(DepthTiles& tiles, const RasterPolygon& polygon, const ChunkSetup
     const uint32_t base = static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(chunk);
     float c[4];
     for (int e = 0; e < polygon.edges; ++e) c[e] = static_cast<float>(polygon.edge[e].at(x, y));
-    const float center = polygon.planar ? static_cast<float>(polygon.d0 + polygon.dx * x + polygon.dy * y) : polygon.farthest;
+    const float center =
+        polygon.planar ? static_cast<float>(polygon.d0 + polygon.dx * x + polygon.dy * y) : polygon.farthest;
     const float tilt = setup.tilt;
     out.error = polygon.depth_error + 0x1p-20f * (std::abs(center) + 64.0f * tilt);
     out.slow = 0;
@@ -220,9 +221,8 @@ void drawChunk(DepthTiles& tiles, const RasterPolygon& polygon, const ChunkSetup
             const uint32_t replaced = static_cast<uint32_t>(bitsFromMask(d, whole));
             left &= ~replaced;
             if (replaced) {
-                const auto put = [&](auto value, std::vector<float>& array) HWY_ATTR {
-                    hn::BlendedStore(value, whole, d, array.data() + base + h);
-                };
+                const auto put = [&](auto value, std::vector<float>& array)
+                                     HWY_ATTR { hn::BlendedStore(value, whole, d, array.data() + base + h); };
                 put(plane, tiles.plane_d);
                 put(hn::Set(d, static_cast<float>(polygon.dx)), tiles.plane_dx);
                 put(hn::Set(d, static_cast<float>(polygon.dy)), tiles.plane_dy);
@@ -252,8 +252,8 @@ TilePolygon seenByTile(const RasterPolygon& polygon, const ChunkSetup& setup, co
     if (polygon.planar)
         p.plane = {chunk.depth[at] - 0.5f * setup.tilt - chunk.error, static_cast<float>(polygon.dx),
                    static_cast<float>(polygon.dy), polygon.farthest};
-    const bool within = 8 * column >= polygon.x0 && 8 * column + 7 <= polygon.x1 && 8 * row >= polygon.y0 &&
-                        8 * row + 7 <= polygon.y1;
+    const bool within =
+        8 * column >= polygon.x0 && 8 * column + 7 <= polygon.x1 && 8 * row >= polygon.y0 && 8 * row + 7 <= polygon.y1;
     if (!within) p.window = windowBits(polygon.x0, polygon.y0, polygon.x1, polygon.y1, 8 * column, 8 * row);
     return p;
 }
@@ -385,8 +385,13 @@ bool drawQuad(const ClusterDraw& c, SeamPolygon source, bool both) {
 void drawPolygons(DepthTiles& tiles, const Screen& object, bool flips, const DrawnCluster& drawn) {
     const Occluder& occluder = *drawn.occluder;
     const OccluderCluster& cluster = occluder.clusters[drawn.cluster];
-    const ClusterDraw c{tiles, object, drawn, tiles.px.data() + drawn.first_vertex, tiles.py.data() + drawn.first_vertex,
-                        tiles.pd.data() + drawn.first_vertex, 4.0 * (drawn.position_error + 0x1p-16)};
+    const ClusterDraw c{tiles,
+                        object,
+                        drawn,
+                        tiles.px.data() + drawn.first_vertex,
+                        tiles.py.data() + drawn.first_vertex,
+                        tiles.pd.data() + drawn.first_vertex,
+                        4.0 * (drawn.position_error + 0x1p-16)};
     const bool reverse = flips != object.mirrored;  // front faces come out clockwise
     for (uint32_t p = cluster.first_polygon; p < cluster.first_polygon + cluster.polygon_count; ++p) {
         const OccluderPolygon& polygon = occluder.polygons[p];

@@ -36,8 +36,8 @@ void emit(ClippedPolygon& out, const Corner& corner, uint8_t from, uint8_t to, b
 
 }  // namespace
 
-bool clipAtNear(const Screen& object, const Occluder& occluder, const OccluderCluster& cluster,
-                const uint8_t* vertices, ClippedPolygon& out) {
+bool clipAtNear(const Screen& object, const Occluder& occluder, const OccluderCluster& cluster, const uint8_t* vertices,
+                ClippedPolygon& out) {
     Corner corner[3];
     bool inside[3];
     for (int i = 0; i < 3; ++i) {

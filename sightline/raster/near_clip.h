@@ -10,7 +10,7 @@ namespace sightline {
 
 /// @param vertices  three indices into the cluster's vertices
 /// Returns false if nothing is left in front of the near plane.
-bool clipAtNear(const Screen& object, const Occluder& occluder, const OccluderCluster& cluster,
-                const uint8_t* vertices, ClippedPolygon& out);
+bool clipAtNear(const Screen& object, const Occluder& occluder, const OccluderCluster& cluster, const uint8_t* vertices,
+                ClippedPolygon& out);
 
 }  // namespace sightline

@@ -32,7 +32,9 @@ uint64_t openPixels(DepthTiles& tiles, uint32_t tile, const PixelRect& rect, int
 /// the other of the shared edge; if the pixel is inside all their other sides, the point is inside that polygon.
 void coverPair(DepthTiles& tiles, uint32_t tile, const SeamPolygon& a, int side_a, const SeamPolygon& b, int side_b) {
     const double x = 8.0 * (tile % tiles.stride) + 4.0, y = 8.0 * (tile / tiles.stride) + 4.0;
-    struct Line { float a, b, c; };
+    struct Line {
+        float a, b, c;
+    };
     Line lines[6];
     int count = 0;
     const auto add = [&](const RasterPolygon& p, int without) {

@@ -115,8 +115,7 @@ bool makeRasterPolygon(const double* x, const double* y, const double* d, int co
     } else if (best >= kLeastHeight * perimeter) {
         makePlane(x, y, d, best, widest, out);
         // A quadrangle is flat but for this much, and no farther from the plane anywhere.
-        for (int i = 0; i < count; ++i)
-            depth_error_sum += std::abs(out.d0 + out.dx * x[i] + out.dy * y[i] - d[i]);
+        for (int i = 0; i < count; ++i) depth_error_sum += std::abs(out.d0 + out.dx * x[i] + out.dy * y[i] - d[i]);
     } else {
         out.covers = false;
     }

@@ -20,13 +20,13 @@ struct EdgeFunction {
 struct RasterPolygon {
     EdgeFunction edge[4];
     int edges = 0;
-    bool covers = false;   ///< may cover whole pixels; else it only touches them
-    bool complete = false; ///< edge i is the side from corner i to the next, for all of them, and bounds the inside
+    bool covers = false;    ///< may cover whole pixels; else it only touches them
+    bool complete = false;  ///< edge i is the side from corner i to the next, for all of them, and bounds the inside
     double d0 = 0, dx = 0, dy = 0;  ///< nearness = d0 + dx x + dy y, where `planar`
     bool planar = false;
-    float farthest = 0, nearest = 0;  ///< least and greatest nearness of the corners, rounded outward
-    float depth_error = 0;  ///< bound on the error of the plane, inside the polygon
-    float slack = 0;       ///< bound on the error of an edge function  [pixels]
+    float farthest = 0, nearest = 0;           ///< least and greatest nearness of the corners, rounded outward
+    float depth_error = 0;                     ///< bound on the error of the plane, inside the polygon
+    float slack = 0;                           ///< bound on the error of an edge function  [pixels]
     int32_t x0 = 0, y0 = 0, x1 = -1, y1 = -1;  ///< pixels that it may touch, inclusive, inside the buffer
 };
 

@@ -30,7 +30,8 @@ Screen makeScreen(const View& view, uint32_t max_size) {
     Screen screen;
     screen.eye = eyePosition(view);
     screen.perspective = !isOrthographic(view);
-    const double shrink = std::min(1.0, std::clamp(max_size, 1u, 8192u) / (std::max(view.width, view.height) + 2.0 * view.jitter));
+    const double shrink =
+        std::min(1.0, std::clamp(max_size, 1u, 8192u) / (std::max(view.width, view.height) + 2.0 * view.jitter));
     // Whole tiles only, so that no tile needs a special case; the pixels shrink by less than eight in a row.
     const auto pixels = [&](uint32_t n) {
         return 8 * static_cast<uint32_t>(std::max(1.0, std::ceil((n + 2.0 * view.jitter) * shrink / 8.0)));

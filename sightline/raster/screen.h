@@ -19,10 +19,10 @@ struct Screen {
     glm::dvec3 eye{0.0};
     glm::dvec4 x{0.0}, y{0.0}, w{0.0}, d{0.0}, near{0.0};
     bool perspective = true;
-    bool mirrored = false;  ///< counter-clockwise triangles come out clockwise
+    bool mirrored = false;           ///< counter-clockwise triangles come out clockwise
     uint32_t width = 1, height = 1;  ///< of the buffer [pixels]
-    double near_w = 0.0;      ///< w.h of points on the near plane; 0 if it is not the same for all of them
-    double near_guard = 0.0;  ///< occluders are clipped at near.h >= near_guard, where they are surely drawn
+    double near_w = 0.0;             ///< w.h of points on the near plane; 0 if it is not the same for all of them
+    double near_guard = 0.0;         ///< occluders are clipped at near.h >= near_guard, where they are surely drawn
 };
 
 /// @param view       isUsable(view)

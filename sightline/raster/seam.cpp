@@ -19,8 +19,8 @@
 namespace sightline {
 namespace {
 
-constexpr int kMaxTriangles = 192;  // work cap: a pixel with more of them stays open
-constexpr double kMargin = 0x1p-15; // [pixels]: above all rounding of edge functions here
+constexpr int kMaxTriangles = 192;   // work cap: a pixel with more of them stays open
+constexpr double kMargin = 0x1p-15;  // [pixels]: above all rounding of edge functions here
 
 struct Point {
     float x, y, z;  // no initial values: a resolver is made for each pixel
@@ -32,7 +32,7 @@ struct Piece {
     double x[4], y[4];
     const SeamPolygon* polygon;
     int count;
-    double error;   ///< bound on the error of sideAt()
+    double error;  ///< bound on the error of sideAt()
     int group;
     bool alive;
 };
@@ -280,7 +280,8 @@ struct Resolver {
                 found[i].shared |= 1u << side_i;
                 found[j].shared |= 1u << side_j;
             }
-        std::sort(found, found + count, [](const UnionPiece& a, const UnionPiece& b) { return a.farthest > b.farthest; });
+        std::sort(found, found + count,
+                  [](const UnionPiece& a, const UnionPiece& b) { return a.farthest > b.farthest; });
         return subtractFromPixel(x, y, found, count);
     }
 
@@ -294,8 +295,7 @@ struct Resolver {
             if (!pieces[g].alive || rootOf(g) != g || !holdsPixel(g, x, y)) continue;
             double farthest = std::numeric_limits<double>::infinity();
             for (int p = 0; p < piece_count; ++p)
-                if (pieces[p].alive && rootOf(p) == g)
-                    farthest = std::min(farthest, farthestIn(pieces[p], x, y));
+                if (pieces[p].alive && rootOf(p) == g) farthest = std::min(farthest, farthestIn(pieces[p], x, y));
             best = std::max(best, farthest);
         }
         return best;

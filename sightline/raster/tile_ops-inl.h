@@ -68,7 +68,8 @@ inline void toPixels(DepthTiles& tiles, uint32_t tile) {
     float* depth = tiles.depth.data() + 64 * size_t{tile};
     for (int row = 0; row < 8; ++row)
         for (size_t h = 0; h < 8; h += hn::Lanes(d)) {
-            const auto z = planar ? planeDepth(d, plane, row, hn::Add(offset, hn::Set(d, static_cast<float>(h)))) : open;
+            const auto z =
+                planar ? planeDepth(d, plane, row, hn::Add(offset, hn::Set(d, static_cast<float>(h)))) : open;
             hn::StoreU(z, d, depth + 8 * row + h);
         }
     tiles.covered[tile] = planar ? ~uint64_t{0} : 0;

@@ -54,15 +54,15 @@ struct SeamPolygon {
     uint32_t clipped = kWhole;  ///< index into DepthTiles::clipped, or kWhole
     uint8_t vertex[4] = {};     ///< cluster vertices, counter-clockwise; not used if clipped
     uint8_t corners = 3;
-    uint8_t forward = 0;        ///< bit per side: which of the two directions
-    uint8_t open = 0;           ///< bit per side that the near plane made
+    uint8_t forward = 0;  ///< bit per side: which of the two directions
+    uint8_t open = 0;     ///< bit per side that the near plane made
 };
 
 /// The pixels of one tile that a seam polygon touches.
 struct SeamEntry {
     uint64_t mask = 0;
-    uint32_t polygon = 0;   ///< index into DepthTiles::polygons
-    uint32_t next = ~0u;    ///< the next entry of the tile
+    uint32_t polygon = 0;  ///< index into DepthTiles::polygons
+    uint32_t next = ~0u;   ///< the next entry of the tile
 };
 
 /// The buffer. A pixel is covered when every ray through any of its points meets an occluder no farther
@@ -77,19 +77,19 @@ struct DepthTiles {
         kPixels,  ///< the depth array is valid
     };
 
-    uint32_t width = 0, height = 0;   ///< [pixels], multiples of 8
-    uint32_t columns = 0, rows = 0;   ///< [tiles]
-    uint32_t stride = 0;              ///< tiles from one row to the next: columns rounded up to 8
+    uint32_t width = 0, height = 0;  ///< [pixels], multiples of 8
+    uint32_t columns = 0, rows = 0;  ///< [tiles]
+    uint32_t stride = 0;             ///< tiles from one row to the next: columns rounded up to 8
 
     // Per tile, side by side, so that eight tiles of a row are looked at together.
-    std::vector<float> farthest;      ///< no more than the least nearness in the tile; -infinity unless all is covered
-    std::vector<float> nearest;       ///< form kPlane: no less than the greatest; kEmpty: -infinity; kPixels: +infinity
+    std::vector<float> farthest;  ///< no more than the least nearness in the tile; -infinity unless all is covered
+    std::vector<float> nearest;   ///< form kPlane: no less than the greatest; kEmpty: -infinity; kPixels: +infinity
     std::vector<float> plane_d, plane_dx, plane_dy, plane_floor;  ///< form kPlane: nearness at pixel (x, y) of the tile
-                                      ///< is max(floor, d + dx (x - 3.5) + dy (y - 3.5))
+                                                                  ///< is max(floor, d + dx (x - 3.5) + dy (y - 3.5))
     std::vector<Form> form;
-    std::vector<uint64_t> covered;    ///< bit 8 * row + column; not kept up to date in form kPlane, which is all covered
-    std::vector<uint64_t> tried;      ///< seam pixels whose present entries have been resolved
-    std::vector<uint32_t> seams;      ///< first SeamEntry, or kNone
+    std::vector<uint64_t> covered;  ///< bit 8 * row + column; not kept up to date in form kPlane, which is all covered
+    std::vector<uint64_t> tried;    ///< seam pixels whose present entries have been resolved
+    std::vector<uint32_t> seams;    ///< first SeamEntry, or kNone
     std::vector<uint64_t> seam_mask;  ///< pixels that some SeamEntry of the tile names
     std::vector<uint32_t> paired;     ///< the first SeamEntry when pairSeams() last looked
     std::vector<float> depth;         ///< 64 per tile; -infinity where not covered; see Form
@@ -104,13 +104,13 @@ struct DepthTiles {
                                            : -std::numeric_limits<float>::infinity();
     }
 
-    std::vector<double> px, py, pd;        ///< projected vertices of the frame; px is NaN before the near plane
+    std::vector<double> px, py, pd;  ///< projected vertices of the frame; px is NaN before the near plane
     std::vector<DrawnCluster> drawn;
     std::vector<ClippedPolygon> clipped;
     std::vector<SeamPolygon> polygons;
     std::vector<SeamEntry> entries;
 
-    uint64_t seam_pixels = 0;              ///< resolved since the clear
+    uint64_t seam_pixels = 0;  ///< resolved since the clear
 
     /// Makes the buffer empty. Allocates only when it grows.
     void clear(uint32_t width, uint32_t height);

@@ -13,8 +13,8 @@ namespace sightline {
 /// A polygon that may cover a part of the pixel.
 struct UnionPiece {
     const RasterPolygon* polygon = nullptr;  ///< complete: its edge functions bound it
-    uint32_t shared = 0;    ///< bit per edge that another drawn polygon has the other way round, exactly
-    double farthest = 0;    ///< no point of it in the pixel is farther
+    uint32_t shared = 0;  ///< bit per edge that another drawn polygon has the other way round, exactly
+    double farthest = 0;  ///< no point of it in the pixel is farther
 };
 
 /// Subtracts the pieces from the square of the pixel whose centre is given, in their order.

@@ -26,10 +26,10 @@ struct Pending {
     enum class Kind : uint8_t { kNode, kObject, kCluster };
     PixelRect rect;
     uint32_t serial = 0;
-    uint32_t index = 0;     ///< node; place of the object; or cluster
-    uint32_t owner = 0;     ///< of a cluster: index into Impl::instances
+    uint32_t index = 0;             ///< node; place of the object; or cluster
+    uint32_t owner = 0;             ///< of a cluster: index into Impl::instances
     uint32_t first = 0, count = 1;  ///< places of the objects below
-    uint8_t planes = 0;     ///< of a node: frustum planes that it is not inside of
+    uint8_t planes = 0;             ///< of a node: frustum planes that it is not inside of
     Kind kind = Kind::kNode;
     bool testable = false;  ///< the rectangle stands for the bound; else it is in doubt, or outside and kept
 

@@ -29,13 +29,13 @@ struct StageStats {
 
 struct QueryStats {
     StageStats stages[kStageCount];
-    uint64_t objects = 0;              ///< in the snapshot, within View::layers
-    uint64_t visible = 0;              ///< = objects - the sum of culled
+    uint64_t objects = 0;  ///< in the snapshot, within View::layers
+    uint64_t visible = 0;  ///< = objects - the sum of culled
     uint64_t nodes_visited = 0;
-    uint64_t occluder_triangles = 0;   ///< offered to the rasterizer
-    uint64_t seam_pixels = 0;          ///< resolved by exact pairing of edges
-    bool budget_spent = false;         ///< some visible occluders were not rasterized
-    uint64_t nanoseconds = 0;          ///< the whole query
+    uint64_t occluder_triangles = 0;  ///< offered to the rasterizer
+    uint64_t seam_pixels = 0;         ///< resolved by exact pairing of edges
+    bool budget_spent = false;        ///< some visible occluders were not rasterized
+    uint64_t nanoseconds = 0;         ///< the whole query
 };
 
 struct VisibleSet {
@@ -67,7 +67,10 @@ public:
 
     /// The occlusion buffer after the last answer, for pictures: nearness per buffer pixel, row 0 at the bottom, 0
     /// where nothing is known to cover the whole pixel. Occluders that came after the last object are not in it.
-    struct DepthImage { uint32_t width = 0, height = 0; std::span<const float> nearness; };
+    struct DepthImage {
+        uint32_t width = 0, height = 0;
+        std::span<const float> nearness;
+    };
     DepthImage depthImage();
 
 private:

@@ -38,8 +38,8 @@ struct WorldState {
     OccluderTable occluders{nullptr};
     std::vector<uint32_t> place_of_index;  ///< ObjectId::index - 1 to place; indices are never given out twice
     uint32_t living = 0;
-    bool rebuild = true;                   ///< objects came, went, or changed between bounded and unbounded
-    std::vector<uint32_t> moved;           ///< places
+    bool rebuild = true;          ///< objects came, went, or changed between bounded and unbounded
+    std::vector<uint32_t> moved;  ///< places
     std::shared_ptr<const SnapshotState> last;
 
     ObjectRecord* find(ObjectId id) {

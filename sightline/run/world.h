@@ -13,19 +13,29 @@
 namespace sightline {
 
 /// Ids are plain values; zero is null. A removed object's id is never given out again.
-struct ObjectId { uint32_t index = 0; uint32_t generation = 0; bool operator==(const ObjectId&) const = default; };
-struct OccluderId { uint32_t index = 0; bool operator==(const OccluderId&) const = default; };
+struct ObjectId {
+    uint32_t index = 0;
+    uint32_t generation = 0;
+    bool operator==(const ObjectId&) const = default;
+};
+struct OccluderId {
+    uint32_t index = 0;
+    bool operator==(const OccluderId&) const = default;
+};
 
 /// What an object is when it enters a world.
 struct ObjectDef {
-    Box3d bounds;                ///< object space, of everything that may be drawn: all LODs, all poses
-    glm::dmat4 transform{1.0};   ///< object to world, affine
-    uint64_t key = 0;            ///< yours; reported back
-    OccluderId occluder;         ///< what it hides with, or null
-    uint32_t layers = 1;         ///< bit mask; View::layers selects
+    Box3d bounds;               ///< object space, of everything that may be drawn: all LODs, all poses
+    glm::dmat4 transform{1.0};  ///< object to world, affine
+    uint64_t key = 0;           ///< yours; reported back
+    OccluderId occluder;        ///< what it hides with, or null
+    uint32_t layers = 1;        ///< bit mask; View::layers selects
 };
 
-namespace detail { struct WorldState; struct SnapshotState; }
+namespace detail {
+struct WorldState;
+struct SnapshotState;
+}  // namespace detail
 
 /// An immutable state of a world; cheap to copy, safe to share among threads, lives as long as any
 /// copy of it does.

@@ -16,7 +16,7 @@ struct ObjectRecord {
     glm::dmat4 transform{1.0};
     Box3d bounds;  ///< object space
     uint64_t key = 0;
-    ObjectId id;   ///< null: the place is free
+    ObjectId id;  ///< null: the place is free
     OccluderId occluder;
     uint32_t layers = 0;
 };

@@ -18,7 +18,9 @@ using nlohmann::json;
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 /// What is wrong, without file and frame; never leaves this file.
-struct Complaint { std::string what; };
+struct Complaint {
+    std::string what;
+};
 
 double readNumber(const json& value, const std::string& name) {
     if (!value.is_number()) throw Complaint{fmt::format("\"{}\" is not a number", name)};
@@ -48,7 +50,9 @@ std::optional<double> readOptional(const json& value, const std::string& name) {
 }
 
 /// Which of the values that have no default were given.
-struct Given { bool eye = false, target = false; };
+struct Given {
+    bool eye = false, target = false;
+};
 
 /// Takes what an object holds, the head's or a frame's, over what is there.
 void overlay(const json& object, CameraFrame& frame, Given& given) {
@@ -117,9 +121,7 @@ CameraPath readFrames(const json& head) {
     Given given_by_head;
     try {
         overlay(head, defaults, given_by_head);
-    } catch (const Complaint& complaint) {
-        throw Complaint{"head: " + complaint.what};
-    }
+    } catch (const Complaint& complaint) { throw Complaint{"head: " + complaint.what}; }
     const auto list = head.find("frames");
     if (list == head.end() || !list->is_array() || list->empty())
         throw Complaint{"no frames (\"frames\" must be an array of at least one)"};
@@ -194,9 +196,7 @@ Result<CameraPath> readCameraPath(const std::string& file) {
     std::string what;
     try {
         return readFrames(json::parse(*text));
-    } catch (const Complaint& complaint) {
-        what = complaint.what;
-    } catch (const json::exception& exception) {
+    } catch (const Complaint& complaint) { what = complaint.what; } catch (const json::exception& exception) {
         what = "not JSON: " + parseMessage(exception.what());
     }
     return Error{Error::Kind::kInput, fmt::format("{}: {}", file, what)};
@@ -204,8 +204,7 @@ Result<CameraPath> readCameraPath(const std::string& file) {
 
 std::string cameraPathJson(const CameraPath& path) {
     std::string text = "{\"frames\": [";
-    for (size_t i = 0; i < path.frames.size(); ++i)
-        text += (i ? ",\n  " : "\n  ") + frameJson(path.frames[i]).dump();
+    for (size_t i = 0; i < path.frames.size(); ++i) text += (i ? ",\n  " : "\n  ") + frameJson(path.frames[i]).dump();
     return text + "\n]}\n";
 }
 

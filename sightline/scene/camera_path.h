@@ -21,9 +21,9 @@ struct CameraFrame {
     glm::dvec3 up{0, 1, 0};
     double fov_y_degrees = 60;
     double z_near = 0.1;
-    std::optional<double> z_far;                ///< none: infinite
-    std::optional<double> orthographic_height;  ///< full height [world units]; replaces the angle
-    std::optional<glm::dmat4> view, projection; ///< both or neither
+    std::optional<double> z_far;                 ///< none: infinite
+    std::optional<double> orthographic_height;   ///< full height [world units]; replaces the angle
+    std::optional<glm::dmat4> view, projection;  ///< both or neither
 };
 
 struct CameraPath {

@@ -18,7 +18,9 @@ constexpr double kEyeHeight = 1.7;  // [metres]
 constexpr double kTurn = 6;         // how far from a corner the walk begins to turn  [metres]
 constexpr double kGlance = 0.25;    // the tangent by which the walker looks towards the market on the left
 
-struct Step { glm::dvec2 at, heading; };
+struct Step {
+    glm::dvec2 at, heading;
+};
 
 /// The walk is a loop along the middle of the streets around the central block, which lies to the left:
 /// each street ahead ends at the corner where the walk turns. One unit is one side.

@@ -7,11 +7,15 @@
 namespace sightline::city {
 namespace {
 
-constexpr double kOldTown = 130;     // within this distance of the middle: whole blocks, high roofs  [metres]
-constexpr double kPartyWall = 0.5;   // neighbours overlap by this                                    [metres]
+constexpr double kOldTown = 130;    // within this distance of the middle: whole blocks, high roofs  [metres]
+constexpr double kPartyWall = 0.5;  // neighbours overlap by this                                    [metres]
 
 /// Roofs sink from the middle outward: what a street's fronts hide in a small city, they hide in a large one.
-struct Heights { int low, high; double towers; int tower_low, tower_high; };
+struct Heights {
+    int low, high;
+    double towers;
+    int tower_low, tower_high;
+};
 
 Heights heightsAt(double distance) {
     if (distance < kOldTown) return {6, 8, 0.08, 10, 20};
@@ -56,15 +60,14 @@ void putRow(const Library& library, Random& random, const Heights& heights, cons
             Planter& planter) {
     const double roll = random.uniform();
     const bool tower = roll < heights.towers;
-    const Building& building =
-        tower ? choose(library, random, Kind::kTower, width, heights.tower_low, heights.tower_high)
-              : choose(library, random, Kind::kRow, width, heights.low, heights.high);
+    const Building& building = tower
+                                   ? choose(library, random, Kind::kTower, width, heights.tower_low, heights.tower_high)
+                                   : choose(library, random, Kind::kRow, width, heights.low, heights.high);
     const double middle = s + 0.5 * width, stretch = (width + kPartyWall) / building.width;
     const double tall = random.uniform(0.97, 1.03);
     const double setback = random.uniform(0, 0.375);
     const bool mirrored = random.below(4) == 0;
-    planter.put(building.mesh, side.at(middle, -setback), 0, side.quarter,
-                {mirrored ? -stretch : stretch, tall, 1});
+    planter.put(building.mesh, side.at(middle, -setback), 0, side.quarter, {mirrored ? -stretch : stretch, tall, 1});
     putOnRoof(random, building, side, middle, -setback - 0.5 * kRowDepth, stretch, tall, planter);
     if (random.below(5) < 2) planter.put(kAwning, side.at(middle, -setback), kPavement, side.quarter);
 }
@@ -133,8 +136,7 @@ std::vector<Rectangle> plotsOf(const Block& block, bool split, int turn) {
     return {{middle - corner, middle + first_end}, {middle - first_end, middle + corner}};
 }
 
-void fillBuildings(const Library& library, Random& random, const Block& block, bool split, int turn,
-                   Planter& planter) {
+void fillBuildings(const Library& library, Random& random, const Block& block, bool split, int turn, Planter& planter) {
     const double distance = std::sqrt(static_cast<double>(block.distance2));
     if (!block.small) {
         for (const Rectangle& plot : plotsOf(block, split, turn)) fillPlot(library, random, distance, plot, planter);

@@ -19,7 +19,7 @@ struct Style {
     double depth = 0.75;  ///< of the bays
     bool glazed = false;
     bool pitched = false;
-    uint32_t extra = 0;   ///< free choice of the builder
+    uint32_t extra = 0;  ///< free choice of the builder
 };
 
 Style drawStyle(Random& random, int storeys) {
@@ -50,12 +50,16 @@ void addRoof(MeshBuilder& mesh, const Style& style, double left, double right, d
              double eaves) {
     const double foot = eaves - 0.125, middle = 0.5 * (back + front);
     if (style.extra % 2 == 0) {
-        addPrism(mesh, style.roof_cover, kAcross,
-                 {{back - 0.375, foot}, {front + 0.375, foot}, {middle, eaves + 3.5}}, -right, -left);
+        addPrism(mesh, style.roof_cover, kAcross, {{back - 0.375, foot}, {front + 0.375, foot}, {middle, eaves + 3.5}},
+                 -right, -left);
     } else {
         addPrism(mesh, style.roof_cover, kAcross,
-                 {{back - 0.25, foot}, {front + 0.25, foot}, {front - 1.25, eaves + 2.5}, {middle, eaves + 3.25},
-                  {back + 1.25, eaves + 2.5}}, -right, -left);
+                 {{back - 0.25, foot},
+                  {front + 0.25, foot},
+                  {front - 1.25, eaves + 2.5},
+                  {middle, eaves + 3.25},
+                  {back + 1.25, eaves + 2.5}},
+                 -right, -left);
     }
 }
 
@@ -63,8 +67,8 @@ void addRoof(MeshBuilder& mesh, const Style& style, double left, double right, d
 void addCrossRoof(MeshBuilder& mesh, const Style& style, double left, double right, double back, double front,
                   double eaves) {
     const double foot = eaves - 0.125, middle = 0.5 * (left + right);
-    addPrism(mesh, style.roof_cover, kSideways,
-             {{left - 0.375, foot}, {right + 0.375, foot}, {middle, eaves + 3.5}}, back, front);
+    addPrism(mesh, style.roof_cover, kSideways, {{left - 0.375, foot}, {right + 0.375, foot}, {middle, eaves + 3.5}},
+             back, front);
 }
 
 void finish(Library& library, const MeshBuilder& mesh, Building building, const std::string& name) {
@@ -86,7 +90,10 @@ void addRow(Library& library, Random& random, double width, int storeys) {
             {front, {}, back, {}});
     const uint32_t base = style.extra % 4 < 2 ? static_cast<uint32_t>(kStone) : style.materials.wall;
     addBox(mesh, base, {-half - 0.03125, 0, -kRowDepth - 0.0625},
-           {half + 0.03125, 4, arcade ? -1.5 : oriels ? -0.0625 : 0.0625});
+           {half + 0.03125, 4,
+            arcade   ? -1.5
+            : oriels ? -0.0625
+                     : 0.0625});
     addBox(mesh, kTrim, {-half - 0.03125, eaves - 0.875, -kRowDepth - 0.25},
            {half + 0.03125, eaves - 0.375, oriels ? 1.0 : 0.4375});
     if (style.pitched) {
@@ -107,8 +114,8 @@ void addCourt(Library& library, Random& random, int storeys) {
     MeshBuilder mesh;
     const Wall wing{1, 2.25, style.depth, style.glazed}, court{1, 2, style.depth, style.glazed};
     addBody(mesh, style.materials,
-            {{-half, 0}, {-5, 0}, {-5, -5}, {5, -5}, {5, 0}, {half, 0}, {half, -kRowDepth}, {-half, -kRowDepth}},
-            0, eaves, {wing, {}, court, {}, wing, {}, {}, {}});
+            {{-half, 0}, {-5, 0}, {-5, -5}, {5, -5}, {5, 0}, {half, 0}, {half, -kRowDepth}, {-half, -kRowDepth}}, 0,
+            eaves, {wing, {}, court, {}, wing, {}, {}, {}});
     for (const double side : {-1.0, 1.0}) {
         const double inner = side * 4.75, outer = side * (half + 0.03125);
         addBox(mesh, kTrim, {std::min(inner, outer), eaves - 0.875, -4.75},
@@ -155,8 +162,13 @@ void addCorner(Library& library, Random& random, int storeys) {
     addBody(mesh, style.materials, {{-leg, 0}, {0, 0}, {0, -leg}, {-depth, -leg}, {-depth, -depth}, {-leg, -depth}}, 0,
             eaves, {main, side, {}, {}, {}, {}});
     addPrism(mesh, kTrim, kUpright,
-             {{0.4375, -leg - 0.03125}, {0.4375, 0.4375}, {-leg - 0.03125, 0.4375}, {-leg - 0.03125, -4},
-              {-4, -4}, {-4, -leg - 0.03125}}, eaves - 0.875, eaves - 0.375);
+             {{0.4375, -leg - 0.03125},
+              {0.4375, 0.4375},
+              {-leg - 0.03125, 0.4375},
+              {-leg - 0.03125, -4},
+              {-4, -4},
+              {-4, -leg - 0.03125}},
+             eaves - 0.875, eaves - 0.375);
     if (pitched) {
         addRoof(mesh, style, -leg + 0.0625, -0.5, -depth, 0, eaves);
         addCrossRoof(mesh, style, -depth, 0, -leg + 0.0625, -0.5, eaves);
@@ -175,8 +187,8 @@ void addPalace(Library& library, Random& random, int storeys) {
     MeshBuilder mesh;
     const Wall court{1, 2.5, style.depth, style.glazed}, flank{1, 6, style.depth, style.glazed};
     addBody(mesh, style.materials,
-            {{-half, half}, {-5, half}, {-5, -3}, {5, -3}, {5, half}, {half, half}, {half, -half}, {-half, -half}},
-            0, eaves, {{}, {}, court, {}, {}, flank, flank, flank});
+            {{-half, half}, {-5, half}, {-5, -3}, {5, -3}, {5, half}, {half, half}, {half, -half}, {-half, -half}}, 0,
+            eaves, {{}, {}, court, {}, {}, flank, flank, flank});
     addCrossRoof(mesh, style, -half, -5, -half + 0.25, half - 0.25, eaves);
     addCrossRoof(mesh, style, 5, half, -half + 0.25, half - 0.25, eaves);
     addRoof(mesh, style, -half + 0.5, half - 0.5, -half, -3, eaves);

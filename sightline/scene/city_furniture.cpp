@@ -154,8 +154,14 @@ MeshBuilder shelter() {
 MeshBuilder car(uint32_t paint) {
     MeshBuilder mesh;
     addPrism(mesh, paint, kSideways,
-             {{-2.125, 0.3125}, {2.1875, 0.3125}, {2.125, 0.84375}, {1.1875, 0.96875}, {0.5, 1.4375}, {-1.125, 1.46875},
-              {-2.1875, 0.9375}}, -0.84375, 0.84375);
+             {{-2.125, 0.3125},
+              {2.1875, 0.3125},
+              {2.125, 0.84375},
+              {1.1875, 0.96875},
+              {0.5, 1.4375},
+              {-1.125, 1.46875},
+              {-2.1875, 0.9375}},
+             -0.84375, 0.84375);
     for (const double x : {-1.3125, 1.3125})  // of each axle's wheels, what shows under the body and beside it
         addPrism(mesh, kRubber, kSideways,
                  {{x - 0.1875, 0}, {x + 0.1875, 0}, {x + 0.34375, 0.40625}, {x - 0.34375, 0.40625}}, -0.90625, 0.90625);

@@ -71,10 +71,14 @@ glm::dvec2 Side::at(double s, double t) const {
 Side sideOf(const Rectangle& r, int quarter) {
     const double width = r.max.x - r.min.x, depth = r.max.y - r.min.y;
     switch (quarter & 3) {
-        case 0: return {0, {r.min.x, r.max.y}, width};
-        case 1: return {1, {r.max.x, r.max.y}, depth};
-        case 2: return {2, {r.max.x, r.min.y}, width};
-        default: return {3, {r.min.x, r.min.y}, depth};
+        case 0:
+            return {0, {r.min.x, r.max.y}, width};
+        case 1:
+            return {1, {r.max.x, r.max.y}, depth};
+        case 2:
+            return {2, {r.max.x, r.min.y}, width};
+        default:
+            return {3, {r.min.x, r.min.y}, depth};
     }
 }
 

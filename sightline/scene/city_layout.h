@@ -37,8 +37,8 @@ private:
 
 /// One side of a square or rectangle in the plan, seen from outside: s runs along it, t outward.
 struct Side {
-    int quarter = 0;     ///< quarter turns from +z to its outward direction, towards +x
-    glm::dvec2 start;    ///< (x, z) of s = 0 on the line
+    int quarter = 0;   ///< quarter turns from +z to its outward direction, towards +x
+    glm::dvec2 start;  ///< (x, z) of s = 0 on the line
     double length = 0;
 
     glm::dvec2 at(double s, double t) const;
@@ -48,7 +48,9 @@ struct Side {
 glm::dvec2 alongSide(int quarter);
 glm::dvec2 outwardOf(int quarter);
 
-struct Rectangle { glm::dvec2 min, max; };
+struct Rectangle {
+    glm::dvec2 min, max;
+};
 
 /// Side `quarter` of a rectangle.
 Side sideOf(const Rectangle& rectangle, int quarter);

@@ -11,17 +11,74 @@
 namespace sightline::city {
 
 enum MaterialId : uint32_t {
-    kAsphalt, kPaving, kLawnGreen, kSand, kRose, kBrick, kStone, kOchre, kGrey, kWhite, kShade, kTiles, kSlate, kGravel,
-    kTrim, kGlass, kMetal, kWood, kBark, kLeaf, kDarkLeaf, kRed, kBlue, kSilver, kBlack, kRubber, kMesh, kBoard, kCloth,
-    kCopper, kLight, kPaint, kMaterialCount
+    kAsphalt,
+    kPaving,
+    kLawnGreen,
+    kSand,
+    kRose,
+    kBrick,
+    kStone,
+    kOchre,
+    kGrey,
+    kWhite,
+    kShade,
+    kTiles,
+    kSlate,
+    kGravel,
+    kTrim,
+    kGlass,
+    kMetal,
+    kWood,
+    kBark,
+    kLeaf,
+    kDarkLeaf,
+    kRed,
+    kBlue,
+    kSilver,
+    kBlack,
+    kRubber,
+    kMesh,
+    kBoard,
+    kCloth,
+    kCopper,
+    kLight,
+    kPaint,
+    kMaterialCount
 };
 
 /// Furniture and ground. The number is the mesh's index.
 enum Item : uint32_t {
-    kGroundLarge, kGroundSplit, kGroundSmall, kLawn, kCrossing,
-    kPlaneTree, kLimeTree, kPoplar, kHedge, kLamp, kBench, kBin, kHydrant, kBollard, kFence, kSign, kKiosk, kShelter,
-    kRedCar, kBlueCar, kSilverCar, kBlackCar, kPlanter, kAwning, kBicycleStand, kChimney, kTank, kCooler, kShed,
-    kMonument, kItemCount
+    kGroundLarge,
+    kGroundSplit,
+    kGroundSmall,
+    kLawn,
+    kCrossing,
+    kPlaneTree,
+    kLimeTree,
+    kPoplar,
+    kHedge,
+    kLamp,
+    kBench,
+    kBin,
+    kHydrant,
+    kBollard,
+    kFence,
+    kSign,
+    kKiosk,
+    kShelter,
+    kRedCar,
+    kBlueCar,
+    kSilverCar,
+    kBlackCar,
+    kPlanter,
+    kAwning,
+    kBicycleStand,
+    kChimney,
+    kTank,
+    kCooler,
+    kShed,
+    kMonument,
+    kItemCount
 };
 
 enum class Kind : uint8_t {
@@ -35,20 +92,20 @@ struct Building {
     uint32_t mesh = 0;
     Kind kind = Kind::kRow;
     int storeys = 0;
-    double width = 0;        ///< of the front                              [metres]
-    double roof = 0;         ///< height on which chimneys and tanks stand  [metres]
+    double width = 0;  ///< of the front                              [metres]
+    double roof = 0;   ///< height on which chimneys and tanks stand  [metres]
     bool pitched = false;
 };
 
-inline constexpr double kRowDepth = 13;   ///< of row and corner buildings  [metres]
-inline constexpr double kCornerLeg = 18;  ///< of corner buildings          [metres]
-inline constexpr double kIslandSize = 26; ///< of island buildings          [metres]
+inline constexpr double kRowDepth = 13;    ///< of row and corner buildings  [metres]
+inline constexpr double kCornerLeg = 18;   ///< of corner buildings          [metres]
+inline constexpr double kIslandSize = 26;  ///< of island buildings          [metres]
 
 /// Plan of the streets, in metres: blocks are squares from the middle of one street to the middle of the next.
 inline constexpr int kLargeBlock = 104, kSmallBlock = 40;
-inline constexpr double kKerb = 4;        ///< from the middle of the street to the pavement
-inline constexpr double kFrontage = 7;    ///< from the middle of the street to the fronts
-inline constexpr double kAlley = 8;       ///< from front to front of the lane through a split block
+inline constexpr double kKerb = 4;          ///< from the middle of the street to the pavement
+inline constexpr double kFrontage = 7;      ///< from the middle of the street to the fronts
+inline constexpr double kAlley = 8;         ///< from front to front of the lane through a split block
 inline constexpr double kPavement = 0.125;  ///< height of the pavement
 
 struct Library {

@@ -30,7 +30,10 @@ glm::dvec3 place(const Frame& frame, const glm::dvec2& point, double along) {
 }
 
 /// A corner of a body's plan, and the material of the face that follows it.
-struct PlanCorner { glm::dvec2 at; uint32_t material; };
+struct PlanCorner {
+    glm::dvec2 at;
+    uint32_t material;
+};
 
 }  // namespace
 
@@ -59,8 +62,8 @@ Mesh MeshBuilder::finish(std::string name) const {
     mesh.name = std::move(name);
     mesh.positions = positions_;
     for (const auto& [material, list] : indices_) {
-        mesh.primitives.push_back({static_cast<uint32_t>(mesh.triangles()), static_cast<uint32_t>(list.size() / 3),
-                                   material});
+        mesh.primitives.push_back(
+            {static_cast<uint32_t>(mesh.triangles()), static_cast<uint32_t>(list.size() / 3), material});
         mesh.indices.insert(mesh.indices.end(), list.begin(), list.end());
     }
     for (const glm::vec3& position : mesh.positions) mesh.bounds.grow(glm::dvec3(position));
@@ -90,11 +93,11 @@ std::vector<glm::dvec2> regularPolygon(int sides) {
     constexpr double kHalfRoot2 = 0.70710678118654752440, kHalfRoot3 = 0.86602540378443864676;
     if (sides == 3) return {{1, 0}, {-0.5, kHalfRoot3}, {-0.5, -kHalfRoot3}};
     if (sides == 4)
-        return {{kHalfRoot2, kHalfRoot2}, {-kHalfRoot2, kHalfRoot2}, {-kHalfRoot2, -kHalfRoot2},
-                {kHalfRoot2, -kHalfRoot2}};
+        return {
+            {kHalfRoot2, kHalfRoot2}, {-kHalfRoot2, kHalfRoot2}, {-kHalfRoot2, -kHalfRoot2}, {kHalfRoot2, -kHalfRoot2}};
     if (sides == 6)
         return {{1, 0}, {0.5, kHalfRoot3}, {-0.5, kHalfRoot3}, {-1, 0}, {-0.5, -kHalfRoot3}, {0.5, -kHalfRoot3}};
-    return {{1, 0}, {kHalfRoot2, kHalfRoot2}, {0, 1}, {-kHalfRoot2, kHalfRoot2},
+    return {{1, 0},  {kHalfRoot2, kHalfRoot2},   {0, 1},  {-kHalfRoot2, kHalfRoot2},
             {-1, 0}, {-kHalfRoot2, -kHalfRoot2}, {0, -1}, {kHalfRoot2, -kHalfRoot2}};
 }
 
@@ -180,8 +183,7 @@ std::vector<std::array<uint32_t, 3>> triangulate(const std::vector<glm::dvec2>& 
             best_length = length;
         }
         SIGHTLINE_ASSERT(best < rest.size());  // a simple polygon has an ear
-        triangles.push_back({rest[(best + rest.size() - 1) % rest.size()], rest[best],
-                             rest[(best + 1) % rest.size()]});
+        triangles.push_back({rest[(best + rest.size() - 1) % rest.size()], rest[best], rest[(best + 1) % rest.size()]});
         rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(best));
     }
     return triangles;

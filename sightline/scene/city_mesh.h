@@ -36,18 +36,22 @@ private:
 void addBox(MeshBuilder& mesh, uint32_t material, const glm::dvec3& min, const glm::dvec3& max);
 
 /// Right-handed axes of an extrusion: an outline lies in (u, v), counter-clockwise, and is carried along w.
-struct Frame { glm::dvec3 origin, u, v, w; };
+struct Frame {
+    glm::dvec3 origin, u, v, w;
+};
 
-inline constexpr Frame kUpright{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}};    ///< outlines (z, x), carried up
-inline constexpr Frame kAcross{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};    ///< profiles (z, y), carried to -x
-inline constexpr Frame kSideways{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};   ///< profiles (x, y), carried to +z
+inline constexpr Frame kUpright{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}};   ///< outlines (z, x), carried up
+inline constexpr Frame kAcross{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};   ///< profiles (z, y), carried to -x
+inline constexpr Frame kSideways{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  ///< profiles (x, y), carried to +z
 
 /// A closed prism. @param low, high  along w, low < high
 void addPrism(MeshBuilder& mesh, uint32_t material, const Frame& frame, const std::vector<glm::dvec2>& outline,
               double low, double high);
 
 /// One ring of a turned solid.
-struct Ring { double radius, y; };
+struct Ring {
+    double radius, y;
+};
 
 /// A closed solid turned about the vertical through `center`: rings from below to above; a radius of 0 at
 /// either end is a tip, otherwise the end is flat.
@@ -67,7 +71,9 @@ struct Wall {
     bool glazed = false;  ///< one pane closes each bay half-way
 };
 
-struct BodyMaterials { uint32_t wall, bay, roof, glass; };
+struct BodyMaterials {
+    uint32_t wall, bay, roof, glass;
+};
 
 /// A closed upright body over an outline, with bays in its walls. Bays of two walls that meet in a corner keep
 /// clear of each other if each pier is wider than the depth.

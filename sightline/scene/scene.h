@@ -40,16 +40,16 @@ struct Mesh {
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;      ///< [size: 3 * triangles]
     std::vector<Primitive> primitives;  ///< covers the triangles in order, without gaps
-    Box3d bounds;          ///< of the positions and, where the mesh deforms, of every pose
-    bool deforms = false;  ///< skinned or morphed: is bounded by `bounds`, and hides nothing
+    Box3d bounds;                       ///< of the positions and, where the mesh deforms, of every pose
+    bool deforms = false;               ///< skinned or morphed: is bounded by `bounds`, and hides nothing
 
     size_t triangles() const { return indices.size() / 3; }
 };
 
 /// One drawn instance of a mesh.
 struct SceneObject {
-    uint64_t key = 0;   ///< glTF: the node's index; GPU instances of one node share it
-    uint32_t mesh = 0;  ///< index into Scene::meshes
+    uint64_t key = 0;           ///< glTF: the node's index; GPU instances of one node share it
+    uint32_t mesh = 0;          ///< index into Scene::meshes
     glm::dmat4 transform{1.0};  ///< object to world, affine; a negative determinant flips the winding
     std::string name;
 };
@@ -57,15 +57,15 @@ struct SceneObject {
 /// A camera that came with the scene.
 struct SceneCamera {
     std::string name;
-    glm::dmat4 transform{1.0};  ///< camera to world; looks along its -z, y up
-    double fov_y = 0;           ///< [radians]; 0: orthographic
+    glm::dmat4 transform{1.0};       ///< camera to world; looks along its -z, y up
+    double fov_y = 0;                ///< [radians]; 0: orthographic
     double orthographic_height = 0;  ///< full height [world units]; 0: perspective
     double z_near = 0.1;
-    std::optional<double> z_far;     ///< none: infinite
+    std::optional<double> z_far;  ///< none: infinite
 };
 
 struct Scene {
-    std::string name;  ///< the file's name or the procedural scene's specification
+    std::string name;                 ///< the file's name or the procedural scene's specification
     std::vector<Material> materials;  ///< never empty once imported: index 0 is glTF's default if needed
     std::vector<Mesh> meshes;
     std::vector<SceneObject> objects;

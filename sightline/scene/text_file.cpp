@@ -13,7 +13,9 @@
 namespace sightline {
 namespace {
 
-struct CloseFile { void operator()(std::FILE* file) const { std::fclose(file); } };
+struct CloseFile {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
 
 }  // namespace
 

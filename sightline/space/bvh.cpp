@@ -200,7 +200,10 @@ Bvh buildBvh(std::span<const Box3d> boxes) {
         builder.boxes[i] = roundOutward(boxes[i], bvh.origin);
         builder.centers[i] = builder.boxes[i].center();
     }
-    struct Job { Range range; uint32_t parent; };
+    struct Job {
+        Range range;
+        uint32_t parent;
+    };
     std::vector<Job> jobs{{{0, count, builder.boundsOf(0, count)}, ~0u}};
     bvh.nodes.reserve(count / 4 + 1);
     while (!jobs.empty()) {

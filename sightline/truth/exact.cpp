@@ -99,7 +99,8 @@ double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v
 class ObjectTriangles {
 public:
     ObjectTriangles(const SceneFacts& facts, uint32_t object, const glm::dvec3& eye)
-        : mesh_(facts.mesh(object)), facts_(facts.facts(object)),
+        : mesh_(facts.mesh(object)),
+          facts_(facts.facts(object)),
           linear_(glm::dmat3(facts.scene().objects[object].transform)),
           moved_(glm::dvec3(facts.scene().objects[object].transform[3]) - eye) {
         flipped_ = glm::determinant(linear_) < 0;
@@ -133,8 +134,8 @@ public:
         }
         const glm::dvec3 origin = inverse * (ray.origin - moved_), direction = inverse * ray.direction;
         const double slack = 1e-9 * (largest(origin) + largest(facts_.bounds.min) + largest(facts_.bounds.max));
-        facts_.triangles(mesh_).walk(
-            [&](const Box3d& box) { return meets(origin, direction, from, to, box, slack); }, visit);
+        facts_.triangles(mesh_).walk([&](const Box3d& box) { return meets(origin, direction, from, to, box, slack); },
+                                     visit);
     }
 
 private:

@@ -11,8 +11,8 @@
 namespace sightline {
 
 struct IdBufferSettings {
-    uint32_t supersampling = 4;    ///< samples per pixel and axis  [>= 1]
-    uint64_t seed = 1;             ///< of the shift, within one sample
+    uint32_t supersampling = 4;        ///< samples per pixel and axis  [>= 1]
+    uint64_t seed = 1;                 ///< of the shift, within one sample
     uint64_t band_samples = 1u << 24;  ///< drawn at once: 12 bytes each
 };
 

@@ -59,8 +59,8 @@ RTCGeometry makeGeometry(RTCDevice device, const Mesh& mesh, const MeshFacts& fa
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), mesh.positions.size()));
     for (size_t i = 0; i < mesh.positions.size(); ++i)
         vertices[i] = glm::vec3(glm::dvec3(transform * glm::dvec4(glm::dvec3(mesh.positions[i]), 1.0)));
-    auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), mesh.triangles()));
+    auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(uint32_t), mesh.triangles()));
     for (size_t i = 0; i < 3 * mesh.triangles(); i += 3) {
         indices[i] = mesh.indices[i];
         indices[i + 1] = mesh.indices[turned ? i + 2 : i + 1];
@@ -98,8 +98,8 @@ struct RayScene::Impl {
         scene = rtcNewScene(device);
         rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
         const MeshFacts& mesh_facts = facts.meshFacts(mesh);
-        RTCGeometry geometry = makeGeometry(device, facts.scene().meshes[mesh], mesh_facts,
-                                            translation(-mesh_facts.bounds.center()));
+        RTCGeometry geometry =
+            makeGeometry(device, facts.scene().meshes[mesh], mesh_facts, translation(-mesh_facts.bounds.center()));
         rtcAttachGeometry(scene, geometry);
         rtcReleaseGeometry(geometry);
         rtcCommitScene(scene);
@@ -111,8 +111,7 @@ struct RayScene::Impl {
         const glm::dmat4 from_center = transform * translation(facts.meshFacts(mesh).bounds.center());
         float columns[12];
         for (int column = 0; column < 4; ++column)
-            for (int row = 0; row < 3; ++row)
-                columns[3 * column + row] = static_cast<float>(from_center[column][row]);
+            for (int row = 0; row < 3; ++row) columns[3 * column + row] = static_cast<float>(from_center[column][row]);
         RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
         rtcSetGeometryInstancedScene(instance, sharedScene(facts, mesh));
         rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);

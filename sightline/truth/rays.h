@@ -16,7 +16,10 @@ namespace sightline {
 /// What one ray saw, in float: candidates for ExactSight.
 struct RaySighting {
     static constexpr uint32_t kNone = ~0u;
-    struct Passed { uint32_t object = 0; float t = 0; };
+    struct Passed {
+        uint32_t object = 0;
+        float t = 0;
+    };
 
     uint32_t object = kNone;     ///< the first front that hides what is behind it
     double t = 0;                ///< there, along SightRay; or t_far

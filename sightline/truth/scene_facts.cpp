@@ -47,8 +47,7 @@ bool withinReach(const Box3d& box) {
 const BoxTree& MeshFacts::triangles(const Mesh& mesh) const {
     std::call_once(built_, [&] {
         std::vector<Box3d> boxes(mesh.triangles());
-        for (size_t i = 0; i < mesh.indices.size(); ++i)
-            boxes[i / 3].grow(glm::dvec3(mesh.positions[mesh.indices[i]]));
+        for (size_t i = 0; i < mesh.indices.size(); ++i) boxes[i / 3].grow(glm::dvec3(mesh.positions[mesh.indices[i]]));
         tree_.build(boxes);
     });
     return tree_;

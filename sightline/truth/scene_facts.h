@@ -19,7 +19,7 @@ struct MeshFacts {
     std::vector<double> area_sum;       ///< per triangle: areas up to and with it
     bool all_plain = true;              ///< every triangle is double-sided and hides
     bool all_hide = true;
-    Box3d bounds;                       ///< of the triangles' vertices in the rest pose
+    Box3d bounds;  ///< of the triangles' vertices in the rest pose
 
     /// Boxes of the triangles; built when first asked for. Thread-safe.
     const BoxTree& triangles(const Mesh& mesh) const;

@@ -44,8 +44,8 @@ private:
     glm::dvec3 eye_;
     bool orthographic_;
     glm::dvec2 size_;
-    glm::dvec4 x_, y_, w_;   ///< rows: clip coordinates of a point relative to the eye
-    glm::dvec4 planes_[6];   ///< left, right, bottom, top, near, far; inside is >= 0, not normalised
+    glm::dvec4 x_, y_, w_;  ///< rows: clip coordinates of a point relative to the eye
+    glm::dvec4 planes_[6];  ///< left, right, bottom, top, near, far; inside is >= 0, not normalised
 };
 
 }  // namespace sightline

@@ -27,7 +27,10 @@ constexpr uint8_t kMostAimedTries = 32;
 class Trial {
 public:
     Trial(const SceneFacts& facts, const Sight& sight, std::span<const uint8_t> culled)
-        : sight_(sight), culled_(culled), exact_(facts, sight), tries_(culled.size(), 0),
+        : sight_(sight),
+          culled_(culled),
+          exact_(facts, sight),
+          tries_(culled.size(), 0),
           aimed_tries_(culled.size(), 0) {
         verdict.seen.assign(culled.size(), 0);
     }
@@ -54,10 +57,8 @@ public:
     void reached(uint32_t object, const Target& target) {
         if (!open(object) || aimed_tries_[object] >= kMostAimedTries) return;
         glm::dvec2 place;
-        if (exact_.seesPoint(object, target.triangle, target.point, place))
-            convict(object, place, "rays");
-        else
-            ++aimed_tries_[object];
+        if (exact_.seesPoint(object, target.triangle, target.point, place)) convict(object, place, "rays");
+        else ++aimed_tries_[object];
     }
 
     FrameVerdict finish() {
@@ -125,8 +126,8 @@ struct Witness::Impl {
         for (uint64_t i = 0; i < count; ++i) {
             const double x = random.uniform(), y = random.uniform();
             const bool in_grid = i < columns * rows;
-            const glm::dvec2 place = in_grid ? glm::dvec2((i % columns + x) / columns, (i / columns + y) / rows)
-                                             : glm::dvec2(x, y);
+            const glm::dvec2 place =
+                in_grid ? glm::dvec2((i % columns + x) / columns, (i / columns + y) / rows) : glm::dvec2(x, y);
             const glm::dvec2 clip = 2.0 * place - 1.0;
             look(trial, sight, clip, sight.rayThrough(clip), sighting);
         }
@@ -158,9 +159,8 @@ FrameVerdict Witness::judge(const View& view, std::span<const uint8_t> culled, c
             --pass.supersampling;
         trial.verdict.supersampling = pass.supersampling;
         trial.verdict.id_samples =
-            drawIdBuffer(impl_->facts, view, sight, pass, [&](uint32_t object, const glm::dvec2& place) {
-                trial.sighted(object, place, "id-buffer");
-            });
+            drawIdBuffer(impl_->facts, view, sight, pass,
+                         [&](uint32_t object, const glm::dvec2& place) { trial.sighted(object, place, "id-buffer"); });
     }
     return trial.finish();
 }

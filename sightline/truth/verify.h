@@ -15,29 +15,29 @@ namespace sightline {
 
 /// One object that was culled although a witness saw it.
 struct FalseCull {
-    uint32_t object = 0;    ///< index into Scene::objects
-    double x = 0, y = 0;    ///< a place where it is seen [pixels from the left and the top]
+    uint32_t object = 0;       ///< index into Scene::objects
+    double x = 0, y = 0;       ///< a place where it is seen [pixels from the left and the top]
     const char* witness = "";  ///< "rays" or "id-buffer"
 };
 
 struct FrameVerdict {
-    std::vector<FalseCull> false_culls;     ///< at most one per object, in rising order
-    uint64_t rays = 0;                      ///< cast for this frame, aimed ones included
-    uint64_t aimed_rays = 0;                ///< of these, aimed at culled objects
-    uint64_t id_samples = 0;                ///< samples of the supersampled id-buffer
-    uint32_t supersampling = 0;             ///< samples per pixel and axis that it had; 0: none was drawn
-    uint64_t unconfirmed = 0;               ///< sightings of culled objects that exact arithmetic did not bear out:
-                                            ///< grazing edges and surfaces that float cannot tell apart
-    std::vector<uint8_t> seen;              ///< per object of the scene: 1 if any witness saw it
-    uint64_t exactly_visible = 0;           ///< objects with seen = 1
+    std::vector<FalseCull> false_culls;  ///< at most one per object, in rising order
+    uint64_t rays = 0;                   ///< cast for this frame, aimed ones included
+    uint64_t aimed_rays = 0;             ///< of these, aimed at culled objects
+    uint64_t id_samples = 0;             ///< samples of the supersampled id-buffer
+    uint32_t supersampling = 0;          ///< samples per pixel and axis that it had; 0: none was drawn
+    uint64_t unconfirmed = 0;            ///< sightings of culled objects that exact arithmetic did not bear out:
+                                         ///< grazing edges and surfaces that float cannot tell apart
+    std::vector<uint8_t> seen;           ///< per object of the scene: 1 if any witness saw it
+    uint64_t exactly_visible = 0;        ///< objects with seen = 1
 };
 
 struct WitnessSettings {
-    uint64_t rays = 1000000;     ///< per frame: stratified and jittered over the viewport
-    uint64_t aimed_rays = 200000;///< of these, at most so many are aimed at triangles of culled objects in the
-                                 ///< frustum: corners, edges and insides, largest objects in the image first
-    uint32_t supersampling = 4;  ///< per axis; 0: no id-buffer
-    uint64_t id_sample_limit = 1ull << 26; ///< larger frames are drawn with fewer samples per axis, and say so
+    uint64_t rays = 1000000;       ///< per frame: stratified and jittered over the viewport
+    uint64_t aimed_rays = 200000;  ///< of these, at most so many are aimed at triangles of culled objects in the
+                                   ///< frustum: corners, edges and insides, largest objects in the image first
+    uint32_t supersampling = 4;    ///< per axis; 0: no id-buffer
+    uint64_t id_sample_limit = 1ull << 26;  ///< larger frames are drawn with fewer samples per axis, and say so
     uint64_t seed = 1;
 };
 
@@ -57,8 +57,7 @@ public:
     /// @param culled  per object of the scene: non-zero if it was reported hidden [size: objects]
     /// A ray passes single-sided back faces; surfaces that do not hide are counted as seen and passed;
     /// it begins at the near plane and ends at the far plane.
-    FrameVerdict judge(const View& view, std::span<const uint8_t> culled,
-                       const WitnessSettings& settings = {}) const;
+    FrameVerdict judge(const View& view, std::span<const uint8_t> culled, const WitnessSettings& settings = {}) const;
 
 private:
     struct Impl;

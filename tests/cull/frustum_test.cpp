@@ -22,9 +22,15 @@ View randomView(Random& random, double far_from_origin) {
     view.view = lookAt(eye, eye + unit(), {0, 1, 0});
     const double aspect = double(view.width) / view.height;
     switch (random.below(4)) {
-        case 0: view.projection = perspective(glm::radians(random.uniform(1, 150)), aspect, 0.1); break;
-        case 1: view.projection = perspective(glm::radians(random.uniform(1, 150)), aspect, 0.01, 30.0); break;
-        case 2: view.projection = orthographic(random.uniform(0.1, 30), aspect, 0.1, 40.0); break;
+        case 0:
+            view.projection = perspective(glm::radians(random.uniform(1, 150)), aspect, 0.1);
+            break;
+        case 1:
+            view.projection = perspective(glm::radians(random.uniform(1, 150)), aspect, 0.01, 30.0);
+            break;
+        case 2:
+            view.projection = orthographic(random.uniform(0.1, 30), aspect, 0.1, 40.0);
+            break;
         default:
             view.projection = perspective(1.0, aspect, 0.1);
             view.projection[2][0] = random.uniform(-1, 1);  // off-centre
@@ -36,7 +42,8 @@ View randomView(Random& random, double far_from_origin) {
 /// A point inside the view volume by the definition of clip space, in double, found by unprojecting.
 glm::dvec3 pointInside(Random& random, const View& view) {
     const glm::dmat4 inverse = glm::inverse(view.projection);
-    const glm::dvec4 p = inverse * glm::dvec4(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 0.999), 1.0);
+    const glm::dvec4 p =
+        inverse * glm::dvec4(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 0.999), 1.0);
     const glm::dvec3 in_eye = glm::dvec3(p) / p.w;
     return eyePosition(view) + glm::transpose(glm::dmat3(view.view)) * in_eye;
 }
@@ -98,7 +105,8 @@ TEST(Frustum, AParentInsideAPlaneSparesItsChildrenThatPlane) {
                     const glm::dvec3 p(corner & 1 ? boxes[i].max.x : boxes[i].min.x,
                                        corner & 2 ? boxes[i].max.y : boxes[i].min.y,
                                        corner & 4 ? boxes[i].max.z : boxes[i].min.z);
-                    ASSERT_GE(glm::dot(glm::dvec3(frustum.planes[plane]), p - frustum.eye) + frustum.planes[plane].w, 0.0);
+                    ASSERT_GE(glm::dot(glm::dvec3(frustum.planes[plane]), p - frustum.eye) + frustum.planes[plane].w,
+                              0.0);
                 }
             }
         }

@@ -42,8 +42,10 @@ TEST(Occlusion, RectanglesHoldEveryPointOfTheirBoxes) {
             BvhNode node{};
             Box3d boxes[8];
             for (int i = 0; i < 8; ++i) {
-                const glm::dvec3 p = eye + glm::dvec3(random.uniform(-30, 30), random.uniform(-30, 30), random.uniform(-60, 5));
-                boxes[i] = {p, p + random.uniform(0.0, 10.0) * glm::dvec3(random.uniform(), random.uniform(), random.uniform())};
+                const glm::dvec3 p =
+                    eye + glm::dvec3(random.uniform(-30, 30), random.uniform(-30, 30), random.uniform(-60, 5));
+                boxes[i] = {p, p + random.uniform(0.0, 10.0) *
+                                       glm::dvec3(random.uniform(), random.uniform(), random.uniform())};
                 const Box3f box = roundOutward(boxes[i], eye);
                 for (int axis = 0; axis < 3; ++axis) {
                     node.min[axis][i] = box.min[axis];
@@ -66,12 +68,18 @@ TEST(Occlusion, RectanglesHoldEveryPointOfTheirBoxes) {
                     const bool seen = p.x >= 0 && p.y >= 0 && p.x <= screen.width && p.y <= screen.height;
                     if (!(answer.doubt >> i & 1)) {
                         ++decided;
-                        if (answer.outside >> i & 1) { ASSERT_FALSE(seen) << target << " round " << round; }
-                        else { ASSERT_TRUE(holds(screen, answer.rects[i], p)) << target << " round " << round; }
+                        if (answer.outside >> i & 1) {
+                            ASSERT_FALSE(seen) << target << " round " << round;
+                        } else {
+                            ASSERT_TRUE(holds(screen, answer.rects[i], p)) << target << " round " << round;
+                        }
                     }
                     if (slow.doubt) continue;
-                    if (slow.outside) { ASSERT_FALSE(seen) << "round " << round; }
-                    else { ASSERT_TRUE(holds(screen, slow.rect, p)) << "round " << round; }
+                    if (slow.outside) {
+                        ASSERT_FALSE(seen) << "round " << round;
+                    } else {
+                        ASSERT_TRUE(holds(screen, slow.rect, p)) << "round " << round;
+                    }
                 }
             }
         }
@@ -84,7 +92,8 @@ TEST(Occlusion, ABoxThatHoldsTheEyeOrMeetsTheNearPlaneIsInDoubt) {
     view.projection = perspective(1.0, 1.0, 0.125);
     const Screen screen = makeScreen(view, 1280);
     BvhNode node{};
-    const Box3f boxes[3] = {{{-1, -1, -1}, {1, 1, 1}}, {{-1, -1, -0.1f}, {1, 1, -0.05f}}, {{-1, -1, -3}, {1, 1, -0.125f}}};
+    const Box3f boxes[3] = {
+        {{-1, -1, -1}, {1, 1, 1}}, {{-1, -1, -0.1f}, {1, 1, -0.05f}}, {{-1, -1, -3}, {1, 1, -0.125f}}};
     for (int i = 0; i < 8; ++i)
         for (int axis = 0; axis < 3; ++axis) {
             node.min[axis][i] = boxes[i % 3].min[axis];

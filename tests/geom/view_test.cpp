@@ -81,9 +81,11 @@ TEST(FrustumPlanes, AreTheInequalitiesOfClipSpace) {
     const Frustum frustum = makeFrustum(view);
     ASSERT_EQ(frustum.count, 6u);
     for (int i = 0; i < 20000; ++i) {
-        const glm::dvec3 p = eye + glm::dvec3(random.uniform(-45, 45), random.uniform(-45, 45), random.uniform(-45, 45));
+        const glm::dvec3 p =
+            eye + glm::dvec3(random.uniform(-45, 45), random.uniform(-45, 45), random.uniform(-45, 45));
         const glm::dvec4 clip = view.projection * view.view * glm::dvec4(p, 1.0);
-        const double sides[6] = {clip.w + clip.x, clip.w - clip.x, clip.w + clip.y, clip.w - clip.y, clip.w + clip.z, clip.w - clip.z};
+        const double sides[6] = {clip.w + clip.x, clip.w - clip.x, clip.w + clip.y,
+                                 clip.w - clip.y, clip.w + clip.z, clip.w - clip.z};
         for (int plane = 0; plane < 6; ++plane) {
             const double distance = glm::dot(glm::dvec3(frustum.planes[plane]), p - eye) + frustum.planes[plane].w;
             if (std::abs(distance) > 1e-9) { ASSERT_EQ(distance > 0, sides[plane] > 0) << "plane " << plane; }

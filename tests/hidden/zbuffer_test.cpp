@@ -138,9 +138,9 @@ void castScenes(const glm::dmat4& projection, const std::string& name) {
         glm::dmat4 mirror(1.0);
         mirror[0] = glm::dvec4(-1, 0.2, 0, 0);
         mirror[3] = glm::dvec4(0.3, -0.2, 0.1, 1);
-        const DrawItem items[3] = {
-            {small.view(), both, {}, glm::dmat4(1.0), 7}, {large.view(), {}, {}, mirror, 8},
-            {large.view(), {}, {}, glm::dmat4(1.0), 9}};
+        const DrawItem items[3] = {{small.view(), both, {}, glm::dmat4(1.0), 7},
+                                   {large.view(), {}, {}, mirror, 8},
+                                   {large.view(), {}, {}, glm::dmat4(1.0), 9}};
         View view = makeTestView(projection, 40, 30);
         view.view = lookAt({0.1, 0.2, 0.3}, {0.5, 0.1, -3}, {0.1, 1, 0});
         const ZBufferSettings settings{seed % 2 ? 2u : 1u, {seed % 3 * 0.2, seed % 5 * -0.1}};
@@ -233,9 +233,10 @@ TEST(ZBuffer, UnwrittenSurfacesAreSeenAndHideNothing) {
     const TestMesh glass = square(1, -2), wall = square(1, -3), hidden = square(0.5f, -4), flush = square(0.5f, -3);
     const uint8_t no[2] = {0, 0};
     // Drawn first, last or between: the answer is the same.
-    std::vector<DrawItem> items = {
-        {glass.view(), {}, no, glm::dmat4(1.0), 0}, {wall.view(), {}, {}, glm::dmat4(1.0), 1},
-        {hidden.view(), {}, no, glm::dmat4(1.0), 2}, {flush.view(), {}, no, glm::dmat4(1.0), 3}};
+    std::vector<DrawItem> items = {{glass.view(), {}, no, glm::dmat4(1.0), 0},
+                                   {wall.view(), {}, {}, glm::dmat4(1.0), 1},
+                                   {hidden.view(), {}, no, glm::dmat4(1.0), 2},
+                                   {flush.view(), {}, no, glm::dmat4(1.0), 3}};
     for (int i = 0; i < 4; ++i) {
         std::rotate(items.begin(), items.begin() + 1, items.end());
         const ZBufferImage image = renderZBuffer(items, makeTestView(perspective(1.0, 4.0 / 3, 0.1)));

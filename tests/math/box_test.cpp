@@ -28,8 +28,9 @@ TEST(Box, HoldsEveryTransformedPoint) {
             for (int row = 0; row < 3; ++row) {
                 long double sum = m[3][row];
                 for (int axis = 0; axis < 3; ++axis) {
-                    const double p = t[axis] == 0 ? box.min[axis] : t[axis] == 1 ? box.max[axis]
-                                                                                 : 0.5 * (box.min[axis] + box.max[axis]);
+                    const double p = t[axis] == 0   ? box.min[axis]
+                                     : t[axis] == 1 ? box.max[axis]
+                                                    : 0.5 * (box.min[axis] + box.max[axis]);
                     sum += static_cast<long double>(m[axis][row]) * p;
                 }
                 ASSERT_GE(sum, out.min[row]) << "round " << round;

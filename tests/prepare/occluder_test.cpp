@@ -115,7 +115,7 @@ TEST(Occluder, LeavesOutWhatDoesNotHideAndWhatIsBroken) {
     Soup soup;
     const float nan = std::numeric_limits<float>::quiet_NaN();
     soup.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {nan, 0, 0}, {0, 0, 0}};
-    soup.indices = {0, 1, 2,  0, 1, 3,  0, 4, 1,  0, 1, 9,  1, 2, 0};
+    soup.indices = {0, 1, 2, 0, 1, 3, 0, 4, 1, 0, 1, 9, 1, 2, 0};
     const std::vector<uint8_t> hides{1, 1, 1, 1, 0};
     EXPECT_EQ(prepareOccluder({soup.positions, soup.indices}, hides).triangleCount(), 1u);
     EXPECT_TRUE(prepareOccluder({}).clusters.empty());

@@ -28,9 +28,7 @@ struct Drawing {
     std::vector<Solid> solids;
     std::vector<Occluder> occluders;
 
-    explicit Drawing(const View& v) : view(v), screen(makeScreen(v, 4096)) {
-        tiles.clear(screen.width, screen.height);
-    }
+    explicit Drawing(const View& v) : view(v), screen(makeScreen(v, 4096)) { tiles.clear(screen.width, screen.height); }
 
     void draw(std::vector<Solid> what) {
         solids = std::move(what);

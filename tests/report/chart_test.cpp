@@ -25,9 +25,7 @@ TEST(Chart, GroupsLongNumbers) {
     EXPECT_EQ(readable(std::numeric_limits<double>::infinity()), "–");
 }
 
-TEST(Chart, EscapesWhatHtmlWouldRead) {
-    EXPECT_EQ(escapeHtml("<a b=\"c\">&'"), "&lt;a b=&quot;c&quot;&gt;&amp;&#39;");
-}
+TEST(Chart, EscapesWhatHtmlWouldRead) { EXPECT_EQ(escapeHtml("<a b=\"c\">&'"), "&lt;a b=&quot;c&quot;&gt;&amp;&#39;"); }
 
 TEST(Chart, DrawsALinePerSeries) {
     const std::string svg = chartSvg({"id", "A <title>", "µs", {{"one", "one", {1, 2, 3}}, {"two", "two", {3, 2, 1}}}});

@@ -24,7 +24,8 @@ struct MadeWorld {
 
     MadeWorld() {
         for (int i = 0; i < 8; ++i) positions.push_back({float(i & 1), float(i >> 1 & 1), float(i >> 2)});
-        const uint32_t faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+        const uint32_t faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                      {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
         for (const auto& f : faces)
             for (int k : {0, 1, 2, 0, 2, 3}) indices.push_back(f[k]);
         cube = world.addOccluder(prepareOccluder({positions, indices}));
@@ -54,10 +55,12 @@ struct MadeWorld {
     void fill(uint64_t seed, int count, const glm::dvec3& center) {
         Random random(seed);
         for (int i = 0; i < count; ++i) {
-            const glm::dvec3 p = center + glm::dvec3(random.uniform(-20, 20), random.uniform(-5, 5), random.uniform(-20, 20));
+            const glm::dvec3 p =
+                center + glm::dvec3(random.uniform(-20, 20), random.uniform(-5, 5), random.uniform(-20, 20));
             glm::dvec3 size(random.uniform(0.1, 1.5), random.uniform(0.1, 1.5), random.uniform(0.1, 1.5));
-            if (i % 4 == 0) size = i % 8 ? glm::dvec3(random.uniform(3, 15), random.uniform(2, 8), 0.2)
-                                         : glm::dvec3(0.2, random.uniform(2, 8), random.uniform(3, 15));
+            if (i % 4 == 0)
+                size = i % 8 ? glm::dvec3(random.uniform(3, 15), random.uniform(2, 8), 0.2)
+                             : glm::dvec3(0.2, random.uniform(2, 8), random.uniform(3, 15));
             glm::dmat4 t(1.0);
             for (int axis = 0; axis < 3; ++axis) t[axis][axis] = size[axis];
             t[3] = glm::dvec4(p, 1.0);

@@ -34,7 +34,8 @@ uint64_t expectSound(MadeWorld& made, Query& query, const Snapshot& now, const V
     query.reasons(reasons);
     const std::vector<uint8_t> seen = made.seen(view, samples);
     for (size_t i = 0; i < kept.size(); ++i) {
-        EXPECT_TRUE(kept[i] || !seen[i]) << what << ": object " << i << " is seen, but was culled by stage " << int(reasons[i]);
+        EXPECT_TRUE(kept[i] || !seen[i]) << what << ": object " << i << " is seen, but was culled by stage "
+                                         << int(reasons[i]);
         EXPECT_EQ(kept[i] == 1, reasons[i] == 0) << what << ": object " << i;
     }
     uint64_t sum = set.stats.visible;
@@ -71,18 +72,22 @@ TEST(Query, KeepsEverythingThatIsSeenInViewsChosenToHurt) {
         const Snapshot now = made.world.commit();
         Query query;
         for (int i = 0; i < 24; ++i) {
-            const glm::dvec3 in_box = glm::dvec3(made.transforms[static_cast<size_t>(i) * 12] * glm::dvec4(0.5, 0.5, 0.5, 1));
-            const glm::dvec3 at_face = glm::dvec3(made.transforms[static_cast<size_t>(i) * 12] * glm::dvec4(0.5, 0.5, 1.0001, 1));
+            const glm::dvec3 in_box =
+                glm::dvec3(made.transforms[static_cast<size_t>(i) * 12] * glm::dvec4(0.5, 0.5, 0.5, 1));
+            const glm::dvec3 at_face =
+                glm::dvec3(made.transforms[static_cast<size_t>(i) * 12] * glm::dvec4(0.5, 0.5, 1.0001, 1));
             const glm::dvec3 ahead(std::cos(i), 0.1, std::sin(i));
             const std::string name = "far " + std::to_string(far) + " view " + std::to_string(i);
             expectSound(made, query, now, viewFrom(in_box, ahead), name + " inside a bound");
             expectSound(made, query, now, viewFrom(at_face, {0, 0, -1}), name + " against a wall");
-            expectSound(made, query, now, viewFrom(at_face, ahead, 60, 160, 90, 2.0), name + " near plane through objects");
+            expectSound(made, query, now, viewFrom(at_face, ahead, 60, 160, 90, 2.0),
+                        name + " near plane through objects");
             expectSound(made, query, now, viewFrom(at_face, ahead, 1), name + " 1 degree");
             expectSound(made, query, now, viewFrom(at_face, ahead, 150), name + " 150 degrees");
             expectSound(made, query, now, viewFrom(at_face, ahead, 60, 1, 1), name + " 1x1", 32);
             View parallel = viewFrom(home + glm::dvec3(0, 1, 0), ahead);
-            parallel.projection = orthographic(12.0, 16.0 / 9.0, 0.1, i % 2 ? 60.0 : std::numeric_limits<double>::infinity());
+            parallel.projection =
+                orthographic(12.0, 16.0 / 9.0, 0.1, i % 2 ? 60.0 : std::numeric_limits<double>::infinity());
             expectSound(made, query, now, parallel, name + " orthographic");
             View shifted = viewFrom(at_face + glm::dvec3(0, 0, 3), ahead);
             shifted.projection[2][0] = 0.7;
@@ -101,13 +106,15 @@ TEST(Query, KeepsWhatAJitteredImageShows) {
     Query query;
     Random random(9);
     for (int frame = 0; frame < 20; ++frame) {
-        const View view = viewFrom({random.uniform(-20, 20), 0, random.uniform(-20, 20)}, {random.uniform(-1, 1), 0, 1});
+        const View view =
+            viewFrom({random.uniform(-20, 20), 0, random.uniform(-20, 20)}, {random.uniform(-1, 1), 0, 1});
         std::vector<uint8_t> kept(made.transforms.size(), 0);
         for (const Visible& v : query.visible(now, view).objects) kept[v.key] = 1;
         for (int shift = 0; shift < 4; ++shift) {
             const glm::dvec2 offset(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
             const std::vector<uint8_t> seen = made.seen(view, 2, offset);
-            for (size_t i = 0; i < kept.size(); ++i) ASSERT_TRUE(kept[i] || !seen[i]) << "frame " << frame << " object " << i;
+            for (size_t i = 0; i < kept.size(); ++i)
+                ASSERT_TRUE(kept[i] || !seen[i]) << "frame " << frame << " object " << i;
         }
     }
 }
@@ -116,8 +123,8 @@ TEST(Query, AWallHidesWhatStandsBehindItAndNothingElse) {
     MadeWorld made;
     made.add({-5, -5, -10}, {5, 5, -9});
     for (int i = 0; i < 50; ++i) made.add({-2, -2, -20.0 - i}, {-1, -1, -19.5 - i});
-    made.add({-2, -2, -8}, {-1, -1, -7});    // in front
-    made.add({4.5, 0, -10.5}, {7, 1, -9.5}); // half behind, half beside
+    made.add({-2, -2, -8}, {-1, -1, -7});     // in front
+    made.add({4.5, 0, -10.5}, {7, 1, -9.5});  // half behind, half beside
     Query query;
     const View view = viewFrom({0, 0, 0}, {0, 0, -1});
     std::vector<uint64_t> keys = keysOf(query.visible(made.world.commit(), view));
@@ -170,7 +177,8 @@ TEST(Query, StaysSoundWhileObjectsComeMoveAndGo) {
             ASSERT_TRUE(made.world.move(made.ids[i], made.transforms[i]));
         }
         const Snapshot now = made.world.commit();
-        const View view = viewFrom({random.uniform(-20, 20), 0, random.uniform(-20, 20)}, {random.uniform(-1, 1), 0, 1});
+        const View view =
+            viewFrom({random.uniform(-20, 20), 0, random.uniform(-20, 20)}, {random.uniform(-1, 1), 0, 1});
         std::vector<uint8_t> kept(made.transforms.size(), 0);
         for (const Visible& v : query.visible(now, view).objects) {
             EXPECT_FALSE(gone[v.key]);

@@ -137,7 +137,10 @@ TEST(CameraPath, AbsentFarIsInfinite) {
     EXPECT_LT(far.z, far.w);
 }
 
-struct Mistake { const char* text; const char* says; };
+struct Mistake {
+    const char* text;
+    const char* says;
+};
 
 TEST(CameraPath, NamesEveryMistakeWithFileAndFrame) {
     const std::string good = R"({"eye": [0, 0, 0], "target": [0, 0, -1]})";
@@ -174,13 +177,17 @@ TEST(CameraPath, NamesEveryMistakeWithFileAndFrame) {
         {"{\"frames\": [{\"projection\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}]}", "\"projection\" without \"view\""},
         {"{\"frames\": [{\"view\": [1, 2]}]}", "\"view\" is not an array of 16 numbers"},
         {"{\"frames\": [{\"view\": [2,0,0,0, 0,2,0,0, 0,0,2,0, 0,0,0,1],"
-         "\"projection\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}]}", "not rigid"},
+         "\"projection\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}]}",
+         "not rigid"},
         {"{\"frames\": [{\"view\": [-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],"
-         "\"projection\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}]}", "mirrors"},
+         "\"projection\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}]}",
+         "mirrors"},
         {"{\"frames\": [{\"view\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,2],"
-         "\"projection\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}]}", "last row"},
+         "\"projection\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}]}",
+         "last row"},
         {"{\"frames\": [{\"view\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],"
-         "\"projection\": [0,0,0,0, 0,0,0,0, 0,0,0,0, 0,0,0,0]}]}", "singular"},
+         "\"projection\": [0,0,0,0, 0,0,0,0, 0,0,0,0, 0,0,0,0]}]}",
+         "singular"},
     };
     for (const Mistake& mistake : mistakes) {
         std::string text = mistake.text;

@@ -25,10 +25,27 @@ TEST(Procedural, MakesTheCityThatIsNamed) {
 }
 
 TEST(Procedural, RefusesAnythingElseAsUsage) {
-    for (const char* spec :
-         {"city:", "city:1", "city:1:", "city::5", "city:1:0", "city:-1:5", "city:1:-5", "city:1:5:6", "city:1:5 ",
-          "city: 1:5", "city:+1:5", "city:x:5", "city:1:5x", "city:1:1e3", "city:1:10000001", "city:1.5:5",
-          "city:18446744073709551616:5", "city:1:18446744073709551617", "village:1:5", "", "city"}) {
+    for (const char* spec : {"city:",
+                             "city:1",
+                             "city:1:",
+                             "city::5",
+                             "city:1:0",
+                             "city:-1:5",
+                             "city:1:-5",
+                             "city:1:5:6",
+                             "city:1:5 ",
+                             "city: 1:5",
+                             "city:+1:5",
+                             "city:x:5",
+                             "city:1:5x",
+                             "city:1:1e3",
+                             "city:1:10000001",
+                             "city:1.5:5",
+                             "city:18446744073709551616:5",
+                             "city:1:18446744073709551617",
+                             "village:1:5",
+                             "",
+                             "city"}) {
         const Result<Scene> scene = makeProcedural(spec);
         ASSERT_FALSE(scene.ok()) << spec;
         EXPECT_EQ(scene.error().kind, Error::Kind::kUsage) << spec;

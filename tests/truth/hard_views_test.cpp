@@ -50,7 +50,8 @@ std::vector<NamedView> hardViews(const Scene& scene, uint64_t seed) {
     views.push_back({"4096x2160", viewFrom(eye, ahead, 60, z_near, 4096, 2160)});
     // Against the surface that the camera stands off: a vertex of the object, a thousandth of the diagonal away.
     const Mesh& mesh = scene.meshes[object.mesh];
-    const glm::dvec3 vertex(object.transform * glm::dvec4(glm::dvec3(mesh.positions[random.below(mesh.positions.size())]), 1));
+    const glm::dvec3 vertex(object.transform *
+                            glm::dvec4(glm::dvec3(mesh.positions[random.below(mesh.positions.size())]), 1));
     views.push_back({"against a wall", viewFrom(vertex - 1e-3 * diagonal * ahead, ahead, 60, 1e-5 * diagonal)});
     views.push_back({"along a silhouette", viewFrom(vertex - 0.05 * diagonal * ahead, ahead, 20, z_near)});
     for (const double z_far : {2.0 * diagonal, std::numeric_limits<double>::infinity()}) {

@@ -60,11 +60,11 @@ TEST(RealScenes, WitnessesAgree) {
                 ids_alone += by_ids.seen[i] && !by_rays.seen[i];
                 lost += by_ids.seen[i] && !id_alarms.seen[i];
             }
-            std::printf("%-28s %5zu objects, seen by rays %5zu, by ids %5zu, by rays alone %3zu, by ids alone %3zu, "
-                        "unconfirmed rays %zu, ids %zu\n",
-                        file.filename().c_str(), none.size(), size_t(by_rays.exactly_visible),
-                        size_t(by_ids.exactly_visible), size_t(rays_alone), size_t(ids_alone),
-                        size_t(ray_alarms.unconfirmed), size_t(id_alarms.unconfirmed));
+            std::printf(
+                "%-28s %5zu objects, seen by rays %5zu, by ids %5zu, by rays alone %3zu, by ids alone %3zu, "
+                "unconfirmed rays %zu, ids %zu\n",
+                file.filename().c_str(), none.size(), size_t(by_rays.exactly_visible), size_t(by_ids.exactly_visible),
+                size_t(rays_alone), size_t(ids_alone), size_t(ray_alarms.unconfirmed), size_t(id_alarms.unconfirmed));
             EXPECT_LE(lost, 1 + by_ids.exactly_visible / 100) << file;
             EXPECT_LE(rays_alone, 3 + by_ids.exactly_visible / 20) << file;
             EXPECT_GE(ray_alarms.exactly_visible + 3 + by_rays.exactly_visible / 20, by_rays.exactly_visible) << file;

@@ -20,8 +20,8 @@ std::vector<glm::dmat4> projections() {
     skewed[2][1] = -0.7;
     shifted[3][1] = 0.3;
     const double inf = std::numeric_limits<double>::infinity();
-    return {perspective(1.0, 1.5, 0.1), perspective(2.6, 1.5, 0.01, 30), skewed, orthographic(20, 1.5, 1, 40),
-            orthographic(20, 1.5, 1, inf), shifted};
+    return {perspective(1.0, 1.5, 0.1),   perspective(2.6, 1.5, 0.01, 30), skewed,
+            orthographic(20, 1.5, 1, 40), orthographic(20, 1.5, 1, inf),   shifted};
 }
 
 TEST(Sight, RaysPassThroughProjectedPoints) {
@@ -39,8 +39,8 @@ TEST(Sight, RaysPassThroughProjectedPoints) {
             const glm::dvec4 clip = view.projection * view.view * glm::dvec4(eye + point, 1);
             glm::dvec2 place;
             const bool in = sight.project(point, place);
-            const double margin = std::min({clip.w - std::abs(clip.x), clip.w - std::abs(clip.y),
-                                            clip.w - clip.z, clip.w + clip.z});
+            const double margin =
+                std::min({clip.w - std::abs(clip.x), clip.w - std::abs(clip.y), clip.w - clip.z, clip.w + clip.z});
             if (std::abs(margin) < 1e-9) continue;
             ASSERT_EQ(in, margin > 0) << "case " << i;
             if (!in) continue;

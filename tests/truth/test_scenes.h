@@ -46,16 +46,15 @@ inline uint32_t addBox(Scene& scene, const glm::vec3& half, uint32_t material = 
     std::vector<glm::vec3> positions;
     for (int i = 0; i < 8; ++i)
         positions.emplace_back(i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z);
-    return addMesh(scene, std::move(positions),
-                   {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                    2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5},
+    return addMesh(scene, std::move(positions), {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                                 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5},
                    material);
 }
 
 /// A square in the plane z = 0 that faces +z.
 inline uint32_t addSquare(Scene& scene, float half, uint32_t material = 0) {
-    return addMesh(scene, {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}},
-                   {0, 1, 2, 0, 2, 3}, material);
+    return addMesh(scene, {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}}, {0, 1, 2, 0, 2, 3},
+                   material);
 }
 
 inline uint32_t addObject(Scene& scene, uint32_t mesh, const glm::dmat4& transform) {

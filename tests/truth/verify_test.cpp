@@ -62,11 +62,11 @@ using Objects = std::vector<uint32_t>;
 TEST(Witness, ReportsFalseCullsAndNoOthers) {
     Scene scene = emptyScene();
     const uint32_t wall = addSquare(scene, 2), box = addBox(scene, glm::vec3(0.3f));
-    addObject(scene, box, moved({0, 0, -3}));     // in front of the wall
+    addObject(scene, box, moved({0, 0, -3}));  // in front of the wall
     addObject(scene, wall, moved({0, 0, -5}));
-    addObject(scene, box, moved({0, 0, -8}));     // behind the wall
-    addObject(scene, box, moved({3.4, 0, -8}));   // beside it
-    addObject(scene, box, moved({0, 0, 5}));      // behind the eye
+    addObject(scene, box, moved({0, 0, -8}));    // behind the wall
+    addObject(scene, box, moved({3.4, 0, -8}));  // beside it
+    addObject(scene, box, moved({0, 0, 5}));     // behind the eye
     EXPECT_EQ(accused(scene, usualView(), {1, 1, 1, 1, 1}), (Objects{0, 1, 3}));
     EXPECT_EQ(accused(scene, usualView(), {0, 0, 1, 0, 1}), Objects{});
     const FrameVerdict verdict = Witness(scene).judge(usualView(), std::vector<uint8_t>{0, 0, 1, 0, 1}, raysOnly());
@@ -236,7 +236,7 @@ TEST(Witness, EqualDepthIsVisible) {
     Scene scene = emptyScene();
     const uint32_t wall = addSquare(scene, 2), poster = addSquare(scene, 0.5f);
     addObject(scene, wall, moved({0, 0, -4}));
-    addObject(scene, poster, moved({0.3, 0.2, -4}));         // in the plane of the wall
+    addObject(scene, poster, moved({0.3, 0.2, -4}));          // in the plane of the wall
     addObject(scene, poster, moved({-0.8, -0.3, -4.00001}));  // just behind it
     WitnessSettings settings = raysOnly();
     const FrameVerdict verdict = Witness(scene).judge(usualView(), std::vector<uint8_t>{0, 1, 1}, settings);
