@@ -44,6 +44,11 @@ struct Visit {
     uint8_t planes = 0;
 };
 
+/// What is smaller in both directions hides next to nothing, and is not drawn.  [pixels]
+constexpr int32_t kLeastExtent = 4;
+
+bool isSmall(const PixelRect& rect) { return rect.x1 - rect.x0 < kLeastExtent && rect.y1 - rect.y0 < kLeastExtent; }
+
 /// Objects that were culled together.
 struct CulledRange {
     uint32_t first = 0, count = 0;
@@ -77,12 +82,12 @@ struct Query::Impl {
     void keepEverything();
     void walk();
     void walkFrustumOnly(uint32_t node, uint8_t planes);
-    void reportRange(uint32_t first, uint32_t count);
     void expand(uint32_t node, uint8_t planes);
     void meet(const BvhNode& node, int slot, uint8_t planes, const ScreenAnswer& on_screen);
     void visit(const Pending& entry);
-    void report(uint32_t item);
-    void offerOccluder(const detail::ObjectRecord& object);
+    void keep(uint32_t item);
+    void report(uint32_t first, uint32_t count);
+    void offerOccluder(uint32_t place);
     void draw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box);
     void cull(uint32_t first, uint32_t count, Stage stage);
     uint64_t inLayers(uint32_t first, uint32_t count) const;
@@ -102,7 +107,7 @@ uint64_t Query::Impl::inLayers(uint32_t first, uint32_t count) const {
     if (every_layer) return count;
     uint64_t within = 0;
     for (uint32_t place = first; place < first + count; ++place)
-        within += (state().object(state().itemOf(state().bvh.order[place])).layers & view.layers) != 0;
+        within += ((*state().placed)[place].layers & view.layers) != 0;
     return within;
 }
 
@@ -130,15 +135,24 @@ void Query::Impl::begin(const Snapshot& now, const View& new_view) {
         stats.objects += (state().object(item).layers & view.layers) != 0;
 }
 
-void Query::Impl::report(uint32_t item) {
+/// Keeps an object that no stage can look at.
+void Query::Impl::keep(uint32_t item) {
     const detail::ObjectRecord& object = state().object(item);
-    if (object.layers & view.layers) visible.push_back({object.key, object.id});
+    if (!(object.layers & view.layers)) return;
+    visible.push_back({object.key, object.id});
+    ++of(Stage::kFrustum).doubt;
+}
+
+/// Keeps the objects at the given places of the hierarchy.
+void Query::Impl::report(uint32_t first, uint32_t count) {
+    const detail::PlacedObject* placed = state().placed->data();
+    for (uint32_t place = first; place < first + count; ++place)
+        if (placed[place].layers & view.layers) visible.push_back(placed[place].visible);
 }
 
 /// Without a usable view nothing can be proved hidden.
 void Query::Impl::keepEverything() {
-    for (uint32_t item = 0; item < state().count; ++item) report(item);
-    of(Stage::kFrustum).doubt = visible.size();
+    for (uint32_t item = 0; item < state().count; ++item) keep(item);
 }
 
 /// Tests a node's children against the frustum and puts those that are left in line.
@@ -181,11 +195,12 @@ void Query::Impl::meet(const BvhNode& node, int slot, uint8_t planes, const Scre
 }
 
 /// Puts the clusters of a visible object's occluder in line, or draws it at once if there is one only.
-void Query::Impl::offerOccluder(const detail::ObjectRecord& object) {
-    if (object.occluder.index == 0 || !(object.layers & view.layers)) return;
-    const Occluder& occluder = *state().occluders[object.occluder.index];
+void Query::Impl::offerOccluder(uint32_t place) {
+    const detail::PlacedObject& placed = (*state().placed)[place];
+    if (placed.occluder.index == 0 || !(placed.layers & view.layers)) return;
+    const Occluder& occluder = *state().occluders[placed.occluder.index];
     const uint32_t owner = static_cast<uint32_t>(instances.size());
-    instances.push_back(makeOccluderInstance(screen, occluder, object.transform));
+    instances.push_back(makeOccluderInstance(screen, occluder, state().objectAt(place).transform));
     const uint32_t clusters = static_cast<uint32_t>(occluder.clusters.size());
     for (uint32_t cluster = 0; cluster < clusters; ++cluster) {
         const BoxAnswer box = projectBox(instances[owner].screen, occluder.clusters[cluster].bounds);
@@ -206,8 +221,7 @@ void Query::Impl::offerOccluder(const detail::ObjectRecord& object) {
 }
 
 void Query::Impl::draw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box) {
-    constexpr int32_t kLeastExtent = 4;  // [pixels]: what is smaller hides next to nothing
-    if (!box.doubt && box.rect.x1 - box.rect.x0 < kLeastExtent && box.rect.y1 - box.rect.y0 < kLeastExtent) return;
+    if (!box.doubt && isSmall(box.rect)) return;
     if (stats.occluder_triangles >= view.occluder_triangles) {
         stats.budget_spent = true;
         return;
@@ -229,13 +243,8 @@ void Query::Impl::visit(const Pending& entry) {
     if (occlusion && entry.testable && isHidden(tiles, entry.rect, seams))
         return cull(entry.first, entry.count, Stage::kOcclusion);
     if (entry.kind == Pending::Kind::kNode) return expand(entry.index, entry.planes);
-    const uint32_t item = state().itemOf(state().bvh.order[entry.index]);
-    report(item);
-    if (occlusion && undecided > 0) offerOccluder(state().object(item));
-}
-
-void Query::Impl::reportRange(uint32_t first, uint32_t count) {
-    for (uint32_t place = first; place < first + count; ++place) report(state().itemOf(state().bvh.order[place]));
+    report(entry.index, 1);
+    if (occlusion && undecided > 0 && !(entry.testable && isSmall(entry.rect))) offerOccluder(entry.index);
 }
 
 /// Without the occlusion stage the order does not matter: depth first, and whole subtrees that are inside at once.
@@ -253,7 +262,7 @@ void Query::Impl::walkFrustumOnly(uint32_t root, uint8_t all_planes) {
             if (node.count[slot] == 0) continue;
             if (answer.outside >> slot & 1) cull(node.first[slot], node.count[slot], Stage::kFrustum);
             else if (answer.planes[slot] == 0 || (node.child[slot] & BvhNode::kLeaf))
-                reportRange(node.first[slot], node.count[slot]);
+                report(node.first[slot], node.count[slot]);
             else stack.push_back({node.child[slot], answer.planes[slot]});
         }
     }
@@ -263,8 +272,7 @@ void Query::Impl::walk() {
     frustum = makeFrustum(view);
     screen = makeScreen(view, view.occlusion_size);
     if (uses(Stage::kOcclusion)) tiles.clear(screen.width, screen.height);
-    for (uint32_t item : state().unbounded) report(item);
-    of(Stage::kFrustum).doubt += visible.size();
+    for (uint32_t item : state().unbounded) keep(item);
     if (state().bvh.nodes.empty()) return;
     const uint8_t planes = static_cast<uint8_t>(uses(Stage::kFrustum) ? (1u << frustum.count) - 1 : 0);
     if (!uses(Stage::kOcclusion)) return walkFrustumOnly(0, planes);

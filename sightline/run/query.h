@@ -14,11 +14,6 @@
 
 namespace sightline {
 
-struct Visible {
-    uint64_t key = 0;
-    ObjectId id;
-};
-
 /// Counts objects; a culled tree node counts all its objects.
 struct StageStats {
     uint64_t tested = 0;

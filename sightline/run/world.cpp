@@ -32,6 +32,16 @@ Box3d worldBounds(const ObjectRecord& object) {
     return box;
 }
 
+std::shared_ptr<const std::vector<PlacedObject>> placeObjects(const SnapshotState& state) {
+    auto placed = std::make_shared<std::vector<PlacedObject>>();
+    placed->reserve(state.bvh.order.size());
+    for (uint32_t place = 0; place < state.bvh.order.size(); ++place) {
+        const ObjectRecord& object = state.objectAt(place);
+        placed->push_back({{object.key, object.id}, object.occluder, object.layers});
+    }
+    return placed;
+}
+
 /// The world as its user changes it.
 struct WorldState {
     ObjectTable objects;
@@ -93,6 +103,7 @@ std::shared_ptr<SnapshotState> WorldState::build() {
     }
     if (!state->unbounded.empty()) state->boxed = std::move(boxed);
     state->bvh = buildBvh(boxes);
+    state->placed = placeObjects(*state);
     return state;
 }
 

@@ -32,6 +32,12 @@ struct ObjectDef {
     uint32_t layers = 1;        ///< bit mask; View::layers selects
 };
 
+/// What a query says of an object.
+struct Visible {
+    uint64_t key = 0;  ///< ObjectDef::key
+    ObjectId id;
+};
+
 namespace detail {
 struct WorldState;
 struct SnapshotState;

@@ -40,6 +40,13 @@ struct ObjectTable {
     ObjectRecord& append();
 };
 
+/// What a walk needs of an object that it keeps, in the hierarchy's order: neighbours in space are neighbours here.
+struct PlacedObject {
+    Visible visible;
+    OccluderId occluder;
+    uint32_t layers = 0;
+};
+
 using OccluderTable = std::vector<std::shared_ptr<const Occluder>>;  // entry 0 is null
 
 /// An immutable state of a world. Items are the living objects in the order of World::add.
@@ -50,12 +57,14 @@ struct SnapshotState {
     std::vector<uint32_t> boxed;      ///< hierarchy item to item; empty if all items have finite bounds
     std::vector<uint32_t> unbounded;  ///< items that are always visible
     Bvh bvh;                          ///< over the boxed items
-    uint32_t count = 0;               ///< living objects
-    uint32_t common_layers = ~0u;     ///< layers that every object is in
+    std::shared_ptr<const std::vector<PlacedObject>> placed;  ///< per place of the hierarchy; moves leave it as it is
+    uint32_t count = 0;                                       ///< living objects
+    uint32_t common_layers = ~0u;                             ///< layers that every object is in
 
     uint32_t placeOf(uint32_t item) const { return items.empty() ? item : items[item]; }
     uint32_t itemOf(uint32_t hierarchy_item) const { return boxed.empty() ? hierarchy_item : boxed[hierarchy_item]; }
     const ObjectRecord& object(uint32_t item) const { return objects[placeOf(item)]; }
+    const ObjectRecord& objectAt(uint32_t place) const { return object(itemOf(bvh.order[place])); }
 };
 
 /// The bounds in world space; not finite if they cannot be trusted.
