@@ -62,88 +62,25 @@ void projectVertices(const Screen& object, const Occluder& occluder, const Occlu
     }
 }
 
-/// One tile's view of a polygon.
-struct TilePolygon {
-    float a[4], b[4], at_center[4];  ///< of the edges that do not contain the whole tile
-    int cutting = 0;                 ///< how many those are
-    TilePlane plane;                 ///< the farthest nearness over each pixel
-    float nearest = 0;               ///< no point of the polygon in the tile is nearer
-    uint64_t window = ~uint64_t{0};  ///< pixels inside the polygon's bounds
-};
-
-/// Raises the depths of a tile's pixels that the mask names.
-void coverPixels(DepthTiles& tiles, uint32_t tile, const TilePlane& plane, uint64_t mask) {
-    const F16 d;
-    toPixels(tiles, tile);
-    float* depth = tiles.depth.data() + 64 * size_t{tile};
-    const auto center = hn::Set(d, plane.d), floor = hn::Set(d, plane.floor);
-    const auto dx = hn::Set(d, plane.dx), dy = hn::Set(d, plane.dy);
-    auto least = hn::Set(d, std::numeric_limits<float>::infinity());
-    for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
-        const auto across = hn::Add(hn::Mul(dx, hn::Load(d, kPixelX + i)), hn::Mul(dy, hn::Load(d, kPixelY + i)));
-        const auto z = hn::Max(hn::Add(center, across), floor);
-        const auto old = hn::LoadU(d, depth + i);
-        const auto raised = hn::IfThenElse(maskFromBits(d, mask >> i), hn::Max(old, z), old);
-        hn::StoreU(raised, d, depth + i);
-        least = hn::Min(least, raised);
+/// Calls `look` with the place of each vector of a tile's pixels, but for rows that the window leaves out; and
+/// `begin` before that with the pixels' x, once for each vector that a row has.
+template <class D, class Begin, class Look>
+HWY_INLINE void forPixels(D d, uint64_t window, Begin begin, Look look) {
+    const size_t lanes = hn::Lanes(d), next = std::max<size_t>(lanes, 8);
+    const size_t first = static_cast<size_t>(std::countr_zero(window)) & ~(next - 1);
+    const size_t end = 64 - static_cast<size_t>(std::countl_zero(window));
+    for (size_t h = 0; h < 8; h += lanes) {
+        const auto along = begin(hn::Load(d, kPixelX + h));
+        for (size_t i = first + h; i < end; i += next) look(along, i);
     }
-    tiles.covered[tile] |= mask;
-    if (tiles.covered[tile] == ~uint64_t{0}) tiles.farthest[tile] = hn::GetLane(hn::MinOfLanes(d, least));
 }
 
-/// Bits of the pixels that a polygon covers whole, and of those that it touches.
-struct TileMasks {
-    uint64_t inner = 0, outer = 0;
-};
-
-TileMasks classifyPixels(const RasterPolygon& polygon, const TilePolygon& p) {
-    const F16 d;
-    const uint64_t lanes = hn::Lanes(d) < 64 ? (uint64_t{1} << hn::Lanes(d)) - 1 : ~uint64_t{0};
-    const auto inside = hn::Set(d, 0.5f + polygon.slack), touches = hn::Set(d, -0.5f - polygon.slack);
-    TileMasks masks;
-    for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
-        if (!(p.window >> i & lanes)) continue;
-        const auto x = hn::Load(d, kPixelX + i), y = hn::Load(d, kPixelY + i);
-        auto least = hn::Set(d, 1e30f);
-        for (int e = 0; e < p.cutting; ++e) {
-            const auto across = hn::Add(hn::Mul(hn::Set(d, p.a[e]), x), hn::Mul(hn::Set(d, p.b[e]), y));
-            least = hn::Min(least, hn::Add(hn::Set(d, p.at_center[e]), across));
-        }
-        masks.inner |= bitsFromMask(d, hn::Ge(least, inside)) << i;
-        masks.outer |= bitsFromMask(d, hn::Ge(least, touches)) << i;
-    }
-    masks.outer &= p.window;
-    masks.inner &= p.window;
-    return masks;
-}
-
-/// Adds a seam polygon's pixels to a tile, making its record at the first need.
-void addSeam(DepthTiles& tiles, uint32_t tile, uint64_t mask, const RasterPolygon& raster, const SeamPolygon& source,
-             uint32_t& record) {
-    if (record == DepthTiles::kNone) {
-        record = static_cast<uint32_t>(tiles.polygons.size());
-        tiles.polygons.push_back(source);
-        tiles.polygons.back().raster = raster;
-    }
-    tiles.entries.push_back({mask, record, tiles.seams[tile]});
+/// Names a polygon as one of those that share pixels of a tile.
+void addSeam(DepthTiles& tiles, uint32_t tile, uint64_t mask, uint32_t polygon) {
+    tiles.entries.push_back({mask, polygon, tiles.seams[tile]});
     tiles.seams[tile] = static_cast<uint32_t>(tiles.entries.size() - 1);
     tiles.seam_mask[tile] |= mask;
     tiles.tried[tile] &= ~mask;
-}
-
-/// Draws into one tile that the polygon covers in part, or whose depth it does not simply replace.
-void drawTile(DepthTiles& tiles, uint32_t tile, const RasterPolygon& polygon, const TilePolygon& p,
-              const SeamPolygon& source, uint32_t& record) {
-    TileMasks masks{p.window, p.window};
-    if (p.cutting) masks = classifyPixels(polygon, p);
-    if (!polygon.covers) masks.inner = 0;
-    uint64_t seam = masks.outer & ~masks.inner;
-    if (masks.inner) coverPixels(tiles, tile, p.plane, masks.inner);
-    if (seam & tiles.coveredBits(tile)) {
-        toPixels(tiles, tile);
-        seam &= pixelsNotNearer(tiles.depth.data() + 64 * size_t{tile}, p.nearest);
-    }
-    if (seam) addSeam(tiles, tile, seam, polygon, source, record);
 }
 
 /// The tile columns of a row of tiles that the edges leave; widened by rounding to whole tiles.
@@ -161,12 +98,12 @@ void columnsOfRow(const RasterPolygon& polygon, const double* inverse_a, int32_t
     last = std::min(polygon.x1 >> 3, static_cast<int32_t>(std::max(high, -12.0) + 12.0) / 8 - 1);
 }
 
-/// What changes from tile to tile along a row.
+/// What the tiles need of a polygon, in float. Edges that it does not have are everywhere far inside.
 struct ChunkSetup {
-    double inverse_a[4];  ///< of wide polygons; 0 for an edge too level to bound a row
-    float step_a[4];      ///< edge functions' change from one tile to the next
-    float step_d;         ///< the plane's
-    float tilt;           ///< the plane's change over a pixel
+    double inverse_a[4];         ///< of wide polygons; 0 for an edge too level to bound a row
+    float a[4] = {}, b[4] = {};  ///< edge functions' change from one pixel to the next
+    float dx = 0, dy = 0;        ///< the plane's
+    float tilt = 0;              ///< the plane's greatest over a pixel
 };
 
 /// What a polygon is to eight tiles of a row.
@@ -176,6 +113,7 @@ struct ChunkAnswer {
     alignas(32) float nearest[8];  ///< no point of the polygon in the tile is nearer
     float error = 0;               ///< bound on the error of depth
     uint32_t slow = 0;             ///< bit per tile to be drawn pixel by pixel
+    uint32_t inside = 0;           ///< bit per tile that lies inside all edges
 };
 
 /// Looks at eight tiles at once: leaves out those that the polygon misses or that hide it, replaces the depth of
@@ -193,39 +131,41 @@ void drawChunk(DepthTiles& tiles, const RasterPolygon& polygon, const ChunkSetup
         polygon.planar ? static_cast<float>(polygon.d0 + polygon.dx * x + polygon.dy * y) : polygon.farthest;
     const float tilt = setup.tilt;
     out.error = polygon.depth_error + 0x1p-20f * (std::abs(center) + 64.0f * tilt);
-    out.slow = 0;
+    out.slow = out.inside = 0;
     const auto error = hn::Set(d, out.error);
     for (size_t h = 0; h < 8; h += hn::Lanes(d)) {
         const auto step = hn::Iota(d, static_cast<float>(h));
         auto least = hn::Set(d, 1e30f);
         for (int e = 0; e < polygon.edges; ++e) {
-            const auto value = hn::Add(hn::Set(d, c[e]), hn::Mul(step, hn::Set(d, setup.step_a[e])));
+            const auto value = hn::Add(hn::Set(d, c[e]), hn::Mul(step, hn::Set(d, 8.0f * setup.a[e])));
             hn::Store(value, d, out.edge[e] + h);
             least = hn::Min(least, value);
         }
-        const auto z = hn::Add(hn::Set(d, center), hn::Mul(step, hn::Set(d, setup.step_d)));
+        const auto z = hn::Add(hn::Set(d, center), hn::Mul(step, hn::Set(d, 8.0f * setup.dx)));
         auto nearest = hn::Set(d, polygon.nearest);
         if (polygon.planar) nearest = hn::Min(nearest, hn::Add(hn::Add(z, hn::Set(d, 4.0f * tilt)), error));
         hn::Store(z, d, out.depth + h);
         hn::Store(nearest, d, out.nearest + h);
         const auto met = hn::And(hn::Ge(least, hn::Set(d, -4.0f - polygon.slack)),
                                  hn::Lt(hn::LoadU(d, tiles.farthest.data() + base + h), nearest));
+        const auto inside = hn::Ge(least, hn::Set(d, 4.0f + polygon.slack));
+        out.inside |= static_cast<uint32_t>(bitsFromMask(d, inside)) << h;
         uint32_t left = static_cast<uint32_t>(bitsFromMask(d, met));
         if (left && polygon.covers) {
             const auto floor = hn::Set(d, polygon.farthest);
             const auto plane = hn::Sub(hn::Sub(z, hn::Set(d, 0.5f * tilt)), error);
             const auto across = hn::Add(hn::Set(d, 3.5f * tilt), error);
             const auto farthest = hn::Max(hn::Sub(plane, across), floor);
-            const auto whole = hn::And(hn::And(met, hn::Ge(least, hn::Set(d, 4.0f + polygon.slack))),
-                                       hn::Ge(farthest, hn::LoadU(d, tiles.nearest.data() + base + h)));
+            const auto whole =
+                hn::And(hn::And(met, inside), hn::Ge(farthest, hn::LoadU(d, tiles.nearest.data() + base + h)));
             const uint32_t replaced = static_cast<uint32_t>(bitsFromMask(d, whole));
             left &= ~replaced;
             if (replaced) {
                 const auto put = [&](auto value, std::vector<float>& array)
                                      HWY_ATTR { hn::BlendedStore(value, whole, d, array.data() + base + h); };
                 put(plane, tiles.plane_d);
-                put(hn::Set(d, static_cast<float>(polygon.dx)), tiles.plane_dx);
-                put(hn::Set(d, static_cast<float>(polygon.dy)), tiles.plane_dy);
+                put(hn::Set(d, setup.dx), tiles.plane_dx);
+                put(hn::Set(d, setup.dy), tiles.plane_dy);
                 put(floor, tiles.plane_floor);
                 put(farthest, tiles.farthest);
                 put(hn::Max(hn::Add(plane, across), floor), tiles.nearest);
@@ -237,44 +177,115 @@ void drawChunk(DepthTiles& tiles, const RasterPolygon& polygon, const ChunkSetup
     }
 }
 
-/// One tile's view of a polygon, from its chunk's.
-TilePolygon seenByTile(const RasterPolygon& polygon, const ChunkSetup& setup, const ChunkAnswer& chunk, int at,
-                       int32_t column, int32_t row) {
-    TilePolygon p;
-    for (int e = 0; e < polygon.edges; ++e) {
-        if (chunk.edge[e][at] >= 4.0f + polygon.slack) continue;
-        p.a[p.cutting] = static_cast<float>(polygon.edge[e].a);
-        p.b[p.cutting] = static_cast<float>(polygon.edge[e].b);
-        p.at_center[p.cutting++] = chunk.edge[e][at];
+/// Bits of the pixels that a polygon covers whole, and of those that it touches.
+struct TileMasks {
+    uint64_t inner = 0, outer = 0;
+};
+
+TileMasks classifyPixels(const ChunkSetup& setup, const ChunkAnswer& chunk, int at, float slack, uint64_t window) {
+    const F16 d;
+    using V = hn::Vec<F16>;
+    struct Edges {
+        V e0, e1, e2, e3;
+    };
+    const auto inside = hn::Set(d, 0.5f + slack), touches = hn::Set(d, -0.5f - slack);
+    const auto b0 = hn::Set(d, setup.b[0]), b1 = hn::Set(d, setup.b[1]);
+    const auto b2 = hn::Set(d, setup.b[2]), b3 = hn::Set(d, setup.b[3]);
+    TileMasks masks;
+    forPixels(
+        d, window,
+        [&](V x) HWY_ATTR {
+            const auto along = [&](int e) HWY_ATTR {
+                return hn::Add(hn::Set(d, chunk.edge[e][at]), hn::Mul(hn::Set(d, setup.a[e]), x));
+            };
+            return Edges{along(0), along(1), along(2), along(3)};
+        },
+        [&](const Edges& edges, size_t i) HWY_ATTR {
+            const auto y = hn::Load(d, kPixelY + i);
+            const auto e01 = hn::Min(hn::Add(edges.e0, hn::Mul(b0, y)), hn::Add(edges.e1, hn::Mul(b1, y)));
+            const auto e23 = hn::Min(hn::Add(edges.e2, hn::Mul(b2, y)), hn::Add(edges.e3, hn::Mul(b3, y)));
+            const auto least = hn::Min(e01, e23);
+            masks.inner |= bitsFromMask(d, hn::Ge(least, inside)) << i;
+            masks.outer |= bitsFromMask(d, hn::Ge(least, touches)) << i;
+        });
+    return {masks.inner & window, masks.outer & window};
+}
+
+/// Raises the depths of the pixels that the mask names; returns those of all pixels that are nearer than the polygon.
+/// @param nearest  no point of the polygon in the tile is nearer
+uint64_t coverPixels(DepthTiles& tiles, uint32_t tile, const TilePlane& plane, float nearest, uint64_t mask) {
+    const F16 d;
+    using V = hn::Vec<F16>;
+    const bool empty = tiles.form[tile] == DepthTiles::Form::kEmpty;
+    if (!empty) toPixels(tiles, tile);
+    float* depth = tiles.depth.data() + 64 * size_t{tile};
+    const auto center = hn::Set(d, plane.d), floor = hn::Set(d, plane.floor), limit = hn::Set(d, nearest);
+    const auto dx = hn::Set(d, plane.dx), dy = hn::Set(d, plane.dy);
+    const auto open = hn::Set(d, -std::numeric_limits<float>::infinity());
+    auto least = hn::Set(d, std::numeric_limits<float>::infinity());
+    uint64_t nearer = 0;
+    forPixels(
+        d, ~uint64_t{0}, [&](V x) HWY_ATTR { return hn::Add(center, hn::Mul(dx, x)); },
+        [&](V along, size_t i) HWY_ATTR {
+            const auto z = hn::Max(hn::Add(along, hn::Mul(dy, hn::Load(d, kPixelY + i))), floor);
+            const auto old = empty ? open : hn::LoadU(d, depth + i);
+            const auto raised = hn::IfThenElse(maskFromBits(d, mask >> i), hn::Max(old, z), old);
+            hn::StoreU(raised, d, depth + i);
+            least = hn::Min(least, raised);
+            nearer |= bitsFromMask(d, hn::Gt(raised, limit)) << i;
+        });
+    tiles.covered[tile] = empty ? mask : tiles.covered[tile] | mask;
+    tiles.form[tile] = DepthTiles::Form::kPixels;
+    tiles.nearest[tile] = std::numeric_limits<float>::infinity();
+    if (tiles.covered[tile] == ~uint64_t{0}) tiles.farthest[tile] = hn::GetLane(hn::MinOfLanes(d, least));
+    return nearer;
+}
+
+/// Draws into one tile that the polygon covers in part, or whose depth it does not simply replace. Returns the pixels
+/// that it shares with others.
+/// @param at  the tile's place in the chunk
+uint64_t drawTile(DepthTiles& tiles, uint32_t tile, const RasterPolygon& polygon, const ChunkSetup& setup,
+                  const ChunkAnswer& chunk, int at, uint64_t window) {
+    TileMasks masks{window, window};
+    if (!(chunk.inside >> at & 1)) masks = classifyPixels(setup, chunk, at, polygon.slack, window);
+    if (!polygon.covers) masks.inner = 0;
+    const uint64_t seam = masks.outer & ~masks.inner;
+    const float nearest = chunk.nearest[at];
+    if (masks.inner) {
+        TilePlane plane{polygon.farthest, 0, 0, polygon.farthest};
+        if (polygon.planar)
+            plane = {chunk.depth[at] - 0.5f * setup.tilt - chunk.error, setup.dx, setup.dy, polygon.farthest};
+        return seam & ~coverPixels(tiles, tile, plane, nearest, masks.inner);
     }
-    p.nearest = chunk.nearest[at];
-    p.plane = {polygon.farthest, 0, 0, polygon.farthest};
-    if (polygon.planar)
-        p.plane = {chunk.depth[at] - 0.5f * setup.tilt - chunk.error, static_cast<float>(polygon.dx),
-                   static_cast<float>(polygon.dy), polygon.farthest};
-    const bool within =
-        8 * column >= polygon.x0 && 8 * column + 7 <= polygon.x1 && 8 * row >= polygon.y0 && 8 * row + 7 <= polygon.y1;
-    if (!within) p.window = windowBits(polygon.x0, polygon.y0, polygon.x1, polygon.y1, 8 * column, 8 * row);
-    return p;
+    if (!(seam & tiles.coveredBits(tile))) return seam;
+    toPixels(tiles, tile);
+    return seam & pixelsNotNearer(tiles.depth.data() + 64 * size_t{tile}, nearest);
 }
 
 ChunkSetup makeChunkSetup(const RasterPolygon& polygon, bool wide) {
     ChunkSetup setup;
     for (int e = 0; e < polygon.edges; ++e) {
         const double a = polygon.edge[e].a;
-        setup.step_a[e] = static_cast<float>(8.0 * a);
+        setup.a[e] = static_cast<float>(a);
+        setup.b[e] = static_cast<float>(polygon.edge[e].b);
         if (wide) setup.inverse_a[e] = std::abs(a) < 1e-6 ? 0.0 : 1.0 / a;
     }
-    setup.step_d = polygon.planar ? static_cast<float>(8.0 * polygon.dx) : 0.0f;
-    setup.tilt = polygon.planar ? static_cast<float>(std::abs(polygon.dx) + std::abs(polygon.dy)) : 0.0f;
+    if (!polygon.planar) return setup;
+    setup.dx = static_cast<float>(polygon.dx);
+    setup.dy = static_cast<float>(polygon.dy);
+    setup.tilt = static_cast<float>(std::abs(polygon.dx) + std::abs(polygon.dy));
     return setup;
 }
 
-void drawPolygon(DepthTiles& tiles, const RasterPolygon& polygon, const SeamPolygon& source) {
-    uint32_t record = DepthTiles::kNone;
+/// Draws the last of the tiles' seam polygons, and drops it again if no pixel is left to share.
+void drawPolygon(DepthTiles& tiles) {
+    const uint32_t record = static_cast<uint32_t>(tiles.polygons.size() - 1);
+    const RasterPolygon& polygon = tiles.polygons.back().raster;
     const bool wide = (polygon.x1 >> 6) - (polygon.x0 >> 6) > 1;
     const ChunkSetup setup = makeChunkSetup(polygon, wide);
     ChunkAnswer answer;
+    for (int e = polygon.edges; e < 4; ++e) std::fill_n(answer.edge[e], 8, 1e30f);
+    bool shares = false;
     for (int32_t row = polygon.y0 >> 3; row <= polygon.y1 >> 3; ++row) {
         int32_t first = polygon.x0 >> 3, last = polygon.x1 >> 3;
         if (wide) columnsOfRow(polygon, setup.inverse_a, row, first, last);
@@ -284,10 +295,15 @@ void drawPolygon(DepthTiles& tiles, const RasterPolygon& polygon, const SeamPoly
             for (; slow; slow &= slow - 1) {
                 const int at = std::countr_zero(slow);
                 const uint32_t tile = static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(chunk + at);
-                drawTile(tiles, tile, polygon, seenByTile(polygon, setup, answer, at, chunk + at, row), source, record);
+                const uint64_t window =
+                    windowBits(polygon.x0, polygon.y0, polygon.x1, polygon.y1, 8 * (chunk + at), 8 * row);
+                const uint64_t seam = drawTile(tiles, tile, polygon, setup, answer, at, window);
+                if (seam) addSeam(tiles, tile, seam, record);
+                shares |= seam != 0;
             }
         }
     }
+    if (!shares) tiles.polygons.pop_back();
 }
 
 /// A cluster's polygons on their way to the tiles.
@@ -309,77 +325,96 @@ double perimeterOf(const ClusterDraw& c, uint8_t i, uint8_t j, uint8_t k) {
     return side(i, j) + side(j, k) + side(k, i);
 }
 
-void drawClipped(const ClusterDraw& c, SeamPolygon source, bool both) {
+/// Some of a cluster's vertices, counter-clockwise on the screen.
+struct Corners {
+    uint8_t vertex[4];
+    uint8_t count;
+};
+
+/// Makes a place among the tiles' seam polygons, where a polygon stays if it shares pixels.
+SeamPolygon& addPolygon(const ClusterDraw& c, uint32_t corners) {
+    SeamPolygon& polygon = c.tiles.polygons.emplace_back();
+    polygon.drawn = static_cast<uint32_t>(c.tiles.drawn.size() - 1);
+    polygon.corners = static_cast<uint8_t>(corners);
+    return polygon;
+}
+
+void drawClipped(const ClusterDraw& c, Corners corners, bool both) {
     const OccluderCluster& cluster = c.drawn.occluder->clusters[c.drawn.cluster];
     ClippedPolygon clipped;
     for (int turn = 0; turn < (both ? 2 : 1); ++turn) {
-        if (turn) std::swap(source.vertex[1], source.vertex[2]);
-        if (!clipAtNear(c.object, *c.drawn.occluder, cluster, source.vertex, clipped)) return;
+        if (turn) std::swap(corners.vertex[1], corners.vertex[2]);
+        if (!clipAtNear(c.object, *c.drawn.occluder, cluster, corners.vertex, clipped)) return;
         double area2 = 0;
         for (int i = 2; i < clipped.count; ++i)
             area2 += (clipped.x[i - 1] - clipped.x[0]) * (clipped.y[i] - clipped.y[0]) -
                      (clipped.x[i] - clipped.x[0]) * (clipped.y[i - 1] - clipped.y[0]);
         if (!(area2 > 0)) continue;
-        RasterPolygon polygon;
-        if (makeRasterPolygon(clipped.x, clipped.y, clipped.d, clipped.count, c.drawn.position_error,
-                              c.drawn.depth_error, c.tiles.width, c.tiles.height, polygon)) {
-            source.clipped = static_cast<uint32_t>(c.tiles.clipped.size());
-            source.corners = static_cast<uint8_t>(clipped.count);
-            c.tiles.clipped.push_back(clipped);
-            drawPolygon(c.tiles, polygon, source);
-        }
-        return;
+        SeamPolygon& polygon = addPolygon(c, static_cast<uint32_t>(clipped.count));
+        if (!makeRasterPolygon(clipped.x, clipped.y, clipped.d, clipped.count, c.drawn.position_error,
+                               c.drawn.depth_error, c.tiles.width, c.tiles.height, polygon.raster))
+            return c.tiles.polygons.pop_back();
+        polygon.clipped = static_cast<uint32_t>(c.tiles.clipped.size());
+        c.tiles.clipped.push_back(clipped);
+        return drawPolygon(c.tiles);
     }
 }
 
-/// Gathers a polygon's corners and draws it.
-bool makePolygon(const ClusterDraw& c, const SeamPolygon& source, RasterPolygon& polygon) {
+/// Gathers a polygon's corners. Null if it misses the buffer.
+const RasterPolygon* makePolygon(const ClusterDraw& c, const Corners& corners) {
     double x[4], y[4], d[4];
-    for (int k = 0; k < source.corners; ++k) {
-        x[k] = c.x[source.vertex[k]];
-        y[k] = c.y[source.vertex[k]];
-        d[k] = c.d[source.vertex[k]];
+    SeamPolygon& polygon = addPolygon(c, corners.count);
+    std::copy(corners.vertex, corners.vertex + 4, polygon.vertex);
+    for (int k = 0; k < corners.count; ++k) {
+        x[k] = c.x[corners.vertex[k]];
+        y[k] = c.y[corners.vertex[k]];
+        d[k] = c.d[corners.vertex[k]];
     }
-    return makeRasterPolygon(x, y, d, source.corners, c.drawn.position_error, c.drawn.depth_error, c.tiles.width,
-                             c.tiles.height, polygon);
+    if (makeRasterPolygon(x, y, d, corners.count, c.drawn.position_error, c.drawn.depth_error, c.tiles.width,
+                          c.tiles.height, polygon.raster))
+        return &polygon.raster;
+    c.tiles.polygons.pop_back();
+    return nullptr;
 }
 
-void drawTriangle(const ClusterDraw& c, SeamPolygon source, bool both) {
-    uint8_t* v = source.vertex;
-    source.corners = 3;
-    const int before = std::isnan(c.x[v[0]]) + std::isnan(c.x[v[1]]) + std::isnan(c.x[v[2]]);
+void drawTriangle(const ClusterDraw& c, uint8_t v0, uint8_t v1, uint8_t v2, bool both) {
+    Corners corners{{v0, v1, v2, 0}, 3};
+    const int before = std::isnan(c.x[v0]) + std::isnan(c.x[v1]) + std::isnan(c.x[v2]);
     if (before) {
-        if (before < 3 && c.drawn.clips) drawClipped(c, source, both);
+        if (before < 3 && c.drawn.clips) drawClipped(c, corners, both);
         return;
     }
     // A sliver's winding is uncertain; it is kept as it stands, for its sides join its neighbours'.
-    if (areaOf(c, v[0], v[1], v[2]) < -c.slack * perimeterOf(c, v[0], v[1], v[2])) {
+    if (areaOf(c, v0, v1, v2) < -c.slack * perimeterOf(c, v0, v1, v2)) {
         if (!both) return;
-        std::swap(v[1], v[2]);
+        std::swap(corners.vertex[1], corners.vertex[2]);
     }
-    RasterPolygon polygon;
-    if (makePolygon(c, source, polygon)) drawPolygon(c.tiles, polygon, source);
+    if (makePolygon(c, corners)) drawPolygon(c.tiles);
 }
 
 /// Draws a quadrangle at once if it is surely convex and counter-clockwise, and flat enough for one plane. Returns
 /// false if its triangles have to be drawn one by one.
-bool drawQuad(const ClusterDraw& c, SeamPolygon source, bool both) {
+bool drawQuad(const ClusterDraw& c, const uint8_t* vertex, bool both) {
     constexpr float kFlat = 1e-3f;
-    uint8_t* v = source.vertex;
+    Corners corners{{vertex[0], vertex[1], vertex[2], vertex[3]}, 4};
+    const uint8_t* v = corners.vertex;
     const double first = areaOf(c, v[0], v[1], v[2]), second = areaOf(c, v[0], v[2], v[3]);
     const double least = c.slack * (perimeterOf(c, v[0], v[1], v[2]) + perimeterOf(c, v[0], v[2], v[3]));
     if (first < -least && second < -least) {
         if (!both) return true;
-        std::swap(v[1], v[3]);
+        std::swap(corners.vertex[1], corners.vertex[3]);
     } else if (!(first > least && second > least)) {  // one may be front and one back; or a vertex has no image
         return false;
     }
     if (!(areaOf(c, v[0], v[1], v[3]) > least && areaOf(c, v[1], v[2], v[3]) > least)) return false;
-    RasterPolygon polygon;
-    if (!makePolygon(c, source, polygon)) return true;
-    if (!(polygon.depth_error <= kFlat * std::abs(polygon.nearest))) return false;
-    drawPolygon(c.tiles, polygon, source);
-    return true;
+    const RasterPolygon* polygon = makePolygon(c, corners);
+    if (!polygon) return true;
+    if (polygon->depth_error <= kFlat * std::abs(polygon->nearest)) {
+        drawPolygon(c.tiles);
+        return true;
+    }
+    c.tiles.polygons.pop_back();
+    return false;
 }
 
 void drawPolygons(DepthTiles& tiles, const Screen& object, bool flips, const DrawnCluster& drawn) {
@@ -395,21 +430,13 @@ void drawPolygons(DepthTiles& tiles, const Screen& object, bool flips, const Dra
     const bool reverse = flips != object.mirrored;  // front faces come out clockwise
     for (uint32_t p = cluster.first_polygon; p < cluster.first_polygon + cluster.polygon_count; ++p) {
         const OccluderPolygon& polygon = occluder.polygons[p];
-        SeamPolygon source;
-        source.drawn = static_cast<uint32_t>(tiles.drawn.size() - 1);
-        source.corners = static_cast<uint8_t>(polygon.corners());
-        std::copy(polygon.vertex, polygon.vertex + 4, source.vertex);
-        if (source.corners == 3) {
-            if (reverse) std::swap(source.vertex[1], source.vertex[2]);
-            drawTriangle(c, source, polygon.double_sided);
-            continue;
-        }
-        if (reverse) std::swap(source.vertex[1], source.vertex[3]);
-        if (drawQuad(c, source, polygon.double_sided)) continue;
-        drawTriangle(c, source, polygon.double_sided);
-        source.vertex[1] = source.vertex[2];
-        source.vertex[2] = source.vertex[3];
-        drawTriangle(c, source, polygon.double_sided);
+        const bool both = polygon.double_sided;
+        uint8_t v[4];
+        std::copy(polygon.vertex, polygon.vertex + 4, v);
+        if (reverse) std::swap(v[1], v[polygon.corners() - 1]);
+        if (polygon.corners() == 4 && drawQuad(c, v, both)) continue;
+        drawTriangle(c, v[0], v[1], v[2], both);
+        if (polygon.corners() == 4) drawTriangle(c, v[0], v[2], v[3], both);
     }
 }
 

@@ -240,26 +240,6 @@ struct Resolver {
         return std::max<double>(polygon.farthest, d - 0.5 * tilt - polygon.depth_error - std::abs(d) * 0x1p-40);
     }
 
-    /// Whether some point of the pixel is surely outside every piece: then nothing more need be tried.
-    bool surelyLeavesAPoint(double x, double y) const {
-        static constexpr double kAt[] = {-0.48, -0.16, 0.16, 0.48};
-        uint32_t held = 0;  // bit per point that some piece may hold
-        for (int p = 0; p < piece_count && held != 0xffff; ++p) {
-            const RasterPolygon& polygon = pieces[p].polygon->raster;
-            uint32_t inside = 0xffff;
-            for (int e = 0; e < polygon.edges && (inside & ~held); ++e) {
-                const EdgeFunction& edge = polygon.edge[e];
-                const double center = edge.at(x, y) + polygon.slack;
-                uint32_t bits = 0;
-                for (int k = 0; k < 16; ++k)
-                    bits |= static_cast<uint32_t>(center + edge.a * kAt[k & 3] + edge.b * kAt[k >> 2] >= 0) << k;
-                inside &= bits;
-            }
-            held |= inside;
-        }
-        return held != 0xffff;
-    }
-
     /// The depth at which the pieces' union leaves nothing of the pixel; -infinity if it does leave something. Takes
     /// in what no shared side joins: T-junctions, and surfaces that overlap.
     double resolveByUnion(const DepthTiles& tiles, double x, double y) const {
@@ -362,7 +342,6 @@ bool resolveSeam(DepthTiles& tiles, uint32_t tile, int bit, float wanted) {
     const double x = 8.0 * (tile % tiles.stride) + (bit & 7) + 0.5;
     const double y = 8.0 * (tile / tiles.stride) + (bit >> 3) + 0.5;
     if (resolver.piece_count < 2) return before;
-    if (resolver.surelyLeavesAPoint(x, y)) return before;
     double nearness = resolver.resolve(tiles, x, y);
     if (!(nearness > wanted)) nearness = std::max(nearness, resolver.resolveByUnion(tiles, x, y));
     if (!(nearness > -std::numeric_limits<double>::infinity())) return before;

@@ -92,8 +92,7 @@ HWY_INLINE uint64_t windowBits(int32_t x0, int32_t y0, int32_t x1, int32_t y1, i
     const int left = std::max(0, x0 - tile_x), right = std::min(7, x1 - tile_x);
     const int low = std::max(0, y0 - tile_y), high = std::min(7, y1 - tile_y);
     const uint64_t columns = (0xffu >> (7 - right)) & (0xffu << left) & 0xffu;
-    uint64_t rows = ~uint64_t{0} << (8 * low);
-    if (high < 7) rows &= (uint64_t{1} << (8 * (high + 1))) - 1;
+    const uint64_t rows = ~uint64_t{0} << (8 * low) & ~uint64_t{0} >> (8 * (7 - high));
     return columns * 0x0101010101010101ull & rows;
 }
 

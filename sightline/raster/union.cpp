@@ -13,7 +13,7 @@ constexpr int kMaxRegions = 24;  // work cap
 
 /// A convex region, counter-clockwise, relative to the pixel's centre.
 struct Region {
-    double x[kMaxCorners], y[kMaxCorners];
+    double x[kMaxCorners], y[kMaxCorners];  // no initial values
     int count = 0;
 
     bool add(double px, double py) {
@@ -24,29 +24,30 @@ struct Region {
     }
 };
 
-/// Splits a region by a line: what has a x + b y + c >= 0, and the rest. False if a part has too many corners.
-bool split(const Region& region, double a, double b, double c, Region& inside, Region& outside) {
-    inside.count = outside.count = 0;
+enum class Place { kInside, kOutside, kCut, kTooManyCorners };
+
+/// Where a region lies to the line a x + b y + c = 0, inside being the positive side. What is cut is parted in two.
+Place split(const Region& region, double a, double b, double c, Region& inside, Region& outside) {
     double e[kMaxCorners];
     bool any_inside = false, any_outside = false;
     for (int i = 0; i < region.count; ++i) {
         e[i] = a * region.x[i] + b * region.y[i] + c;
         any_inside |= e[i] >= 0;
-        any_outside |= e[i] < 0;
+        any_outside |= !(e[i] >= 0);
     }
-    if (!any_outside) inside = region;
-    if (!any_inside) outside = region;
-    if (!any_inside || !any_outside) return true;
+    if (!any_outside) return Place::kInside;
+    if (!any_inside) return Place::kOutside;
+    inside.count = outside.count = 0;
     for (int i = 0; i < region.count; ++i) {
         const int j = i + 1 < region.count ? i + 1 : 0;
-        if (!(e[i] >= 0 ? inside : outside).add(region.x[i], region.y[i])) return false;
+        if (!(e[i] >= 0 ? inside : outside).add(region.x[i], region.y[i])) return Place::kTooManyCorners;
         if ((e[i] >= 0) == (e[j] >= 0)) continue;
         const double t = e[i] / (e[i] - e[j]);
         const double px = region.x[i] + t * (region.x[j] - region.x[i]);
         const double py = region.y[i] + t * (region.y[j] - region.y[i]);
-        if (!inside.add(px, py) || !outside.add(px, py)) return false;
+        if (!inside.add(px, py) || !outside.add(px, py)) return Place::kTooManyCorners;
     }
-    return true;
+    return Place::kCut;
 }
 
 struct Remainder {
@@ -64,19 +65,24 @@ struct Remainder {
 /// Takes a piece away from a region; what is left goes to `out`. `used` tells whether anything was taken.
 bool subtract(const Region& region, const UnionPiece& piece, double x, double y, Remainder& out, bool& used) {
     const RasterPolygon& polygon = *piece.polygon;
-    Region rest = region, inside, outside;
-    Remainder cut;
+    Region parts[2], outside;
+    const Region* rest = &region;  // what is inside the edges so far
+    const int before = out.count;
     for (int k = 0; k < polygon.edges; ++k) {
         const EdgeFunction& edge = polygon.edge[k];
         const double margin = piece.shared >> k & 1 ? 0.0 : static_cast<double>(polygon.slack);
-        if (!split(rest, edge.a, edge.b, edge.at(x, y) - margin, inside, outside)) return false;
-        if (inside.count < 3) return out.add(region);  // the piece misses the region
-        if (!cut.add(outside)) return false;
-        rest = inside;
+        Region& inside = rest == &parts[0] ? parts[1] : parts[0];
+        const Place place = split(*rest, edge.a, edge.b, edge.at(x, y) - margin, inside, outside);
+        if (place == Place::kInside) continue;
+        if (place == Place::kTooManyCorners) return false;
+        if (place == Place::kOutside || inside.count < 3) {  // the piece misses the region
+            out.count = before;
+            return out.add(region);
+        }
+        if (!out.add(outside)) return false;
+        rest = &inside;
     }
     used = true;
-    for (int i = 0; i < cut.count; ++i)
-        if (!out.add(cut.regions[i])) return false;
     return true;
 }
 
@@ -84,7 +90,7 @@ bool subtract(const Region& region, const UnionPiece& piece, double x, double y,
 
 double subtractFromPixel(double x, double y, const UnionPiece* pieces, int count) {
     constexpr double kNothing = -std::numeric_limits<double>::infinity();
-    Remainder left, next;
+    Remainder lists[2], *left = &lists[0], *next = &lists[1];
     Region square;
     // A little larger than the pixel, so that the rounding of its own corners does not count.
     constexpr double kHalf = 0.5 + 0x1p-30;
@@ -92,17 +98,17 @@ double subtractFromPixel(double x, double y, const UnionPiece* pieces, int count
     square.add(kHalf, -kHalf);
     square.add(kHalf, kHalf);
     square.add(-kHalf, kHalf);
-    left.add(square);
+    left->add(square);
     double farthest = std::numeric_limits<double>::infinity();
-    for (int p = 0; p < count && left.count > 0; ++p) {
+    for (int p = 0; p < count && left->count > 0; ++p) {
         bool used = false;
-        next.count = 0;
-        for (int r = 0; r < left.count; ++r)
-            if (!subtract(left.regions[r], pieces[p], x, y, next, used)) return kNothing;
+        next->count = 0;
+        for (int r = 0; r < left->count; ++r)
+            if (!subtract(left->regions[r], pieces[p], x, y, *next, used)) return kNothing;
         if (used) farthest = std::min(farthest, pieces[p].farthest);
         std::swap(left, next);
     }
-    return left.count == 0 ? farthest : kNothing;
+    return left->count == 0 ? farthest : kNothing;
 }
 
 }  // namespace sightline
