@@ -76,7 +76,7 @@ HWY_INLINE void forPixels(D d, uint64_t window, Begin begin, Look look) {
 }
 
 /// Names a polygon as one of those that share pixels of a tile.
-void addSeam(DepthTiles& tiles, uint32_t tile, uint64_t mask, uint32_t polygon) {
+HWY_INLINE void addSeam(DepthTiles& tiles, uint32_t tile, uint64_t mask, uint32_t polygon) {
     tiles.entries.push_back({mask, polygon, tiles.seams[tile]});
     tiles.seams[tile] = static_cast<uint32_t>(tiles.entries.size() - 1);
     tiles.seam_mask[tile] |= mask;
@@ -182,7 +182,8 @@ struct TileMasks {
     uint64_t inner = 0, outer = 0;
 };
 
-TileMasks classifyPixels(const ChunkSetup& setup, const ChunkAnswer& chunk, int at, float slack, uint64_t window) {
+HWY_INLINE TileMasks classifyPixels(const ChunkSetup& setup, const ChunkAnswer& chunk, int at, float slack,
+                                    uint64_t window) {
     const F16 d;
     using V = hn::Vec<F16>;
     struct Edges {
@@ -213,7 +214,8 @@ TileMasks classifyPixels(const ChunkSetup& setup, const ChunkAnswer& chunk, int 
 
 /// Raises the depths of the pixels that the mask names; returns those of all pixels that are nearer than the polygon.
 /// @param nearest  no point of the polygon in the tile is nearer
-uint64_t coverPixels(DepthTiles& tiles, uint32_t tile, const TilePlane& plane, float nearest, uint64_t mask) {
+HWY_INLINE uint64_t coverPixels(DepthTiles& tiles, uint32_t tile, const TilePlane& plane, float nearest,
+                                uint64_t mask) {
     const F16 d;
     using V = hn::Vec<F16>;
     const bool empty = tiles.form[tile] == DepthTiles::Form::kEmpty;
@@ -244,8 +246,8 @@ uint64_t coverPixels(DepthTiles& tiles, uint32_t tile, const TilePlane& plane, f
 /// Draws into one tile that the polygon covers in part, or whose depth it does not simply replace. Returns the pixels
 /// that it shares with others.
 /// @param at  the tile's place in the chunk
-uint64_t drawTile(DepthTiles& tiles, uint32_t tile, const RasterPolygon& polygon, const ChunkSetup& setup,
-                  const ChunkAnswer& chunk, int at, uint64_t window) {
+HWY_INLINE uint64_t drawTile(DepthTiles& tiles, uint32_t tile, const RasterPolygon& polygon, const ChunkSetup& setup,
+                             const ChunkAnswer& chunk, int at, uint64_t window) {
     TileMasks masks{window, window};
     if (!(chunk.inside >> at & 1)) masks = classifyPixels(setup, chunk, at, polygon.slack, window);
     if (!polygon.covers) masks.inner = 0;

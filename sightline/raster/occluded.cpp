@@ -85,29 +85,28 @@ void coverPair(DepthTiles& tiles, uint32_t tile, const SeamPolygon& a, int side_
     if (tiles.covered[tile] == ~uint64_t{0}) tiles.farthest[tile] = hn::GetLane(hn::MinOfLanes(half, least_depth));
 }
 
-void pairSeamsKernel(DepthTiles& tiles, uint32_t tile) {
+void pairSeamsKernel(DepthTiles& tiles, uint32_t tile, uint64_t pixels) {
     constexpr int kMaxEntries = 24;  // work cap: of more, the last drawn are paired
-    const uint32_t before = tiles.paired[tile];
-    if (before == tiles.seams[tile]) return;
+    if (tiles.paired[tile] != tiles.seams[tile]) tiles.paired_mask[tile] = 0;
+    pixels &= tiles.seam_mask[tile] & ~tiles.paired_mask[tile];
+    if (!pixels) return;
     tiles.paired[tile] = tiles.seams[tile];
+    tiles.paired_mask[tile] |= pixels;
     const SeamPolygon* found[kMaxEntries];
     uint64_t masks[kMaxEntries];
-    int count = 0, fresh = 0;
-    bool old = false;
+    int count = 0;
     for (uint32_t at = tiles.seams[tile]; at != DepthTiles::kNone && count < kMaxEntries; at = tiles.entries[at].next) {
-        old |= at == before;
+        const uint64_t mask = tiles.entries[at].mask & pixels;
         SeamPolygon& polygon = tiles.polygons[tiles.entries[at].polygon];
-        if (!polygon.raster.complete) continue;
+        if (!mask || !polygon.raster.complete) continue;
         setSideKeys(tiles, polygon);
-        masks[count] = tiles.entries[at].mask;
+        masks[count] = mask;
         found[count++] = &polygon;
-        if (!old) fresh = count;
     }
-    for (int i = 0; i < fresh; ++i)  // pairs of old entries were looked at before
+    for (int i = 0; i < count; ++i)
         for (int j = i + 1; j < count; ++j) {
-            if (!(masks[i] & masks[j])) continue;
             int side_i, side_j;
-            if (findSharedSide(tiles, *found[i], *found[j], side_i, side_j))
+            if (masks[i] & masks[j] && findSharedSide(tiles, *found[i], *found[j], side_i, side_j))
                 coverPair(tiles, tile, *found[i], side_i, *found[j], side_j);
         }
 }
@@ -145,7 +144,7 @@ bool isHiddenKernel(DepthTiles& tiles, const PixelRect& rect, Seams seams) {
     });
     if (!closed || !undecided) return closed;
     return forOpenTiles(tiles, rect, [&](uint32_t tile, int32_t column, int32_t row) HWY_ATTR {
-        pairSeamsKernel(tiles, tile);
+        pairSeamsKernel(tiles, tile, openPixels(tiles, tile, rect, column, row));
         for (uint64_t open = openPixels(tiles, tile, rect, column, row); open; open &= open - 1) {
             const int bit = std::countr_zero(open);
             if (!resolveSeam(tiles, tile, bit, rect.nearness)) return false;
@@ -172,7 +171,9 @@ bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams) {
     return HWY_DYNAMIC_DISPATCH(isHiddenKernel)(tiles, rect, seams);
 }
 
-void pairSeams(DepthTiles& tiles, uint32_t tile) { HWY_DYNAMIC_DISPATCH(pairSeamsKernel)(tiles, tile); }
+void pairSeams(DepthTiles& tiles, uint32_t tile, uint64_t pixels) {
+    HWY_DYNAMIC_DISPATCH(pairSeamsKernel)(tiles, tile, pixels);
+}
 
 void writeOut(DepthTiles& tiles, uint32_t tile) { HWY_DYNAMIC_DISPATCH(writeOutKernel)(tiles, tile); }
 

@@ -90,9 +90,10 @@ struct DepthTiles {
     std::vector<uint64_t> covered;  ///< bit 8 * row + column; not kept up to date in form kPlane, which is all covered
     std::vector<uint64_t> tried;    ///< seam pixels whose present entries have been resolved
     std::vector<uint32_t> seams;    ///< first SeamEntry, or kNone
-    std::vector<uint64_t> seam_mask;  ///< pixels that some SeamEntry of the tile names
-    std::vector<uint32_t> paired;     ///< the first SeamEntry when pairSeams() last looked
-    std::vector<float> depth;         ///< 64 per tile; -infinity where not covered; see Form
+    std::vector<uint64_t> seam_mask;    ///< pixels that some SeamEntry of the tile names
+    std::vector<uint32_t> paired;       ///< the first SeamEntry when pairSeams() last looked
+    std::vector<uint64_t> paired_mask;  ///< pixels that it has looked at since that was the first
+    std::vector<float> depth;           ///< 64 per tile; -infinity where not covered; see Form
 
     uint64_t coveredBits(uint32_t tile) const {
         return form[tile] == Form::kPlane ? ~uint64_t{0} : form[tile] == Form::kEmpty ? 0 : covered[tile];
@@ -142,7 +143,8 @@ void setSideKeys(const DepthTiles& tiles, SeamPolygon& polygon);
 bool findSharedSide(const DepthTiles& tiles, const SeamPolygon& a, const SeamPolygon& b, int& side_a, int& side_b);
 
 /// Covers the pixels of a tile that two polygons with a shared side cover between them, for all pairs at once.
-void pairSeams(DepthTiles& tiles, uint32_t tile);
+/// @param pixels  which pixels matter; others may be covered too
+void pairSeams(DepthTiles& tiles, uint32_t tile, uint64_t pixels);
 
 /// Tries to cover one pixel by the polygons that share it; true if it is covered now.
 /// @param bit     which pixel of the tile, 0 to 63
