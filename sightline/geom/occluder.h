@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
+#include "sightline/base/memory.h"
 #include "sightline/math/box.h"
 
 namespace sightline {
@@ -35,10 +35,13 @@ struct OccluderCluster {
 /// transmissive, skinned or morphed). Positions are the mesh's own, bit for bit: two triangles share an
 /// edge exactly when the end points are equal.
 struct Occluder {
-    std::vector<float> x, y, z;  ///< vertices, cluster by cluster, each cluster padded to 8 with its last one
-    std::vector<OccluderPolygon> polygons;
-    std::vector<OccluderCluster> clusters;
+    Array<float> x, y, z;  ///< vertices, cluster by cluster, each cluster padded to 8 with its last one
+    Array<OccluderPolygon> polygons;
+    Array<OccluderCluster> clusters;
     Box3f bounds;  ///< of all vertices
+
+    explicit Occluder(Memory* memory = defaultMemory())
+        : x(memory), y(memory), z(memory), polygons(memory), clusters(memory) {}
 
     uint32_t triangleCount() const {
         uint32_t count = 0;

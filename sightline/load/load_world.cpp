@@ -9,7 +9,7 @@ namespace {
 
 /// The occluder of a mesh: the triangles whose material hides.
 Occluder occluderOf(const Scene& scene, const Mesh& mesh) {
-    if (mesh.deforms) return {};
+    if (mesh.deforms) return Occluder();
     std::vector<uint8_t> hides(mesh.triangles(), 0), double_sided(mesh.triangles(), 0);
     for (const Primitive& primitive : mesh.primitives) {
         const Material& material = scene.materials[primitive.material];
@@ -27,8 +27,8 @@ LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_
     LoadedWorld loaded;
     std::vector<OccluderId> occluders(scene.meshes.size());
     for (size_t i = 0; i < scene.meshes.size(); ++i) {
-        Occluder occluder = occluderOf(scene, scene.meshes[i]);
-        if (occluder.triangleCount() > 0) occluders[i] = loaded.world.addOccluder(std::move(occluder));
+        const Occluder occluder = occluderOf(scene, scene.meshes[i]);
+        if (occluder.triangleCount() > 0) occluders[i] = loaded.world.addOccluder(occluder);
         if (progress && (i % 64 == 63 || i + 1 == scene.meshes.size())) progress(i + 1, scene.meshes.size());
     }
     loaded.ids.reserve(scene.objects.size());

@@ -161,7 +161,7 @@ void drawChunk(DepthTiles& tiles, const RasterPolygon& polygon, const ChunkSetup
             const uint32_t replaced = static_cast<uint32_t>(bitsFromMask(d, whole));
             left &= ~replaced;
             if (replaced) {
-                const auto put = [&](auto value, std::vector<float>& array)
+                const auto put = [&](auto value, Array<float>& array)
                                      HWY_ATTR { hn::BlendedStore(value, whole, d, array.data() + base + h); };
                 put(plane, tiles.plane_d);
                 put(hn::Set(d, setup.dx), tiles.plane_dx);

@@ -24,7 +24,7 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height) {
     paired.assign(count, kNone);
     paired_mask.assign(count, 0);
     if (covered.size() < count) {  // these are read only where the form says that they were written
-        for (std::vector<float>* plane : {&plane_d, &plane_dx, &plane_dy, &plane_floor}) plane->resize(count);
+        for (Array<float>* plane : {&plane_d, &plane_dx, &plane_dy, &plane_floor}) plane->resize(count);
         covered.resize(count);
         depth.resize(64 * count);
     }

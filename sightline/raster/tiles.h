@@ -6,8 +6,8 @@
 
 #include <cstdint>
 #include <limits>
-#include <vector>
 
+#include "sightline/base/memory.h"
 #include "sightline/geom/occluder.h"
 #include "sightline/raster/polygon.h"
 #include "sightline/raster/screen.h"
@@ -70,6 +70,10 @@ struct SeamEntry {
 struct DepthTiles {
     static constexpr uint32_t kNone = ~0u;
 
+    explicit DepthTiles(Memory* from = defaultMemory()) : memory(from) {}
+    DepthTiles(const DepthTiles&) = delete;
+    DepthTiles& operator=(const DepthTiles&) = delete;
+
     /// How a tile's depths are held.
     enum class Form : uint8_t {
         kEmpty,   ///< no pixel is covered
@@ -77,23 +81,24 @@ struct DepthTiles {
         kPixels,  ///< the depth array is valid
     };
 
+    Memory* const memory;            ///< of all arrays
     uint32_t width = 0, height = 0;  ///< [pixels], multiples of 8
     uint32_t columns = 0, rows = 0;  ///< [tiles]
     uint32_t stride = 0;             ///< tiles from one row to the next: columns rounded up to 8
 
     // Per tile, side by side, so that eight tiles of a row are looked at together.
-    std::vector<float> farthest;  ///< no more than the least nearness in the tile; -infinity unless all is covered
-    std::vector<float> nearest;   ///< form kPlane: no less than the greatest; kEmpty: -infinity; kPixels: +infinity
-    std::vector<float> plane_d, plane_dx, plane_dy, plane_floor;  ///< form kPlane: nearness at pixel (x, y) of the tile
-                                                                  ///< is max(floor, d + dx (x - 3.5) + dy (y - 3.5))
-    std::vector<Form> form;
-    std::vector<uint64_t> covered;  ///< bit 8 * row + column; not kept up to date in form kPlane, which is all covered
-    std::vector<uint64_t> tried;    ///< seam pixels whose present entries have been resolved
-    std::vector<uint32_t> seams;    ///< first SeamEntry, or kNone
-    std::vector<uint64_t> seam_mask;    ///< pixels that some SeamEntry of the tile names
-    std::vector<uint32_t> paired;       ///< the first SeamEntry when pairSeams() last looked
-    std::vector<uint64_t> paired_mask;  ///< pixels that it has looked at since that was the first
-    std::vector<float> depth;           ///< 64 per tile; -infinity where not covered; see Form
+    Array<float> farthest{memory};  ///< no more than the least nearness in the tile; -infinity unless all is covered
+    Array<float> nearest{memory};   ///< form kPlane: no less than the greatest; kEmpty: -infinity; kPixels: +infinity
+    /// Form kPlane: nearness at pixel (x, y) of the tile is max(floor, d + dx (x - 3.5) + dy (y - 3.5)).
+    Array<float> plane_d{memory}, plane_dx{memory}, plane_dy{memory}, plane_floor{memory};
+    Array<Form> form{memory};
+    Array<uint64_t> covered{memory};      ///< bit 8 * row + column; not kept up to date in form kPlane: all is covered
+    Array<uint64_t> tried{memory};        ///< seam pixels whose present entries have been resolved
+    Array<uint32_t> seams{memory};        ///< first SeamEntry, or kNone
+    Array<uint64_t> seam_mask{memory};    ///< pixels that some SeamEntry of the tile names
+    Array<uint32_t> paired{memory};       ///< the first SeamEntry when pairSeams() last looked
+    Array<uint64_t> paired_mask{memory};  ///< pixels that it has looked at since that was the first
+    Array<float> depth{memory};           ///< 64 per tile; -infinity where not covered; see Form
 
     uint64_t coveredBits(uint32_t tile) const {
         return form[tile] == Form::kPlane ? ~uint64_t{0} : form[tile] == Form::kEmpty ? 0 : covered[tile];
@@ -105,11 +110,12 @@ struct DepthTiles {
                                            : -std::numeric_limits<float>::infinity();
     }
 
-    std::vector<double> px, py, pd;  ///< projected vertices of the frame; px is NaN before the near plane
-    std::vector<DrawnCluster> drawn;
-    std::vector<ClippedPolygon> clipped;
-    std::vector<SeamPolygon> polygons;
-    std::vector<SeamEntry> entries;
+    Array<double> px{memory}, py{memory},
+        pd{memory};  ///< the frame's projected vertices; px is NaN before the near plane
+    Array<DrawnCluster> drawn{memory};
+    Array<ClippedPolygon> clipped{memory};
+    Array<SeamPolygon> polygons{memory};
+    Array<SeamEntry> entries{memory};
 
     uint64_t seam_pixels = 0;  ///< resolved since the clear
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
-#include <vector>
 
 #include "sightline/base/assert.h"
 #include "sightline/cull/frustum.h"
@@ -58,18 +57,24 @@ struct CulledRange {
 }  // namespace
 
 struct Query::Impl {
+    explicit Impl(Memory* from) : memory(from) {}
+
+    Memory* const memory;
     Snapshot snapshot;
     View view;
     bool every_layer = true;  ///< no object is outside the view's layers
     Frustum frustum;
     Screen screen;
-    DepthTiles tiles;
-    std::vector<Pending> pending;
-    std::vector<Visit> visits;
-    std::vector<OccluderInstance> instances;
-    std::vector<Visible> visible;
-    std::vector<CulledRange> culled;
-    std::vector<float> depth_image;
+    DepthTiles tiles{memory};
+    Array<Pending> pending{memory};
+    Array<Visit> visits{memory};
+    Array<OccluderInstance> instances{memory};
+    Array<Visible> visible{memory};
+    Array<Visible> before{memory};  ///< the last answer's objects
+    Array<CulledRange> culled{memory};
+    Array<float> depth_image{memory};
+    Array<Visible> appeared{memory}, disappeared{memory};
+    Array<uint32_t> mark{memory};  ///< per ObjectId::index: 1 + place in `before`, while changes() runs; else 0
     QueryStats stats;
     uint32_t serial = 0;
     uint32_t undecided = 0;  ///< nodes and objects in line; without any, nothing is left to hide
@@ -123,6 +128,7 @@ void Query::Impl::begin(const Snapshot& now, const View& new_view) {
     serial = undecided = 0;
     pending.clear();
     instances.clear();
+    std::swap(visible, before);
     visible.clear();
     culled.clear();
     tiles.clear(0, 0);
@@ -249,7 +255,7 @@ void Query::Impl::visit(const Pending& entry) {
 
 /// Without the occlusion stage the order does not matter: depth first, and whole subtrees that are inside at once.
 void Query::Impl::walkFrustumOnly(uint32_t root, uint8_t all_planes) {
-    std::vector<Visit>& stack = visits;
+    Array<Visit>& stack = visits;
     stack.assign(1, {root, all_planes});
     while (!stack.empty()) {
         const Visit visit = stack.back();
@@ -296,7 +302,7 @@ void Query::Impl::finish() {
     SIGHTLINE_ASSERT(stats.visible + culled_objects == stats.objects);
 }
 
-Query::Query() : impl_(std::make_unique<Impl>()) {}
+Query::Query(Memory* memory) : impl_(makeOwned<Impl>(memory, memory)) {}
 Query::~Query() = default;
 Query::Query(Query&&) noexcept = default;
 Query& Query::operator=(Query&&) noexcept = default;
@@ -314,6 +320,28 @@ VisibleSet Query::visible(const Snapshot& now, const View& view) {
     if (view.time_stages && impl.uses(Stage::kOcclusion))
         impl.of(Stage::kOcclusion).nanoseconds = impl.stats.nanoseconds - impl.of(Stage::kFrustum).nanoseconds;
     return {impl.visible, impl.stats};
+}
+
+VisibleChanges Query::changes() {
+    Impl& impl = *impl_;
+    impl.appeared.clear();
+    impl.disappeared.clear();
+    uint32_t last = 0;
+    for (const auto* set : {&impl.before, &impl.visible})
+        for (const Visible& v : *set) last = std::max(last, v.id.index);
+    if (impl.mark.size() <= last) impl.mark.resize(last + 1, 0);
+    for (size_t i = 0; i < impl.before.size(); ++i) impl.mark[impl.before[i].id.index] = static_cast<uint32_t>(i + 1);
+    for (const Visible& v : impl.visible) {
+        uint32_t& mark = impl.mark[v.id.index];
+        if (mark > 0 && impl.before[mark - 1].id == v.id) mark = 0;
+        else impl.appeared.push_back(v);
+    }
+    for (const Visible& v : impl.before) {
+        uint32_t& mark = impl.mark[v.id.index];
+        if (mark > 0) impl.disappeared.push_back(v);
+        mark = 0;
+    }
+    return {impl.appeared, impl.disappeared};
 }
 
 void Query::reasons(std::span<uint8_t> reasons) const {

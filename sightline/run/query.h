@@ -6,9 +6,9 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 
+#include "sightline/base/memory.h"
 #include "sightline/geom/view.h"
 #include "sightline/run/world.h"
 
@@ -38,11 +38,17 @@ struct VisibleSet {
     QueryStats stats;
 };
 
+/// Objects that an answer has and the one before it had not, and the other way round.
+struct VisibleChanges {
+    std::span<const Visible> appeared, disappeared;  ///< valid until the query's next call
+};
+
 /// Scratch of one thread; as many as there are threads. Allocates only when the world or the
 /// viewport has grown.
 class Query {
 public:
-    Query();
+    /// @param memory  outlives the query; used by no other thread unless it is thread-safe
+    explicit Query(Memory* memory = defaultMemory());
     ~Query();
     Query(Query&&) noexcept;
     Query& operator=(Query&&) noexcept;
@@ -54,6 +60,11 @@ public:
     /// (bounds that touch the near plane or hold the eye, or are not finite) are reported and counted.
     /// Deterministic: the same set, in the same order, on every instruction set.
     VisibleSet visible(const Snapshot& now, const View& view);
+
+    /// What the last answer changed against the one before; the first answer's objects have all appeared. Snapshots and
+    /// views may have changed as they like: objects are told apart by their ids, and one that was removed from its
+    /// world disappears. O(objects in both answers).
+    VisibleChanges changes();
 
     /// For each object of the last answer's snapshot, in the order of World::add with removed objects
     /// left out: 0 visible, 1 + Stage of the stage that culled it, 255 outside View::layers.
@@ -70,7 +81,7 @@ public:
 
 private:
     struct Impl;
-    std::unique_ptr<Impl> impl_;
+    Owned<Impl> impl_;
 };
 
 }  // namespace sightline

@@ -13,12 +13,12 @@ namespace detail {
 
 ObjectRecord& ObjectTable::change(uint32_t place) {
     std::shared_ptr<ObjectChunk>& chunk = chunks[place / ObjectChunk::kSize];
-    if (chunk.use_count() > 1) chunk = std::make_shared<ObjectChunk>(*chunk);
+    if (chunk.use_count() > 1) chunk = makeShared<ObjectChunk>(memory(), *chunk);
     return chunk->objects[place % ObjectChunk::kSize];
 }
 
 ObjectRecord& ObjectTable::append() {
-    if (size % ObjectChunk::kSize == 0) chunks.push_back(std::make_shared<ObjectChunk>());
+    if (size % ObjectChunk::kSize == 0) chunks.push_back(makeShared<ObjectChunk>(memory()));
     return change(size++);
 }
 
@@ -32,8 +32,8 @@ Box3d worldBounds(const ObjectRecord& object) {
     return box;
 }
 
-std::shared_ptr<const std::vector<PlacedObject>> placeObjects(const SnapshotState& state) {
-    auto placed = std::make_shared<std::vector<PlacedObject>>();
+std::shared_ptr<const Array<PlacedObject>> placeObjects(const SnapshotState& state, Memory* memory) {
+    auto placed = makeShared<Array<PlacedObject>>(memory);
     placed->reserve(state.bvh.order.size());
     for (uint32_t place = 0; place < state.bvh.order.size(); ++place) {
         const ObjectRecord& object = state.objectAt(place);
@@ -42,21 +42,45 @@ std::shared_ptr<const std::vector<PlacedObject>> placeObjects(const SnapshotStat
     return placed;
 }
 
+/// What an ObjectId's index stands for.
+struct IdSlot {
+    static constexpr uint32_t kNowhere = ~0u;
+    uint32_t place = kNowhere;
+    uint32_t generation = 0;  ///< of the object that has the index now, or had it last
+};
+
 /// The world as its user changes it.
 struct WorldState {
-    ObjectTable objects;
-    OccluderTable occluders{nullptr};
-    std::vector<uint32_t> place_of_index;  ///< ObjectId::index - 1 to place; indices are never given out twice
+    Memory* const memory;
+    ObjectTable objects{memory};
+    OccluderTable occluders{memory};
+    Array<IdSlot> ids{memory};         ///< per ObjectId::index - 1
+    Array<uint32_t> free_ids{memory};  ///< indices of removed objects
     uint32_t living = 0;
-    bool rebuild = true;          ///< objects came, went, or changed between bounded and unbounded
-    std::vector<uint32_t> moved;  ///< places
+    bool rebuild = true;            ///< objects came, went, or changed between bounded and unbounded
+    Array<uint32_t> moved{memory};  ///< places
     std::shared_ptr<const SnapshotState> last;
 
+    explicit WorldState(Memory* from) : memory(from) { occluders.push_back(nullptr); }
+
     ObjectRecord* find(ObjectId id) {
-        if (id.index == 0 || id.index > place_of_index.size()) return nullptr;
-        const uint32_t place = place_of_index[id.index - 1];
-        if (objects[place].id != id) return nullptr;
-        return &objects.change(place);
+        if (id.index == 0 || id.index > ids.size()) return nullptr;
+        const IdSlot& slot = ids[id.index - 1];
+        if (slot.generation != id.generation || slot.place == IdSlot::kNowhere) return nullptr;
+        return &objects.change(slot.place);
+    }
+
+    /// An id for the object that is appended next.
+    ObjectId newId() {
+        if (free_ids.empty()) {
+            ids.emplace_back();
+            free_ids.push_back(static_cast<uint32_t>(ids.size()));
+        }
+        const uint32_t index = free_ids.back();
+        free_ids.pop_back();
+        IdSlot& slot = ids[index - 1];
+        slot.place = objects.size;
+        return {index, ++slot.generation};
     }
 
     std::shared_ptr<SnapshotState> build();
@@ -67,10 +91,10 @@ struct WorldState {
 /// Closes the gaps that removed objects left, once they are as many as the living.
 void WorldState::compact() {
     if (objects.size < 2 * living + 1024) return;
-    ObjectTable packed;
+    ObjectTable packed(memory);
     for (uint32_t place = 0; place < objects.size; ++place) {
         if (objects[place].id.index == 0) continue;
-        place_of_index[objects[place].id.index - 1] = packed.size;
+        ids[objects[place].id.index - 1].place = packed.size;
         packed.append() = objects[place];
     }
     objects = std::move(packed);
@@ -78,13 +102,13 @@ void WorldState::compact() {
 
 std::shared_ptr<SnapshotState> WorldState::build() {
     compact();
-    auto state = std::make_shared<SnapshotState>();
+    auto state = makeShared<SnapshotState>(memory, memory);
     state->objects = objects;
     state->occluders = occluders;
     state->count = living;
     if (living != objects.size) state->items.reserve(living);
-    std::vector<Box3d> boxes;
-    std::vector<uint32_t> boxed;
+    Array<Box3d> boxes(memory);
+    Array<uint32_t> boxed(memory);
     boxes.reserve(living);
     uint32_t item = 0;
     for (uint32_t place = 0; place < objects.size; ++place) {
@@ -102,15 +126,16 @@ std::shared_ptr<SnapshotState> WorldState::build() {
         ++item;
     }
     if (!state->unbounded.empty()) state->boxed = std::move(boxed);
-    state->bvh = buildBvh(boxes);
-    state->placed = placeObjects(*state);
+    state->bvh = buildBvh(boxes, memory);
+    state->placed = placeObjects(*state, memory);
     return state;
 }
 
 /// The last snapshot with moved objects refitted; null if building anew is better.
 std::shared_ptr<SnapshotState> WorldState::refitted() {
     if (!last->unbounded.empty() || !last->items.empty() || moved.size() > living / 4 + 16) return nullptr;
-    auto state = std::make_shared<SnapshotState>(*last);
+    auto state = makeShared<SnapshotState>(memory, memory);
+    *state = *last;
     state->objects = objects;
     for (uint32_t place : moved) {
         const Box3d box = worldBounds(objects[place]);
@@ -124,23 +149,28 @@ std::shared_ptr<SnapshotState> WorldState::refitted() {
 
 }  // namespace detail
 
-World::World() : state_(std::make_unique<detail::WorldState>()) {}
+World::World(const WorldDef& def) : state_(makeOwned<detail::WorldState>(def.memory, def.memory)) {
+    state_->objects.chunks.reserve(def.objects / detail::ObjectChunk::kSize + 1);
+    state_->ids.reserve(def.objects);
+}
+World World::create(const WorldDef& def) { return World(def); }
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
 uint32_t Snapshot::objectCount() const { return state_ ? state_->count : 0; }
 
-OccluderId World::addOccluder(Occluder occluder) {
-    state_->occluders.push_back(std::make_shared<const Occluder>(std::move(occluder)));
+OccluderId World::addOccluder(const Occluder& occluder) {
+    auto copy = makeShared<Occluder>(state_->memory, state_->memory);
+    *copy = occluder;
+    state_->occluders.push_back(std::move(copy));
     state_->rebuild = true;
     return {static_cast<uint32_t>(state_->occluders.size() - 1)};
 }
 
 ObjectId World::add(const ObjectDef& object) {
     SIGHTLINE_ASSERT(object.occluder.index < state_->occluders.size());
-    const ObjectId id{static_cast<uint32_t>(state_->place_of_index.size() + 1), 1};
-    state_->place_of_index.push_back(state_->objects.size);
+    const ObjectId id = state_->newId();
     state_->objects.append() = {object.transform, object.bounds, object.key, id, object.occluder, object.layers};
     ++state_->living;
     state_->rebuild = true;
@@ -151,7 +181,7 @@ bool World::move(ObjectId id, const glm::dmat4& transform) {
     detail::ObjectRecord* object = state_->find(id);
     if (!object) return false;
     object->transform = transform;
-    state_->moved.push_back(state_->place_of_index[id.index - 1]);
+    state_->moved.push_back(state_->ids[id.index - 1].place);
     return true;
 }
 
@@ -159,6 +189,8 @@ bool World::remove(ObjectId id) {
     detail::ObjectRecord* object = state_->find(id);
     if (!object) return false;
     *object = {};
+    state_->ids[id.index - 1].place = detail::IdSlot::kNowhere;
+    state_->free_ids.push_back(id.index);
     --state_->living;
     state_->rebuild = true;
     return true;

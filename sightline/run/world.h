@@ -7,12 +7,14 @@
 
 #include <glm/glm.hpp>
 
+#include "sightline/base/memory.h"
 #include "sightline/geom/occluder.h"
 #include "sightline/math/box.h"
 
 namespace sightline {
 
-/// Ids are plain values; zero is null. A removed object's id is never given out again.
+/// Ids are plain values; zero is null. A removed object's id is never given out again: its index is, with the next
+/// generation.
 struct ObjectId {
     uint32_t index = 0;
     uint32_t generation = 0;
@@ -56,16 +58,24 @@ private:
     std::shared_ptr<const detail::SnapshotState> state_;
 };
 
+/// How a world is set up.
+struct WorldDef {
+    uint32_t objects = 0;              ///< room for so many from the start  [hint]
+    Memory* memory = defaultMemory();  ///< of the world and its snapshots. Thread-safe, if snapshots are let go by
+                                       ///< other threads than the world's; outlives the world and its snapshots
+};
+
 /// The objects as they change. Not thread-safe itself; its snapshots are.
 class World {
 public:
-    World();
+    static World create(const WorldDef& def);
+    World() : World(WorldDef()) {}
     ~World();
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;
 
     /// Copies the occluder; many objects may share it. It lives as long as the world and its snapshots.
-    OccluderId addOccluder(Occluder occluder);
+    OccluderId addOccluder(const Occluder& occluder);
 
     /// Bounds that are NaN, infinite, or empty make an object that is always visible and never hides.
     ObjectId add(const ObjectDef& object);
@@ -73,14 +83,16 @@ public:
     bool move(ObjectId id, const glm::dmat4& transform);
     bool remove(ObjectId id);
 
-    /// The world as it is now. Costs O(changes log objects) for moves and O(objects log objects)
-    /// after additions and removals.
+    /// The world as it is now. Costs O(changes log objects) and a copy of the hierarchy (some 100 bytes an object) for
+    /// moves, and O(objects log objects) after additions and removals.
     Snapshot commit();
 
     uint32_t objectCount() const;
 
 private:
-    std::unique_ptr<detail::WorldState> state_;
+    explicit World(const WorldDef& def);
+
+    Owned<detail::WorldState> state_;
 };
 
 }  // namespace sightline

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
+#include "sightline/base/memory.h"
 #include "sightline/geom/occluder.h"
 #include "sightline/run/world.h"
 #include "sightline/space/bvh.h"
@@ -29,8 +29,10 @@ struct ObjectChunk {
 
 /// Objects by place; places are given in the order of World::add.
 struct ObjectTable {
-    std::vector<std::shared_ptr<ObjectChunk>> chunks;
+    Array<std::shared_ptr<ObjectChunk>> chunks;
     uint32_t size = 0;
+
+    explicit ObjectTable(Memory* memory) : chunks(memory) {}
 
     const ObjectRecord& operator[](uint32_t place) const {
         return chunks[place / ObjectChunk::kSize]->objects[place % ObjectChunk::kSize];
@@ -38,6 +40,7 @@ struct ObjectTable {
     /// For writing: makes the chunk this table's own first.
     ObjectRecord& change(uint32_t place);
     ObjectRecord& append();
+    Memory* memory() const { return chunks.get_allocator().resource(); }
 };
 
 /// What a walk needs of an object that it keeps, in the hierarchy's order: neighbours in space are neighbours here.
@@ -47,19 +50,22 @@ struct PlacedObject {
     uint32_t layers = 0;
 };
 
-using OccluderTable = std::vector<std::shared_ptr<const Occluder>>;  // entry 0 is null
+using OccluderTable = Array<std::shared_ptr<const Occluder>>;  // entry 0 is null
 
 /// An immutable state of a world. Items are the living objects in the order of World::add.
 struct SnapshotState {
     ObjectTable objects;
     OccluderTable occluders;
-    std::vector<uint32_t> items;      ///< item to place; empty if every place is its own item
-    std::vector<uint32_t> boxed;      ///< hierarchy item to item; empty if all items have finite bounds
-    std::vector<uint32_t> unbounded;  ///< items that are always visible
-    Bvh bvh;                          ///< over the boxed items
-    std::shared_ptr<const std::vector<PlacedObject>> placed;  ///< per place of the hierarchy; moves leave it as it is
-    uint32_t count = 0;                                       ///< living objects
-    uint32_t common_layers = ~0u;                             ///< layers that every object is in
+    Array<uint32_t> items;      ///< item to place; empty if every place is its own item
+    Array<uint32_t> boxed;      ///< hierarchy item to item; empty if all items have finite bounds
+    Array<uint32_t> unbounded;  ///< items that are always visible
+    Bvh bvh;                    ///< over the boxed items
+    std::shared_ptr<const Array<PlacedObject>> placed;  ///< per place of the hierarchy; moves leave it as it is
+    uint32_t count = 0;                                 ///< living objects
+    uint32_t common_layers = ~0u;                       ///< layers that every object is in
+
+    explicit SnapshotState(Memory* memory)
+        : objects(memory), occluders(memory), items(memory), boxed(memory), unbounded(memory), bvh(memory) {}
 
     uint32_t placeOf(uint32_t item) const { return items.empty() ? item : items[item]; }
     uint32_t itemOf(uint32_t hierarchy_item) const { return boxed.empty() ? hierarchy_item : boxed[hierarchy_item]; }

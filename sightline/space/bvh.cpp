@@ -39,9 +39,9 @@ struct Range {
 };
 
 struct Builder {
-    std::vector<Box3f> boxes;
-    std::vector<glm::vec3> centers;
-    std::vector<uint32_t>& order;
+    Array<Box3f> boxes;
+    Array<glm::vec3> centers;
+    Array<uint32_t>& order;
 
     Box3f boundsOf(uint32_t first, uint32_t last) const {
         Box3f box;
@@ -183,8 +183,8 @@ Box3f roundOutward(const Box3d& box, const glm::dvec3& origin) {
     return out;
 }
 
-Bvh buildBvh(std::span<const Box3d> boxes) {
-    Bvh bvh;
+Bvh buildBvh(std::span<const Box3d> boxes, Memory* memory) {
+    Bvh bvh(memory);
     const uint32_t count = static_cast<uint32_t>(boxes.size());
     if (count == 0) return bvh;
     Box3d world;
@@ -192,7 +192,7 @@ Bvh buildBvh(std::span<const Box3d> boxes) {
     bvh.origin = world.center();
     bvh.order.resize(count);
     bvh.slot.resize(count);
-    Builder builder{{}, {}, bvh.order};
+    Builder builder{Array<Box3f>(memory), Array<glm::vec3>(memory), bvh.order};
     builder.boxes.resize(count);
     builder.centers.resize(count);
     for (uint32_t i = 0; i < count; ++i) {
@@ -204,7 +204,7 @@ Bvh buildBvh(std::span<const Box3d> boxes) {
         Range range;
         uint32_t parent;
     };
-    std::vector<Job> jobs{{{0, count, builder.boundsOf(0, count)}, ~0u}};
+    Array<Job> jobs({{{0, count, builder.boundsOf(0, count)}, ~0u}}, memory);
     bvh.nodes.reserve(count / 4 + 1);
     while (!jobs.empty()) {
         const Job job = jobs.back();

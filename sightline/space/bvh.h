@@ -7,8 +7,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "sightline/base/memory.h"
 #include "sightline/math/box.h"
 
 namespace sightline {
@@ -26,19 +26,22 @@ struct alignas(64) BvhNode {
 /// Items are boxes in float around a double origin: an item's true box is inside origin + box.
 struct Bvh {
     glm::dvec3 origin{0.0};
-    std::vector<BvhNode> nodes;    ///< the root is nodes[0]; empty if there are no items
-    std::vector<uint32_t> order;   ///< place to item
-    std::vector<uint32_t> parent;  ///< per node: parent's index * 8 + slot; the root's is ~0
-    std::vector<uint32_t> slot;    ///< per item: node's index * 8 + slot
-    double built_cost = 0;         ///< surface cost when built, for deciding when to build anew
+    Array<BvhNode> nodes;    ///< the root is nodes[0]; empty if there are no items
+    Array<uint32_t> order;   ///< place to item
+    Array<uint32_t> parent;  ///< per node: parent's index * 8 + slot; the root's is ~0
+    Array<uint32_t> slot;    ///< per item: node's index * 8 + slot
+    double built_cost = 0;   ///< surface cost when built, for deciding when to build anew
+
+    explicit Bvh(Memory* memory = defaultMemory()) : nodes(memory), order(memory), parent(memory), slot(memory) {}
 };
 
 /// The box relative to an origin, rounded outward.
 Box3f roundOutward(const Box3d& box, const glm::dvec3& origin);
 
 /// Builds by binned surface area heuristic. O(n log n); deterministic.
-/// @param boxes  world space, finite and not empty
-Bvh buildBvh(std::span<const Box3d> boxes);
+/// @param boxes   world space, finite and not empty
+/// @param memory  for the hierarchy and for what building it needs
+Bvh buildBvh(std::span<const Box3d> boxes, Memory* memory = defaultMemory());
 
 /// Gives one item a new box and mends the bounds above it. O(depth).
 void refit(Bvh& bvh, uint32_t item, const Box3d& box);

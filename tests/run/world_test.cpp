@@ -1,0 +1,202 @@
+// The laws of worlds: ids are never mistaken for one another, and all memory comes through the hook.
+// SPDX-License-Identifier: MIT
+#include "sightline/run/world.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <memory_resource>
+#include <new>
+#include <vector>
+
+#include "sightline/base/random.h"
+#include "sightline/prepare/occluder.h"
+#include "sightline/run/query.h"
+
+namespace {
+std::atomic<uint64_t> global_allocations{0};
+
+void* allocateGlobally(size_t size, size_t alignment) {
+    ++global_allocations;
+    void* place = nullptr;
+    if (posix_memalign(&place, std::max(alignment, sizeof(void*)), size) != 0) throw std::bad_alloc();
+    return place;
+}
+}  // namespace
+
+// Replaced for the whole test binary, to count what does not go through the hook.
+void* operator new(size_t size) { return allocateGlobally(size, alignof(std::max_align_t)); }
+void* operator new(size_t size, std::align_val_t align) { return allocateGlobally(size, static_cast<size_t>(align)); }
+void operator delete(void* place) noexcept { std::free(place); }
+void operator delete(void* place, size_t) noexcept { std::free(place); }
+void operator delete(void* place, std::align_val_t) noexcept { std::free(place); }
+void operator delete(void* place, size_t, std::align_val_t) noexcept { std::free(place); }
+
+namespace sightline::test {
+namespace {
+
+/// Counts what is in use; takes from malloc.
+class CountingMemory : public Memory {
+public:
+    uint64_t allocations = 0, bytes = 0;
+
+private:
+    void* do_allocate(size_t size, size_t alignment) override {
+        ++allocations;
+        bytes += size;
+        void* place = nullptr;
+        return posix_memalign(&place, std::max(alignment, sizeof(void*)), size) == 0 ? place : nullptr;
+    }
+    void do_deallocate(void* place, size_t size, size_t) override {
+        bytes -= size;
+        std::free(place);
+    }
+    bool do_is_equal(const Memory& other) const noexcept override { return this == &other; }
+};
+
+Occluder cube() {
+    std::vector<glm::vec3> positions;
+    std::vector<uint32_t> indices;
+    for (int i = 0; i < 8; ++i) positions.push_back({float(i & 1), float(i >> 1 & 1), float(i >> 2)});
+    const uint32_t faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    for (const auto& f : faces)
+        for (int k : {0, 1, 2, 0, 2, 3}) indices.push_back(f[k]);
+    return prepareOccluder({positions, indices});
+}
+
+ObjectDef boxAt(const glm::dvec3& p, double size, OccluderId occluder = {}) {
+    ObjectDef def;
+    def.bounds = {glm::dvec3(0.0), glm::dvec3(1.0)};
+    for (int axis = 0; axis < 3; ++axis) def.transform[axis][axis] = size;
+    def.transform[3] = glm::dvec4(p, 1.0);
+    def.occluder = occluder;
+    return def;
+}
+
+View viewFrom(const glm::dvec3& eye, const glm::dvec3& target) {
+    View view;
+    view.width = 320;
+    view.height = 200;
+    view.view = lookAt(eye, target, {0, 1, 0});
+    view.projection = perspective(1.0, 1.6, 0.1);
+    return view;
+}
+
+TEST(World, StaleIdsDoNothingEvenAfterTheirIndexIsUsedAgain) {
+    World world;
+    std::vector<ObjectId> old;
+    for (int i = 0; i < 5000; ++i) old.push_back(world.add(boxAt({i, 0, 0}, 1)));
+    world.commit();
+    for (int i = 1; i < 5000; ++i) EXPECT_TRUE(world.remove(old[static_cast<size_t>(i)]));
+    world.commit();  // closes the gaps: places are fewer now than the stale ids remember
+    EXPECT_EQ(world.objectCount(), 1u);
+    for (int i = 1; i < 5000; ++i) {
+        EXPECT_FALSE(world.remove(old[static_cast<size_t>(i)]));
+        EXPECT_FALSE(world.move(old[static_cast<size_t>(i)], glm::dmat4(1.0)));
+    }
+    std::vector<ObjectId> fresh;
+    for (int i = 0; i < 100; ++i) fresh.push_back(world.add(boxAt({i, 0, 0}, 1)));
+    for (const ObjectId& id : fresh) {
+        EXPECT_LE(id.index, 5000u) << "indices of removed objects are used again";
+        for (const ObjectId& other : old) EXPECT_FALSE(other == id);
+    }
+    for (int i = 1; i < 5000; ++i) EXPECT_FALSE(world.remove(old[static_cast<size_t>(i)]));
+    EXPECT_TRUE(world.remove(old[0]));
+    EXPECT_FALSE(world.remove(ObjectId{}));
+    EXPECT_FALSE(world.remove(ObjectId{999999, 1}));
+    EXPECT_EQ(world.objectCount(), 100u);
+}
+
+TEST(World, AllMemoryComesThroughTheHookAndGoesBack) {
+    CountingMemory memory;
+    {
+        const Occluder shape = cube();
+        Random random(7);
+        const uint64_t before = global_allocations;
+        WorldDef def;
+        def.objects = 2000;
+        def.memory = &memory;
+        World world = World::create(def);
+        const OccluderId occluder = world.addOccluder(shape);
+        ObjectId last;
+        for (int i = 0; i < 2000; ++i)
+            last = world.add(
+                boxAt({random.uniform(-50, 50), 0, random.uniform(-50, 50)}, random.uniform(0.5, 3), occluder));
+        Query query(&memory);
+        Snapshot now = world.commit();
+        query.visible(now, viewFrom({0, 1, 0}, {10, 1, 3}));
+        world.move(last, glm::dmat4(1.0));
+        now = world.commit();
+        query.visible(now, viewFrom({0, 1, 0}, {10, 1, 3}));
+        world.remove(last);
+        now = world.commit();
+        query.visible(now, viewFrom({0, 1, 0}, {10, 1, 3}));
+        query.changes();
+        query.depthImage();
+        EXPECT_EQ(global_allocations, before);
+        EXPECT_GT(memory.bytes, 0u);
+    }
+    EXPECT_EQ(memory.bytes, 0u);
+}
+
+TEST(Query, AllocatesNothingOnceItHasSeenItsViews) {
+    CountingMemory memory;
+    World world;
+    const OccluderId occluder = world.addOccluder(cube());
+    Random random(8);
+    for (int i = 0; i < 3000; ++i)
+        world.add(boxAt({random.uniform(-50, 50), 0, random.uniform(-50, 50)}, random.uniform(0.5, 3), occluder));
+    const Snapshot now = world.commit();
+    Query query(&memory);
+    for (int round = 0; round < 3; ++round) {
+        const uint64_t before = memory.allocations;
+        for (int frame = 0; frame < 12; ++frame) {
+            query.visible(now, viewFrom({0, 1, 0}, {std::cos(frame), 1, std::sin(frame)}));
+            query.changes();
+        }
+        if (round == 2) { EXPECT_EQ(memory.allocations, before); }
+    }
+}
+
+TEST(Query, SaysWhatAppearedAndWhatDisappeared) {
+    World world;
+    std::vector<ObjectId> ids;
+    Random random(9);
+    for (int i = 0; i < 400; ++i) {
+        ObjectDef def = boxAt({random.uniform(-50, 50), 0, random.uniform(-50, 50)}, random.uniform(0.5, 3));
+        def.key = static_cast<uint64_t>(i);
+        ids.push_back(world.add(def));
+    }
+    Query query;
+    std::vector<Visible> before;
+    uint64_t seen_changes = 0;
+    for (int frame = 0; frame < 60; ++frame) {
+        if (frame % 7 == 3) {  // a removed object's index goes to a new one
+            const size_t victim = static_cast<size_t>(frame);
+            world.remove(ids[victim]);
+            ids[victim] = world.add(boxAt({random.uniform(-50, 50), 0, random.uniform(-50, 50)}, 2));
+        }
+        const double angle = 0.13 * frame;
+        const VisibleSet set =
+            query.visible(world.commit(), viewFrom({0, 1, 0}, {std::cos(angle), 1, std::sin(angle)}));
+        const std::vector<Visible> after(set.objects.begin(), set.objects.end());
+        const auto in = [](const std::vector<Visible>& list, ObjectId id) {
+            return std::any_of(list.begin(), list.end(), [&](const Visible& v) { return v.id == id; });
+        };
+        const VisibleChanges changes = query.changes();
+        size_t appeared = 0, disappeared = 0;
+        for (const Visible& v : after) appeared += !in(before, v.id);
+        for (const Visible& v : before) disappeared += !in(after, v.id);
+        EXPECT_EQ(changes.appeared.size(), appeared);
+        EXPECT_EQ(changes.disappeared.size(), disappeared);
+        for (const Visible& v : changes.appeared) EXPECT_TRUE(in(after, v.id) && !in(before, v.id));
+        for (const Visible& v : changes.disappeared) EXPECT_TRUE(in(before, v.id) && !in(after, v.id));
+        seen_changes += appeared + disappeared;
+        before = after;
+    }
+    EXPECT_GT(seen_changes, 100u);
+}
+
+}  // namespace
+}  // namespace sightline::test
