@@ -10,20 +10,10 @@
 
 #include <glm/glm.hpp>
 
-#include "sightline/geom/mesh_view.h"
 #include "sightline/geom/view.h"
+#include "sightline/hidden/draw_item.h"
 
 namespace sightline {
-
-/// One mesh to draw. Single-sided back faces are not drawn.
-struct DrawItem {
-    MeshView mesh;
-    std::span<const uint8_t> double_sided;  ///< per triangle [size: triangles, or empty for none]
-    std::span<const uint8_t> writes_depth;  ///< per triangle: 0 is seen but hides nothing, as blended ones
-                                            ///< [size: triangles, or empty for all]
-    glm::dmat4 transform{1.0};              ///< object to world
-    uint32_t id = 0;
-};
 
 /// What a z-buffer pass leaves at each sample. Row 0 is the bottom row.
 struct ZBufferImage {

@@ -1,0 +1,196 @@
+// From meshes to the screen: transforms vertices, drops back faces and what lies outside, clips the rest.
+// SPDX-License-Identifier: MIT
+#include "sightline/hidden/projector.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sightline {
+namespace {
+
+/// Beyond this many half viewports polygons are clipped at the sides as well, so that screen positions stay small.
+constexpr double kGuardBand = 4.0;
+/// A valid projection has w >= near > 0 in front of the near plane; others are kept from dividing by zero.
+constexpr double kSmallestW = 1e-30;
+
+/// Six times the signed volume of eye and triangle in (x, y, w): positive for a counter-clockwise image,
+/// whether or not the triangle crosses the near plane. Also its normal in that space.
+double imageVolume(const glm::dvec4& a, const glm::dvec4& b, const glm::dvec4& c, glm::dvec3& normal) {
+    const glm::dvec3 p(a.x, a.y, a.w);
+    const glm::dvec3 q(b.x, b.y, b.w);
+    const glm::dvec3 r(c.x, c.y, c.w);
+    normal = glm::cross(q - p, r - p);
+    return glm::dot(normal, p);
+}
+
+/// True if a small triangle passes between two rows or two columns of samples without touching either.
+bool betweenSamples(const glm::dvec2* points) {
+    const glm::dvec2 low = glm::min(glm::min(points[0], points[1]), points[2]) - 0.5;
+    const glm::dvec2 high = glm::max(glm::max(points[0], points[1]), points[2]) - 0.5;
+    return std::ceil(low.x) > high.x || std::ceil(low.y) > high.y;
+}
+
+bool clipAll(ClipPolygon& polygon) {
+    const glm::dvec4 planes[ClipPolygon::kMaxPlanes] = {
+        {0, 0, 1, 0},           {0, 0, -1, 2},         {0, 0, 0, 1},          {1, 0, 0, kGuardBand},
+        {-1, 0, 0, kGuardBand}, {0, 1, 0, kGuardBand}, {0, -1, 0, kGuardBand}};
+    for (const glm::dvec4& plane : planes) {
+        ClipPolygon rest;
+        clipToPlane(polygon, plane, rest);
+        polygon = rest;
+    }
+    for (int i = 0; i < polygon.count; ++i)
+        if (!(polygon.vertices[i].w >= kSmallestW)) return false;
+    return polygon.count >= 3;
+}
+
+}  // namespace
+
+Projector::Projector(const View& view, const SampleGrid& grid)
+    : orthographic_(isOrthographic(view)),
+      eye_(eyePosition(view)),
+      rotation_(glm::dmat3(view.view)),
+      projection_(view.projection) {
+    // z and w are summed as rows: a parallel projection to infinity has a z that double cannot tell from -w.
+    for (int column = 0; column < 4; ++column) projection_[column][2] += projection_[column][3];
+    // The usual projection turns a right-handed eye space into a left-handed clip space.
+    mirrored_ = (glm::determinant(view.projection) > 0) != (glm::determinant(glm::dmat3(view.view)) < 0);
+    const double samples = grid.samples;
+    // Sample (i, j) lies at clip position x/w = scale * i + start.
+    scale_ = glm::dvec2(2.0 / (view.width * samples), 2.0 / (view.height * samples));
+    start_ = (glm::dvec2(0.5 / samples) + grid.offset) * glm::dvec2(2.0 / view.width, 2.0 / view.height) - 1.0;
+    // Two samples of room, so that rounding here cannot reject what a sample would see.
+    low_ = start_ + scale_ * glm::dvec2(-2.0, grid.first_row - 2.0);
+    high_ = start_ + scale_ * glm::dvec2(grid.width + 2.0, double(grid.first_row) + grid.height + 2.0);
+}
+
+void Projector::begin(const DrawItem& item) {
+    item_ = &item;
+    flipped_ = (glm::determinant(glm::dmat3(item.transform)) < 0) != mirrored_;
+    // The difference of the large translations comes first: what follows is relative to the eye.
+    const glm::dmat3 turn = rotation_ * glm::dmat3(item.transform);
+    glm::dmat4 to_eye(turn);
+    to_eye[3] = glm::dvec4(rotation_ * (glm::dvec3(item.transform[3]) - eye_), 1.0);
+    const glm::dmat4 to_clip = projection_ * to_eye;
+    const glm::dvec4 depth(to_eye[0].z, to_eye[1].z, to_eye[2].z, to_eye[3].z);
+    vertices_.resize(item.mesh.positions.size());
+    for (size_t i = 0; i < vertices_.size(); ++i) {
+        Vertex& vertex = vertices_[i];
+        const glm::dvec4 position(glm::dvec3(item.mesh.positions[i]), 1.0);
+        const glm::dvec4 clip = to_clip * position;
+        vertex.clip = clip;
+        if (orthographic_) vertex.eye_z = glm::dot(depth, position);
+        const double size = std::abs(clip.x) + std::abs(clip.y) + std::abs(clip.z) + std::abs(clip.w);
+        uint8_t outside = std::isfinite(size) ? 0 : Vertex::kBroken;
+        if (clip.x < low_.x * clip.w) outside |= Vertex::kLeft;
+        if (clip.x > high_.x * clip.w) outside |= Vertex::kRight;
+        if (clip.y < low_.y * clip.w) outside |= Vertex::kBottom;
+        if (clip.y > high_.y * clip.w) outside |= Vertex::kTop;
+        if (clip.z < 0) outside |= Vertex::kNear;
+        if (2 * clip.w - clip.z < 0) outside |= Vertex::kFar;
+        const double guard = kGuardBand * clip.w;
+        if (!(std::abs(clip.x) <= guard && std::abs(clip.y) <= guard && clip.w >= kSmallestW))
+            outside |= Vertex::kGuard;
+        vertex.outside = outside;
+        if ((outside & Vertex::kClip) == 0) vertex.point = pointOf(clip);
+    }
+}
+
+bool Projector::project(size_t triangle, ScreenPolygon& out) {
+    ++counters_.triangles;
+    const std::span<const uint32_t> indices = item_->mesh.indices;
+    const Vertex& a = vertices_[indices[3 * triangle]];
+    const Vertex& b = vertices_[indices[3 * triangle + 1]];
+    const Vertex& c = vertices_[indices[3 * triangle + 2]];
+    if ((a.outside & b.outside & c.outside & Vertex::kReject) != 0 ||
+        ((a.outside | b.outside | c.outside) & Vertex::kBroken) != 0) {
+        ++counters_.rejected;
+        return false;
+    }
+    const bool double_sided = !item_->double_sided.empty() && item_->double_sided[triangle] != 0;
+    glm::dvec3 normal;
+    const double volume = imageVolume(a.clip, b.clip, c.clip, normal);
+    if (volume == 0 || (!double_sided && (volume > 0) == flipped_)) {
+        ++counters_.back_facing;
+        return false;
+    }
+    ClipPolygon polygon;
+    polygon.count = 3;
+    polygon.vertices[0] = a.clip;
+    polygon.vertices[1] = b.clip;
+    polygon.vertices[2] = c.clip;
+    out.points[0] = a.point;
+    out.points[1] = b.point;
+    out.points[2] = c.point;
+    if (((a.outside | b.outside | c.outside) & Vertex::kClip) != 0) {
+        ++counters_.clipped;
+        if (!clipAll(polygon)) return false;
+        for (int i = 0; i < polygon.count; ++i) out.points[i] = pointOf(polygon.vertices[i]);
+    } else if (betweenSamples(out.points)) {
+        ++counters_.rejected;
+        return false;
+    } else {
+        ++counters_.accepted;
+    }
+    ++counters_.produced;
+    out.count = polygon.count;
+    out.depth = orthographic_ ? parallelPlane(a, b, c, normal) : perspectivePlane(normal / volume, polygon);
+    return true;
+}
+
+/// On the triangle's plane, dot(gradient, (x, y, w)) = 1: divided by w, this is 1/w as a function of the place.
+DepthPlane Projector::perspectivePlane(const glm::dvec3& gradient, const ClipPolygon& polygon) const {
+    DepthPlane plane;
+    plane.per_sample = gradient.x * scale_.x;
+    plane.per_row = gradient.y * scale_.y;
+    plane.origin = gradient.x * start_.x + gradient.y * start_.y + gradient.z;
+    plane.low = plane.high = 1.0 / polygon.vertices[0].w;
+    for (int i = 1; i < polygon.count; ++i) {
+        plane.low = std::min(plane.low, 1.0 / polygon.vertices[i].w);
+        plane.high = std::max(plane.high, 1.0 / polygon.vertices[i].w);
+    }
+    return plane;
+}
+
+/// Parallel projection: eye-space z is linear over the image already.
+DepthPlane Projector::parallelPlane(const Vertex& a, const Vertex& b, const Vertex& c, const glm::dvec3& normal) const {
+    const double w = a.clip.w;
+    const glm::dvec2 ab = glm::dvec2(b.clip - a.clip), ac = glm::dvec2(c.clip - a.clip);
+    const double ab_z = b.eye_z - a.eye_z, ac_z = c.eye_z - a.eye_z;
+    const glm::dvec2 gradient = w / normal.z * glm::dvec2(ab_z * ac.y - ac_z * ab.y, ac_z * ab.x - ab_z * ac.x);
+    DepthPlane plane;
+    plane.per_sample = gradient.x * scale_.x;
+    plane.per_row = gradient.y * scale_.y;
+    plane.origin = a.eye_z + glm::dot(gradient, start_ - glm::dvec2(a.clip) / w);
+    plane.low = std::min({a.eye_z, b.eye_z, c.eye_z});
+    plane.high = std::max({a.eye_z, b.eye_z, c.eye_z});
+    return plane;
+}
+
+glm::dvec4 Projector::overSamples(const glm::dvec4& plane) const {
+    // Relative to the eye and turned: dot(n, e) + d, e a point in eye space.
+    const glm::dvec3 n = rotation_ * glm::dvec3(plane);
+    const double d = glm::dot(glm::dvec3(plane), eye_) + plane.w;
+    double x, y, depth, rest;  // the same over x / w, y / w, nearness and 1
+    if (orthographic_) {
+        const double w = projection_[3][3];
+        const glm::dmat2 across(projection_[0][0], projection_[0][1], projection_[1][0], projection_[1][1]);
+        const glm::dvec2 q = glm::transpose(glm::inverse(across)) * glm::dvec2(n);
+        x = q.x * w;
+        y = q.y * w;
+        depth = n.z - glm::dot(q, glm::dvec2(projection_[2]));
+        rest = d - glm::dot(q, glm::dvec2(projection_[3]));
+    } else {
+        const glm::dvec3 columns[3] = {{projection_[0][0], projection_[0][1], projection_[0][3]},
+                                       {projection_[1][0], projection_[1][1], projection_[1][3]},
+                                       {projection_[2][0], projection_[2][1], projection_[2][3]}};
+        const glm::dvec3 q = glm::transpose(glm::inverse(glm::dmat3(columns[0], columns[1], columns[2]))) * n;
+        x = q.x;
+        y = q.y;
+        rest = q.z;
+        depth = d;
+    }
+    return {x * scale_.x, y * scale_.y, depth, rest + x * start_.x + y * start_.y};
+}
+
+}  // namespace sightline
