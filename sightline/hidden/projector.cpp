@@ -193,4 +193,20 @@ glm::dvec4 Projector::overSamples(const glm::dvec4& plane) const {
     return {x * scale_.x, y * scale_.y, depth, rest + x * start_.x + y * start_.y};
 }
 
+std::vector<ScreenPolygon> projectAll(const DrawList& list, Projector& projector) {
+    std::vector<ScreenPolygon> polygons;
+    ScreenPolygon polygon;
+    for (size_t i = 0; i < list.items().size(); ++i) {
+        const DrawItem& item = list.items()[i];
+        projector.begin(item);
+        for (size_t triangle = 0; triangle < item.mesh.triangles(); ++triangle) {
+            if (!item.writes_depth.empty() && item.writes_depth[triangle] == 0) continue;
+            if (!projector.project(triangle, polygon)) continue;
+            polygon.surface = list.firstSurface(i) + static_cast<uint32_t>(triangle);
+            polygons.push_back(polygon);
+        }
+    }
+    return polygons;
+}
+
 }  // namespace sightline

@@ -87,4 +87,7 @@ private:
     ProjectorCounters counters_;
 };
 
+/// All polygons of a list that write depth, in the order of their surfaces.
+std::vector<ScreenPolygon> projectAll(const DrawList& list, Projector& projector);
+
 }  // namespace sightline

@@ -1,0 +1,42 @@
+// Hidden-surface removal: every classical method, one signature, one image.
+// SPDX-License-Identifier: MIT
+#include "sightline/hidden/render.h"
+
+#include <chrono>
+
+#include "sightline/base/assert.h"
+#include "sightline/hidden/painter.h"
+
+namespace sightline {
+namespace {
+
+using Draw = void (*)(const HiddenInput&, HiddenImage&);
+
+/// In the order of HiddenMethod.
+constexpr Draw kMethods[kHiddenMethods] = {drawPainter, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
+
+}  // namespace
+
+HiddenImage render(const DrawList& list, const View& view, const RenderSettings& settings) {
+    const auto start = std::chrono::steady_clock::now();
+    HiddenImage image;
+    image.width = view.width;
+    image.height = view.height;
+    const size_t samples = size_t{view.width} * view.height;
+    image.surface.assign(samples, HiddenImage::kNone);
+    if (settings.want_counts)
+        for (std::vector<uint16_t>* counts : {&image.generated, &image.tested, &image.passed, &image.shaded})
+            counts->assign(samples, 0);
+    if (isUsable(view)) {
+        const Draw draw = kMethods[static_cast<int>(settings.method)];
+        SIGHTLINE_ASSERT(draw != nullptr);
+        draw({list, view, settings}, image);
+    }
+    const auto spent = std::chrono::steady_clock::now() - start;
+    image.counters.nanoseconds =
+        static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count()) -
+        image.counters.prepare_nanoseconds;
+    return image;
+}
+
+}  // namespace sightline
