@@ -4,24 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sightline {
 namespace {
 
-/// Beyond this many half viewports polygons are clipped at the sides as well, so that screen positions stay small.
-constexpr double kGuardBand = 4.0;
 /// A valid projection has w >= near > 0 in front of the near plane; others are kept from dividing by zero.
 constexpr double kSmallestW = 1e-30;
-
-/// Six times the signed volume of eye and triangle in (x, y, w): positive for a counter-clockwise image,
-/// whether or not the triangle crosses the near plane. Also its normal in that space.
-double imageVolume(const glm::dvec4& a, const glm::dvec4& b, const glm::dvec4& c, glm::dvec3& normal) {
-    const glm::dvec3 p(a.x, a.y, a.w);
-    const glm::dvec3 q(b.x, b.y, b.w);
-    const glm::dvec3 r(c.x, c.y, c.w);
-    normal = glm::cross(q - p, r - p);
-    return glm::dot(normal, p);
-}
 
 /// True if a small triangle passes between two rows or two columns of samples without touching either.
 bool betweenSamples(const glm::dvec2* points) {
@@ -30,31 +19,21 @@ bool betweenSamples(const glm::dvec2* points) {
     return std::ceil(low.x) > high.x || std::ceil(low.y) > high.y;
 }
 
-bool clipAll(ClipPolygon& polygon) {
-    const glm::dvec4 planes[ClipPolygon::kMaxPlanes] = {
-        {0, 0, 1, 0},           {0, 0, -1, 2},         {0, 0, 0, 1},          {1, 0, 0, kGuardBand},
-        {-1, 0, 0, kGuardBand}, {0, 1, 0, kGuardBand}, {0, -1, 0, kGuardBand}};
-    for (const glm::dvec4& plane : planes) {
-        ClipPolygon rest;
-        clipToPlane(polygon, plane, rest);
-        polygon = rest;
-    }
-    for (int i = 0; i < polygon.count; ++i)
-        if (!(polygon.vertices[i].w >= kSmallestW)) return false;
-    return polygon.count >= 3;
-}
-
 }  // namespace
 
-Projector::Projector(const View& view, const SampleGrid& grid)
+Projector::Projector(const View& view, const SampleGrid& grid, const ProjectorSettings& settings)
     : orthographic_(isOrthographic(view)),
+      settings_(settings),
+      grid_(grid),
       eye_(eyePosition(view)),
       rotation_(glm::dmat3(view.view)),
       projection_(view.projection) {
     // z and w are summed as rows: a parallel projection to infinity has a z that double cannot tell from -w.
     for (int column = 0; column < 4; ++column) projection_[column][2] += projection_[column][3];
     // The usual projection turns a right-handed eye space into a left-handed clip space.
-    mirrored_ = (glm::determinant(view.projection) > 0) != (glm::determinant(glm::dmat3(view.view)) < 0);
+    const bool turned = settings.front_face == FrontFace::kClockwise;
+    eye_mirrored_ = (glm::determinant(glm::dmat3(view.view)) < 0) != turned;
+    mirrored_ = (glm::determinant(view.projection) > 0) != eye_mirrored_;
     const double samples = grid.samples;
     // Sample (i, j) lies at clip position x/w = scale * i + start.
     scale_ = glm::dvec2(2.0 / (view.width * samples), 2.0 / (view.height * samples));
@@ -62,17 +41,33 @@ Projector::Projector(const View& view, const SampleGrid& grid)
     // Two samples of room, so that rounding here cannot reject what a sample would see.
     low_ = start_ + scale_ * glm::dvec2(-2.0, grid.first_row - 2.0);
     high_ = start_ + scale_ * glm::dvec2(grid.width + 2.0, double(grid.first_row) + grid.height + 2.0);
+    const auto add = [this](const glm::dvec4& plane) { planes_[plane_count_++] = plane; };
+    add({0, 0, 1, 0});
+    add({0, 0, -1, 2});
+    const bool at_sides = settings.clipping == Clipping::kFrustum;
+    if (!at_sides) add({0, 0, 0, 1});
+    // The sides are those of the samples with their room: an edge that clipping makes runs between no two samples.
+    const glm::dvec2 low = at_sides ? low_ : glm::dvec2(-settings.guard_band);
+    const glm::dvec2 high = at_sides ? high_ : glm::dvec2(settings.guard_band);
+    add({1, 0, 0, -low.x});
+    add({-1, 0, 0, high.x});
+    add({0, 1, 0, -low.y});
+    add({0, -1, 0, high.y});
+    if (at_sides) clip_mask_ |= Vertex::kReject;
 }
 
 void Projector::begin(const DrawItem& item) {
     item_ = &item;
-    flipped_ = (glm::determinant(glm::dmat3(item.transform)) < 0) != mirrored_;
+    const bool turned = glm::determinant(glm::dmat3(item.transform)) < 0;
+    flipped_ = turned != mirrored_;
+    eye_flipped_ = turned != eye_mirrored_;
     // The difference of the large translations comes first: what follows is relative to the eye.
     const glm::dmat3 turn = rotation_ * glm::dmat3(item.transform);
     glm::dmat4 to_eye(turn);
     to_eye[3] = glm::dvec4(rotation_ * (glm::dvec3(item.transform[3]) - eye_), 1.0);
     const glm::dmat4 to_clip = projection_ * to_eye;
     const glm::dvec4 depth(to_eye[0].z, to_eye[1].z, to_eye[2].z, to_eye[3].z);
+    const double band = settings_.guard_band;
     vertices_.resize(item.mesh.positions.size());
     for (size_t i = 0; i < vertices_.size(); ++i) {
         Vertex& vertex = vertices_[i];
@@ -88,12 +83,41 @@ void Projector::begin(const DrawItem& item) {
         if (clip.y > high_.y * clip.w) outside |= Vertex::kTop;
         if (clip.z < 0) outside |= Vertex::kNear;
         if (2 * clip.w - clip.z < 0) outside |= Vertex::kFar;
-        const double guard = kGuardBand * clip.w;
+        const double guard = band * clip.w;
         if (!(std::abs(clip.x) <= guard && std::abs(clip.y) <= guard && clip.w >= kSmallestW))
             outside |= Vertex::kGuard;
         vertex.outside = outside;
         if ((outside & Vertex::kClip) == 0) vertex.point = pointOf(clip);
     }
+    in_eye_space_.clear();
+    if (settings_.facing_test == FacingTest::kEyePlane)
+        for (const glm::vec3& position : item.mesh.positions)
+            in_eye_space_.push_back(to_eye * glm::dvec4(glm::dvec3(position), 1.0));
+}
+
+/// Facing in eye space, the eye being its origin and -z the direction of view.
+bool Projector::isBackByPlane(size_t triangle) const {
+    const uint32_t* index = item_->mesh.indices.data() + 3 * triangle;
+    const glm::dvec3 &a = in_eye_space_[index[0]], &b = in_eye_space_[index[1]], &c = in_eye_space_[index[2]];
+    const double side =
+        orthographic_ ? parallelFacing(faceNormal(a, b, c), {0, 0, -1}) : eyeFacing(a, b, c, glm::dvec3(0.0));
+    return side == 0 || isBack(triangle, side, eye_flipped_);
+}
+
+bool Projector::clip(ClipPolygon& polygon) const {
+    glm::dvec4 buffers[2][ClipPolygon::kMaxVertices + 1];
+    std::span<const glm::dvec4> rest(polygon.vertices, static_cast<size_t>(polygon.count));
+    for (int i = 0; i < plane_count_; ++i) {
+        glm::dvec4* out = buffers[i & 1];
+        const int count = clipToPlane(rest, planes_[i], {out, rest.size() + 1});
+        if (count == 0) return false;
+        rest = {out, static_cast<size_t>(count)};
+    }
+    polygon.count = static_cast<int>(rest.size());
+    std::copy(rest.begin(), rest.end(), polygon.vertices);
+    for (const glm::dvec4& vertex : rest)
+        if (!(vertex.w >= kSmallestW)) return false;
+    return true;
 }
 
 bool Projector::project(size_t triangle, ScreenPolygon& out) {
@@ -107,10 +131,10 @@ bool Projector::project(size_t triangle, ScreenPolygon& out) {
         ++counters_.rejected;
         return false;
     }
-    const bool double_sided = !item_->double_sided.empty() && item_->double_sided[triangle] != 0;
     glm::dvec3 normal;
-    const double volume = imageVolume(a.clip, b.clip, c.clip, normal);
-    if (volume == 0 || (!double_sided && (volume > 0) == flipped_)) {
+    const double volume = homogeneousFacing(a.clip, b.clip, c.clip, normal);
+    if (volume == 0 || (settings_.facing_test == FacingTest::kHomogeneous && isBack(triangle, volume, flipped_)) ||
+        (settings_.facing_test == FacingTest::kEyePlane && isBackByPlane(triangle))) {
         ++counters_.back_facing;
         return false;
     }
@@ -122,19 +146,64 @@ bool Projector::project(size_t triangle, ScreenPolygon& out) {
     out.points[0] = a.point;
     out.points[1] = b.point;
     out.points[2] = c.point;
-    if (((a.outside | b.outside | c.outside) & Vertex::kClip) != 0) {
-        ++counters_.clipped;
-        if (!clipAll(polygon)) return false;
+    const uint8_t outside = a.outside | b.outside | c.outside;
+    const bool cut = (outside & clip_mask_) != 0;
+    const bool left = !cut || clip(polygon);
+    if (cut && left)
         for (int i = 0; i < polygon.count; ++i) out.points[i] = pointOf(polygon.vertices[i]);
+    out.count = polygon.count;
+    if (settings_.facing_test == FacingTest::kScreenArea && left) {
+        const double area = screenFacing(out.outline());
+        if (area == 0 || isBack(triangle, area, flipped_)) {
+            ++counters_.back_facing;
+            return false;
+        }
+    }
+    if (cut) {
+        ++counters_.clipped;
+        if (!left) return false;
     } else if (betweenSamples(out.points)) {
         ++counters_.rejected;
         return false;
     } else {
         ++counters_.accepted;
+        counters_.spared += outside != 0;
     }
     ++counters_.produced;
-    out.count = polygon.count;
     out.depth = orthographic_ ? parallelPlane(a, b, c, normal) : perspectivePlane(normal / volume, polygon);
+    return true;
+}
+
+bool Projector::projectHomogeneous(size_t triangle, HomogeneousTriangle& out) {
+    ++counters_.triangles;
+    const uint32_t* index = item_->mesh.indices.data() + 3 * triangle;
+    const Vertex &a = vertices_[index[0]], &b = vertices_[index[1]], &c = vertices_[index[2]];
+    const uint8_t outside = a.outside | b.outside | c.outside;
+    if ((a.outside & b.outside & c.outside & Vertex::kReject) != 0 || (outside & Vertex::kBroken) != 0) {
+        ++counters_.rejected;
+        return false;
+    }
+    glm::dvec3 normal;
+    const double volume = homogeneousFacing(a.clip, b.clip, c.clip, normal);
+    const bool by_plane = settings_.facing_test == FacingTest::kEyePlane;
+    if (volume == 0 || (by_plane ? isBackByPlane(triangle) : isBack(triangle, volume, flipped_)) ||
+        !makeHomogeneous({a.clip, b.clip, c.clip}, {scale_, start_}, grid_, out)) {
+        ++counters_.back_facing;
+        return false;
+    }
+    ++counters_.accepted;
+    counters_.spared += outside != 0;
+    ++counters_.produced;
+    if (orthographic_) {
+        out.depth = parallelPlane(a, b, c, normal);
+        return true;
+    }
+    ClipPolygon seen;  // nothing is nearer than the near plane, but where that is the projection alone knows
+    for (const Vertex* vertex : {&a, &b, &c})
+        if (vertex->clip.w >= kSmallestW) seen.vertices[seen.count++] = vertex->clip;
+    if (seen.count == 0) return false;
+    out.depth = perspectivePlane(normal / volume, seen);
+    if ((outside & Vertex::kNear) != 0) out.depth.high = std::numeric_limits<double>::infinity();
     return true;
 }
 

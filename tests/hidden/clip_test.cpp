@@ -3,6 +3,10 @@
 #include "sightline/hidden/clip.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -93,6 +97,116 @@ TEST(Clip, KeepsWhatTouches) {
     ClipPolygon none;
     clipToPlane(triangle({0, 0, -2, 1}, {1, 0, -2, 1}, {0, 1, -2, 1}), {0, 0, 1, 1}, none);
     EXPECT_EQ(none.count, 0);
+}
+
+/// A convex polygon around the origin of a random plane of clip space, with w > 0.
+std::vector<glm::dvec4> randomConvex(Random& random, int corners) {
+    const glm::dvec4 center(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(3, 5));
+    const glm::dvec4 u = 0.3 * randomPoint(random), v = 0.3 * randomPoint(random);
+    std::vector<glm::dvec4> points;
+    for (int i = 0; i < corners; ++i) {
+        const double angle = (i + random.uniform(0.1, 0.9)) * 6.283185307179586 / corners;
+        points.push_back(center + std::cos(angle) * u + std::sin(angle) * v);
+    }
+    return points;
+}
+
+double area(std::span<const glm::dvec4> points) {
+    double sum = 0;
+    for (size_t i = 0; i < points.size(); ++i) {
+        const glm::dvec4 &a = points[i], &b = points[(i + 1) % points.size()];
+        sum += 0.5 * (a.x * b.y - a.y * b.x);
+    }
+    return sum;
+}
+
+std::vector<glm::dvec4> clipped(const std::vector<glm::dvec4>& in, const glm::dvec4& plane) {
+    std::vector<glm::dvec4> out(in.size() + 1);
+    out.resize(static_cast<size_t>(clipToPlane(in, plane, out)));
+    return out;
+}
+
+TEST(Clip, ConservesTheAreaOfConvexPolygons) {
+    Random random(13);
+    int cut = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const std::vector<glm::dvec4> whole = randomConvex(random, 3 + int(random.below(30)));
+        const glm::dvec4 plane = randomPoint(random) * glm::dvec4(1, 1, 1, 0.3);
+        const std::vector<glm::dvec4> inside = clipped(whole, plane), outside = clipped(whole, -plane);
+        EXPECT_NEAR(area(inside) + area(outside), area(whole), 1e-9 * std::abs(area(whole))) << "case " << i;
+        EXPECT_LE(inside.size(), whole.size() + 1) << "case " << i;
+        cut += !inside.empty() && !outside.empty();
+    }
+    EXPECT_GT(cut, 5000);
+}
+
+TEST(Clip, AgainChangesNothingButRounding) {
+    Random random(14);
+    for (int i = 0; i < 20000; ++i) {
+        const std::vector<glm::dvec4> whole = randomConvex(random, 3 + int(random.below(8)));
+        const glm::dvec4 plane = randomPoint(random) * glm::dvec4(1, 1, 1, 0.3);
+        const std::vector<glm::dvec4> once = clipped(whole, plane), twice = clipped(once, plane);
+        EXPECT_NEAR(area(once), area(twice), 1e-13 * (1 + std::abs(area(whole)))) << "case " << i;
+        // A crossing lies on the plane up to the rounding of its terms.
+        for (const glm::dvec4& v : once) {
+            const glm::dvec4 terms = glm::abs(plane * v);
+            EXPECT_GE(glm::dot(plane, v), -1e-14 * (1 + terms.x + terms.y + terms.z + terms.w)) << "case " << i;
+        }
+    }
+}
+
+TEST(Clip, KeepsInsideVerticesBitByBitAndInOrder) {
+    Random random(15);
+    for (int i = 0; i < 20000; ++i) {
+        const std::vector<glm::dvec4> whole = randomConvex(random, 3 + int(random.below(8)));
+        const glm::dvec4 plane = randomPoint(random) * glm::dvec4(1, 1, 1, 0.3);
+        const std::vector<glm::dvec4> kept = clipped(whole, plane);
+        auto at = kept.begin();
+        for (const glm::dvec4& v : whole) {
+            if (kept.empty() || glm::dot(plane, v) < 0) continue;
+            at = std::find(at, kept.end(), v);
+            ASSERT_NE(at, kept.end()) << "case " << i;
+            ++at;
+        }
+    }
+}
+
+TEST(Clip, TouchingInAPointOrAnEdgeIsNothing) {
+    const glm::dvec4 plane(1, 0, 0, 0);
+    EXPECT_TRUE(clipped({{0, 0, 0, 1}, {-1, 1, 0, 1}, {-1, -1, 0, 1}}, plane).empty());
+    EXPECT_TRUE(clipped({{0, -1, 0, 1}, {0, 1, 0, 1}, {-1, 0, 0, 1}}, plane).empty());
+    // On the inside they are kept as they are, without a second vertex in the same place.
+    EXPECT_EQ(clipped({{0, 0, 0, 1}, {1, 1, 0, 1}, {1, -1, 0, 1}}, plane).size(), 3u);
+    EXPECT_EQ(clipped({{0, -1, 0, 1}, {0, 1, 0, 1}, {1, 0, 0, 1}}, plane).size(), 3u);
+    // An edge that leaves through a vertex on the plane.
+    EXPECT_EQ(clipped({{0, 1, 0, 1}, {-1, 0, 0, 1}, {1, 0, 0, 1}}, plane).size(), 3u);
+}
+
+TEST(Clip, TakesPointsLinesAndWhatLiesInThePlane) {
+    const glm::dvec4 plane(0, 0, 1, 1);
+    const glm::dvec4 in(0.5, 0, 0, 1), out(0, 0.5, -2, 1), on(0, 0, -1, 1);
+    EXPECT_EQ(clipped({in, in, in}, plane).size(), 3u);
+    EXPECT_TRUE(clipped({out, out, out}, plane).empty());
+    EXPECT_EQ(clipped({on, on, on}, plane).size(), 3u);
+    const std::vector<glm::dvec4> line = clipped({in, out, in}, plane);
+    for (const glm::dvec4& v : line) EXPECT_GE(glm::dot(plane, v), -1e-15);
+    EXPECT_EQ(area(line), 0.0);
+    const std::vector<glm::dvec4> flat = {{0, 0, -1, 1}, {1, 0, -1, 1}, {0, 1, -1, 1}};
+    EXPECT_EQ(clipped(flat, plane), flat);
+    EXPECT_EQ(clipped(flat, -plane), flat);
+    EXPECT_TRUE(clipped({in, out}, plane).empty());
+    EXPECT_TRUE(clipped({}, plane).empty());
+}
+
+TEST(Clip, LeavesNothingOfWhatIsNotFinite) {
+    const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+    for (const double bad : {nan, infinity, -infinity})
+        for (int component = 0; component < 4; ++component)
+            for (int corner = 0; corner < 3; ++corner) {
+                std::vector<glm::dvec4> points = {{0, 0, 0, 1}, {1, 0, -2, 1}, {0, 1, 0, 1}};
+                points[static_cast<size_t>(corner)][component] = bad;
+                EXPECT_TRUE(clipped(points, {0, 0, 1, 1}).empty()) << bad << " " << component << " " << corner;
+            }
 }
 
 }  // namespace

@@ -1,0 +1,69 @@
+// The exact sign of a triple product: on which side of the plane through the origin and two points a third one lies.
+// SPDX-License-Identifier: MIT
+#include "sightline/hidden/triple_product.h"
+
+#include <cmath>
+
+namespace sightline {
+namespace {
+
+/// A sum kept without rounding: components that do not overlap, smallest first.
+struct LongSum {
+    double parts[24];
+    int count = 0;
+
+    void add(double value) {
+        int kept = 0;
+        for (int i = 0; i < count; ++i) {
+            const double sum = value + parts[i];
+            const double virtual_part = sum - value;
+            const double error = (value - (sum - virtual_part)) + (parts[i] - virtual_part);
+            if (error != 0) parts[kept++] = error;
+            value = sum;
+        }
+        parts[kept++] = value;
+        count = kept;
+    }
+
+    void addProduct(double a, double b) {
+        const double product = a * b;
+        add(std::fma(a, b, -product));
+        add(product);
+    }
+
+    void addProduct(double a, double b, double c) {
+        const double product = a * b;
+        addProduct(std::fma(a, b, -product), c);
+        addProduct(product, c);
+    }
+};
+
+int exactSign(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    LongSum sum;
+    sum.addProduct(a.y, b.z, c.x);
+    sum.addProduct(-a.z, b.y, c.x);
+    sum.addProduct(a.z, b.x, c.y);
+    sum.addProduct(-a.x, b.z, c.y);
+    sum.addProduct(a.x, b.y, c.z);
+    sum.addProduct(-a.y, b.x, c.z);
+    const double leading = sum.parts[sum.count - 1];
+    return leading > 0 ? 1 : leading < 0 ? -1 : 0;
+}
+
+}  // namespace
+
+int tripleProductSign(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const double yz = a.y * b.z, zy = a.z * b.y;
+    const double zx = a.z * b.x, xz = a.x * b.z;
+    const double xy = a.x * b.y, yx = a.y * b.x;
+    const double product = (yz - zy) * c.x + (zx - xz) * c.y + (xy - yx) * c.z;
+    // Five roundings at most on the way of any term; the rest is for those of this sum.
+    const double bound =
+        0x1p-50 * ((std::abs(yz) + std::abs(zy)) * std::abs(c.x) + (std::abs(zx) + std::abs(xz)) * std::abs(c.y) +
+                   (std::abs(xy) + std::abs(yx)) * std::abs(c.z));
+    if (product > bound) return 1;
+    if (product < -bound) return -1;
+    return exactSign(a, b, c);
+}
+
+}  // namespace sightline
