@@ -6,7 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "sightline/base/random.h"
+#include "sightline/hidden/light.h"
+#include "sightline/hidden/unprojection.h"
 #include "sightline/hidden/zbuffer.h"
 
 namespace sightline {
@@ -28,55 +29,6 @@ bool mayBeInView(const glm::dmat4& clip, const Box3d& box) {
         outside[4] += p.z < -p.w - slack;
     }
     return std::none_of(std::begin(outside), std::end(outside), [](int count) { return count == 8; });
-}
-
-/// A pleasant colour for a number.
-glm::dvec3 hashedColour(uint64_t key) {
-    Random random(mixSeed(key, 1));
-    const double hue = random.uniform(0, 6), grey = random.uniform(0.45, 0.7);
-    const auto channel = [&](double shift) {
-        const double distance = std::abs(std::fmod(hue + shift, 6.0) - 3.0);
-        return grey * (0.62 + 0.38 * std::clamp(distance - 1.0, 0.0, 1.0));
-    };
-    return {channel(0), channel(4), channel(2)};
-}
-
-glm::dvec3 skyColour(double above_horizon) {
-    const double t = std::clamp(0.5 + 1.2 * above_horizon, 0.0, 1.0);
-    return glm::mix(glm::dvec3(0.80, 0.84, 0.87), glm::dvec3(0.38, 0.55, 0.78), t);
-}
-
-/// Turns samples back into points of eye space.
-class Unprojection {
-public:
-    Unprojection(const View& view, uint32_t width, uint32_t height)
-        : width_(width), height_(height), parallel_(isOrthographic(view)) {
-        // Rows x, y and w (or z, the nearness of a parallel view) of the projection determine the point.
-        const glm::dmat4& p = view.projection;
-        glm::dmat3 rows;
-        for (int column = 0; column < 3; ++column)
-            rows[column] = glm::dvec3(p[column][0], p[column][1], parallel_ ? (column == 2) : p[column][3]);
-        constants_ = glm::dvec3(p[3][0], p[3][1], parallel_ ? 0.0 : p[3][3]);
-        inverse_ = glm::inverse(rows);
-    }
-
-    glm::dvec3 point(uint32_t x, uint32_t y, double nearness) const {
-        const double ndc_x = 2 * (x + 0.5) / width_ - 1, ndc_y = 2 * (y + 0.5) / height_ - 1;
-        const double w = parallel_ ? 1.0 : 1.0 / nearness;
-        return inverse_ * (glm::dvec3(ndc_x * w, ndc_y * w, parallel_ ? nearness : w) - constants_);
-    }
-
-private:
-    double width_, height_;
-    bool parallel_;
-    glm::dmat3 inverse_{1.0};
-    glm::dvec3 constants_{0.0};
-};
-
-uint8_t toByte(double linear) {
-    const double v = std::clamp(linear, 0.0, 1.0);
-    const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-    return static_cast<uint8_t>(255 * encoded + 0.5);
 }
 
 }  // namespace
@@ -147,14 +99,13 @@ Image<Rgb> PictureMaker::shade(const View& view, const Drawing& drawing) const {
     const uint32_t w = image.width, h = image.height;
     const Unprojection unprojection(view, w, h);
     const glm::dmat3 to_world = glm::transpose(glm::dmat3(view.view));
-    const glm::dvec3 sun = glm::normalize(glm::dvec3(0.45, 0.75, 0.5));
+    const glm::dvec3 sun = defaultSun();
     std::vector<glm::dvec3> colours;
     for (const Part& part : drawing.parts) colours.push_back(colourOf(part));
 
     const auto sample = [&](uint32_t x, uint32_t y) {
         const size_t here = size_t{y} * w + x;
-        const glm::dvec3 ray = to_world * unprojection.point(x, y, isOrthographic(view) ? -1.0 : 1.0);
-        const glm::dvec3 sky = skyColour(glm::normalize(ray).y);
+        const glm::dvec3 sky = skyColour(glm::normalize(to_world * unprojection.lineOfSight(x, y).direction).y);
         const uint32_t id = image.id[here];
         if (id == ZBufferImage::kNone) return sky;
         const auto neighbour = [&](uint32_t nx, uint32_t ny) {
@@ -168,13 +119,8 @@ Image<Rgb> PictureMaker::shade(const View& view, const Drawing& drawing) const {
         };
         const glm::dvec3 eye_normal = glm::cross(slope(x + 1, y, x - 1, y), slope(x, y + 1, x, y - 1));
         const double length = glm::length(eye_normal);
-        double light = 0.7;
-        if (length > 0) {
-            const glm::dvec3 normal = to_world * (eye_normal / length);
-            light = 0.34 + 0.16 * (0.5 + 0.5 * normal.y) + 0.62 * std::max(0.0, glm::dot(normal, sun));
-        }
-        const double haze = 0.5 * (1 - std::exp(-1.6 * glm::length(point) / diagonal_));
-        return glm::mix(colours[id] * light, sky, haze);
+        const double light = length > 0 ? lightOn(to_world * (eye_normal / length), sun) : 0.7;
+        return throughHaze(colours[id] * light, sky, glm::length(point) / diagonal_);
     };
 
     Image<Rgb> out(w / kSamples, h / kSamples);
@@ -184,7 +130,7 @@ Image<Rgb> PictureMaker::shade(const View& view, const Drawing& drawing) const {
             for (uint32_t k = 0; k < kSamples * kSamples; ++k)
                 sum += sample(kSamples * x + k % kSamples, h - 1 - (kSamples * y + k / kSamples));
             sum /= double(kSamples * kSamples);
-            out.at(x, y) = Rgb(toByte(sum.x), toByte(sum.y), toByte(sum.z));
+            out.at(x, y) = toBytes(sum);
         }
     return out;
 }
