@@ -34,7 +34,7 @@ double nearnessOf(const ScreenPolygon& polygon, PainterKey key) {
 }  // namespace
 
 void drawPainter(const HiddenInput& input, HiddenImage& image) {
-    Projector projector(input.view, input.grid());
+    Projector projector = input.projector();
     const std::vector<ScreenPolygon> polygons = projectAll(input.list, projector);
     image.counters.geometry = projector.counters();
     std::vector<Key> keys(polygons.size());

@@ -45,8 +45,9 @@ struct RenderSettings {
     PainterKey painter_key = PainterKey::kFarthest;
     FreeSamples free_samples = FreeSamples::kBits;
     RayTracer ray_tracer = RayTracer::kBvh;
-    uint32_t threads = 1;      ///< at most so many; methods that cannot share their work use one
-    bool want_counts = false;  ///< fill the per-sample counts of HiddenImage
+    uint32_t threads = 1;         ///< at most so many; methods that cannot share their work use one
+    bool want_counts = false;     ///< fill the per-sample counts of HiddenImage
+    ProjectorSettings projector;  ///< clipping and facing
 };
 
 /// What a method is given.
@@ -56,6 +57,7 @@ struct HiddenInput {
     const RenderSettings& settings;
 
     SampleGrid grid() const { return {view.width, view.height, 0, 1, {}}; }
+    Projector projector() const { return Projector(view, grid(), settings.projector); }
 };
 
 /// Draws one image, one sample a pixel, by the method chosen.
