@@ -9,27 +9,12 @@
 #include "sightline/hidden/light.h"
 #include "sightline/hidden/unprojection.h"
 #include "sightline/hidden/zbuffer.h"
+#include "sightline/report/scene_look.h"
 
 namespace sightline {
 namespace {
 
 constexpr uint32_t kSamples = 2;  // per pixel and axis
-
-/// False only if no point of the box can be in the view volume.
-bool mayBeInView(const glm::dmat4& clip, const Box3d& box) {
-    int outside[5] = {};
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 p = clip * glm::dvec4(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                                               corner & 4 ? box.max.z : box.min.z, 1.0);
-        const double slack = 1e-9 * (std::abs(p.w) + std::abs(p.x) + std::abs(p.y));
-        outside[0] += p.x < -p.w - slack;
-        outside[1] += p.x > p.w + slack;
-        outside[2] += p.y < -p.w - slack;
-        outside[3] += p.y > p.w + slack;
-        outside[4] += p.z < -p.w - slack;
-    }
-    return std::none_of(std::begin(outside), std::end(outside), [](int count) { return count == 8; });
-}
 
 }  // namespace
 
@@ -48,19 +33,9 @@ PictureMaker::PictureMaker(const Scene& scene) : scene_(scene) {
     for (const Mesh& mesh : scene.meshes) most = std::max(most, mesh.triangles());
     ones_.assign(most, 1);
     zeros_.assign(most, 0);
-    Box3d whole;
-    for (const SceneObject& object : scene.objects) {
+    for (const SceneObject& object : scene.objects)
         bounds_.push_back(transformBox(scene.meshes[object.mesh].bounds, object.transform));
-        if (bounds_.back().finite()) whole.grow(bounds_.back());
-    }
-    if (!whole.empty()) diagonal_ = std::max(glm::length(whole.size()), 1e-9);
-}
-
-glm::dvec3 PictureMaker::colourOf(const Part& part) const {
-    const SceneObject& object = scene_.objects[part.object];
-    const Primitive& primitive = scene_.meshes[object.mesh].primitives[part.primitive];
-    const glm::dvec3 colour(scene_.materials[primitive.material].base_color);
-    return colour == glm::dvec3(1.0) ? hashedColour(object.key) : colour;
+    diagonal_ = diagonalOf(scene);
 }
 
 PictureMaker::Drawing PictureMaker::render(const View& view, const std::vector<uint32_t>& objects) const {
@@ -72,8 +47,7 @@ PictureMaker::Drawing PictureMaker::render(const View& view, const std::vector<u
         for (uint32_t p = 0; p < mesh.primitives.size(); ++p) {
             const Primitive& primitive = mesh.primitives[p];
             const Material& material = scene_.materials[primitive.material];
-            // Masked surfaces are drawn as if they were whole: a picture without foliage would be bare.
-            const bool solid = material.alpha_mode != AlphaMode::kBlend && !material.transmissive;
+            const bool solid = isSolid(material);
             DrawItem item;
             item.mesh.positions = mesh.positions;
             item.mesh.indices =
@@ -101,7 +75,10 @@ Image<Rgb> PictureMaker::shade(const View& view, const Drawing& drawing) const {
     const glm::dmat3 to_world = glm::transpose(glm::dmat3(view.view));
     const glm::dvec3 sun = defaultSun();
     std::vector<glm::dvec3> colours;
-    for (const Part& part : drawing.parts) colours.push_back(colourOf(part));
+    for (const Part& part : drawing.parts) {
+        const SceneObject& object = scene_.objects[part.object];
+        colours.push_back(colourOf(scene_, object, scene_.meshes[object.mesh].primitives[part.primitive]));
+    }
 
     const auto sample = [&](uint32_t x, uint32_t y) {
         const size_t here = size_t{y} * w + x;

@@ -41,7 +41,6 @@ private:
     struct Drawing;
     Drawing render(const View& view, const std::vector<uint32_t>& objects) const;
     Image<Rgb> shade(const View& view, const Drawing& drawing) const;
-    glm::dvec3 colourOf(const Part& part) const;
 
     const Scene& scene_;
     std::vector<Box3d> bounds_;

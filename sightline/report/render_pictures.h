@@ -1,0 +1,45 @@
+// Images of hidden-surface methods as files hold them: shaded, by object, and as heat maps.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "sightline/base/result.h"
+#include "sightline/hidden/shade.h"
+#include "sightline/report/png.h"
+#include "sightline/report/render_list.h"
+
+namespace sightline {
+
+/// What is to be drawn of an image.
+struct PictureSettings {
+    Shading shading = Shading::kFlat;
+    bool shadows = true;  ///< not without shading
+    ShareWork share;
+};
+
+/// The picture, top row first. The shadow map is fitted to the image.
+Image<Rgb> shadedPicture(const RenderList& scene, const View& view, const HiddenImage& image,
+                         const PictureSettings& settings);
+
+/// Key + 1 of the object at each pixel as a 24-bit colour, red the high byte; black where there is none.
+/// Error (kInput): a key that 24 bits do not hold.
+Result<Image<Rgb>> idPicture(const RenderList& scene, const HiddenImage& image);
+
+/// Counts of samples as an image, top row first.
+Image<float> countPicture(const HiddenImage& image, std::span<const uint16_t> counts);
+
+/// The value that is shown brightest: one sample in 500 may lie above it.
+double heatScale(std::span<const uint16_t> counts);
+
+/// The image with the pixels marked where two images show different objects, over a pale picture.
+Image<Rgb> differencePicture(const RenderList& scene, const Image<Rgb>& shaded, const HiddenImage& a,
+                             const HiddenImage& b);
+
+/// Means of squares of pixels, so that no side is longer than `most`.
+Image<Rgb> reduced(const Image<Rgb>& image, uint32_t most);
+
+}  // namespace sightline

@@ -1,0 +1,186 @@
+// What hidden-surface methods made of one frame, beside one another, as plain data, and its JSON form.
+// SPDX-License-Identifier: MIT
+#include "sightline/report/render_run.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include "sightline/report/camera_json.h"
+
+namespace sightline {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kPainterKeys[] = {"centre", "farthest"};
+constexpr std::string_view kFreeSamples[] = {"check", "segments", "bits"};
+constexpr std::string_view kRayTracers[] = {"bvh", "embree"};
+
+template <class T>
+std::string_view nameIn(std::span<const std::string_view> names, T value) {
+    return names[static_cast<size_t>(value)];
+}
+
+double median(std::vector<uint64_t>& nanoseconds) {
+    std::sort(nanoseconds.begin(), nanoseconds.end());
+    const size_t n = nanoseconds.size();
+    return 0.5e-6 * static_cast<double>(nanoseconds[n / 2] + nanoseconds[(n - 1) / 2]);
+}
+
+Json methodJson(const MethodResult& result) {
+    Json out;
+    out["name"] = result.name();
+    out["milliseconds"] = result.milliseconds;
+    out["prepare_milliseconds"] = result.prepare_milliseconds;
+    for (const CounterName& counter : counterNames())
+        out["counters"][std::string(counter.name)] = counter.value(result.image.counters);
+    out["agreement"] = {{"with", "zbuffer"},
+                        {"samples", result.agreement.samples},
+                        {"differing", result.agreement.differing},
+                        {"at_edges", result.agreement.at_edges},
+                        {"ties", result.agreement.ties},
+                        {"wrong", result.agreement.wrong},
+                        {"edge_band", result.bands.edge},
+                        {"tie_band", result.bands.tie}};
+    for (int heat = 0; heat < kHeats; ++heat) {
+        const std::vector<uint16_t>& counts = countsOf(result.image, static_cast<Heat>(heat));
+        if (counts.empty()) continue;
+        const CountStatistics statistics = statisticsOf(counts);
+        out["per_sample"][std::string(kHeatNames[heat])] = {
+            {"mean", statistics.mean}, {"maximum", statistics.maximum}, {"histogram", statistics.histogram}};
+    }
+    return out;
+}
+
+}  // namespace
+
+const std::vector<uint16_t>& countsOf(const HiddenImage& image, Heat heat) {
+    const std::vector<uint16_t>* const counts[kHeats] = {&image.generated, &image.tested, &image.passed, &image.shaded};
+    return *counts[static_cast<int>(heat)];
+}
+
+CountStatistics statisticsOf(std::span<const uint16_t> counts) {
+    CountStatistics out;
+    uint64_t sum = 0;
+    for (const uint16_t count : counts) {
+        sum += count;
+        out.maximum = std::max<uint32_t>(out.maximum, count);
+        const size_t bar = std::min<size_t>(count, CountStatistics::kMostBars - 1);
+        if (bar >= out.histogram.size()) out.histogram.resize(bar + 1, 0);
+        ++out.histogram[bar];
+    }
+    if (!counts.empty()) out.mean = static_cast<double>(sum) / static_cast<double>(counts.size());
+    return out;
+}
+
+std::span<const CounterName> counterNames() {
+    using C = HiddenCounters;
+    static constexpr CounterName kNames[] = {
+        {"triangles", "triangles", [](const C& c) { return c.geometry.triangles; }},
+        {"rejected", "triangles rejected", [](const C& c) { return c.geometry.rejected; }},
+        {"back_facing", "back faces", [](const C& c) { return c.geometry.back_facing; }},
+        {"accepted", "accepted whole", [](const C& c) { return c.geometry.accepted; }},
+        {"clipped", "clipped", [](const C& c) { return c.geometry.clipped; }},
+        {"produced", "polygons to draw", [](const C& c) { return c.geometry.produced; }},
+        {"generated", "fragments generated", [](const C& c) { return c.generated; }},
+        {"tested", "fragments tested", [](const C& c) { return c.tested; }},
+        {"passed", "fragments passed", [](const C& c) { return c.passed; }},
+        {"shaded", "fragments shaded", [](const C& c) { return c.shaded; }},
+        {"comparisons", "pairs compared", [](const C& c) { return c.comparisons; }},
+        {"swaps", "swaps", [](const C& c) { return c.swaps; }},
+        {"splits", "splits", [](const C& c) { return c.splits; }},
+        {"nodes", "nodes visited", [](const C& c) { return c.nodes; }},
+        {"skipped_subtrees", "subtrees skipped", [](const C& c) { return c.skipped_subtrees; }},
+        {"windows", "windows", [](const C& c) { return c.windows; }},
+        {"rays", "rays", [](const C& c) { return c.rays; }},
+        {"hierarchy_rejected_polygons", "polygons rejected by hierarchical z",
+         [](const C& c) { return c.hierarchy_rejected_polygons; }},
+        {"hierarchy_rejected_tiles", "tiles rejected by hierarchical z",
+         [](const C& c) { return c.hierarchy_rejected_tiles; }},
+        {"hierarchy_accepted_tiles", "tiles accepted by hierarchical z",
+         [](const C& c) { return c.hierarchy_accepted_tiles; }},
+        {"depth_bytes", "depth bytes, plain", [](const C& c) { return c.depth_bytes; }},
+        {"depth_bytes_compressed", "depth bytes, compressed", [](const C& c) { return c.depth_bytes_compressed; }},
+    };
+    return kNames;
+}
+
+const MethodResult* RenderRun::find(HiddenMethod method) const {
+    for (const MethodResult& result : methods)
+        if (result.method == method) return &result;
+    return nullptr;
+}
+
+uint64_t practicalPolygons(HiddenMethod method) {
+    switch (method) {
+        case HiddenMethod::kNewell:
+            return 20'000;
+        case HiddenMethod::kWarnock:
+            return 300'000;
+        case HiddenMethod::kBspBackToFront:
+        case HiddenMethod::kBspFrontToBack:
+            return 300'000;
+        default:
+            return ~uint64_t{0};
+    }
+}
+
+MethodResult drawMethod(const RenderList& scene, const View& view, RenderSettings settings, HiddenMethod method,
+                        int repeat) {
+    MethodResult result;
+    result.method = settings.method = method;
+    const bool counts = settings.want_counts;
+    settings.want_counts = false;
+    std::vector<uint64_t> drawing, preparing;
+    for (int i = 0; i < repeat; ++i) {
+        result.image = render(scene.list(), view, settings);
+        drawing.push_back(result.image.counters.nanoseconds);
+        preparing.push_back(result.image.counters.prepare_nanoseconds);
+    }
+    result.milliseconds = median(drawing);
+    result.prepare_milliseconds = median(preparing);
+    settings.want_counts = counts;
+    if (counts) result.image = render(scene.list(), view, settings);
+    return result;
+}
+
+void judge(const RenderList& scene, const View& view, const HiddenImage& reference, const RenderSettings& settings,
+           MethodResult& result) {
+    // Embree meets triangles in float: edges are known to some thousandths of a pixel, depths to single precision.
+    if (result.method == HiddenMethod::kRaycast && settings.ray_tracer == RayTracer::kEmbree) {
+        result.bands.edge = 1e-2;
+        result.bands.tie = 1e-5;
+    }
+    result.agreement = compareImages(scene.list(), view, reference, result.image, result.bands);
+}
+
+std::string renderJson(const RenderRun& run) {
+    Json out;
+    out["schema"] = "sightline.render/1";
+    out["scene"] = {{"file", run.scene},
+                    {"objects", run.objects},
+                    {"triangles", run.triangles},
+                    {"objects_in_view", run.objects_in_view},
+                    {"triangles_in_view", run.triangles_in_view}};
+    out["width"] = run.width;
+    out["height"] = run.height;
+    out["frame"] = run.frame;
+    out["camera"] = cameraJson(run.camera);
+    out["settings"] = {{"threads", run.settings.threads},
+                       {"repeat", run.repeat},
+                       {"painter_key", nameIn(kPainterKeys, run.settings.painter_key)},
+                       {"free_samples", nameIn(kFreeSamples, run.settings.free_samples)},
+                       {"rays", nameIn(kRayTracers, run.settings.ray_tracer)},
+                       {"shading", nameIn(kShadingNames, run.shading)},
+                       {"shadows", run.shadows}};
+    out["methods"] = Json::array();
+    for (const MethodResult& result : run.methods) out["methods"].push_back(methodJson(result));
+    out["left_out"] = Json::array();
+    for (const LeftOut& left : run.left_out)
+        out["left_out"].push_back({{"name", kHiddenMethodNames[static_cast<int>(left.method)]}, {"why", left.why}});
+    return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace sightline

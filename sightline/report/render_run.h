@@ -1,0 +1,93 @@
+// What hidden-surface methods made of one frame, beside one another, as plain data, and its JSON form.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sightline/hidden/compare.h"
+#include "sightline/hidden/render.h"
+#include "sightline/hidden/shade.h"
+#include "sightline/report/render_list.h"
+#include "sightline/scene/camera_path.h"
+
+namespace sightline {
+
+/// The counts that HiddenImage keeps for each sample.
+enum class Heat : uint8_t { kGenerated, kTested, kPassed, kShaded };
+inline constexpr int kHeats = 4;
+inline constexpr std::string_view kHeatNames[kHeats] = {"generated", "tested", "passed", "shaded"};
+const std::vector<uint16_t>& countsOf(const HiddenImage& image, Heat heat);
+
+/// How often samples have how many fragments.
+struct CountStatistics {
+    static constexpr size_t kMostBars = 33;
+
+    double mean = 0;
+    uint32_t maximum = 0;
+    std::vector<uint64_t> histogram;  ///< samples by count; the last of kMostBars holds all larger counts as well
+};
+CountStatistics statisticsOf(std::span<const uint16_t> counts);
+
+/// A counter as JSON, tables and readers call it.
+struct CounterName {
+    std::string_view name;   ///< of its field
+    std::string_view title;  ///< for a reader
+    uint64_t (*value)(const HiddenCounters&);
+};
+std::span<const CounterName> counterNames();
+
+struct MethodResult {
+    HiddenMethod method = HiddenMethod::kZBuffer;
+    HiddenImage image;
+    double milliseconds = 0;          ///< median over the repeats
+    double prepare_milliseconds = 0;  ///< what could be kept from frame to frame; not in the above
+    Agreement agreement;              ///< with the z-buffer's image
+    AgreementBands bands;             ///< that it was judged by
+
+    std::string_view name() const { return kHiddenMethodNames[static_cast<int>(method)]; }
+};
+
+struct LeftOut {
+    HiddenMethod method = HiddenMethod::kZBuffer;
+    std::string why;
+};
+
+struct RenderRun {
+    std::string scene;                                    ///< as it was named by the user
+    std::string command;                                  ///< that repeats this run
+    uint64_t objects = 0, triangles = 0;                  ///< of the scene
+    uint64_t objects_in_view = 0, triangles_in_view = 0;  ///< that methods were given
+    uint32_t width = 0, height = 0;
+    uint32_t frame = 0, frames = 0;
+    CameraFrame camera;
+    int repeat = 1;
+    RenderSettings settings;
+    Shading shading = Shading::kFlat;
+    bool shadows = true;
+    Heat heat = Heat::kGenerated;
+    std::vector<MethodResult> methods;
+    std::vector<LeftOut> left_out;
+
+    const MethodResult* find(HiddenMethod method) const;
+};
+
+/// More polygons than this in view are not practical for a method; no limit: all ones.
+uint64_t practicalPolygons(HiddenMethod method);
+
+/// Draws with one method: `repeat` times for the time, and once more where counts are wanted.
+MethodResult drawMethod(const RenderList& scene, const View& view, RenderSettings settings, HiddenMethod method,
+                        int repeat);
+
+/// Fills MethodResult::agreement.
+/// @param reference  the z-buffer's image
+void judge(const RenderList& scene, const View& view, const HiddenImage& reference, const RenderSettings& settings,
+           MethodResult& result);
+
+/// The schema `sightline.render/1`. Names that are not UTF-8 are mended.
+std::string renderJson(const RenderRun& run);
+
+}  // namespace sightline

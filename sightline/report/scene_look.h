@@ -1,0 +1,26 @@
+// What pictures of a scene need to know of it: what may be in view, and the colours of things.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "sightline/math/box.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline {
+
+/// False only if no point of a box can be in the view volume (but for the far plane).
+/// @param clip  world to clip space
+bool mayBeInView(const glm::dmat4& clip, const Box3d& box);
+
+/// True if a material's surfaces are drawn as if they were opaque. Masked ones are, whole: a picture without foliage
+/// would be bare. Blended and transmissive ones are not.
+bool isSolid(const Material& material);
+
+/// The linear colour of an object's primitive: its material's, or one hashed from the object's key where that is white.
+glm::dvec3 colourOf(const Scene& scene, const SceneObject& object, const Primitive& primitive);
+
+/// The scene's diagonal, at least a billionth [world units].
+double diagonalOf(const Scene& scene);
+
+}  // namespace sightline
