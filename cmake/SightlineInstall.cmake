@@ -37,6 +37,7 @@ install(FILES ${PROJECT_BINARY_DIR}/sightline-config.cmake ${PROJECT_BINARY_DIR}
 # Written while installing, so that it names the prefix that --prefix chose.
 install(CODE "
   set(PROJECT_VERSION ${PROJECT_VERSION})
+  set(SIGHTLINE_EMBREE_FLAG $<$<BOOL:${SIGHTLINE_TOOLS}>:-lembree3>)
   set(CMAKE_INSTALL_FULL_LIBDIR \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR})
   set(CMAKE_INSTALL_FULL_INCLUDEDIR \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR})
   configure_file(${PROJECT_SOURCE_DIR}/cmake/sightline.pc.in

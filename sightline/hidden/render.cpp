@@ -5,7 +5,10 @@
 #include <chrono>
 
 #include "sightline/base/assert.h"
+#include "sightline/hidden/newell.h"
 #include "sightline/hidden/painter.h"
+#include "sightline/hidden/raycast.h"
+#include "sightline/hidden/warnock.h"
 
 namespace sightline {
 namespace {
@@ -13,7 +16,9 @@ namespace {
 using Draw = void (*)(const HiddenInput&, HiddenImage&);
 
 /// In the order of HiddenMethod.
-constexpr Draw kMethods[kHiddenMethods] = {drawPainter, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
+constexpr Draw kMethods[kHiddenMethods] = {
+    drawPainter, drawNewell, nullptr, nullptr, drawWarnock, nullptr, drawRaycast,
+};
 
 }  // namespace
 

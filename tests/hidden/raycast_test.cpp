@@ -1,0 +1,123 @@
+// Ray casting: the truth's image but for edges, by our own hierarchy and by Embree.
+// SPDX-License-Identifier: MIT
+#include "sightline/hidden/raycast.h"
+
+#include <gtest/gtest.h>
+
+#include "sightline/hidden/raycast_tree.h"
+#include "tests/hidden/agreement.h"
+
+namespace sightline::test {
+namespace {
+
+/// Embree's positions and rays are in float.
+constexpr AgreementBands kFloatBands{1e-3, 1e-5, false};
+
+RenderSettings rays(RayTracer tracer = RayTracer::kBvh) {
+    RenderSettings settings;
+    settings.method = HiddenMethod::kRaycast;
+    settings.ray_tracer = tracer;
+    return settings;
+}
+
+TEST(Raycast, ShowsWhatIsNearest) { expectAgreement("rays, own hierarchy", rays()); }
+
+TEST(Raycast, ShowsWhatIsNearestByEmbree) {
+    if (!hasEmbree()) GTEST_SKIP() << "built without Embree";
+    expectAgreement("rays, Embree", rays(RayTracer::kEmbree), kFloatBands);
+}
+
+TEST(Raycast, DrawsNothingWhereThereIsNothing) {
+    for (const RayTracer tracer : {RayTracer::kBvh, RayTracer::kEmbree}) expectEmptyImages(rays(tracer));
+}
+
+TEST(Raycast, FindsWhatTryingAllTrianglesFinds) {
+    const MadeList made = clutter(9, 3000, 0.3);
+    const std::vector<DrawItem> items = made.items();
+    const RayTriangles triangles = rayTriangles(DrawList(items));
+    const RayTree tree(triangles);
+    std::vector<RayVisit> stack;
+    for (const NamedView& named : madeViews()) {
+        const SampleRays all(named.view);
+        for (uint32_t row = 0; row < named.view.height; row += 2)
+            for (uint32_t i = 0; i < named.view.width; i += 3) {
+                SampleRay ray = all.at(row, i);
+                ray.t_near = std::max(ray.t_near, -100.0);
+                ray.t_far = std::min(ray.t_far, 100.0);
+                RayHit expected;
+                expected.t = ray.t_far;
+                for (const RayTriangle& triangle : triangles.triangles) {
+                    double t;
+                    if (meets(triangle, ray.origin + (all.eye() - triangles.origin), ray.direction, all.depthAxis(),
+                              t) &&
+                        t >= ray.t_near && t < expected.t)
+                        expected = {t, triangle.surface};
+                }
+                const RayHit found = tree.nearest(all, ray, stack);
+                ASSERT_EQ(found.surface, expected.surface) << named.name << " row " << row << " sample " << i;
+                ASSERT_EQ(found.t, expected.t);
+            }
+    }
+}
+
+TEST(Raycast, MissesNothingOnSharedEdges) {
+    // Samples exactly on the edges and corners of a grid of squares.
+    MadeList made;
+    for (int i = -9; i < 9; ++i)
+        for (int j = -9; j < 9; ++j) {
+            const float x = static_cast<float>(i), y = static_cast<float>(j);
+            made.add({x, y, -2}, {x + 1, y, -2}, {x + 1, y + 1, -2});
+            made.add({x, y, -2}, {x + 1, y + 1, -2}, {x, y + 1, -2});
+        }
+    const std::vector<DrawItem> items = made.items();
+    View view = madeView(65, 65);
+    view.projection = orthographic(16.25, 1, 0.1, 100);  // four samples a square, one at the origin
+    for (const RayTracer tracer : {RayTracer::kBvh, RayTracer::kEmbree}) {
+        const HiddenImage image = render(DrawList(items), view, rays(tracer));
+        for (size_t i = 0; i < image.surface.size(); ++i) ASSERT_NE(image.surface[i], HiddenImage::kNone) << i;
+    }
+}
+
+TEST(Raycast, PassesThroughBackFacesAsTheProjectorDoes) {
+    MadeList made;
+    made.add({-1, -1, -2}, {0, 1, -2}, {1, -1, -2}, false);  // clockwise: a back face
+    made.add({-1, -1, -3}, {1, -1, -3}, {0, 1, -3}, false);
+    std::vector<DrawItem> items = made.items();
+    const glm::dmat4 mirror(-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1);
+    for (const bool mirrored : {false, true}) {
+        items[0].transform = mirrored ? mirror : glm::dmat4(1.0);
+        for (const FrontFace front : {FrontFace::kCounterClockwise, FrontFace::kClockwise}) {
+            RenderSettings settings = rays();
+            settings.projector.front_face = front;
+            const uint32_t seen = render(DrawList(items), madeView(), settings).surface[60 * 160 + 80];
+            EXPECT_EQ(seen, front == FrontFace::kCounterClockwise ? 1u : 0u) << mirrored;
+        }
+    }
+    RenderSettings both = rays();
+    both.projector.cull_back_faces = false;
+    EXPECT_EQ(render(DrawList(items), madeView(), both).surface[60 * 160 + 80], 0u);
+}
+
+TEST(Raycast, SeesFarFromTheWorldsOrigin) {
+    const glm::dvec3 away(4e6, -1e6, 2e6);
+    const MadeList made = clutter(4, 300);
+    std::vector<DrawItem> items = made.items();
+    items[0].transform[3] = glm::dvec4(away, 1.0);
+    View view = madeView();
+    view.view = lookAt(away, away + glm::dvec3(0, 0, -1), {0, 1, 0});
+    const DrawList list(items);
+    const HiddenImage truth = nearestSurfaces(list, view);
+    const Agreement agreement = compareImages(list, view, truth, render(list, view, rays()), {1e-5, 1e-8, false});
+    EXPECT_EQ(agreement.wrong, 0u);
+}
+
+TEST(Raycast, CastsARayASample) {
+    const MadeList made = cyclicOverlap();
+    const std::vector<DrawItem> items = made.items();
+    const HiddenImage image = render(DrawList(items), madeView(), rays());
+    EXPECT_EQ(image.counters.rays, 160u * 120u);
+    EXPECT_EQ(image.counters.shaded, image.counters.passed);
+}
+
+}  // namespace
+}  // namespace sightline::test
