@@ -74,7 +74,7 @@ bool isCity(const std::string& scene, uint64_t& seed) {
 
 }  // namespace
 
-void addSceneOptions(CLI::App& verb, RunOptions& options) {
+void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& shared) {
     verb.add_option("SCENE", options.scene, "a .glb or .gltf file, or city:SEED:OBJECTS")->required();
     verb.add_option("--cameras", options.cameras, "camera path (JSON)")->type_name("PATH.json");
     verb.add_option("--frames", options.frames,
@@ -83,9 +83,14 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
         ->type_name("N");
     verb.add_option("--seed", options.seed, "of the seeded cameras")->type_name("S")->capture_default_str();
     verb.add_option("--size", options.size, "of the viewport [pixels]")->type_name("WxH")->capture_default_str();
-    verb.add_option("--threads", options.threads, "share the frames among so many threads (default: one a core)")
+    verb.add_option("--threads", options.threads, "share " + shared + " among so many threads (default: one a core)")
         ->check(CLI::Range(1u, kMostThreads))
         ->type_name("N");
+    verb.add_option("--json", options.json, "write the result as JSON (-: standard output)")->type_name("FILE");
+}
+
+void addSceneOptions(CLI::App& verb, RunOptions& options) {
+    addCameraOptions(verb, options, "the frames");
     verb.add_option("--repeat", options.repeat, "queries a frame; times are their medians")
         ->check(CLI::Range(1, 100000))
         ->type_name("N")
@@ -102,7 +107,6 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
         ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
         ->type_name("N")
         ->capture_default_str();
-    verb.add_option("--json", options.json, "write the result as JSON (-: standard output)")->type_name("FILE");
 }
 
 Status finish(const CLI::App& verb, RunOptions& options) {

@@ -35,6 +35,10 @@ struct RunOptions {
     std::string report;  ///< directory, or empty
 };
 
+/// The scene, its cameras, the size, threads and JSON: what every verb has that looks at a scene.
+/// @param shared  what the threads share: "the frames"
+void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& shared);
+/// These, and what culling needs.
 void addSceneOptions(CLI::App& verb, RunOptions& options);
 /// Checks what single options cannot: sizes, stage names. Errors are kUsage.
 Status finish(const CLI::App& verb, RunOptions& options);

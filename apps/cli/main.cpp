@@ -36,6 +36,7 @@ int runTool(int count, char** words) {
     int exit_code = kDone;
     addCull(tool, exit_code);
     addVerify(tool, exit_code);
+    addRender(tool, exit_code);
     addInfo(tool, exit_code);
     addBench(tool, exit_code);
     if (count <= 1) {

@@ -20,6 +20,7 @@ enum ExitCode : int {
 /// Each adds its verb with its options to the tool. The verb's action sets the exit code.
 void addCull(CLI::App& tool, int& exit_code);
 void addVerify(CLI::App& tool, int& exit_code);
+void addRender(CLI::App& tool, int& exit_code);
 void addInfo(CLI::App& tool, int& exit_code);
 void addBench(CLI::App& tool, int& exit_code);
 

@@ -13,6 +13,7 @@
 
 #include "sightline/report/chart.h"
 #include "sightline/report/page_assets.h"
+#include "sightline/report/page_parts.h"
 #include "sightline/report/picture.h"
 #include "sightline/report/plan.h"
 
@@ -22,13 +23,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr uint32_t kPlanSide = 480;  // [pixels]
-
-std::string number(uint64_t value) { return readable(static_cast<double>(value)); }
-
-std::string percent(double part, double whole) {
-    const double value = whole > 0 ? 100 * part / whole : 0;
-    return value > 0 && value < 0.01 ? "under 0.01 %" : fmt::format("{:.{}f} %", value, value < 1 ? 2 : 1);
-}
 
 double mean(const Image<float>& image) {
     double sum = 0;
@@ -169,9 +163,6 @@ Means meansOf(const CullRun& run) {
 }
 
 std::string tiles(const CullRun& run, const Means& means) {
-    const auto tile = [](const std::string& value, const std::string& text) {
-        return fmt::format("<div class=\"tile\"><b>{}</b><span class=\"soft\">{}</span></div>", value, text);
-    };
     std::string out = "<div class=\"tiles\">";
     out += tile(readable(std::round(means.visible)),
                 fmt::format("objects kept a frame, {} of the scene", percent(means.visible, double(run.objects))));
@@ -191,14 +182,6 @@ std::string player(const CullRun& run, const Json& first, size_t pictures, doubl
         legend +=
             fmt::format("<span><i style=\"background:rgb({},{},{})\"></i>{}</span>", c.x, c.y, c.z, kPlanNames[i]);
     }
-    std::string stops;
-    for (int i = 0; i <= 12; ++i) {
-        const Rgb c = heatColour(i / 12.0);
-        stops += fmt::format("{}rgb({},{},{})", i ? "," : "", c.x, c.y, c.z);
-    }
-    std::string ticks;
-    for (const double at : {0.0, 0.25, 0.5, 0.75, 1.0})  // the colours stand for square roots
-        ticks += fmt::format("<span>{:.2g}{}</span>", at * at * scale, at < 1 ? "" : " and more");
     return fmt::format(
         R"html(<section class="card" aria-labelledby="h-frames"><h2 id="h-frames">Frame by frame</h2>
 <div class="player"><button type="button" id="play">Play</button>
@@ -214,9 +197,8 @@ std::string player(const CullRun& run, const Json& first, size_t pictures, doubl
 <figcaption>Without culling: <b id="depth-all"></b> a pixel on average</figcaption></figure>
 <figure><img id="heat-kept" alt="Heat map of surfaces drawn for each pixel with culling" src="{}">
 <figcaption>With culling: <b id="depth-kept"></b> a pixel on average</figcaption></figure></div>
-<div class="bar" style="background:linear-gradient(90deg,{})" role="img" aria-label="Colour scale"></div>
-<div class="scale">{}</div></section>)html",
-        pictures - 1, image("shaded"), image("plan"), legend, image("heat-all"), image("heat-kept"), stops, ticks);
+{}</section>)html",
+        pictures - 1, image("shaded"), image("plan"), legend, image("heat-all"), image("heat-kept"), heatLegend(scale));
 }
 
 std::string stageTable(const CullRun& run, const Means& means) {
@@ -341,16 +323,12 @@ std::string reportPage(const Scene& scene, const CullRun& run, const PageSetting
 
     std::string json = data.dump(-1, ' ', true, Json::error_handler_t::replace);
     for (size_t at = json.find("</"); at != std::string::npos; at = json.find("</", at)) json.replace(at, 2, "<\\/");
-    const size_t slash = run.scene.rfind('/');
-    const std::string name = escapeHtml(slash == std::string::npos ? run.scene : run.scene.substr(slash + 1));
-    std::string page = fmt::format(
-        R"html(<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{} – Sightline</title><style>{}</style></head><body>
-<header class="page"><h1>{}</h1><p class="soft">{} objects, {} triangles; {} frames of {} × {}</p>{}</header>
+    const std::string name = sceneTitle(run.scene);
+    std::string page = pageHead(name);
+    page += fmt::format(
+        R"html(<header class="page"><h1>{}</h1><p class="soft">{} objects, {} triangles; {} frames of {} × {}</p>{}</header>
 <main>)html",
-        name, kPageStyle, name, number(run.objects), number(run.triangles), run.frames.size(), run.width, run.height,
-        verdict(run));
+        name, number(run.objects), number(run.triangles), run.frames.size(), run.width, run.height, verdict(run));
     page += tiles(run, means);
     if (!shots.empty()) page += player(run, data["pictures"][0], shots.size(), scale);
     page += stageTable(run, means) + charts(run) + howVerified(run, pictured);

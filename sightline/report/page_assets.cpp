@@ -47,6 +47,17 @@ figcaption { color: var(--soft); font-size: .92rem; margin-top: 6px; }
 figcaption b { color: var(--ink); font-variant-numeric: tabular-nums; }
 .stage { display: grid; grid-template-columns: minmax(0, 1.85fr) minmax(0, 1fr); gap: 18px; align-items: start; }
 .pair { display: grid; grid-template-columns: 1fr 1fr; gap: 18px; }
+.gallery { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 340px), 1fr)); gap: 22px 18px; }
+.gallery h3 { font-size: 1rem; margin: 0 0 6px; } .gallery .heat { margin-top: 8px; }
+.crisp img { image-rendering: pixelated; }
+.costs { display: grid; grid-template-columns: max-content minmax(0, 1fr) max-content; gap: 8px 14px; align-items: center;
+  font-variant-numeric: tabular-nums; }
+.costs > span:nth-child(3n) { text-align: right; }
+.costs .share { margin: 0; display: flex; border-radius: 3px; } .costs .share div + div { background: var(--two); }
+.tag { display: inline-block; font-size: .82rem; padding: 0 8px; border-radius: 9px; background: var(--note-back);
+  color: var(--soft); }
+.tag.good { background: var(--good-back); color: var(--good); } .tag.bad { background: var(--bad-back); color: var(--bad); }
+.bars rect { fill: var(--one); } .bars .tick { fill: var(--soft); font-size: 12px; }
 .plan img { background: var(--note-back); image-rendering: auto; border: 1px solid var(--line); }
 .legend { display: flex; flex-wrap: wrap; gap: 4px 16px; font-size: .92rem; color: var(--soft); margin-top: 6px; }
 .legend i { display: inline-block; width: .8em; height: .8em; border-radius: 2px; margin-right: .45em; }

@@ -70,18 +70,13 @@ double heatScale(std::span<const uint16_t> counts) {
     return std::max<double>(2.0, *place);
 }
 
-Image<Rgb> differencePicture(const RenderList& scene, const Image<Rgb>& shaded, const HiddenImage& a,
-                             const HiddenImage& b) {
+Image<Rgb> differencePicture(const Image<Rgb>& shaded, const HiddenImage& a, const HiddenImage& b) {
     Image<Rgb> out = shaded;
-    const auto keyAt = [&](const HiddenImage& image, size_t at) {
-        const uint32_t surface = image.surface[at];
-        return surface == HiddenImage::kNone ? ~uint64_t{0} : scene.keyOf(surface);
-    };
     for (uint32_t y = 0; y < out.height; ++y)
         for (uint32_t x = 0; x < out.width; ++x) {
             const size_t at = size_t{out.height - 1 - y} * out.width + x;
             Rgb& pixel = out.at(x, y);
-            const bool same = a.surface[at] == b.surface[at] || keyAt(a, at) == keyAt(b, at);
+            const bool same = a.surface[at] == b.surface[at];
             const auto pale = static_cast<uint8_t>(160 + (pixel.x + 2 * pixel.y + pixel.z) / 12);
             pixel = same ? Rgb(pale) : Rgb(214, 30, 60);
         }

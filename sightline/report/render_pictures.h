@@ -35,9 +35,8 @@ Image<float> countPicture(const HiddenImage& image, std::span<const uint16_t> co
 /// The value that is shown brightest: one sample in 500 may lie above it.
 double heatScale(std::span<const uint16_t> counts);
 
-/// The image with the pixels marked where two images show different objects, over a pale picture.
-Image<Rgb> differencePicture(const RenderList& scene, const Image<Rgb>& shaded, const HiddenImage& a,
-                             const HiddenImage& b);
+/// A pale picture with the pixels marked where two images show different surfaces.
+Image<Rgb> differencePicture(const Image<Rgb>& shaded, const HiddenImage& a, const HiddenImage& b);
 
 /// Means of squares of pixels, so that no side is longer than `most`.
 Image<Rgb> reduced(const Image<Rgb>& image, uint32_t most);

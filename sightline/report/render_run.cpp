@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
+#include "sightline/hidden/scan.h"
 #include "sightline/report/camera_json.h"
 
 namespace sightline {
@@ -36,14 +38,10 @@ Json methodJson(const MethodResult& result) {
     out["prepare_milliseconds"] = result.prepare_milliseconds;
     for (const CounterName& counter : counterNames())
         out["counters"][std::string(counter.name)] = counter.value(result.image.counters);
-    out["agreement"] = {{"with", "zbuffer"},
-                        {"samples", result.agreement.samples},
-                        {"differing", result.agreement.differing},
-                        {"at_edges", result.agreement.at_edges},
-                        {"ties", result.agreement.ties},
-                        {"wrong", result.agreement.wrong},
-                        {"edge_band", result.bands.edge},
-                        {"tie_band", result.bands.tie}};
+    out["agreement"] = {{"with", "plain z-buffer in double"},      {"samples", result.agreement.samples},
+                        {"differing", result.agreement.differing}, {"at_edges", result.agreement.at_edges},
+                        {"ties", result.agreement.ties},           {"wrong", result.agreement.wrong},
+                        {"edge_band", result.bands.edge},          {"tie_band", result.bands.tie}};
     for (int heat = 0; heat < kHeats; ++heat) {
         const std::vector<uint16_t>& counts = countsOf(result.image, static_cast<Heat>(heat));
         if (counts.empty()) continue;
@@ -107,6 +105,38 @@ std::span<const CounterName> counterNames() {
     return kNames;
 }
 
+HiddenImage plainZBuffer(const DrawList& list, const View& view, const ProjectorSettings& settings) {
+    HiddenImage image;
+    image.width = view.width;
+    image.height = view.height;
+    image.surface.assign(size_t{view.width} * view.height, HiddenImage::kNone);
+    if (!isUsable(view)) return image;
+    std::vector<double> nearest(image.surface.size(), -std::numeric_limits<double>::infinity());
+    const auto width = static_cast<int32_t>(view.width), height = static_cast<int32_t>(view.height);
+    Projector projector(view, {view.width, view.height, 0, 1, {}}, settings);
+    ScreenPolygon polygon;
+    for (size_t i = 0; i < list.items().size(); ++i) {
+        const DrawItem& item = list.items()[i];
+        projector.begin(item);
+        for (uint32_t t = 0; t < item.mesh.triangles(); ++t) {
+            if (!item.writes_depth.empty() && item.writes_depth[t] == 0) continue;
+            if (!projector.project(t, polygon)) continue;
+            const uint32_t surface = list.firstSurface(i) + t;
+            scanPolygon(polygon.outline(), 0, height, width, [&](int32_t row, int32_t begin, int32_t end) {
+                for (int32_t k = begin; k < end; ++k) {
+                    const size_t at = static_cast<size_t>(row) * view.width + static_cast<size_t>(k);
+                    const double nearness = polygon.depth.at(row, k);
+                    if (nearness <= nearest[at]) continue;
+                    nearest[at] = nearness;
+                    image.surface[at] = surface;
+                }
+            });
+        }
+    }
+    image.counters.geometry = projector.counters();
+    return image;
+}
+
 const MethodResult* RenderRun::find(HiddenMethod method) const {
     for (const MethodResult& result : methods)
         if (result.method == method) return &result;
@@ -163,7 +193,8 @@ std::string renderJson(const RenderRun& run) {
                     {"objects", run.objects},
                     {"triangles", run.triangles},
                     {"objects_in_view", run.objects_in_view},
-                    {"triangles_in_view", run.triangles_in_view}};
+                    {"triangles_in_view", run.triangles_in_view},
+                    {"polygons_in_view", run.polygons_in_view}};
     out["width"] = run.width;
     out["height"] = run.height;
     out["frame"] = run.frame;

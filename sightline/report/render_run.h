@@ -40,12 +40,16 @@ struct CounterName {
 };
 std::span<const CounterName> counterNames();
 
+/// The nearest surface at each sample by a z-buffer in double, which all methods are compared with: one thread, no
+/// tiles, no formats. HiddenCounters::geometry is filled.
+HiddenImage plainZBuffer(const DrawList& list, const View& view, const ProjectorSettings& settings);
+
 struct MethodResult {
     HiddenMethod method = HiddenMethod::kZBuffer;
     HiddenImage image;
     double milliseconds = 0;          ///< median over the repeats
     double prepare_milliseconds = 0;  ///< what could be kept from frame to frame; not in the above
-    Agreement agreement;              ///< with the z-buffer's image
+    Agreement agreement;              ///< with plainZBuffer()'s image
     AgreementBands bands;             ///< that it was judged by
 
     std::string_view name() const { return kHiddenMethodNames[static_cast<int>(method)]; }
@@ -61,6 +65,7 @@ struct RenderRun {
     std::string command;                                  ///< that repeats this run
     uint64_t objects = 0, triangles = 0;                  ///< of the scene
     uint64_t objects_in_view = 0, triangles_in_view = 0;  ///< that methods were given
+    uint64_t polygons_in_view = 0;                        ///< what is left of them to draw
     uint32_t width = 0, height = 0;
     uint32_t frame = 0, frames = 0;
     CameraFrame camera;
@@ -83,7 +88,7 @@ MethodResult drawMethod(const RenderList& scene, const View& view, RenderSetting
                         int repeat);
 
 /// Fills MethodResult::agreement.
-/// @param reference  the z-buffer's image
+/// @param reference  plainZBuffer()'s image
 void judge(const RenderList& scene, const View& view, const HiddenImage& reference, const RenderSettings& settings,
            MethodResult& result);
 
