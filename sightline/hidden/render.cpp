@@ -5,6 +5,8 @@
 #include <chrono>
 
 #include "sightline/base/assert.h"
+#include "sightline/hidden/bsp_back_to_front.h"
+#include "sightline/hidden/bsp_front_to_back.h"
 #include "sightline/hidden/newell.h"
 #include "sightline/hidden/painter.h"
 #include "sightline/hidden/raycast.h"
@@ -17,7 +19,7 @@ using Draw = void (*)(const HiddenInput&, HiddenImage&);
 
 /// In the order of HiddenMethod.
 constexpr Draw kMethods[kHiddenMethods] = {
-    drawPainter, drawNewell, nullptr, nullptr, drawWarnock, nullptr, drawRaycast,
+    drawPainter, drawNewell, drawBspBackToFront, drawBspFrontToBack, drawWarnock, nullptr, drawRaycast,
 };
 
 }  // namespace
