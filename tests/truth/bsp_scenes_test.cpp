@@ -1,0 +1,124 @@
+// On real scenes and a city a BSP tree stays small, and drawing by it both ways shows what is nearest.
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "sightline/base/random.h"
+#include "sightline/hidden/bsp_back_to_front.h"
+#include "sightline/hidden/bsp_front_to_back.h"
+#include "sightline/hidden/compare.h"
+#include "sightline/import/gltf.h"
+#include "sightline/scene/city.h"
+#include "sightline/truth/scene_facts.h"
+#include "tests/hidden/made_lists.h"
+
+namespace sightline::test {
+namespace {
+
+/// From outside, from within, and in parallel projection.
+std::vector<View> viewsOf(const Box3d& box) {
+    const double size = glm::length(box.size());
+    Random random(7);
+    std::vector<View> views;
+    for (int i = 0; i < 3; ++i) {
+        View view;
+        view.width = 320;
+        view.height = 180;
+        const glm::dvec3 part(random.uniform(0.3, 0.7), random.uniform(0.3, 0.7), random.uniform(0.3, 0.7));
+        const glm::dvec3 inside = box.min + part * box.size();
+        const glm::dvec3 outside = box.center() + glm::dvec3(0.4, 0.3, 0.5) * size;
+        view.view = lookAt(i == 1 ? inside : outside, box.center() + 0.01 * inside, {0, 1, 0});
+        view.projection = i == 2 ? orthographic(0.8 * size, 16.0 / 9, 1e-3 * size, 4 * size)
+                                 : perspective(1.0, 16.0 / 9, 5e-4 * size);
+        views.push_back(view);
+    }
+    return views;
+}
+
+std::vector<DrawItem> itemsOf(const SceneFacts& facts) {
+    std::vector<DrawItem> items;
+    for (uint32_t i = 0; i < facts.scene().objects.size(); ++i) {
+        DrawItem item;
+        item.mesh = {facts.mesh(i).positions, facts.mesh(i).indices};
+        item.double_sided = facts.facts(i).double_sided;
+        if (!facts.facts(i).all_hide) item.writes_depth = facts.facts(i).hides;
+        item.transform = facts.scene().objects[i].transform;
+        item.id = i;
+        items.push_back(item);
+    }
+    return items;
+}
+
+HiddenImage emptyImage(const View& view) {
+    HiddenImage image;
+    image.width = view.width;
+    image.height = view.height;
+    image.surface.assign(size_t{view.width} * view.height, HiddenImage::kNone);
+    return image;
+}
+
+/// One tree, three views, drawn in all four ways.
+void expectRight(const char* name, const Scene& scene, double pieces_per_polygon) {
+    const SceneFacts facts(scene);
+    const std::vector<DrawItem> items = itemsOf(facts);
+    const DrawList list(items);
+    const auto start = std::chrono::steady_clock::now();
+    const BspScene bsp = buildBspScene(list);
+    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+    const BspStatistics statistics = statisticsOf(bsp.tree);
+    std::printf("%-24s %7zu polygons (%zu degenerate), %7zu pieces (%.2f), depth %u (mean %.1f), built in %.0f ms\n",
+                name, size_t(statistics.polygons), size_t(statistics.degenerate), size_t(statistics.pieces),
+                statistics.pieces_per_polygon, statistics.depth, statistics.mean_depth, took.count());
+    EXPECT_LE(statistics.pieces_per_polygon, pieces_per_polygon) << name;
+    for (const View& view : viewsOf(worldBounds(scene))) {
+        const HiddenImage truth = nearestSurfaces(list, view);
+        RenderSettings settings;
+        const HiddenInput input{list, view, settings};
+        HiddenImage painted = emptyImage(view);
+        drawBspBackToFront(bsp, input, painted);
+        const Agreement agreement = compareImages(list, view, truth, painted);
+        std::printf("%-24s %7zu drawn, %zu samples differ: at edges %zu, ties %zu, wrong %zu;", name,
+                    size_t(painted.counters.geometry.produced), size_t(agreement.differing), size_t(agreement.at_edges),
+                    size_t(agreement.ties), size_t(agreement.wrong));
+        EXPECT_EQ(agreement.wrong, 0u) << name << ": row " << agreement.row << ", sample " << agreement.sample
+                                       << " shows " << agreement.found << ", expected " << agreement.expected;
+        for (const FreeSamples kind : {FreeSamples::kCheck, FreeSamples::kSegments, FreeSamples::kBits}) {
+            settings.free_samples = kind;
+            HiddenImage image = emptyImage(view);
+            drawBspFrontToBack(bsp, input, image);
+            EXPECT_TRUE(image.surface == painted.surface) << name << ", kind " << int(kind);
+            std::printf(" generated %zu,", size_t(image.counters.generated));
+        }
+        std::printf(" painted %zu\n", size_t(painted.counters.generated));
+    }
+}
+
+class BspScenes : public testing::TestWithParam<const char*> {};
+
+TEST_P(BspScenes, ShowWhatIsNearest) {
+    const std::string file = std::string(SIGHTLINE_SHARED_DIR) + "/scenes/" + GetParam() + ".glb";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "no scenes in ../shared";
+    const Result<Scene> scene = loadGltf(file);
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    expectRight(GetParam(), *scene, 3.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, BspScenes,
+                         testing::Values("2CylinderEngine", "aws-small-house", "bimwhale-tall-building", "bsi-duplex",
+                                         "cityjson-vienna", "dense-spot", "gazebo-pr2", "gazebo-willowgarage",
+                                         "polyhaven-dutch-ship", "redeclipse-auster", "sauer-pandora"),
+                         [](const testing::TestParamInfo<const char*>& info) {
+                             std::string name = info.param;
+                             std::replace(name.begin(), name.end(), '-', '_');
+                             return name;
+                         });
+
+TEST(BspCity, ShowsWhatIsNearest) { expectRight("city", makeCity(1, 300), 3.0); }
+
+}  // namespace
+}  // namespace sightline::test
