@@ -15,7 +15,7 @@ struct Case {
     Table (*measure)(const Options&);
 };
 
-constexpr Case kCases[] = {{"frustum", benchFrustum}, {"occlusion", benchOcclusion}};
+constexpr Case kCases[] = {{"frustum", benchFrustum}, {"occlusion", benchOcclusion}, {"order", benchOrder}};
 
 }  // namespace
 

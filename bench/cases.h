@@ -13,4 +13,8 @@ Table benchFrustum(const Options& options);
 /// The whole query while a city grows, beside flat frustum culling; how tight its answer is.
 Table benchOcclusion(const Options& options);
 
+/// Radix sort beside std::sort; Newell's algorithm beside the painter's, Warnock's beside a plain z-buffer, rays by our
+/// hierarchy beside Embree's.
+Table benchOrder(const Options& options);
+
 }  // namespace sightline::bench

@@ -6,15 +6,11 @@
 #include <limits>
 
 #include "sightline/hidden/fill.h"
+#include "sightline/hidden/presort.h"
 #include "sightline/hidden/scan.h"
 
 namespace sightline {
 namespace {
-
-struct Key {
-    double nearness = 0;
-    uint32_t polygon = 0;
-};
 
 double nearnessAt(const ScreenPolygon& polygon, const glm::dvec2& point) {
     return polygon.depth.at(point.y - 0.5, point.x - 0.5);
@@ -37,14 +33,16 @@ void drawPainter(const HiddenInput& input, HiddenImage& image) {
     Projector projector = input.projector();
     const std::vector<ScreenPolygon> polygons = projectAll(input.list, projector);
     image.counters.geometry = projector.counters();
-    std::vector<Key> keys(polygons.size());
-    for (uint32_t i = 0; i < keys.size(); ++i) keys[i] = {nearnessOf(polygons[i], input.settings.painter_key), i};
-    std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
-        return a.nearness != b.nearness ? a.nearness < b.nearness : a.polygon > b.polygon;
-    });
+    // Higher numbers first: the sort keeps the order of equals.
+    std::vector<SortEntry> order(polygons.size()), scratch;
+    for (uint32_t i = 0; i < order.size(); ++i) {
+        const uint32_t polygon = static_cast<uint32_t>(order.size()) - 1 - i;
+        order[i] = {sortKey(nearnessOf(polygons[polygon], input.settings.painter_key)), polygon};
+    }
+    radixSort(order, scratch);
     const int32_t width = static_cast<int32_t>(image.width), height = static_cast<int32_t>(image.height);
-    for (const Key& key : keys) {
-        const ScreenPolygon& polygon = polygons[key.polygon];
+    for (const SortEntry& entry : order) {
+        const ScreenPolygon& polygon = polygons[entry.value];
         scanPolygon(polygon.outline(), 0, height, width, [&](int32_t row, int32_t begin, int32_t end) {
             fillSpan(image, row, begin, end, polygon.surface);
         });

@@ -20,14 +20,15 @@ struct SortEntry {
     uint32_t value = 0;
 };
 
-/// Bits that rise as the number rises, negative ones and infinities included; -0 is put before +0.
+/// Bits that rise as the number rises, negative ones and infinities included; both zeros are one.
 inline uint64_t sortKey(double number) {
-    const uint64_t bits = std::bit_cast<uint64_t>(number);
+    const uint64_t bits = std::bit_cast<uint64_t>(number + 0.0);
     return bits >> 63 != 0 ? ~bits : bits | 1ull << 63;
 }
 
-/// Sorts by rising keys; entries of equal keys keep their order. Six passes of eleven bits at most: a digit that all
-/// keys share costs none. O(n).
+/// Sorts by rising keys; entries of equal keys keep their order. The bits below those that all keys share are taken
+/// thirty-three at a time, digit by digit from the lowest: mostly the first of these settle the order, and the rest
+/// looks only at entries that are still equal. O(n).
 /// @param scratch  overwritten; keep it from call to call to save the allocation
 void radixSort(std::vector<SortEntry>& entries, std::vector<SortEntry>& scratch);
 

@@ -15,17 +15,20 @@ namespace {
 
 TEST(Presort, KeysRiseAsNumbersDo) {
     const double infinity = std::numeric_limits<double>::infinity();
-    const double numbers[] = {-infinity, -1e300, -2.5, -1e-310, -0.0, 0.0, 1e-310, 1.0, 1.0 + 0x1p-52, 7e200, infinity};
+    const double numbers[] = {-infinity, -1e300, -2.5, -1e-310, 0.0, 1e-310, 1.0, 1.0 + 0x1p-52, 7e200, infinity};
     for (size_t i = 1; i < std::size(numbers); ++i) EXPECT_LT(sortKey(numbers[i - 1]), sortKey(numbers[i])) << i;
+    EXPECT_EQ(sortKey(-0.0), sortKey(0.0));
 }
 
 TEST(Presort, SortsAsTheStableSortDoes) {
-    for (uint64_t seed = 1; seed <= 40; ++seed) {
+    for (uint64_t seed = 1; seed <= 120; ++seed) {
         Random random(seed);
-        const size_t count = seed < 10 ? seed - 1 : random.below(5000);
+        const size_t count = seed < 10 ? seed - 1 : random.below(9000);
         const int shift = static_cast<int>(random.below(64));
+        // Keys that differ in few bits, high or low, as well as those that differ in all.
+        const uint64_t bits = seed % 3 == 0 ? random.next() & random.next() & random.next() : ~0ull;
         std::vector<SortEntry> entries(count), scratch;
-        for (uint32_t i = 0; i < count; ++i) entries[i] = {random.next() >> shift, i};
+        for (uint32_t i = 0; i < count; ++i) entries[i] = {(random.next() >> shift) & bits, i};
         std::vector<SortEntry> expected = entries;
         std::stable_sort(expected.begin(), expected.end(),
                          [](const SortEntry& a, const SortEntry& b) { return a.key < b.key; });
@@ -57,6 +60,38 @@ TEST(Presort, PutsPolygonsNearToFarOrFarToNear) {
     const uint32_t twin = static_cast<uint32_t>(polygons.size()) - 1;
     EXPECT_LT(place(near, 5), place(near, twin));
     EXPECT_GT(place(far, 5), place(far, twin));
+}
+
+/// How often a z-buffer is written when polygons come in an order.
+uint64_t writes(const std::vector<ScreenPolygon>& polygons, const std::vector<uint32_t>& order) {
+    std::vector<double> nearest(160 * 120, -std::numeric_limits<double>::infinity());
+    uint64_t count = 0;
+    for (const uint32_t place : order)
+        scanPolygon(polygons[place].outline(), 0, 120, 160, [&](int32_t row, int32_t begin, int32_t end) {
+            for (int32_t i = begin; i < end; ++i) {
+                const double nearness = polygons[place].depth.at(row, i);
+                double& here = nearest[size_t(row * 160 + i)];
+                count += nearness > here;
+                here = std::max(here, nearness);
+            }
+        });
+    return count;
+}
+
+TEST(Presort, NearToFarSparesAZBufferWritesAndFarToNearDoesNot) {
+    for (uint64_t seed = 1; seed <= 5; ++seed) {
+        const MadeList made = clutter(seed, 3000);
+        const std::vector<DrawItem> items = made.items();
+        Projector projector(madeView(), {160, 120, 0, 1, {}});
+        const std::vector<ScreenPolygon> polygons = projectAll(DrawList(items), projector);
+        std::vector<uint32_t> given(polygons.size());
+        for (uint32_t i = 0; i < given.size(); ++i) given[i] = i;
+        const uint64_t near = writes(polygons, orderPolygons(polygons, DepthOrder::kNearToFar)),
+                       far = writes(polygons, orderPolygons(polygons, DepthOrder::kFarToNear)),
+                       none = writes(polygons, given);
+        EXPECT_LT(near, none) << seed;
+        EXPECT_GT(far, none) << seed;
+    }
 }
 
 TEST(Presort, PutsItemsInOrder) {

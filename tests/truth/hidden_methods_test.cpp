@@ -1,0 +1,130 @@
+// On real scenes the list-priority, area and ray methods show what is nearest.
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "sightline/base/random.h"
+#include "sightline/hidden/compare.h"
+#include "sightline/hidden/raycast.h"
+#include "sightline/import/gltf.h"
+#include "sightline/truth/scene_facts.h"
+#include "tests/hidden/made_lists.h"
+
+namespace sightline::test {
+namespace {
+
+/// From outside, from within, and in parallel projection.
+std::vector<View> viewsOf(const Box3d& box) {
+    const double size = glm::length(box.size());
+    Random random(1);
+    std::vector<View> views;
+    for (int i = 0; i < 3; ++i) {
+        View view;
+        view.width = 320;
+        view.height = 180;
+        const glm::dvec3 part(random.uniform(0.3, 0.7), random.uniform(0.3, 0.7), random.uniform(0.3, 0.7));
+        const glm::dvec3 inside = box.min + part * box.size();
+        const glm::dvec3 outside = box.center() + glm::dvec3(0.4, 0.3, 0.5) * size;
+        view.view = lookAt(i == 1 ? inside : outside, box.center() + 0.01 * inside, {0, 1, 0});
+        view.projection = i == 2 ? orthographic(0.8 * size, 16.0 / 9, 1e-3 * size, 4 * size)
+                                 : perspective(1.0, 16.0 / 9, 5e-4 * size);
+        views.push_back(view);
+    }
+    return views;
+}
+
+std::vector<DrawItem> itemsOf(const SceneFacts& facts) {
+    std::vector<DrawItem> items;
+    for (uint32_t i = 0; i < facts.scene().objects.size(); ++i) {
+        const Mesh& mesh = facts.mesh(i);
+        const MeshFacts& mesh_facts = facts.facts(i);
+        DrawItem item;
+        item.mesh = {mesh.positions, mesh.indices};
+        item.double_sided = mesh_facts.double_sided;
+        if (!mesh_facts.all_hide) item.writes_depth = mesh_facts.hides;
+        item.transform = facts.scene().objects[i].transform;
+        item.id = i;
+        items.push_back(item);
+    }
+    return items;
+}
+
+struct NamedSettings {
+    const char* name;
+    RenderSettings settings;
+    AgreementBands bands;
+};
+
+std::vector<NamedSettings> allSettings() {
+    std::vector<NamedSettings> all;
+    const auto add = [&](const char* name, HiddenMethod method) -> NamedSettings& {
+        all.push_back({name, {}, {}});
+        all.back().settings.method = method;
+        return all.back();
+    };
+    add("newell", HiddenMethod::kNewell);
+    add("warnock", HiddenMethod::kWarnock);
+    add("rays", HiddenMethod::kRaycast);
+    if (hasEmbree()) {
+        NamedSettings& embree = add("rays, Embree", HiddenMethod::kRaycast);
+        embree.settings.ray_tracer = RayTracer::kEmbree;
+        embree.bands = {0.05, 1e-4, false};
+    }
+    return all;
+}
+
+class HiddenMethods : public testing::TestWithParam<const char*> {};
+
+TEST_P(HiddenMethods, ShowWhatIsNearest) {
+    const std::string file = std::string(SIGHTLINE_SHARED_DIR) + "/scenes/" + GetParam() + ".glb";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "no scenes in ../shared";
+    const Result<Scene> scene = loadGltf(file);
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    const SceneFacts facts(*scene);
+    const std::vector<DrawItem> items = itemsOf(facts);
+    const DrawList list(items);
+    uint64_t shown = 0;
+    for (const View& view : viewsOf(worldBounds(*scene))) {
+        const HiddenImage truth = nearestSurfaces(list, view);
+        for (const uint32_t surface : truth.surface) shown += surface != HiddenImage::kNone;
+        for (const NamedSettings& named : allSettings()) {
+            const HiddenImage found = render(list, view, named.settings);
+            const Agreement agreement = compareImages(list, view, truth, found, named.bands);
+            const HiddenCounters& counters = found.counters;
+            std::printf(
+                "%-24s %-12s %7llu polygons, %6llu samples differ: %5llu at edges, %5llu ties, %3llu wrong; "
+                "%9llu comparisons, %6llu swaps, %5llu splits, %7llu windows, %llu ms\n",
+                GetParam(), named.name, static_cast<unsigned long long>(counters.geometry.produced),
+                static_cast<unsigned long long>(agreement.differing),
+                static_cast<unsigned long long>(agreement.at_edges), static_cast<unsigned long long>(agreement.ties),
+                static_cast<unsigned long long>(agreement.wrong), static_cast<unsigned long long>(counters.comparisons),
+                static_cast<unsigned long long>(counters.swaps), static_cast<unsigned long long>(counters.splits),
+                static_cast<unsigned long long>(counters.windows),
+                static_cast<unsigned long long>(counters.nanoseconds / 1000000));
+            EXPECT_EQ(agreement.wrong, 0u)
+                << named.name << ": row " << agreement.row << " sample " << agreement.sample << ": "
+                << int32_t(agreement.found) << " for " << int32_t(agreement.expected);
+            if (named.settings.method == HiddenMethod::kNewell) {
+                EXPECT_EQ(counters.tested, 0u) << "the limit was reached";
+            }
+        }
+    }
+    EXPECT_GT(shown, 320u * 180 / 8) << "the views show next to nothing";
+}
+
+/// All scenes of up to 150,000 triangles.
+INSTANTIATE_TEST_SUITE_P(Scenes, HiddenMethods,
+                         testing::Values("2CylinderEngine", "aws-small-house", "bimwhale-tall-building", "bsi-duplex",
+                                         "cityjson-vienna", "dense-spot", "gazebo-pr2", "gazebo-willowgarage",
+                                         "polyhaven-dutch-ship", "redeclipse-auster", "sauer-pandora"),
+                         [](const testing::TestParamInfo<const char*>& info) {
+                             std::string name = info.param;
+                             std::replace(name.begin(), name.end(), '-', '_');
+                             return name;
+                         });
+
+}  // namespace
+}  // namespace sightline::test
