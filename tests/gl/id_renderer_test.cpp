@@ -18,8 +18,8 @@
 namespace sightline::test {
 namespace {
 
-/// Mesa snaps vertices to 1/256 of a pixel, after float arithmetic in clip space and at the near plane.
-constexpr double kEdgeBand = 1.0 / 128;
+/// Mesa snaps vertices to multiples of 1/256 of a pixel: by at most sqrt(2)/512, which moves an edge by no more.
+constexpr double kEdgeBand = 1.0 / 256;
 /// Depths are planes in float.
 constexpr double kTieBand = 1e-5;
 
