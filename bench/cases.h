@@ -7,6 +7,9 @@
 
 namespace sightline::bench {
 
+/// A walk through a city: guard band and outcodes beside naive clipping at six planes, and scanning without clipping.
+Table benchClipping(const Options& options);
+
 /// A million boxes, 7 % of them in view: corner by corner, p-vertex, flat SIMD, and the hierarchy.
 Table benchFrustum(const Options& options);
 

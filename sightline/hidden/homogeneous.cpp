@@ -75,6 +75,7 @@ bool makeHomogeneous(const glm::dvec4 (&corners)[3], const SamplePlaces& places,
         const glm::dvec3& a = out.corners[(k + 1) % 3];
         const glm::dvec3& b = out.corners[(k + 2) % 3];
         out.edges[k] = glm::cross(a, b);
+        out.slopes[k] = tripleProductSign(a, b, {1, 0, 0});
         // As in tripleProductSign(), for the largest place of a sample.
         out.doubt[k] = 0x1p-50 * ((std::abs(a.y * b.z) + std::abs(a.z * b.y)) * x_size +
                                   (std::abs(a.z * b.x) + std::abs(a.x * b.z)) * y_size +

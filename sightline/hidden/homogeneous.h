@@ -31,6 +31,7 @@ struct SamplePlaces {
 struct HomogeneousTriangle {
     glm::dvec3 corners[3];  ///< (x, y, w), counter-clockwise as seen
     glm::dvec3 edges[3];    ///< edge k, opposite of corner k: dot(edge, (x, y, 1)) >= 0 inside
+    int slopes[3];          ///< the exact sign of a function's change along a row
     double doubt[3];        ///< by how much rounding can have moved its value at any sample
     ScreenCut near_cut, far_cut;
     bool has_near = false, has_far = false;                  ///< whether a corner lies beyond
@@ -69,25 +70,19 @@ void scanHomogeneous(const HomogeneousTriangle& triangle, int32_t row_begin, int
         const double y = triangle.places.y(row);
         for (int k = 0; k < 3 && begin < end; ++k) {
             const auto inside = [&](int32_t i) { return triangle.insideEdge(k, triangle.places.x(i), y); };
-            const bool first = inside(begin), last = inside(end - 1);
-            if (first == last) {
-                if (!first) end = begin;
+            const glm::dvec3& edge = triangle.edges[k];
+            const int slope = triangle.slopes[k];
+            if (slope == 0) {
+                if (!inside(begin)) end = begin;
                 continue;
             }
-            int32_t low = begin, high = end - 1;  // inside(low) == first, inside(high) == last
-            const glm::dvec3& edge = triangle.edges[k];
+            // The last sample before the edge: guessed by division, settled by the same function as everywhere.
             const double x = -(edge.y * y + edge.z) / edge.x;
             const double guess = std::floor((x - triangle.places.start.x) / triangle.places.scale.x);
-            if (guess > low && guess < high) {
-                const int32_t g = static_cast<int32_t>(guess);
-                for (int32_t i = g; i <= g + 1 && i < high; ++i) (inside(i) == first ? low : high) = i;
-            }
-            while (high - low > 1) {
-                const int32_t middle = low + (high - low) / 2;
-                (inside(middle) == first ? low : high) = middle;
-            }
-            if (first) end = high;
-            else begin = high;
+            int32_t last = guess > begin - 1 ? guess < end - 1 ? static_cast<int32_t>(guess) : end - 1 : begin - 1;
+            while (last >= begin && inside(last) == (slope > 0)) --last;
+            while (last < end - 1 && inside(last + 1) != (slope > 0)) ++last;
+            (slope > 0 ? begin : end) = last + 1;
         }
         if (triangle.has_near) triangle.near_cut.narrow(row, begin, end);
         if (triangle.has_far) triangle.far_cut.narrow(row, begin, end);
