@@ -1,5 +1,6 @@
 // Hidden-surface removal: every classical method, one signature, one image.
 // SPDX-License-Identifier: MIT
+#include "sightline/hidden/clipless.h"
 #include "sightline/hidden/render.h"
 
 #include <chrono>
@@ -11,6 +12,7 @@
 #include "sightline/hidden/painter.h"
 #include "sightline/hidden/raycast.h"
 #include "sightline/hidden/warnock.h"
+#include "sightline/hidden/zbuffer_method.h"
 
 namespace sightline {
 namespace {
@@ -19,7 +21,7 @@ using Draw = void (*)(const HiddenInput&, HiddenImage&);
 
 /// In the order of HiddenMethod.
 constexpr Draw kMethods[kHiddenMethods] = {
-    drawPainter, drawNewell, drawBspBackToFront, drawBspFrontToBack, drawWarnock, nullptr, drawRaycast,
+    drawPainter, drawNewell, drawBspBackToFront, drawBspFrontToBack, drawWarnock, drawZBuffer, drawRaycast,
 };
 
 }  // namespace
@@ -35,7 +37,9 @@ HiddenImage render(const DrawList& list, const View& view, const RenderSettings&
         for (std::vector<uint16_t>* counts : {&image.generated, &image.tested, &image.passed, &image.shaded})
             counts->assign(samples, 0);
     if (isUsable(view)) {
-        const Draw draw = kMethods[static_cast<int>(settings.method)];
+        const bool clipless =
+            settings.method == HiddenMethod::kZBuffer && settings.projector.clipping == Clipping::kClipless;
+        const Draw draw = clipless ? drawClipless : kMethods[static_cast<int>(settings.method)];
         SIGHTLINE_ASSERT(draw != nullptr);
         draw({list, view, settings}, image);
     }

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "sightline/geom/view.h"
+#include "sightline/hidden/depth_settings.h"
 #include "sightline/hidden/draw_item.h"
 #include "sightline/hidden/image.h"
 
@@ -48,6 +49,7 @@ struct RenderSettings {
     uint32_t threads = 1;         ///< at most so many; methods that cannot share their work use one
     bool want_counts = false;     ///< fill the per-sample counts of HiddenImage
     ProjectorSettings projector;  ///< clipping and facing
+    DepthSettings depth;          ///< of the z-buffer
 };
 
 /// What a method is given.

@@ -1,0 +1,34 @@
+// A depth buffer in tiles: what each tile holds, cleared without being touched, and the bounds that reject by tiles.
+// SPDX-License-Identifier: MIT
+#include "sightline/hidden/depth_buffer.h"
+
+#include <algorithm>
+
+namespace sightline {
+
+DepthBuffer::DepthBuffer(uint32_t width_, uint32_t height_, DepthKey key, bool fast)
+    : width(width_), height(height_), columns((width + kTile - 1) / kTile), rows((height + kTile - 1) / kTile) {
+    stride = (columns + 15) / 16 * 16;
+    keys = std::make_unique_for_overwrite<DepthKey[]>(size_t{kTileSamples} * stride * rows);
+    clear(key, fast);
+}
+
+void DepthBuffer::clear(DepthKey key, bool fast) {
+    const size_t tiles = size_t{stride} * rows;
+    clear_key = key;
+    state.assign(tiles, fast ? State::kCleared : State::kRaw);
+    least.assign(tiles, key);
+    greatest.assign(tiles, key);
+    loose.assign(tiles, 0);
+    stored_bytes.assign(tiles, 0);
+    if (!fast) std::fill(keys.get(), keys.get() + kTileSamples * tiles, key);
+}
+
+DepthKey DepthBuffer::at(int32_t row, int32_t sample) const {
+    const uint32_t r = static_cast<uint32_t>(row), s = static_cast<uint32_t>(sample);
+    const uint32_t tile = r / kTile * stride + s / kTile;
+    if (state[tile] == State::kCleared) return clear_key;
+    return tileKeys(tile)[r % kTile * kTile + s % kTile];
+}
+
+}  // namespace sightline
