@@ -15,7 +15,8 @@ struct Case {
     Table (*measure)(const Options&);
 };
 
-constexpr Case kCases[] = {{"clipping", benchClipping}, {"frustum", benchFrustum}, {"occlusion", benchOcclusion}, {"order", benchOrder}};
+constexpr Case kCases[] = {
+    {"clipping", benchClipping}, {"frustum", benchFrustum}, {"occlusion", benchOcclusion}, {"order", benchOrder}};
 
 }  // namespace
 

@@ -1,6 +1,5 @@
 // Hidden-surface removal: every classical method, one signature, one image.
 // SPDX-License-Identifier: MIT
-#include "sightline/hidden/clipless.h"
 #include "sightline/hidden/render.h"
 
 #include <chrono>
@@ -8,6 +7,7 @@
 #include "sightline/base/assert.h"
 #include "sightline/hidden/bsp_back_to_front.h"
 #include "sightline/hidden/bsp_front_to_back.h"
+#include "sightline/hidden/clipless.h"
 #include "sightline/hidden/newell.h"
 #include "sightline/hidden/painter.h"
 #include "sightline/hidden/raycast.h"
