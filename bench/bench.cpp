@@ -16,7 +16,14 @@ struct Case {
 };
 
 constexpr Case kCases[] = {
-    {"clipping", benchClipping}, {"frustum", benchFrustum}, {"occlusion", benchOcclusion}, {"order", benchOrder}};
+    {"clipping", benchClipping},
+    {"depth", benchDepth}, {"frustum", benchFrustum},
+#ifdef SIGHTLINE_GL
+    {"gl", benchGl},
+#endif
+    {"occlusion", benchOcclusion},
+    {"order", benchOrder},
+};
 
 }  // namespace
 

@@ -10,8 +10,16 @@ namespace sightline::bench {
 /// A walk through a city: guard band and outcodes beside naive clipping at six planes, and scanning without clipping.
 Table benchClipping(const Options& options);
 
+/// A city and made scenes: the tiled z-buffer beside the plain one, with and without what it saves, in all formats.
+Table benchDepth(const Options& options);
+
 /// A million boxes, 7 % of them in view: corner by corner, p-vertex, flat SIMD, and the hierarchy.
 Table benchFrustum(const Options& options);
+
+#ifdef SIGHTLINE_GL
+/// Flat-shaded pictures and id-buffers of 1920x1080: the z-buffer beside Mesa's software GL, on as many threads.
+Table benchGl(const Options& options);
+#endif
 
 /// The whole query while a city grows, beside flat frustum culling; how tight its answer is.
 Table benchOcclusion(const Options& options);

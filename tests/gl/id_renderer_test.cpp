@@ -43,22 +43,44 @@ protected:
         const Agreement result = compareImages(list, view, expected, found, {kEdgeBand, kTieBand, false});
         EXPECT_EQ(result.wrong, 0u) << name << ": sample " << result.sample << " of row " << result.row << " shows "
                                     << result.found << " instead of " << result.expected;
-        sum_.samples += result.samples;
-        sum_.differing += result.differing;
-        sum_.at_edges += result.at_edges;
-        sum_.ties += result.ties;
-        sum_.wrong += result.wrong;
+        holdZBuffer(list, view, found, name);
+        add(result, sum_);
         return result;
     }
 
-    void print(const char* what) const {
-        std::printf("%s: %zu of %zu samples differ: %zu at edges, %zu ties, %zu unexplained\n", what,
-                    size_t(sum_.differing), size_t(sum_.samples), size_t(sum_.at_edges), size_t(sum_.ties),
-                    size_t(sum_.wrong));
+    /// The tiled z-buffer, on two threads, sees what Mesa sees: both keep reversed depths in float.
+    void holdZBuffer(const DrawList& list, const View& view, const HiddenImage& mesa, const std::string& name) {
+        RenderSettings settings;
+        settings.method = HiddenMethod::kZBuffer;
+        settings.threads = 2;
+        const HiddenImage image = render(list, view, settings);
+        const Agreement result = compareImages(list, view, mesa, image, {kEdgeBand, kTieBand, false});
+        EXPECT_EQ(result.wrong, 0u) << name << ", z-buffer: sample " << result.sample << " of row " << result.row
+                                    << " shows " << result.found << " instead of " << result.expected;
+        add(result, zbuffer_sum_);
+    }
+
+    static void add(const Agreement& more, Agreement& sum) {
+        sum.samples += more.samples;
+        sum.differing += more.differing;
+        sum.at_edges += more.at_edges;
+        sum.ties += more.ties;
+        sum.wrong += more.wrong;
+    }
+
+    /// Says the sums, and begins new ones.
+    void print(const char* what) {
+        for (const bool tiled : {false, true}) {
+            Agreement& sum = tiled ? zbuffer_sum_ : sum_;
+            std::printf("%s, %s: %zu of %zu samples differ: %zu at edges, %zu ties, %zu unexplained\n", what,
+                        tiled ? "z-buffer" : "reference", size_t(sum.differing), size_t(sum.samples),
+                        size_t(sum.at_edges), size_t(sum.ties), size_t(sum.wrong));
+            sum = {};
+        }
     }
 
     Result<GlContext> context_ = GlContext::create(2);
-    Agreement sum_;
+    Agreement sum_, zbuffer_sum_;  ///< of the reference and of the tiled z-buffer, against Mesa
 };
 
 uint64_t seeds() { return std::getenv("SIGHTLINE_FULL") != nullptr ? 200 : 10; }
@@ -163,12 +185,11 @@ TEST_F(GlIdRendererTest, SeesWhatTheReferenceSeesInRealScenes) {
     for (const auto& entry : std::filesystem::directory_iterator(folder))
         if (entry.path().extension() == ".glb") files.push_back(entry.path());
     std::sort(files.begin(), files.end());
-    Agreement all;
+    Agreement all, zbuffer_all;
     for (const std::filesystem::path& file : files) {
         const Result<Scene> scene = loadGltf(file.string());
         ASSERT_TRUE(scene.ok()) << scene.error().message;
         if (drawnTriangles(*scene) > 150000) continue;
-        sum_ = {};
         int frame_number = 0;
         for (const CameraFrame& frame : seededCameras(*scene, std::getenv("SIGHTLINE_FULL") ? 64 : 4, 1).frames) {
             const std::string name = file.filename().string() + ", camera " + std::to_string(frame_number++);
@@ -177,14 +198,12 @@ TEST_F(GlIdRendererTest, SeesWhatTheReferenceSeesInRealScenes) {
             const Agreement result = compare(in_view.list(), view, name);
             EXPECT_LE(result.at_edges, result.samples / 1000) << name;
         }
+        add(sum_, all);
+        add(zbuffer_sum_, zbuffer_all);
         print(file.filename().c_str());
-        all.samples += sum_.samples;
-        all.differing += sum_.differing;
-        all.at_edges += sum_.at_edges;
-        all.ties += sum_.ties;
-        all.wrong += sum_.wrong;
     }
     sum_ = all;
+    zbuffer_sum_ = zbuffer_all;
     print("all scenes");
 }
 
