@@ -69,6 +69,7 @@ th, td { text-align: right; padding: 7px 12px; border-bottom: 1px solid var(--li
 th:first-child, td:first-child { text-align: left; }
 thead th { color: var(--soft); font-weight: 500; }
 thead tr:first-child th { text-align: center; border-bottom: 0; padding-bottom: 0; }
+.counts thead tr:first-child th { text-align: right; padding-bottom: 7px; } .counts tbody th { font-weight: 400; }
 .apart { border-left: 1px solid var(--line); }
 .share { height: 14px; border-radius: 7px; background: var(--line); overflow: hidden; margin: 8px 0 4px; }
 .share div { height: 100%; background: var(--one); min-width: 2px; }

@@ -159,7 +159,8 @@ std::string costTable(const RenderRun& run) {
         if (std::any_of(run.methods.begin(), run.methods.end(), [&](const MethodResult& r) { return value(r) > 0; }))
             row(counter.title, [&](const MethodResult& r) { return value(r) > 0 ? number(value(r)) : "–"; });
     }
-    return "<div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>" + rows + "</tbody></table></div>";
+    return "<div class=\"scroll\"><table class=\"counts\"><thead><tr>" + head + "</tr></thead><tbody>" + rows +
+           "</tbody></table></div>";
 }
 
 std::string histogramSvg(const CountStatistics& statistics, const std::string& title) {

@@ -32,6 +32,7 @@ Image<Rgb> shadedPicture(const RenderList& scene, const View& view, const Hidden
     if (settings.shadows && settings.shading != Shading::kNone) {
         ShadowSettings light;
         light.sun = shading.sun;
+        light.size = std::clamp(3 * std::max(image.width, image.height) / 2, 256u, 3072u);
         light.share = settings.share;
         shadows.emplace(scene.casters(), SurfacePoints(scene.list(), view), image, light);
         shading.shadows = &*shadows;

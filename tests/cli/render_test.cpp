@@ -1,0 +1,187 @@
+// The verb `render` is a contract: methods, files, schema, exit codes.
+// SPDX-License-Identifier: MIT
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "sightline/hidden/render.h"
+#include "tests/cli/tool.h"
+
+#define STBI_ONLY_PNG
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
+namespace sightline {
+namespace {
+
+using nlohmann::json;
+
+class Render : public Tool {
+protected:
+    struct Pixels {
+        int width = 0, height = 0;
+        std::vector<uint32_t> colours;  // 24 bits, the top row first
+    };
+    Pixels decode(const std::string& name) const {
+        const std::string bytes = read(path(name));
+        Pixels out;
+        int channels = 0;
+        stbi_uc* data = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()),
+                                              static_cast<int>(bytes.size()), &out.width, &out.height, &channels, 3);
+        EXPECT_NE(data, nullptr) << name;
+        for (int i = 0; data && i < out.width * out.height; ++i)
+            out.colours.push_back(uint32_t{data[3 * i]} << 16 | uint32_t{data[3 * i + 1]} << 8 | data[3 * i + 2]);
+        stbi_image_free(data);
+        return out;
+    }
+    json render(const std::string& arguments) const {
+        const Outcome outcome = run("render " + arguments + " --json -");
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return json::parse(outcome.out);
+    }
+};
+
+const std::string kCity = "city:1:300 --frames 6 --frame 4 --size 160x90 ";
+
+TEST_F(Render, WritesPicturesOfTheSizeAskedFor) {
+    ASSERT_EQ(run("render " + kCity + "-o a.png --ids b.png --heat-map c.png").exit_code, 0);
+    for (const char* name : {"a.png", "b.png", "c.png"}) {
+        const Pixels pixels = decode(name);
+        EXPECT_EQ(pixels.width, 160) << name;
+        EXPECT_EQ(pixels.height, 90) << name;
+        EXPECT_GT(std::set<uint32_t>(pixels.colours.begin(), pixels.colours.end()).size(), 5u) << name;
+    }
+}
+
+TEST_F(Render, IdsAreKeysThatCullingKeeps) {
+    ASSERT_EQ(run("render " + kCity + "--ids ids.png").exit_code, 0);
+    const Outcome culled = run("cull city:1:300 --frames 6 --size 160x90 --json -");
+    ASSERT_EQ(culled.exit_code, 0);
+    const auto visible = json::parse(culled.out)["frames"][4]["visible"].get<std::set<uint64_t>>();
+    std::set<uint64_t> shown;
+    for (const uint32_t colour : decode("ids.png").colours)
+        if (colour != 0) shown.insert(colour - 1);
+    EXPECT_GT(shown.size(), 10u);
+    EXPECT_TRUE(std::includes(visible.begin(), visible.end(), shown.begin(), shown.end()));
+}
+
+TEST_F(Render, EveryMethodDrawsTheSameExceptThePainter) {
+    std::set<std::vector<uint32_t>> pictures;
+    for (const std::string_view method : kHiddenMethodNames) {
+        const std::string name(method);
+        const json out = render(kCity + "-o " + name + ".png --method " + name);
+        ASSERT_EQ(out["methods"].size(), 1u);
+        EXPECT_EQ(out["methods"][0]["name"], name);
+        EXPECT_GT(out["methods"][0]["milliseconds"], 0);
+        const json& agreement = out["methods"][0]["agreement"];
+        EXPECT_EQ(agreement["samples"], 160 * 90);
+        EXPECT_EQ(agreement["differing"],
+                  agreement["at_edges"].get<int>() + agreement["ties"].get<int>() + agreement["wrong"].get<int>());
+        if (method != "painter") { EXPECT_EQ(agreement["wrong"], 0) << name; }
+        EXPECT_EQ(decode(name + ".png").colours.size(), 160u * 90);
+    }
+}
+
+TEST_F(Render, ThreadsDoNotChangeThePicture) {
+    const std::string common = "render city:1:2000 --frames 2 --size 200x120 --shading smooth --method ";
+    for (const char* method : {"zbuffer", "raycast", "painter"}) {
+        ASSERT_EQ(run(common + method + " -o one.png --ids i1.png --heat-map h1.png --threads 1").exit_code, 0);
+        ASSERT_EQ(run(common + method + " -o many.png --ids i5.png --heat-map h5.png --threads 5").exit_code, 0);
+        EXPECT_EQ(read(path("one.png")), read(path("many.png"))) << method;
+        EXPECT_EQ(read(path("i1.png")), read(path("i5.png"))) << method;
+        EXPECT_EQ(read(path("h1.png")), read(path("h5.png"))) << method;
+    }
+}
+
+TEST_F(Render, AllMethodsFillTheReport) {
+    const Outcome outcome = run("render " + kCity + "--method all --report deep/out -o all.png");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::string page = read(path("deep/out/index.html"));
+    EXPECT_EQ(page.find("http"), std::string::npos);
+    const json out = json::parse(read(path("deep/out/render.json")));
+    EXPECT_EQ(out["schema"], "sightline.render/1");
+    EXPECT_EQ(out["methods"].size() + out["left_out"].size(), size_t{kHiddenMethods});
+    for (const std::string_view name : kHiddenMethodNames) {
+        EXPECT_NE(page.find("The scene drawn by " + std::string(name)), std::string::npos) << name;
+        EXPECT_NE(outcome.out.find(name), std::string::npos) << name;
+    }
+    // The picture is the z-buffer's.
+    ASSERT_EQ(run("render " + kCity + "--method zbuffer -o z.png").exit_code, 0);
+    EXPECT_EQ(read(path("all.png")), read(path("z.png")));
+}
+
+TEST_F(Render, JsonTellsWhatWasDrawn) {
+    const json out = render(kCity + "--method painter --painter-key centre --shading none --shadows off");
+    EXPECT_EQ(out["schema"], "sightline.render/1");
+    EXPECT_EQ(out["scene"]["file"], "city:1:300");
+    EXPECT_EQ(out["scene"]["objects"], 300);
+    EXPECT_LE(out["scene"]["objects_in_view"], 300);
+    EXPECT_LE(out["scene"]["polygons_in_view"], out["scene"]["triangles_in_view"]);
+    EXPECT_EQ(out["frame"], 4);
+    EXPECT_EQ(out["settings"]["painter_key"], "centre");
+    EXPECT_EQ(out["settings"]["shading"], "none");
+    EXPECT_EQ(out["settings"]["shadows"], false);
+    const json& painter = out["methods"][0];
+    EXPECT_EQ(painter["counters"]["generated"], painter["counters"]["shaded"]);
+    const double mean = painter["per_sample"]["generated"]["mean"];
+    EXPECT_NEAR(mean * 160 * 90, painter["counters"]["generated"].get<double>(), 0.5);
+    // The camera can be used again.
+    write("path.json", json{{"frames", {out["camera"]}}}.dump());
+    ASSERT_EQ(run("render " + kCity + "--ids a.png").exit_code, 0);
+    ASSERT_EQ(run("render city:1:300 --size 160x90 --cameras path.json --ids b.png").exit_code, 0);
+    EXPECT_EQ(read(path("a.png")), read(path("b.png")));
+}
+
+TEST_F(Render, OptionsChangeThePicture) {
+    std::set<std::string> pictures;
+    for (const char* options : {"", "--shadows off", "--shading smooth", "--shading none"}) {
+        ASSERT_EQ(run("render " + kCity + "-o p.png " + options).exit_code, 0);
+        EXPECT_TRUE(pictures.insert(read(path("p.png"))).second) << options;
+    }
+}
+
+TEST_F(Render, WrongArgumentsExitWithTwo) {
+    expectError("render", 2, "SCENE");
+    expectError("render city:1:10 --method magic", 2, "magic");
+    expectError("render city:1:10 --shading gouraud", 2, "gouraud");
+    expectError("render city:1:10 --shadows maybe", 2, "maybe");
+    expectError("render city:1:10 --painter-key nearest", 2, "nearest");
+    expectError("render city:1:10 --free-samples list", 2, "list");
+    expectError("render city:1:10 --rays magic", 2, "magic");
+    expectError("render city:1:10 --heat warm", 2, "warm");
+    expectError("render city:1:10 --frames 3 --frame 3", 2, "--frame 3");
+    expectError("render city:1:10 --frame -1", 2, "--frame");
+    expectError("render city:1:10 --size 0x5", 2, "--size");
+    expectError("render city:1:10 -o ''", 2, "-o");
+    expectError("render city:1:10 --ids -", 2, "--ids");
+    expectError("render city:1:10 --stages frustum", 2, "--stages");
+}
+
+TEST_F(Render, UnreadableInputsExitWithThree) {
+    write("text.glb", "this is no glb");
+    write("broken.json", "{\"frames\": [");
+    write("flat.json", R"({"frames": [{"view": [1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],
+                                       "projection": [0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1]}]})");
+    expectError("render missing.glb -o a.png", 3, "missing.glb");
+    expectError("render text.glb -o a.png", 3, "text.glb");
+    expectError("render city:1:10 --cameras broken.json", 3, "broken.json");
+    expectError("render city:1:10 --cameras flat.json", 3, "flat.json");
+    EXPECT_FALSE(std::filesystem::exists(path("a.png")));
+}
+
+TEST_F(Render, UnwritableOutputsExitWithFour) {
+    write("file", "");
+    std::filesystem::create_directories(path("folder"));
+    for (const char* option : {"-o", "--ids", "--heat-map", "--json"}) {
+        expectError("render city:1:10 --size 16x16 " + std::string(option) + " no/such/place", 4, "no/such/place");
+        expectError("render city:1:10 --size 16x16 " + std::string(option) + " folder", 4, "folder");
+    }
+    expectError("render city:1:10 --size 16x16 --report file", 4, "file");
+}
+
+}  // namespace
+}  // namespace sightline
