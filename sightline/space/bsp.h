@@ -95,8 +95,8 @@ struct BspArrays {
 /// A tree. Each polygon lies in a node's plane, whole or in pieces.
 ///
 /// A polygon is cut where it reaches beyond a plane's thickness to both sides. The crossing is computed from the
-/// back end of the edge to the front one, from these alone: polygons that share an edge are cut in the same point, bit by
-/// bit, wherever both are cut by the same plane.
+/// back end of the polygon's whole edge to the front one, from these and the plane alone: polygons that share an edge are
+/// cut in the same point, bit by bit, wherever both are cut by the same plane, whatever cut them before.
 struct BspTree : BspArrays {
     BspSettings settings;
     double thickness = 0;  ///< of its planes, half of it to each side [world units]

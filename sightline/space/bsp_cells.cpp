@@ -35,9 +35,9 @@ std::vector<glm::dvec3> squareIn(const glm::dvec4& plane, const Box3d& box) {
 std::vector<glm::dvec3> keepFront(const std::vector<glm::dvec3>& outline, const glm::dvec4& plane, double thickness) {
     const BspReach reach = reachOf(outline, plane, thickness);
     if (!reach.back) return outline;
-    std::vector<glm::dvec3> back, front;
+    BspOutline back, front;
     if (reach.front) splitPolygon(outline, plane, thickness, 0, back, front);
-    return front;
+    return front.points;
 }
 
 std::vector<Half> halvesOf(const BspTree& tree, uint32_t leaf, const Box3d& box) {

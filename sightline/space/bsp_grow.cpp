@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "sightline/base/assert.h"
-#include "sightline/space/bsp_piece.h"
 
 namespace sightline {
 
@@ -19,7 +18,15 @@ BspGrower::BspGrower(BspArrays& arrays, const BspPolygons& input, const BspSetti
       thickness_(thickness),
       rounding_(rounding),
       points_(input.points),
-      random_(mixSeed(settings.seed, input.size())) {}
+      random_(mixSeed(settings.seed, input.size())) {
+    lines_.reserve(points_.size());
+    line_of_point_.reserve(points_.size());
+    for (uint32_t i = 0; i < input.size(); ++i)
+        for (uint32_t p = input.first[i]; p < input.first[i + 1]; ++p) {
+            line_of_point_.push_back(p);
+            lines_.push_back({points_[p], points_[p + 1 < input.first[i + 1] ? p + 1 : input.first[i]]});
+        }
+}
 
 std::vector<BspFalling> BspGrower::takeAll() {
     std::vector<BspFalling> pieces;
@@ -46,17 +53,19 @@ void BspGrower::part(const std::vector<BspFalling>& pieces, uint32_t node, const
         } else if (reach.back != reach.front) {
             sides[reach.front].push_back(piece);
         } else {
-            for (std::vector<glm::dvec3>& part : parts_) part.clear();
-            const double uncertainty =
-                splitPolygon(outline(piece), plane, thickness_, rounding_, parts_[kBspBack], parts_[kBspFront]);
+            const std::span<const uint32_t> lines(line_of_point_.data() + piece.first_point, piece.count);
+            const double uncertainty = splitPolygon(outline(piece), lines, lines_, plane, thickness_, rounding_,
+                                                    parts_[kBspBack], parts_[kBspFront]);
             ++arrays_.splits;
             for (const BspSide side : {kBspBack, kBspFront}) {
                 BspFalling rest = piece;
                 rest.first_point = static_cast<uint32_t>(points_.size());
-                rest.count = static_cast<uint32_t>(parts_[side].size());
+                rest.count = static_cast<uint32_t>(parts_[side].points.size());
                 rest.cut = static_cast<uint32_t>(arrays_.cuts.size());
                 rest.uncertainty = std::max(piece.uncertainty, uncertainty);
-                points_.insert(points_.end(), parts_[side].begin(), parts_[side].end());
+                const BspOutline& part = parts_[side];
+                points_.insert(points_.end(), part.points.begin(), part.points.end());
+                line_of_point_.insert(line_of_point_.end(), part.lines.begin(), part.lines.end());
                 arrays_.cuts.push_back({node, side, piece.cut});
                 sides[side].push_back(rest);
             }

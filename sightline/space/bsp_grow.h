@@ -7,6 +7,7 @@
 
 #include "sightline/base/random.h"
 #include "sightline/space/bsp.h"
+#include "sightline/space/bsp_piece.h"
 
 namespace sightline {
 
@@ -66,7 +67,9 @@ private:
     double thickness_, rounding_;
     std::vector<glm::dvec4> planes_;  ///< per polygon of the input
     std::vector<glm::dvec3> points_;
-    std::vector<glm::dvec3> parts_[2];
+    std::vector<uint32_t> line_of_point_;  ///< per point: the line of the edge that begins there
+    std::vector<BspLine> lines_;
+    BspOutline parts_[2];
     uint32_t free_leaf_ = BspNode::kNone;
     Random random_;
 };

@@ -23,9 +23,13 @@ glm::dvec3 accurateCross(const glm::dvec3& a, const glm::dvec3& b) {
 bool isFinite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 /// From the back end to the front one, whatever the direction of the edge.
-glm::dvec3 crossing(const glm::dvec3& back, double below, const glm::dvec3& front, double above) {
-    const double t = below / (below - above);
-    return back + t * (front - back);
+/// @param uncertainty  grows to how far the crossing may be off
+glm::dvec3 crossing(const BspLine& line, const glm::dvec4& plane, double rounding, double& uncertainty) {
+    const double from = distanceTo(plane, line.from), to = distanceTo(plane, line.to);
+    const double low = from < to ? from : to, high = from < to ? to : from;
+    const glm::dvec3 &back = from < to ? line.from : line.to, &front = from < to ? line.to : line.from;
+    uncertainty = std::max(uncertainty, glm::length(front - back) * (rounding / (high - low)));
+    return back + low / (low - high) * (front - back);
 }
 
 }  // namespace
@@ -71,26 +75,52 @@ BspReach reachOf(std::span<const glm::dvec3> outline, const glm::dvec4& plane, d
     return {low<-thickness, high> thickness};
 }
 
-double splitPolygon(std::span<const glm::dvec3> outline, const glm::dvec4& plane, double thickness, double rounding,
-                    std::vector<glm::dvec3>& back, std::vector<glm::dvec3>& front) {
+double splitPolygon(std::span<const glm::dvec3> outline, std::span<const uint32_t> lines, std::vector<BspLine>& all,
+                    const glm::dvec4& plane, double thickness, double rounding, BspOutline& back, BspOutline& front) {
+    back.clear();
+    front.clear();
+    const auto push = [](BspOutline& part, const glm::dvec3& point, uint32_t line) {
+        part.points.push_back(point);
+        part.lines.push_back(line);
+    };
+    const auto placeOf = [&](const glm::dvec3& p) {
+        const double d = distanceTo(plane, p);
+        return d > thickness ? 1 : d < -thickness ? -1 : 0;
+    };
+    const uint32_t seam = static_cast<uint32_t>(all.size());
     double uncertainty = 0;
-    const auto place = [&](double d) { return d > thickness ? 1 : d < -thickness ? -1 : 0; };
-    glm::dvec3 a = outline.back();
-    double from = distanceTo(plane, a);
-    for (const glm::dvec3& b : outline) {
-        const double to = distanceTo(plane, b);
-        if (place(from) * place(to) < 0) {
-            const glm::dvec3 at = from < 0 ? crossing(a, from, b, to) : crossing(b, to, a, from);
-            back.push_back(at);
-            front.push_back(at);
-            uncertainty = std::max(uncertainty, glm::length(b - a) * (rounding / std::abs(to - from)));
+    int place = placeOf(outline[0]);
+    for (size_t i = 0; i < outline.size(); ++i) {
+        const glm::dvec3 &a = outline[i], &b = outline[i + 1 < outline.size() ? i + 1 : 0];
+        const int next = placeOf(b);
+        // From a point in the plane, one of the parts goes on along the seam.
+        if (place <= 0) push(back, a, place == 0 && next > 0 ? seam : lines[i]);
+        if (place >= 0) push(front, a, place == 0 && next < 0 ? seam : lines[i]);
+        if (place * next < 0) {
+            const BspLine& line = all[lines[i]];
+            const bool apart = placeOf(line.from) * placeOf(line.to) < 0;
+            const glm::dvec3 at = crossing(apart ? line : BspLine{a, b}, plane, rounding, uncertainty);
+            push(back, at, place < 0 ? seam : lines[i]);
+            push(front, at, place < 0 ? lines[i] : seam);
         }
-        if (place(to) <= 0) back.push_back(b);
-        if (place(to) >= 0) front.push_back(b);
-        a = b;
-        from = to;
+        place = next;
     }
+    BspLine line{back.points[0], back.points[0]};
+    for (size_t i = 0; i < back.points.size(); ++i)
+        if (back.lines[i] == seam) line = {back.points[i], back.points[i + 1 < back.points.size() ? i + 1 : 0]};
+    all.push_back(line);
     return uncertainty;
+}
+
+double splitPolygon(std::span<const glm::dvec3> outline, const glm::dvec4& plane, double thickness, double rounding,
+                    BspOutline& back, BspOutline& front) {
+    std::vector<BspLine> all;
+    std::vector<uint32_t> lines;
+    for (size_t i = 0; i < outline.size(); ++i) {
+        lines.push_back(static_cast<uint32_t>(i));
+        all.push_back({outline[i], outline[i + 1 < outline.size() ? i + 1 : 0]});
+    }
+    return splitPolygon(outline, lines, all, plane, thickness, rounding, back, front);
 }
 
 }  // namespace sightline

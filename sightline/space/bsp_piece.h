@@ -26,10 +26,33 @@ struct BspReach {
 };
 BspReach reachOf(std::span<const glm::dvec3> outline, const glm::dvec4& plane, double thickness);
 
-/// Parts a polygon that reaches to both sides. Points within the thickness go to both parts as they are.
-/// @param back, front  the parts are appended
+/// The whole of an edge: parts of it are cut as it would be, whatever cut them before.
+struct BspLine {
+    glm::dvec3 from{0.0}, to{0.0};
+};
+
+/// A polygon, or a part of one.
+struct BspOutline {
+    std::vector<glm::dvec3> points;
+    std::vector<uint32_t> lines;  ///< per point: the line of the edge that begins there
+
+    void clear() {
+        points.clear();
+        lines.clear();
+    }
+};
+
+/// Parts a polygon that reaches to both sides. Points within the thickness go to both parts as they are. A crossing
+/// is computed from the ends of its edge's line, from the back one to the front one.
+/// @param lines        per point of the outline: the line of the edge that begins there, an index into all
+/// @param all          the line of the edge along which the parts touch is appended
+/// @param back, front  the parts, in place of what is there
 /// @returns the uncertainty of the crossings, given that of distances: how far along its edge one may be off [world units]
+double splitPolygon(std::span<const glm::dvec3> outline, std::span<const uint32_t> lines, std::vector<BspLine>& all,
+                    const glm::dvec4& plane, double thickness, double rounding, BspOutline& back, BspOutline& front);
+
+/// The same for a whole polygon.
 double splitPolygon(std::span<const glm::dvec3> outline, const glm::dvec4& plane, double thickness, double rounding,
-                    std::vector<glm::dvec3>& back, std::vector<glm::dvec3>& front);
+                    BspOutline& back, BspOutline& front);
 
 }  // namespace sightline
