@@ -251,7 +251,7 @@ void drawNewell(const HiddenInput& input, HiddenImage& image) {
     Projector projector = input.projector();
     const std::vector<ScreenPolygon> polygons = projectAll(input.list, projector);
     image.counters.geometry = projector.counters();
-    const uint64_t limit = 1000000 + 4096 * uint64_t{polygons.size()};
+    const uint64_t limit = (1u << 25) + 4096 * uint64_t{polygons.size()};
     const NewellOrder order = newellOrder(polygons, image.width, image.height, image.counters, limit);
     drawInOrder(order, image);
 }

@@ -38,11 +38,11 @@ NewellOrder newellOrder(std::span<const ScreenPolygon> polygons, uint32_t width,
 /// Draws pieces in their order, and what is in none by a depth at each sample.
 void drawInOrder(const NewellOrder& order, HiddenImage& image);
 
-/// Finds that order and draws in it. After 4096 comparisons a polygon, and a million, the rest is drawn with a depth at
-/// each sample, and counted as tested: the image is as exact, though not by Newell's means.
+/// Finds that order and draws in it. After 4096 comparisons a polygon, and 2^25, the rest is drawn with a depth at each
+/// sample, and counted as tested: the image is as exact, though not by Newell's means.
 ///
-/// Practical up to some ten thousand polygons in view: comparisons grow with the square of the polygons that overlap on
-/// the screen and in depth.
+/// Practical up to a quarter of a million polygons in view: comparisons grow with the square of the polygons that overlap
+/// on the screen and in depth. Where hundreds of large polygons all pass through one another, pieces do as well.
 void drawNewell(const HiddenInput& input, HiddenImage& image);
 
 }  // namespace sightline

@@ -3,9 +3,11 @@
 #include "sightline/hidden/raycast.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <thread>
 
 #include "sightline/hidden/fill.h"
 #include "sightline/hidden/raycast_tree.h"
@@ -41,18 +43,43 @@ Reach reachOf(const RayTriangles& triangles, const SampleRays& rays) {
     return reach;
 }
 
+/// Casts the rays of one row.
+/// @return how many met something
 template <class Nearest>
-void castAll(const SampleRays& rays, const Reach& reach, HiddenImage& image, Nearest&& nearest) {
-    const int32_t width = static_cast<int32_t>(image.width), height = static_cast<int32_t>(image.height);
-    for (int32_t row = 0; row < height; ++row)
-        for (int32_t i = 0; i < width; ++i) {
-            SampleRay ray = rays.at(row, i);
-            ray.t_near = std::max(ray.t_near, reach.first);
-            ray.t_far = std::min(ray.t_far, reach.last);
-            ++image.counters.rays;
-            const RayHit hit = nearest(ray);
-            if (hit.surface != RayHit::kNone) fillSpan(image, row, i, i + 1, hit.surface);
-        }
+uint64_t castRow(const SampleRays& rays, const Reach& reach, int32_t row, HiddenImage& image, Nearest& nearest) {
+    uint64_t met = 0;
+    for (int32_t i = 0; i < static_cast<int32_t>(image.width); ++i) {
+        SampleRay ray = rays.at(row, i);
+        ray.t_near = std::max(ray.t_near, reach.first);
+        ray.t_far = std::min(ray.t_far, reach.last);
+        const RayHit hit = nearest(ray);
+        if (hit.surface == RayHit::kNone) continue;
+        image.at(row, i) = hit.surface;
+        for (std::vector<uint16_t>* counts : {&image.generated, &image.passed, &image.shaded})
+            countSpan(image, *counts, row, i, i + 1);
+        ++met;
+    }
+    return met;
+}
+
+/// Rows are taken in turn by up to `threads` threads: the image is the same for any number.
+/// @param make_nearest  gives each thread its own function from a ray to what it meets
+template <class MakeNearest>
+void castAll(const SampleRays& rays, const Reach& reach, uint32_t threads, HiddenImage& image,
+             MakeNearest&& make_nearest) {
+    std::atomic<uint32_t> next_row{0};
+    std::atomic<uint64_t> met{0};
+    const auto work = [&] {
+        auto nearest = make_nearest();
+        for (uint32_t row = next_row++; row < image.height; row = next_row++)
+            met += castRow(rays, reach, static_cast<int32_t>(row), image, nearest);
+    };
+    std::vector<std::thread> others;
+    for (uint32_t i = 1; i < std::min(threads, image.height); ++i) others.emplace_back(work);
+    work();
+    for (std::thread& other : others) other.join();
+    image.counters.rays = uint64_t{image.width} * image.height;
+    for (uint64_t* count : {&image.counters.generated, &image.counters.passed, &image.counters.shaded}) *count = met;
 }
 
 uint64_t nanosecondsSince(Clock::time_point start) {
@@ -74,18 +101,23 @@ void drawRaycast(const HiddenInput& input, HiddenImage& image) {
     const RayTriangles triangles = rayTriangles(input.list, input.settings.projector);
     const SampleRays rays(input.view);
     const Reach reach = reachOf(triangles, rays);
+    const uint32_t threads = input.settings.threads;
 #ifdef SIGHTLINE_HIDDEN_EMBREE
     if (input.settings.ray_tracer == RayTracer::kEmbree) {
         const EmbreeTree tree(triangles);
         image.counters.prepare_nanoseconds = nanosecondsSince(start);
-        castAll(rays, reach, image, [&](const SampleRay& ray) { return tree.nearest(rays, ray); });
+        castAll(rays, reach, threads, image,
+                [&] { return [&](const SampleRay& ray) { return tree.nearest(rays, ray); }; });
         return;
     }
 #endif
     const RayTree tree(triangles);
     image.counters.prepare_nanoseconds = nanosecondsSince(start);
-    std::vector<RayVisit> stack;
-    castAll(rays, reach, image, [&](const SampleRay& ray) { return tree.nearest(rays, ray, stack); });
+    castAll(rays, reach, threads, image, [&] {
+        return [&, stack = std::vector<RayVisit>()](const SampleRay& ray) mutable {
+            return tree.nearest(rays, ray, stack);
+        };
+    });
 }
 
 }  // namespace sightline

@@ -14,7 +14,8 @@ namespace sightline {
 ///
 /// Nothing is clipped or projected, so HiddenCounters::geometry stays 0. Rays cannot follow the rule by which a sample
 /// on an edge belongs to one of the triangles there: along edges the image may differ from other methods'. O(log n) a
-/// ray on common scenes; building the hierarchy, O(n log n), counts as preparation.
+/// ray on common scenes; building the hierarchy, O(n log n), counts as preparation. Rows are
+/// shared among RenderSettings::threads.
 void drawRaycast(const HiddenInput& input, HiddenImage& image);
 
 /// Whether RayTracer::kEmbree is there.

@@ -111,6 +111,24 @@ TEST(Raycast, SeesFarFromTheWorldsOrigin) {
     EXPECT_EQ(agreement.wrong, 0u);
 }
 
+TEST(Raycast, ShowsTheSameForAnyNumberOfThreads) {
+    const MadeList made = clutter(6, 500);
+    const std::vector<DrawItem> items = made.items();
+    for (const RayTracer tracer : {RayTracer::kBvh, RayTracer::kEmbree}) {
+        RenderSettings settings = rays(tracer);
+        settings.want_counts = true;
+        const HiddenImage one = render(DrawList(items), madeView(), settings);
+        for (const uint32_t threads : {0u, 2u, 5u, 1000u}) {
+            settings.threads = threads;
+            const HiddenImage many = render(DrawList(items), madeView(), settings);
+            EXPECT_EQ(many.surface, one.surface) << threads;
+            EXPECT_EQ(many.shaded, one.shaded) << threads;
+            EXPECT_EQ(many.counters.passed, one.counters.passed) << threads;
+            EXPECT_EQ(many.counters.rays, one.counters.rays) << threads;
+        }
+    }
+}
+
 TEST(Raycast, CastsARayASample) {
     const MadeList made = cyclicOverlap();
     const std::vector<DrawItem> items = made.items();
