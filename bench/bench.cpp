@@ -17,6 +17,7 @@ struct Case {
 
 constexpr Case kCases[] = {
     {"clipping", benchClipping},
+    {"depth", benchDepth},
     {"frustum", benchFrustum},
 #ifdef SIGHTLINE_GL
     {"gl", benchGl},

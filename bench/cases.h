@@ -10,6 +10,9 @@ namespace sightline::bench {
 /// A walk through a city: guard band and outcodes beside naive clipping at six planes, and scanning without clipping.
 Table benchClipping(const Options& options);
 
+/// A city and made scenes: the tiled z-buffer beside the plain one, with and without what it saves, in all formats.
+Table benchDepth(const Options& options);
+
 /// A million boxes, 7 % of them in view: corner by corner, p-vertex, flat SIMD, and the hierarchy.
 Table benchFrustum(const Options& options);
 

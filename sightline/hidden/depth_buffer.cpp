@@ -17,10 +17,10 @@ void DepthBuffer::clear(DepthKey key, bool fast) {
     const size_t tiles = size_t{stride} * rows;
     clear_key = key;
     state.assign(tiles, fast ? State::kCleared : State::kRaw);
+    stored_bytes.resize(tiles);
     least.assign(tiles, key);
     greatest.assign(tiles, key);
     loose.assign(tiles, 0);
-    stored_bytes.assign(tiles, 0);
     if (!fast) std::fill(keys.get(), keys.get() + kTileSamples * tiles, key);
 }
 
