@@ -175,6 +175,19 @@ TEST(Facing, ThreeTestsAgreeWithTheExactSignInParallelViews) {
     EXPECT_LT(in_band, 30000u);
 }
 
+TEST(Facing, TheScreensAreaMeansNothingBehindTheEye) {
+    // A floor, seen from above: its front, whatever part of it lies behind the eye.
+    const auto project = [](const glm::dvec3& p) { return glm::dvec4(p.x, p.y, -p.z - 0.2, -p.z); };
+    for (const double behind : {-3.0, 2.0, 5.0}) {
+        const glm::dvec4 a = project({-1, -1, -5}), b = project({0, -1, behind}), c = project({1, -1, -5});
+        glm::dvec3 normal;
+        const double volume = homogeneousFacing(a, b, c, normal);
+        EXPECT_GT(volume, 0) << behind;
+        const double area = screenFacing(glm::dvec2(a) / a.w, glm::dvec2(b) / b.w, glm::dvec2(c) / c.w);
+        EXPECT_EQ(signOf(area), behind < 0 ? 1 : -1) << behind;
+    }
+}
+
 TEST(Facing, ObjectSpaceNeedsNoTurningAboutForMirrors) {
     Random random(34);
     for (int i = 0; i < 100000; ++i) {
