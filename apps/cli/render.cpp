@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 #include <memory>
+#include <string>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -36,13 +38,9 @@ std::vector<HiddenMethod> methodsOf(const RenderOptions& options, RenderRun& run
     std::vector<HiddenMethod> methods;
     for (int i = 0; i < kHiddenMethods; ++i) {
         const auto method = static_cast<HiddenMethod>(i);
-        const uint64_t limit = practicalPolygons(method);
-        if (run.polygons_in_view <= limit) {
-            methods.push_back(method);
-            continue;
-        }
-        run.left_out.push_back({method, fmt::format("{} polygons in view; practical up to {}",
-                                                    grouped(run.polygons_in_view), grouped(limit))});
+        std::string why = whyImpractical(run, method);
+        if (why.empty()) methods.push_back(method);
+        else run.left_out.push_back({method, std::move(why)});
     }
     return methods;
 }

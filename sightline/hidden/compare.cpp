@@ -25,7 +25,7 @@ double distanceToOutline(const ScreenPolygon& polygon, const glm::dvec2& point) 
 
 Agreement compareImages(const DrawList& list, const View& view, const HiddenImage& expected, const HiddenImage& found,
                         const AgreementBands& bands) {
-    Projector projector(view, {view.width, view.height, 0, 1, {}});
+    Projector projector(view, {view.width, view.height, 0, 1, {}}, bands.projector);
     const std::vector<ScreenPolygon> polygons = projectAll(list, projector);
     std::vector<uint32_t> polygon_of(list.surfaces(), HiddenImage::kNone);
     for (uint32_t i = 0; i < polygons.size(); ++i) polygon_of[polygons[i].surface] = i;

@@ -22,9 +22,10 @@ struct Agreement {
 };
 
 struct AgreementBands {
-    double edge = 1e-6;  ///< distance from an outline [samples]
-    double tie = 1e-9;   ///< difference in nearness, relative to the nearer
-    bool by_id = false;  ///< compare DrawItem::id, not surfaces
+    double edge = 1e-6;           ///< distance from an outline [samples]
+    double tie = 1e-9;            ///< difference in nearness, relative to the nearer
+    bool by_id = false;           ///< compare DrawItem::id, not surfaces
+    ProjectorSettings projector;  ///< that both images were drawn with
 };
 
 /// @param expected, found  of the same list and view

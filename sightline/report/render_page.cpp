@@ -254,11 +254,10 @@ std::string howMade(const RenderRun& run) {
     out += row("Surfaces",
                "single-sided back faces are dropped; masked surfaces are drawn whole; blended and "
                "transmissive ones are not drawn");
-    out += row(
-        "Times",
-        fmt::format("{}, {} of {}", run.repeat == 1 ? "one run" : fmt::format("median of {} runs", run.repeat),
-                    run.settings.threads == 1 ? "one thread" : fmt::format("up to {} threads", run.settings.threads),
-                    "a run without counting at each sample"));
+    const uint32_t threads = run.settings.threads;
+    out += row("Times", fmt::format("{}, on {}, without counting at each sample; counts are from a run of their own",
+                                    run.repeat == 1 ? "one run" : fmt::format("median of {} runs", run.repeat),
+                                    threads == 1 ? "one thread" : fmt::format("up to {} threads", threads)));
     out += row("Reference", "a plain z-buffer in double, one thread");
     if (!run.command.empty()) out += row("Repeat it", "<code>" + escapeHtml(run.command) + "</code>");
     return out + row("Numbers", "in <code>render.json</code> beside this page") + "</dl></section>";

@@ -6,10 +6,12 @@
 #include <iterator>
 #include <limits>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "sightline/hidden/scan.h"
 #include "sightline/report/camera_json.h"
+#include "sightline/report/chart.h"
 
 namespace sightline {
 namespace {
@@ -143,17 +145,22 @@ const MethodResult* RenderRun::find(HiddenMethod method) const {
     return nullptr;
 }
 
-uint64_t practicalPolygons(HiddenMethod method) {
+std::string whyImpractical(const RenderRun& run, HiddenMethod method) {
+    const auto beyond = [](uint64_t count, uint64_t most, std::string_view what) {
+        if (count <= most) return std::string();
+        return fmt::format("{} {} in view; practical up to {}", readable(static_cast<double>(count)), what,
+                           readable(static_cast<double>(most)));
+    };
     switch (method) {
         case HiddenMethod::kNewell:
-            return 20'000;
+            return beyond(run.polygons_in_view, 150'000, "polygons");
         case HiddenMethod::kWarnock:
-            return 300'000;
+            return beyond(run.polygons_in_view, 1'000'000, "polygons");
         case HiddenMethod::kBspBackToFront:
         case HiddenMethod::kBspFrontToBack:
-            return 300'000;
+            return beyond(run.triangles_in_view, 1'000'000, "triangles");
         default:
-            return ~uint64_t{0};
+            return {};
     }
 }
 
@@ -180,6 +187,7 @@ MethodResult drawMethod(const RenderList& scene, const View& view, RenderSetting
 
 void judge(const RenderList& scene, const View& view, const HiddenImage& reference, const RenderSettings& settings,
            MethodResult& result) {
+    result.bands.projector = settings.projector;
     // Depths in single precision tell surfaces apart that differ by more than 2^-22 of their nearness. What a coarser
     // format confuses is wrong.
     if (result.method == HiddenMethod::kZBuffer) result.bands.tie = 0x1p-22;

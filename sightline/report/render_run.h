@@ -80,8 +80,9 @@ struct RenderRun {
     const MethodResult* find(HiddenMethod method) const;
 };
 
-/// More polygons than this in view are not practical for a method; no limit: all ones.
-uint64_t practicalPolygons(HiddenMethod method);
+/// Why a method is not practical for what is in view; empty if it is. Newell's comparisons may grow with the square of
+/// the polygons, and a BSP tree takes some kilobytes a triangle, whether it is seen or not.
+std::string whyImpractical(const RenderRun& run, HiddenMethod method);
 
 /// Draws with one method: `repeat` times for the time, and once more where counts are wanted.
 MethodResult drawMethod(const RenderList& scene, const View& view, RenderSettings settings, HiddenMethod method,
