@@ -15,7 +15,7 @@ struct RayContext {
     glm::dvec3 from{0.0}, direction{0.0};
 };
 
-/// Refuses the back faces of single-sided triangles.
+/// Refuses the back faces of single-sided triangles, and what is seen edge-on.
 void passBackFaces(const RTCFilterFunctionNArguments* arguments) {
     const auto* triangles = static_cast<const RayTriangle*>(arguments->geometryUserPtr);
     const auto* context = reinterpret_cast<const RayContext*>(arguments->context);
@@ -23,7 +23,8 @@ void passBackFaces(const RTCFilterFunctionNArguments* arguments) {
         if (arguments->valid[i] == 0) continue;
         const RayTriangle& triangle = triangles[RTCHitN_primID(arguments->hit, arguments->N, i)];
         const glm::dvec3 normal = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
-        if (!triangle.double_sided && glm::dot(normal, context->direction) >= 0) arguments->valid[i] = 0;
+        const double away = glm::dot(normal, context->direction);
+        if (away == 0 || (away > 0 && !triangle.double_sided)) arguments->valid[i] = 0;
     }
 }
 

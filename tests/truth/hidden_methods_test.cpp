@@ -71,7 +71,8 @@ std::vector<NamedSettings> allSettings() {
     if (hasEmbree()) {
         NamedSettings& embree = add("rays, Embree", HiddenMethod::kRaycast);
         embree.settings.ray_tracer = RayTracer::kEmbree;
-        embree.bands = {0.05, 1e-4, false};
+        embree.bands.edge = 0.05;
+        embree.bands.tie = 1e-4;
     }
     return all;
 }
