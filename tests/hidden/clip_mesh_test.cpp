@@ -12,6 +12,7 @@
 
 #include "sightline/base/random.h"
 #include "sightline/hidden/clip.h"
+#include "sightline/hidden/scan.h"
 
 namespace sightline {
 namespace {
@@ -153,6 +154,39 @@ TEST(ClipMesh, SparesWhatTheGuardBandHolds) {
     double farthest = 0;
     for (uint32_t index : out.indices) farthest = std::max(farthest, out.vertices[index].x / out.vertices[index].w);
     EXPECT_EQ(farthest, 8.0);
+}
+
+/// Two triangles on either side of an edge that leaves the viewport and stays in the band; one of them reaches beyond.
+TEST(ClipMesh, AtTheViewportInsteadOfTheBandWouldCrack) {
+    Random random(24);
+    const auto onScreen = [](const glm::dvec4& v) { return (glm::dvec2(v) / v.w + 1.0) * 8.0; };
+    int cracks_at_band = 0, cracks_at_viewport = 0;
+    for (int i = 0; i < 2000; ++i) {
+        // Ends on whole eighths: the samples at eighths of the edge lie on it exactly.
+        const auto whole = [&](int low, int count) { return (low + int(random.below(uint64_t(count)))) / 8.0; };
+        const glm::dvec2 a(whole(-7, 14), whole(-7, 14)), b(whole(10, 12), whole(-7, 14));
+        const std::vector<glm::dvec4> vertices = {{a, 0, 1}, {b, 0, 1}, {-0.5, 100, 0, 1}, {0.5, -3, 0, 1}};
+        const std::vector<uint32_t> indices = {0, 1, 2, 1, 0, 3};
+        ClippedMesh at_band, at_viewport;
+        clipMesh(vertices, indices, frustumVolume(), guardBandVolume(4), at_band);
+        clipMesh(vertices, std::span(indices).first(3), frustumVolume(), frustumVolume(), at_viewport);
+        // The end of the edge that begins in a, in the triangle that was clipped.
+        const auto endOf = [&](const ClippedMesh& mesh, uint32_t triangle) {
+            for (size_t t = 0; t < mesh.indices.size(); ++t)
+                if (mesh.source[t / 3] == triangle && mesh.indices[t] == 0)
+                    return onScreen(mesh.vertices[mesh.indices[t % 3 == 2 ? t - 2 : t + 1]]);
+            return glm::dvec2(0.0);
+        };
+        for (int part = 1; part < 8; ++part) {
+            const glm::dvec2 sample = onScreen({a + (b - a) * (part / 8.0), 0, 1});
+            if (sample.x >= 16) continue;
+            const glm::dvec2 start = onScreen(vertices[0]);
+            cracks_at_band += orientation(start, endOf(at_band, 0), sample) != 0;
+            cracks_at_viewport += orientation(start, endOf(at_viewport, 0), sample) != 0;
+        }
+    }
+    EXPECT_EQ(cracks_at_band, 0);
+    EXPECT_GT(cracks_at_viewport, 100);
 }
 
 TEST(ClipMesh, InterpolatesAttributesInClipSpace) {
