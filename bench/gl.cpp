@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <optional>
 #include <thread>
@@ -75,6 +76,8 @@ public:
         });
     }
 
+    const std::vector<uint32_t>& pixels() const { return pixels_; }
+
 private:
     void light(size_t begin, size_t end) {
         const glm::vec3 sun = glm::normalize(glm::vec3(0.4f, 0.8f, 0.45f));
@@ -95,7 +98,20 @@ private:
 struct ViewCost {
     double gl_flat[kSettings] = {}, gl_ids[kSettings] = {}, flat[kSettings] = {}, ids[kSettings] = {};
     double triangles = 0;  ///< given to both
+    double unlike = 0;     ///< pixels of one thread's pictures
 };
+
+/// Pixels where two pictures differ by more than rounding.
+double countUnlike(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b) {
+    double count = 0;
+    for (size_t i = 0; i < a.size(); ++i) {
+        bool like = true;
+        for (int shift = 0; shift < 24; shift += 8)
+            like = like && std::abs(int(a[i] >> shift & 0xff) - int(b[i] >> shift & 0xff)) <= 3;
+        count += !like;
+    }
+    return count;
+}
 
 void tell(const Status& status) {
     if (!status) std::fprintf(stderr, "%s\n", status.error().message.c_str());
@@ -133,6 +149,9 @@ std::optional<ViewCost> measureView(const Scene& scene, const View& view, const 
         cost.ids[i] = 1e-3 * times[4 * i + 3];
     }
     cost.triangles = list.surfaces();
+    const Result<std::vector<uint32_t>> picture = gl_flat[0].read();
+    if (!picture) return std::nullopt;
+    cost.unlike = countUnlike(*picture, colours.pixels());
     return cost;
 }
 
@@ -149,6 +168,7 @@ void measurePath(const Scene& scene, const CameraPath& path, const GlContext* co
             sum.ids[i] += part * cost->ids[i];
         }
         sum.triangles += part * cost->triangles;
+        sum.unlike += part * cost->unlike;
     }
     for (int i = 0; i < kSettings; ++i) {
         const std::string threads = fmt::format(", {} thread{}", kThreads[i], kThreads[i] == 1 ? "" : "s");
@@ -157,6 +177,8 @@ void measurePath(const Scene& scene, const CameraPath& path, const GlContext* co
         table.rows.push_back(
             {scene.name, "z-buffer, ids" + threads, sum.ids[i], "ms", "Mesa llvmpipe, ids" + threads, sum.gl_ids[i]});
     }
+    table.rows.push_back({scene.name, "pixels unlike Mesa's", sum.unlike, "pixels", "of the picture",
+                          static_cast<double>(kWidth) * kHeight});
     table.rows.push_back({scene.name, "triangles in view", sum.triangles, "triangles", "of the scene",
                           static_cast<double>(drawnTriangles(scene))});
 }
