@@ -23,6 +23,13 @@ constexpr double kEdgeBand = 1.0 / 256;
 /// Depths are planes in float.
 constexpr double kTieBand = 1e-5;
 
+AgreementBands bands() {
+    AgreementBands bands;
+    bands.edge = kEdgeBand;
+    bands.tie = kTieBand;
+    return bands;
+}
+
 class GlIdRendererTest : public testing::Test {
 protected:
     void SetUp() override {
@@ -40,7 +47,7 @@ protected:
     /// Holds Mesa's ids against the reference's; a failure names the case and the first sample that nothing explains.
     Agreement compare(const DrawList& list, const View& view, const std::string& name) {
         const HiddenImage expected = nearestSurfaces(list, view), found = drawn(list, view);
-        const Agreement result = compareImages(list, view, expected, found, {kEdgeBand, kTieBand, false});
+        const Agreement result = compareImages(list, view, expected, found, bands());
         EXPECT_EQ(result.wrong, 0u) << name << ": sample " << result.sample << " of row " << result.row << " shows "
                                     << result.found << " instead of " << result.expected;
         holdZBuffer(list, view, found, name);
@@ -54,7 +61,7 @@ protected:
         settings.method = HiddenMethod::kZBuffer;
         settings.threads = 2;
         const HiddenImage image = render(list, view, settings);
-        const Agreement result = compareImages(list, view, mesa, image, {kEdgeBand, kTieBand, false});
+        const Agreement result = compareImages(list, view, mesa, image, bands());
         EXPECT_EQ(result.wrong, 0u) << name << ", z-buffer: sample " << result.sample << " of row " << result.row
                                     << " shows " << result.found << " instead of " << result.expected;
         add(result, zbuffer_sum_);
