@@ -9,6 +9,7 @@
 #include "sightline/hidden/depth_buffer.h"
 #include "sightline/hidden/render.h"
 #include "sightline/hidden/zbuffer.h"
+#include "sightline/hidden/zbuffer_method.h"
 #include "sightline/load/seeded_cameras.h"
 #include "sightline/report/render_list.h"
 #include "sightline/scene/city.h"
@@ -47,8 +48,10 @@ void addScene(const Scene& scene, const CameraPath& path, int repeat, Table& tab
         const RenderList in_view(scene, view);
         const DrawList& list = in_view.list();
         RenderSettings settings[kWayCount];
+        ZBufferMemory memory[kWayCount];
         std::vector<std::function<void()>> jobs;
         for (size_t i = 0; i < kWayCount; ++i) {
+            settings[i].zbuffer_memory = &memory[i];
             kWays[i].change(settings[i]);
             jobs.push_back([&, i] { render(list, view, settings[i]); });
         }
@@ -115,6 +118,8 @@ void addWalls(int repeat, Table& table) {
     const DrawList list(items);
     RenderSettings with, without;
     without.depth.hierarchy = false;
+    ZBufferMemory kept;
+    with.zbuffer_memory = without.zbuffer_memory = &kept;
     const HiddenCounters a = render(list, walls.view, with).counters, b = render(list, walls.view, without).counters;
     const char* where = "8 walls, near to far";
     table.rows.push_back({where, "fragments tested", static_cast<double>(a.tested), "fragments", "without hierarchy",
@@ -133,7 +138,9 @@ void addWalls(int repeat, Table& table) {
     const DrawList wall(single);
     std::vector<std::function<void()>> jobs;
     RenderSettings settings[kDepthFormats];
+    ZBufferMemory memory;
     for (int i = 0; i < kDepthFormats; ++i) {
+        settings[i].zbuffer_memory = &memory;
         settings[i].depth.format = static_cast<DepthFormat>(i);
         jobs.push_back([&, i] { render(wall, reversed.view, settings[i]); });
     }

@@ -6,11 +6,16 @@
 
 namespace sightline {
 
-DepthBuffer::DepthBuffer(uint32_t width_, uint32_t height_, DepthKey key, bool fast)
-    : width(width_), height(height_), columns((width + kTile - 1) / kTile), rows((height + kTile - 1) / kTile) {
+void DepthBuffer::resize(uint32_t new_width, uint32_t new_height) {
+    width = new_width;
+    height = new_height;
+    columns = (width + kTile - 1) / kTile;
+    rows = (height + kTile - 1) / kTile;
     stride = (columns + 15) / 16 * 16;
-    keys = std::make_unique_for_overwrite<DepthKey[]>(size_t{kTileSamples} * stride * rows);
-    clear(key, fast);
+    const size_t size = size_t{kTileSamples} * stride * rows;
+    if (size <= allocated) return;
+    keys = std::make_unique_for_overwrite<DepthKey[]>(size);
+    allocated = size;
 }
 
 void DepthBuffer::clear(DepthKey key, bool fast) {

@@ -4,6 +4,8 @@
 // Ned Greene, Michael Kass, Gavin Miller. Hierarchical Z-Buffer Visibility. 1993.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -26,10 +28,16 @@ struct DepthBuffer {
         kCompressed  ///< the place of its keys holds them compressed: compressTile()
     };
 
-    /// All tiles cleared.
-    /// @param fast  by their state alone; otherwise all keys are written
-    DepthBuffer(uint32_t width, uint32_t height, DepthKey clear_key, bool fast = true);
+    DepthBuffer() = default;
+    DepthBuffer(uint32_t width_, uint32_t height_, DepthKey key, bool fast = true) {
+        resize(width_, height_);
+        clear(key, fast);
+    }
 
+    /// To be followed by clear(). Allocates if it grows.
+    void resize(uint32_t width, uint32_t height);
+
+    /// @param fast  by the tiles' states alone; otherwise all keys are written
     void clear(DepthKey key, bool fast = true);
 
     /// To be called when the comparison changes: bounds that were widened for one direction alone are looked at again
@@ -45,6 +53,7 @@ struct DepthBuffer {
     uint32_t columns = 0, rows = 0;  ///< [tiles]
     uint32_t stride = 0;  ///< tiles from a row to the next: a multiple of 16, so that bounds can be read many at once
     DepthKey clear_key = 0;
+    size_t allocated = 0;              ///< keys
     std::unique_ptr<DepthKey[]> keys;  ///< [size: 64 * stride * rows]
     std::vector<State> state;          ///< [size: stride * rows]
     std::vector<DepthKey> least, greatest;

@@ -98,7 +98,16 @@ public:
           scratch_(scratch) {}
 
     void draw(const PolygonBatch& batch) {
-        for (const uint32_t index : batch.rows[tile_row_]) drawPolygon(batch, batch.polygons[index]);
+        for (const PolygonBatch::Entry& entry : batch.rows[tile_row_]) {
+            if constexpr (kPlain) {
+                if (hierarchy_ &&
+                    tilesHide<kGreater>(buffer_, tileAt(entry.first), tileAt(entry.last), entry.nearest)) {
+                    noteRejected(batch, entry.polygon);
+                    continue;
+                }
+            }
+            drawPolygon(batch, entry.polygon);
+        }
     }
 
     void finish() {
@@ -134,12 +143,19 @@ private:
 
     uint32_t tileAt(int32_t column) const { return tile_row_ * buffer_.stride + static_cast<uint32_t>(column); }
 
-    void drawPolygon(const PolygonBatch& batch, const DepthPolygon& p) {
+    /// A polygon that is hidden in all rows of tiles that it meets is rejected as a whole.
+    void noteRejected(const PolygonBatch& batch, uint32_t index) {
+        PolygonBatch::Rejection& rejection = batch.rejections[index];
+        const std::atomic_ref<uint32_t> rejected(rejection.rejected);
+        count_.hierarchy_rejected_polygons +=
+            rejection.rows == 1 || rejected.fetch_add(1, std::memory_order_relaxed) + 1 == rejection.rows;
+    }
+
+    void drawPolygon(const PolygonBatch& batch, uint32_t index) {
+        const DepthPolygon& p = batch.polygons[index];
         const int32_t low = std::max(p.row_begin, row_), high = std::min(p.row_end, row_ + 8) - 1;
         if (hierarchy_ && isHidden(p, low, high)) {
-            const uint32_t rows = static_cast<uint32_t>((p.row_end - 1) / 8 - p.row_begin / 8 + 1);
-            const bool all = std::atomic_ref<uint32_t>(p.rejected).fetch_add(1, std::memory_order_relaxed) + 1 == rows;
-            count_.hierarchy_rejected_polygons += all;
+            noteRejected(batch, index);
             if (!fragments_.countsSamples()) return;
             hidden_ = true;
         }

@@ -15,21 +15,28 @@ int32_t within(double value, uint32_t limit) {
 
 }  // namespace
 
-void PolygonBatch::clear() {
+void PolygonBatch::clear(uint32_t tile_rows) {
     polygons.clear();
     outlines.clear();
     clipless.clear();
-    for (std::vector<uint32_t>& row : rows) row.clear();
+    rejections.clear();
+    rows.resize(tile_rows);
+    for (std::vector<Entry>& row : rows) row.clear();
 }
 
-void PolygonBatch::put(DepthPolygon& polygon) {
-    const uint32_t index = static_cast<uint32_t>(polygons.size());
-    for (int32_t row = polygon.row_begin / 8; row <= (polygon.row_end - 1) / 8; ++row)
-        rows[static_cast<size_t>(row)].push_back(index);
+void PolygonBatch::put(DepthPolygon& polygon, const PolygonTarget& target) {
+    polygon.offset = target.codec.polygonOffset(polygon.depth, target.offset_factor, target.offset_units);
+    const Entry entry{static_cast<uint32_t>(polygons.size()), static_cast<uint16_t>(polygon.begin / 8),
+                      static_cast<uint16_t>((polygon.end - 1) / 8),
+                      target.codec.encode(polygon.depth.high, polygon.offset)};
+    const int32_t first = polygon.row_begin / 8, last = (polygon.row_end - 1) / 8;
+    for (int32_t row = first; row <= last; ++row) rows[static_cast<size_t>(row)].push_back(entry);
+    rejections.push_back({static_cast<uint32_t>(last - first + 1), 0});
     polygons.push_back(polygon);
 }
 
-void PolygonBatch::add(const ScreenPolygon& source, uint32_t width, uint32_t height) {
+void PolygonBatch::add(const ScreenPolygon& source, const PolygonTarget& target) {
+    const uint32_t width = target.width, height = target.height;
     glm::dvec2 low = source.points[0], high = low;
     for (const glm::dvec2& point : source.outline()) {
         low = glm::min(low, point);
@@ -47,7 +54,7 @@ void PolygonBatch::add(const ScreenPolygon& source, uint32_t width, uint32_t hei
     if (source.count != 3) {
         polygon.outline = static_cast<int32_t>(outlines.size());
         outlines.push_back(source);
-        return put(polygon);
+        return put(polygon, target);
     }
     int order[3] = {0, 1, 2};
     const auto sortPair = [&](int i, int j) {
@@ -66,22 +73,22 @@ void PolygonBatch::add(const ScreenPolygon& source, uint32_t width, uint32_t hei
     polygon.slope[2] = slope(1, 2);
     // As in firstSampleRightOf(): less than ten units in the last place of the ends.
     polygon.doubt = 0x1p-47 * (2 * std::max(std::abs(low.x), std::abs(high.x)) + 1.0);
-    put(polygon);
+    put(polygon, target);
 }
 
-void PolygonBatch::add(const HomogeneousTriangle& triangle, uint32_t width, uint32_t height) {
+void PolygonBatch::add(const HomogeneousTriangle& triangle, const PolygonTarget& target) {
     DepthPolygon polygon;
     polygon.row_begin = std::max(triangle.row_begin, 0);
-    polygon.row_end = std::min(triangle.row_end, static_cast<int32_t>(height));
+    polygon.row_end = std::min(triangle.row_end, static_cast<int32_t>(target.height));
     polygon.begin = std::max(triangle.begin, 0);
-    polygon.end = std::min(triangle.end, static_cast<int32_t>(width));
+    polygon.end = std::min(triangle.end, static_cast<int32_t>(target.width));
     if (polygon.row_begin >= polygon.row_end || polygon.begin >= polygon.end) return;
     polygon.depth = triangle.depth;
     polygon.surface = triangle.surface;
     polygon.outline = static_cast<int32_t>(clipless.size());
     polygon.is_clipless = true;
     clipless.push_back(triangle);
-    put(polygon);
+    put(polygon, target);
 }
 
 }  // namespace sightline

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sightline/hidden/depth_format.h"
 #include "sightline/hidden/homogeneous.h"
 #include "sightline/hidden/screen_polygon.h"
 
@@ -22,24 +23,42 @@ struct DepthPolygon {
     int32_t row_begin = 0, row_end = 0, begin = 0, end = 0;  ///< samples outside of these are not covered
     int32_t outline = kTriangle;  ///< of others: where their outline is, PolygonBatch::outlines or ::clipless
     bool is_clipless = false;
-    mutable uint32_t rejected = 0;  ///< rows of tiles where it was known to be hidden; written by several threads
+};
+
+/// What polygons are prepared for.
+struct PolygonTarget {
+    uint32_t width = 0, height = 0;  ///< [samples]
+    const DepthCodec& codec;
+    double offset_factor = 0, offset_units = 0;  ///< DepthCodec::polygonOffset
 };
 
 /// Polygons in the order in which they are drawn, and which of them meet each row of tiles.
 struct PolygonBatch {
+    /// As much of a polygon as it takes to find that it is hidden.
+    struct Entry {
+        uint32_t polygon;
+        uint16_t first, last;  ///< columns of tiles, both included
+        DepthKey nearest;      ///< of all its keys
+    };
+    struct Rejection {
+        uint32_t rows = 0;      ///< of tiles that the polygon meets
+        uint32_t rejected = 0;  ///< of them, those where it was known to be hidden; counted by several threads
+    };
+
     std::vector<DepthPolygon> polygons;
     std::vector<ScreenPolygon> outlines;
     std::vector<HomogeneousTriangle> clipless;
-    std::vector<std::vector<uint32_t>> rows;  ///< indices of polygons [size: rows of tiles]
+    std::vector<std::vector<Entry>> rows;       ///< [size: rows of tiles]
+    mutable std::vector<Rejection> rejections;  ///< [size: polygons]
 
     explicit PolygonBatch(uint32_t tile_rows = 0) : rows(tile_rows) {}
-    void clear();
+    void clear(uint32_t tile_rows);
     /// Takes up a polygon if it may cover a sample.
-    void add(const ScreenPolygon& polygon, uint32_t width, uint32_t height);
-    void add(const HomogeneousTriangle& triangle, uint32_t width, uint32_t height);
+    void add(const ScreenPolygon& polygon, const PolygonTarget& target);
+    void add(const HomogeneousTriangle& triangle, const PolygonTarget& target);
 
 private:
-    void put(DepthPolygon& polygon);
+    void put(DepthPolygon& polygon, const PolygonTarget& target);
 };
 
 }  // namespace sightline

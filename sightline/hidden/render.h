@@ -15,6 +15,8 @@
 
 namespace sightline {
 
+struct ZBufferMemory;
+
 enum class HiddenMethod : uint8_t {
     kPainter,         ///< far to near by one depth a polygon: wrong where that is not enough
     kNewell,          ///< far to near, put in order by Newell, Newell and Sancha's tests, splitting what has no order
@@ -50,6 +52,8 @@ struct RenderSettings {
     bool want_counts = false;     ///< fill the per-sample counts of HiddenImage
     ProjectorSettings projector;  ///< clipping and facing
     DepthSettings depth;          ///< of the z-buffer
+    /// What the z-buffer keeps for the next frame, zbuffer_method.h; null: nothing.
+    ZBufferMemory* zbuffer_memory = nullptr;
 };
 
 /// What a method is given.

@@ -21,7 +21,7 @@ struct Piece {
 };
 
 /// As many as one thread projects at a time.
-constexpr uint32_t kPieceTriangles = 1 << 12;
+constexpr uint32_t kPieceTriangles = 1 << 11;
 
 /// Pieces that are projected before their polygons are drawn. A batch of polygons is a run of pieces, so that small
 /// items share one; where batches begin and end is the same for any number of threads.
@@ -83,9 +83,9 @@ class Worker {
 public:
     explicit Worker(const HiddenInput& input) : input_(input), projector_(input.projector()), bounds_(input.view) {}
 
-    void project(const std::vector<Piece>& pieces, const DepthCodec& codec, PolygonBatch& out) {
-        out.clear();
-        for (const Piece& piece : pieces) project(piece, codec, out);
+    void project(const std::vector<Piece>& pieces, const PolygonTarget& target, PolygonBatch& out) {
+        out.clear((target.height + 7) / 8);
+        for (const Piece& piece : pieces) project(piece, target, out);
     }
 
     DepthDrawScratch scratch;
@@ -97,7 +97,7 @@ public:
     }
 
 private:
-    void project(const Piece& piece, const DepthCodec& codec, PolygonBatch& out) {
+    void project(const Piece& piece, const PolygonTarget& target, PolygonBatch& out) {
         const DrawItem& item = input_.list.items()[piece.item];
         if (begun_ != piece.item) {
             begun_ = piece.item;
@@ -122,22 +122,13 @@ private:
             if (clipless) {
                 if (!projector_.projectHomogeneous(triangle, triangle_)) continue;
                 triangle_.surface = first_surface + triangle;
-                add(triangle_, codec, out);
+                out.add(triangle_, target);
             } else {
                 if (!projector_.project(triangle, polygon_)) continue;
                 polygon_.surface = first_surface + triangle;
-                add(polygon_, codec, out);
+                out.add(polygon_, target);
             }
         }
-    }
-
-    template <class Polygon>
-    void add(const Polygon& polygon, const DepthCodec& codec, PolygonBatch& out) {
-        const size_t before = out.polygons.size();
-        out.add(polygon, input_.view.width, input_.view.height);
-        const DepthSettings& depth = input_.settings.depth;
-        if (out.polygons.size() != before && (depth.offset_factor != 0 || depth.offset_units != 0))
-            out.polygons.back().offset = codec.polygonOffset(polygon.depth, depth.offset_factor, depth.offset_units);
     }
 
     const HiddenInput& input_;
@@ -152,15 +143,19 @@ private:
 /// Threads take turns: all project, then all draw; what is next to do is settled while they wait for one another.
 class Drawing {
 public:
-    Drawing(const HiddenInput& input, HiddenImage& image)
+    Drawing(const HiddenInput& input, HiddenImage& image, ZBufferMemory& memory)
         : input_(input),
           depth_(input.settings.depth),
           codec_(depthCodecFor(input.list, input.view, depth_.format)),
-          buffer_(image.width, image.height,
-                  depth_.clear_value ? codec_.keyOf(*depth_.clear_value) : codec_.convention.far_value,
-                  depth_.fast_clear),
+          memory_(memory),
+          buffer_(memory.buffer),
           draw_{buffer_, codec_, depth_, depth_.comparison.value_or(codec_.convention.comparison), image},
-          rounds_(input.list) {}
+          target_{image.width, image.height, codec_, depth_.offset_factor, depth_.offset_units},
+          rounds_(input.list) {
+        buffer_.resize(image.width, image.height);
+        buffer_.clear(depth_.clear_value ? codec_.keyOf(*depth_.clear_value) : codec_.convention.far_value,
+                      depth_.fast_clear);
+    }
 
     void run(HiddenImage& image) {
         const size_t count = std::clamp<size_t>(input_.settings.threads, 1, buffer_.rows);
@@ -188,28 +183,29 @@ public:
 private:
     void advance() {
         done_ = !rounds_.next(pieces_);
-        if (batches_.size() < pieces_.size()) batches_.resize(pieces_.size(), PolygonBatch(buffer_.rows));
+        if (memory_.batches.size() < pieces_.size()) memory_.batches.resize(pieces_.size());
         next_batch_ = 0;
         next_row_ = 0;
     }
 
     void projectAll(Worker& worker) {
-        for (size_t i; (i = next_batch_++) < pieces_.size();) worker.project(pieces_[i], codec_, batches_[i]);
+        for (size_t i; (i = next_batch_++) < pieces_.size();) worker.project(pieces_[i], target_, memory_.batches[i]);
     }
 
     void drawAll(Worker& worker) {
         for (uint32_t row; (row = next_row_++) < buffer_.rows;)
-            drawTileRow(draw_, row, {batches_.data(), pieces_.size()}, worker.scratch);
+            drawTileRow(draw_, row, {memory_.batches.data(), pieces_.size()}, worker.scratch);
     }
 
     const HiddenInput& input_;
     const DepthSettings& depth_;
     DepthCodec codec_;
-    DepthBuffer buffer_;
+    ZBufferMemory& memory_;
+    DepthBuffer& buffer_;
     DepthDraw draw_;
+    PolygonTarget target_;
     Rounds rounds_;
     std::vector<std::vector<Piece>> pieces_;  ///< of this round, by batch
-    std::vector<PolygonBatch> batches_;
     std::atomic<size_t> next_batch_ = 0;
     std::atomic<uint32_t> next_row_ = 0;
     bool done_ = false;
@@ -224,6 +220,10 @@ DepthCodec depthCodecFor(const DrawList& list, const View& view, DepthFormat for
     return {format, fit ? fitDepthRange(list, view) : range};
 }
 
-void drawZBuffer(const HiddenInput& input, HiddenImage& image) { Drawing(input, image).run(image); }
+void drawZBuffer(const HiddenInput& input, HiddenImage& image) {
+    ZBufferMemory own;
+    ZBufferMemory* kept = input.settings.zbuffer_memory;
+    Drawing(input, image, kept != nullptr ? *kept : own).run(image);
+}
 
 }  // namespace sightline

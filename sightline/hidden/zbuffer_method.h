@@ -4,9 +4,20 @@
 // Edwin Catmull. A Subdivision Algorithm for Computer Display of Curved Surfaces. 1974.
 #pragma once
 
+#include <vector>
+
+#include "sightline/hidden/depth_buffer.h"
+#include "sightline/hidden/depth_buffer_polygon.h"
 #include "sightline/hidden/render.h"
 
 namespace sightline {
+
+/// What a z-buffer keeps from frame to frame, so that it need not be allocated again: RenderSettings::zbuffer_memory.
+/// After a frame, the depths of its image. For one frame at a time.
+struct ZBufferMemory {
+    DepthBuffer buffer;
+    std::vector<PolygonBatch> batches;
+};
 
 /// Draws in the order of surfaces, so that of surfaces at the same depth the first stays (as long as only what is nearer
 /// passes). RenderSettings::depth says how depths are kept, tested and saved. What can be told apart is up to the format:
@@ -23,7 +34,7 @@ namespace sightline {
 void drawZBuffer(const HiddenInput& input, HiddenImage& image);
 
 /// Triangles that are projected before their polygons are drawn.
-inline constexpr size_t kBatchTriangles = 1 << 16;
+inline constexpr size_t kBatchTriangles = 1 << 14;
 
 /// The codec that drawZBuffer() draws a list with.
 DepthCodec depthCodecFor(const DrawList& list, const View& view, DepthFormat format);

@@ -210,8 +210,9 @@ TEST(ZBufferMethod, LeavesOutItemsThatNobodyCouldSee) {
     for (const View& view : {madeView(120, 90), parallelView(120, 90)}) {
         const RenderSettings settings;
         const HiddenImage image = render(list, view, settings);
-        const Agreement agreement = compareImages(list, view, nearestSurfaces(list, view), image,
-                                                  {1e-6, isOrthographic(view) ? 1e-5 : 1e-6, false});
+        AgreementBands bands;
+        bands.tie = isOrthographic(view) ? 1e-5 : 1e-6;
+        const Agreement agreement = compareImages(list, view, nearestSurfaces(list, view), image, bands);
         EXPECT_EQ(agreement.wrong, 0u) << agreement.row << " " << agreement.sample;
         const ProjectorCounters& g = image.counters.geometry;
         EXPECT_EQ(g.triangles, g.rejected + g.back_facing + g.accepted + g.clipped);
