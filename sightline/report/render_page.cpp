@@ -255,7 +255,7 @@ std::string howMade(const RenderRun& run) {
                "single-sided back faces are dropped; masked surfaces are drawn whole; blended and "
                "transmissive ones are not drawn");
     const uint32_t threads = run.settings.threads;
-    out += row("Times", fmt::format("{}, on {}, without counting at each sample; counts are from a run of their own",
+    out += row("Times", fmt::format("{}, on {}; heat maps and depth bytes are from a run of their own",
                                     run.repeat == 1 ? "one run" : fmt::format("median of {} runs", run.repeat),
                                     threads == 1 ? "one thread" : fmt::format("up to {} threads", threads)));
     out += row("Reference", "a plain z-buffer in double, one thread");

@@ -153,7 +153,7 @@ std::string whyImpractical(const RenderRun& run, HiddenMethod method) {
     };
     switch (method) {
         case HiddenMethod::kNewell:
-            return beyond(run.polygons_in_view, 150'000, "polygons");
+            return beyond(run.polygons_in_view, 250'000, "polygons");
         case HiddenMethod::kWarnock:
             return beyond(run.polygons_in_view, 1'000'000, "polygons");
         case HiddenMethod::kBspBackToFront:
@@ -179,9 +179,16 @@ MethodResult drawMethod(const RenderList& scene, const View& view, RenderSetting
     result.milliseconds = median(drawing);
     result.prepare_milliseconds = median(preparing);
     if (!counts) return result;
-    // The run that counts is not timed: it may compress depths for the sake of their bytes.
+    // Counting at each sample may cost shortcuts, so that the totals stay those of the runs that were timed. But for
+    // its bytes: only where depths are kept compressed are those counted.
     settings.want_counts = settings.depth.compression = true;
+    const HiddenCounters totals = result.image.counters;
     result.image = render(scene.list(), view, settings);
+    HiddenCounters& counters = result.image.counters;
+    const uint64_t plain = counters.depth_bytes, compressed = counters.depth_bytes_compressed;
+    counters = totals;
+    counters.depth_bytes = plain;
+    counters.depth_bytes_compressed = compressed;
     return result;
 }
 

@@ -143,11 +143,11 @@ TEST(RenderRun, StatisticsCountSamples) {
 
 TEST(RenderRun, MethodsAreLeftOutOnlyWhereTheyAreImpractical) {
     RenderRun run;
-    run.polygons_in_view = 150'000;
+    run.polygons_in_view = 250'000;
     run.triangles_in_view = 1'000'000;
     for (int i = 0; i < kHiddenMethods; ++i) EXPECT_EQ(whyImpractical(run, static_cast<HiddenMethod>(i)), "") << i;
     run.polygons_in_view = run.triangles_in_view = 1'234'567;
-    EXPECT_EQ(whyImpractical(run, HiddenMethod::kNewell), "1,234,567 polygons in view; practical up to 150,000");
+    EXPECT_EQ(whyImpractical(run, HiddenMethod::kNewell), "1,234,567 polygons in view; practical up to 250,000");
     EXPECT_NE(whyImpractical(run, HiddenMethod::kBspFrontToBack), "");
     EXPECT_EQ(whyImpractical(run, HiddenMethod::kZBuffer), "");
     EXPECT_EQ(whyImpractical(run, HiddenMethod::kRaycast), "");
