@@ -15,8 +15,21 @@ glm::dvec4 eyeAtInfinity(const View& view) {
     return bspParallelEye(-(glm::transpose(glm::dmat3(view.view)) * toward));
 }
 
+/// Grid places to samples of a row or to rows, within the screen.
 int32_t clampTo(double value, int32_t limit) {
     return value > 0 ? (value < limit ? static_cast<int32_t>(value) : limit) : 0;
+}
+
+/// Holds the samples of an outline: sample i lies at i + 0.5.
+/// @param room  to each side, for the rounding of the outline [samples, < 0.5]
+ScreenWindow windowAround(std::span<const glm::dvec2> outline, double room, int32_t width, int32_t height) {
+    glm::dvec2 low = outline[0], high = low;
+    for (const glm::dvec2& p : outline) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    return {clampTo(std::floor(low.y - room), height), clampTo(std::ceil(high.y + room), height),
+            clampTo(std::floor(low.x - room), width), clampTo(std::ceil(high.x + room), width)};
 }
 
 }  // namespace
@@ -32,7 +45,11 @@ BspFrame::BspFrame(const BspScene& scene, const HiddenInput& input, HiddenImage&
       width_(static_cast<int32_t>(input.view.width)),
       height_(static_cast<int32_t>(input.view.height)) {
     image.counters.geometry = projector_.counters();
-    for (uint32_t i = 0; i < polygons_.size(); ++i) polygon_of_[polygons_[i].surface] = i;
+    windows_.reserve(polygons_.size());
+    for (uint32_t i = 0; i < polygons_.size(); ++i) {
+        polygon_of_[polygons_[i].surface] = i;
+        windows_.push_back(windowAround(polygons_[i].outline(), 0, width_, height_));
+    }
     // x / w in [-1, 1] becomes [0, width]: places on the grid, as of ScreenPolygon.
     glm::dmat4 grid(0.0);
     grid[0][0] = 0.5 * width_;
@@ -86,25 +103,11 @@ ScreenWindow BspFrame::windowOf(const Box3d& box) const {
             clampTo(std::floor(low.x) - 1, width_), clampTo(std::ceil(high.x) + 1, width_)};
 }
 
-ScreenWindow BspFrame::windowOf(const ScreenPolygon& polygon, int32_t width, int32_t height) {
-    glm::dvec2 low = polygon.points[0], high = low;
-    for (const glm::dvec2& p : polygon.outline()) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    return {clampTo(std::floor(low.y), height), clampTo(std::ceil(high.y), height), clampTo(std::floor(low.x), width),
-            clampTo(std::ceil(high.x), width)};
-}
-
 /// Narrows the outline to what a cut may keep, rounding and all, and takes the cut up unless it keeps everything.
+/// @param reach  beyond the outline and the screen, from the origin
 /// @returns false if nothing is left
-bool BspFrame::narrow(const ScreenCut& cut, std::vector<ScreenCut>& active) {
-    double reach_x = width_, reach_y = height_;
-    for (const glm::dvec2& p : outline_) {
-        reach_x = std::max(reach_x, std::abs(p.x));
-        reach_y = std::max(reach_y, std::abs(p.y));
-    }
-    const double size = std::abs(cut.a) * reach_x + std::abs(cut.b) * reach_y + std::abs(cut.c);
+bool BspFrame::narrow(const ScreenCut& cut, const glm::dvec2& reach, std::vector<ScreenCut>& active) {
+    const double size = std::abs(cut.a) * reach.x + std::abs(cut.b) * reach.y + std::abs(cut.c);
     if (!std::isfinite(size)) {
         active.push_back(cut);
         return true;
@@ -112,24 +115,26 @@ bool BspFrame::narrow(const ScreenCut& cut, std::vector<ScreenCut>& active) {
     // ScreenCut's own sum is off by less than 4 * 2^-53 of this size, as are the values and crossings here.
     const double slack = 0x1p-46 * size;
     const double sign = cut.negative ? -1 : 1;
-    values_.clear();
-    bool keeps_all = true, keeps_none = true;
+    const double a = sign * cut.a, b = sign * cut.b, c = sign * (cut.c - 0.5 * (cut.a + cut.b));
+    const auto valueAt = [&](const glm::dvec2& p) { return a * p.x + (b * p.y + c); };
+    double low = valueAt(outline_[0]), high = low;
     for (const glm::dvec2& p : outline_) {
-        const double value = sign * (cut.a * (p.x - 0.5) + (cut.b * (p.y - 0.5) + cut.c));
-        keeps_all &= value > slack;
-        keeps_none &= value < -slack;
-        values_.push_back(value + slack);
+        const double value = valueAt(p);
+        low = value < low ? value : low;
+        high = value > high ? value : high;
     }
-    if (keeps_all) return true;
-    if (keeps_none) return false;
+    if (low > slack) return true;
+    if (high < -slack) return false;
     active.push_back(cut);
     clipped_.clear();
-    for (size_t i = 0; i < outline_.size(); ++i) {
-        const size_t j = i + 1 < outline_.size() ? i + 1 : 0;
-        const double from = values_[i], to = values_[j];
-        if (from >= 0) clipped_.push_back(outline_[i]);
-        if ((from >= 0) != (to >= 0))
-            clipped_.push_back(outline_[i] + from / (from - to) * (outline_[j] - outline_[i]));
+    glm::dvec2 last = outline_.back();
+    double from = valueAt(last) + slack;
+    for (const glm::dvec2& p : outline_) {
+        const double to = valueAt(p) + slack;
+        if ((from >= 0) != (to >= 0)) clipped_.push_back(last + from / (from - to) * (p - last));
+        if (to >= 0) clipped_.push_back(p);
+        last = p;
+        from = to;
     }
     outline_.swap(clipped_);
     return outline_.size() >= 3;
@@ -140,24 +145,19 @@ bool BspFrame::makeFragment(const BspPiece& piece, const BspArrays& arrays, BspF
     if (!out.polygon) return false;
     out.cuts.clear();
     if (piece.cut == BspNode::kNone) {
-        out.window = windowOf(*out.polygon, width_, height_);
+        out.window = windowOf(piece);
         return !out.window.empty();
     }
     outline_.assign(out.polygon->outline().begin(), out.polygon->outline().end());
+    glm::dvec2 reach(width_, height_);
+    for (const glm::dvec2& p : outline_) reach = glm::max(reach, glm::abs(p));
     // The last cuts first: next to them, most of those before keep everything that is left.
     for (uint32_t i = piece.cut; i != BspNode::kNone; i = arrays.cuts[i].before) {
         const BspCut& at = arrays.cuts[i];
         const ScreenCut cut = cutOf(planeOver(at.node), out.polygon->depth);
-        if (!narrow(at.side == kBspFront ? cut : cut.otherSide(), out.cuts)) return false;
+        if (!narrow(at.side == kBspFront ? cut : cut.otherSide(), reach, out.cuts)) return false;
     }
-    glm::dvec2 low = outline_[0], high = low;
-    for (const glm::dvec2& p : outline_) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    constexpr double kRoom = 1e-3;
-    out.window = {clampTo(std::floor(low.y - kRoom), height_), clampTo(std::ceil(high.y + kRoom), height_),
-                  clampTo(std::floor(low.x - kRoom), width_), clampTo(std::ceil(high.x + kRoom), width_)};
+    out.window = windowAround(outline_, 1e-3, width_, height_);
     return !out.window.empty();
 }
 

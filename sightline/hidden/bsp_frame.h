@@ -55,7 +55,11 @@ public:
 
     /// Holds all samples at which anything in a box can be seen: the whole screen, if the box comes before the near plane.
     ScreenWindow windowOf(const Box3d& box) const;
-    static ScreenWindow windowOf(const ScreenPolygon& polygon, int32_t width, int32_t height);
+    /// Holds all samples of the triangle that a piece is of: none, if that is not drawn.
+    ScreenWindow windowOf(const BspPiece& piece) const {
+        const uint32_t polygon = polygon_of_[piece.number];
+        return polygon == HiddenImage::kNone ? ScreenWindow{} : windows_[polygon];
+    }
 
     const glm::dvec4& eye() const { return eye_; }
     const BspScene& scene() const { return scene_; }
@@ -74,20 +78,20 @@ public:
 
 private:
     const glm::dvec4& planeOver(uint32_t node);
-    bool narrow(const ScreenCut& cut, std::vector<ScreenCut>& active);
+    bool narrow(const ScreenCut& cut, const glm::dvec2& reach, std::vector<ScreenCut>& active);
 
     const BspScene& scene_;
     Projector projector_;
     std::vector<ScreenPolygon> polygons_;
-    std::vector<uint32_t> polygon_of_;  ///< per surface, or kNone
-    std::vector<uint32_t> seen_plane_;  ///< per node: its plane over the samples, or kNone
+    std::vector<ScreenWindow> windows_;  ///< per polygon
+    std::vector<uint32_t> polygon_of_;   ///< per surface, or kNone
+    std::vector<uint32_t> seen_plane_;   ///< per node: its plane over the samples, or kNone
     std::vector<glm::dvec4> planes_;
     glm::dvec4 eye_{0.0};
     glm::dmat4 to_samples_{1.0};  ///< world, relative to the eye, to (i w, j w, near plane's distance, w)
     glm::dvec3 origin_{0.0};
     int32_t width_, height_;
     std::vector<glm::dvec2> outline_, clipped_;
-    std::vector<double> values_;
 };
 
 /// The tree itself, or the tree with what moves in it.

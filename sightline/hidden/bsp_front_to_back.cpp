@@ -27,11 +27,7 @@ template <class Screen>
 class FrontToBack {
 public:
     FrontToBack(const BspScene& scene, const HiddenInput& input, HiddenImage& image, Screen& screen)
-        : frame_(scene, input, image),
-          image_(image),
-          screen_(screen),
-          width_(static_cast<int32_t>(image.width)),
-          height_(static_cast<int32_t>(image.height)) {}
+        : frame_(scene, input, image), image_(image), screen_(screen), width_(static_cast<int32_t>(image.width)) {}
 
     template <class Tree>
     void draw(const Tree& tree) {
@@ -63,8 +59,7 @@ private:
     }
 
     void paint(const BspPiece& piece, const BspArrays& arrays) {
-        const ScreenPolygon* polygon = frame_.polygonOf(piece);
-        if (!polygon || !screen_.anyFree(BspFrame::windowOf(*polygon, width_, height_))) return;
+        if (!screen_.anyFree(frame_.windowOf(piece))) return;
         if (!frame_.makeFragment(piece, arrays, fragment_)) return;
         if (!fragment_.cuts.empty() && !screen_.anyFree(fragment_.window)) return;
         screen_.forFreeRows(fragment_.window, [&](int32_t row_begin, int32_t row_end) {
@@ -84,7 +79,7 @@ private:
     HiddenImage& image_;
     Screen& screen_;
     BspFragment fragment_;
-    int32_t width_, height_;
+    int32_t width_;
 };
 
 template <class Screen>

@@ -27,6 +27,7 @@ BitScreen::BitScreen(int32_t width, int32_t height)
     : columns_((static_cast<size_t>(width) + 63) / 64),
       words_(columns_ * static_cast<size_t>(height), ~uint64_t{0}),
       rows_(columns_ * ((static_cast<size_t>(height) + 63) / 64), ~uint64_t{0}),
+      free_in_row_(static_cast<size_t>(height), static_cast<uint32_t>(width)),
       free_(static_cast<uint64_t>(width) * static_cast<uint64_t>(height)) {
     if (width <= 0 || height <= 0) return;
     const uint64_t last_word = maskOf(0, width, static_cast<int32_t>(columns_) - 1);

@@ -132,21 +132,27 @@ public:
 
     template <class Draw>
     void take(int32_t row, int32_t begin, int32_t end, Draw&& draw) {
+        uint32_t& free_here = free_in_row_[static_cast<size_t>(row)];
+        if (free_here == 0) return;
         uint64_t* line = words_.data() + static_cast<size_t>(row) * columns_;
-        const int32_t last = (end - 1) >> 6;
-        for (int32_t column = begin >> 6; column <= last; ++column) {
+        const int32_t first = begin >> 6, last = (end - 1) >> 6;
+        const uint64_t from_begin = ~uint64_t{0} << (begin & 63), to_end = ~uint64_t{0} >> (63 - ((end - 1) & 63));
+        for (int32_t column = first; column <= last; ++column) {
             uint64_t& word = line[column];
-            uint64_t hit = word & maskOf(begin, end, column);
+            uint64_t hit =
+                word & (column == first ? from_begin : ~uint64_t{0}) & (column == last ? to_end : ~uint64_t{0});
             if (hit == 0) continue;
             word &= ~hit;
-            free_ -= static_cast<uint64_t>(std::popcount(hit));
+            const uint32_t count = static_cast<uint32_t>(std::popcount(hit));
+            free_ -= count;
+            free_here -= count;
             if (word == 0) rowsOf(row, column) &= ~(uint64_t{1} << (row & 63));
             while (hit != 0) {
                 const int from = std::countr_zero(hit);
-                const int count = std::countr_one(hit >> from);
-                draw(column * 64 + from, column * 64 + from + count);
-                if (from + count >= 64) break;
-                hit &= ~uint64_t{0} << (from + count);
+                const int to = from + std::countr_one(hit >> from);
+                draw(column * 64 + from, column * 64 + to);
+                if (to >= 64) break;
+                hit &= ~uint64_t{0} << to;
             }
         }
     }
@@ -192,6 +198,7 @@ private:
     size_t columns_;               ///< words a row
     std::vector<uint64_t> words_;  ///< per row and column: the free samples
     std::vector<uint64_t> rows_;   ///< per 64 rows and column: those whose word is not 0
+    std::vector<uint32_t> free_in_row_;
     uint64_t free_;
 };
 

@@ -4,6 +4,7 @@
 // Henry Fuchs, Zvi Kedem, Bruce Naylor. On Visible Surface Generation by A Priori Tree Structures. 1980.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "sightline/space/bsp.h"
@@ -41,8 +42,12 @@ struct BspOverlaid {
     }
 };
 
+/// A node that is to be visited once what lies before it has been gone through, and the child after it.
+struct BspStep {
+    uint32_t node = 0, after = 0;
+};
 /// Kept between walks for its memory.
-using BspStack = std::vector<uint32_t>;
+using BspStack = std::vector<BspStep>;
 
 namespace detail {
 
@@ -57,14 +62,14 @@ void walkBsp(const Tree& tree, const glm::dvec4& eye, BspStack& stack, Enter&& e
             const glm::dvec4& p = node.plane;
             const bool in_front = p.x * eye.x + p.y * eye.y + (p.z * eye.z + p.w * eye.w) >= 0;
             const uint32_t side = in_front ? kFirst : 1 - kFirst;
-            stack.push_back(at << 1 | side);
+            stack.push_back({at, node.child[1 - side]});
             at = tree.below(node.child[side]);
         }
         if (stack.empty()) return;
-        const uint32_t top = stack.back();
+        const BspStep step = stack.back();
         stack.pop_back();
-        visit(top >> 1);
-        at = tree.below(tree.node(top >> 1).child[1 - (top & 1)]);
+        visit(step.node);
+        at = tree.below(step.after);
     }
 }
 
