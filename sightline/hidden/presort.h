@@ -28,7 +28,7 @@ inline uint64_t sortKey(double number) {
 
 /// Sorts by rising keys; entries of equal keys keep their order. The bits below those that all keys share are taken
 /// thirty-three at a time, digit by digit from the lowest: mostly the first of these settle the order, and the rest
-/// looks only at entries that are still equal. O(n).
+/// looks only at entries that are still equal. O(n). [limit: < 2^32 entries]
 /// @param scratch  overwritten; keep it from call to call to save the allocation
 void radixSort(std::vector<SortEntry>& entries, std::vector<SortEntry>& scratch);
 
