@@ -48,7 +48,7 @@ void inParallel(uint32_t threads, size_t count, const std::function<void(size_t 
     work(0, count / threads);
 }
 
-/// The light of each triangle, taken anew for each picture as Mesa's vertex shader does, and its look-up at each sample.
+/// The light of a triangle, taken anew wherever a run of its samples begins.
 class FlatColours {
 public:
     FlatColours(const DrawList& list, std::vector<uint32_t> base) : base_(std::move(base)) {
@@ -65,33 +65,36 @@ public:
                 normals_.emplace_back(length > 0 ? normal / length : normal);
             }
         }
-        lit_.resize(normals_.size());
     }
 
     void shade(const std::vector<uint32_t>& surfaces, uint32_t threads) {
         pixels_.resize(surfaces.size());
-        inParallel(threads, lit_.size(), [&](size_t begin, size_t end) { light(begin, end); });
         inParallel(threads, surfaces.size(), [&](size_t begin, size_t end) {
-            for (size_t i = begin; i < end; ++i) pixels_[i] = surfaces[i] == HiddenImage::kNone ? 0 : lit_[surfaces[i]];
+            uint32_t surface = HiddenImage::kNone, colour = 0;
+            for (size_t i = begin; i < end; ++i) {
+                if (surfaces[i] != surface) {
+                    surface = surfaces[i];
+                    colour = surface == HiddenImage::kNone ? 0 : lit(surface);
+                }
+                pixels_[i] = colour;
+            }
         });
     }
 
     const std::vector<uint32_t>& pixels() const { return pixels_; }
 
 private:
-    void light(size_t begin, size_t end) {
+    uint32_t lit(uint32_t surface) const {
         const glm::vec3 sun = glm::normalize(glm::vec3(0.4f, 0.8f, 0.45f));
-        for (size_t i = begin; i < end; ++i) {
-            const uint32_t part =
-                static_cast<uint32_t>(256.0f * (0.35f + 0.65f * std::max(glm::dot(normals_[i], sun), 0.0f)));
-            const uint32_t even = ((base_[i] & 0xff00ffu) * part >> 8) & 0xff00ffu;
-            lit_[i] = even | (((base_[i] >> 8 & 0xffu) * part) & 0xff00u) | 0xff000000u;
-        }
+        const float light = 0.35f + 0.65f * std::max(glm::dot(normals_[surface], sun), 0.0f);
+        const uint32_t part = static_cast<uint32_t>(256.0f * light), base = base_[surface];
+        const uint32_t even = ((base & 0xff00ffu) * part >> 8) & 0xff00ffu;
+        return even | (((base >> 8 & 0xffu) * part) & 0xff00u) | 0xff000000u;
     }
 
     std::vector<uint32_t> base_;  ///< per surface, as coloursOf() packs them
     std::vector<glm::vec3> normals_;
-    std::vector<uint32_t> lit_, pixels_;
+    std::vector<uint32_t> pixels_;
 };
 
 /// Medians of one view, per entry of kThreads [milliseconds].
