@@ -140,11 +140,21 @@ void ShadowMap::draw(std::span<const DrawItem> casters, const glm::dvec3& eye, c
     });
 }
 
-double ShadowMap::reach(const SurfacePoint& point) const {
+const ShadowMap::Map* ShadowMap::mapFor(const SurfacePoint& point) const {
     const double distance = glm::length(point.position);
-    const auto serves = [&](const Map& map) { return distance <= map.farthest * (1 + 1e-9); };
-    const auto found = std::find_if(maps_.begin(), maps_.end(), serves);
-    if (found == maps_.end()) return 1;
+    for (const Map& map : maps_)
+        if (distance <= map.farthest * (1 + 1e-9)) return &map;
+    return nullptr;
+}
+
+double ShadowMap::texelFor(const SurfacePoint& point) const {
+    const Map* const map = mapFor(point);
+    return map ? map->texel : 0;
+}
+
+double ShadowMap::reach(const SurfacePoint& point) const {
+    const Map* const found = mapFor(point);
+    if (!found) return 1;
     const Map& map = *found;
     const glm::dvec3 place = acrossSun(point.position), normal = acrossSun(point.normal);
     // How the receiver's plane rises along the map. One that the sun grazes would rise without end.

@@ -45,8 +45,8 @@ public:
     double reach(const SurfacePoint& point) const;
 
     size_t maps() const { return maps_.size(); }
-    /// The side of a texel [world units].
-    double texelOf(size_t map) const { return maps_[map].texel; }
+    /// The side of a texel of the map that serves a point [world units]; 0 if none does.
+    double texelFor(const SurfacePoint& point) const;
 
 private:
     struct Map {
@@ -59,6 +59,7 @@ private:
     };
 
     glm::dvec3 acrossSun(const glm::dvec3& position) const { return to_sun_space_ * position; }
+    const Map* mapFor(const SurfacePoint& point) const;
     void fit(const SurfacePoints& points, const HiddenImage& image, const ShadowSettings& settings);
     void draw(std::span<const DrawItem> casters, const glm::dvec3& eye, const ShadowSettings& settings);
 
