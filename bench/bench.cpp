@@ -16,6 +16,7 @@ struct Case {
 };
 
 constexpr Case kCases[] = {
+    {"bsp", benchBsp},
     {"clipping", benchClipping},
     {"depth", benchDepth},
     {"frustum", benchFrustum},

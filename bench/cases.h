@@ -7,6 +7,10 @@
 
 namespace sightline::bench {
 
+/// Random triangles and a city eight surfaces deep: building BSP trees beside random choice, and drawing by them front to
+/// back, with what is free looked up, in segments and in bits, beside back to front.
+Table benchBsp(const Options& options);
+
 /// A walk through a city: guard band and outcodes beside naive clipping at six planes, and scanning without clipping.
 Table benchClipping(const Options& options);
 

@@ -16,13 +16,13 @@ inline glm::dvec4 bspEye(const glm::dvec3& position) { return {position, 1.0}; }
 /// @param direction  of a parallel view, into the scene
 inline glm::dvec4 bspParallelEye(const glm::dvec3& direction) { return {-direction, 0.0}; }
 
-/// A tree as the walks see it.
+/// A tree as the walks see it: what is below a child is a node, or a leaf that ends the way.
 struct BspStatic {
     const BspTree& tree;
 
     const BspNode& node(uint32_t i) const { return tree.nodes[i]; }
-    uint32_t root() const { return below(tree.root); }
-    uint32_t below(uint32_t child) const { return (child & BspNode::kLeaf) != 0 ? BspNode::kNone : child; }
+    uint32_t root() const { return tree.root; }
+    uint32_t below(uint32_t child) const { return child; }
 };
 
 /// The same with moving things in it.
@@ -33,12 +33,12 @@ struct BspOverlaid {
     const BspNode& node(uint32_t i) const {
         return i < overlay.first_node ? tree.nodes[i] : overlay.nodes[i - overlay.first_node];
     }
-    uint32_t root() const { return below(tree.root); }
+    uint32_t root() const { return tree.root; }
     uint32_t below(uint32_t child) const {
         if ((child & BspNode::kLeaf) == 0) return child;
         // An overlay's own leaves are numbered after the tree's.
         const uint32_t leaf = child & ~BspNode::kLeaf;
-        return leaf < overlay.root_of_leaf.size() ? overlay.root_of_leaf[leaf] : BspNode::kNone;
+        return leaf < overlay.root_of_leaf.size() ? overlay.root_of_leaf[leaf] : child;
     }
 };
 
@@ -55,21 +55,30 @@ namespace detail {
 template <BspSide kFirst, class Tree, class Enter, class Visit>
 void walkBsp(const Tree& tree, const glm::dvec4& eye, BspStack& stack, Enter&& enter, Visit&& visit) {
     stack.clear();
-    uint32_t at = tree.root();
+    uint32_t at = tree.below(tree.root());
     for (;;) {
-        while (at != BspNode::kNone && enter(at)) {
+        while ((at & BspNode::kLeaf) == 0 && enter(at)) {
             const BspNode& node = tree.node(at);
+            const uint32_t children[2] = {tree.below(node.child[kBspBack]), tree.below(node.child[kBspFront])};
+            if ((children[kBspBack] & children[kBspFront] & BspNode::kLeaf) != 0) {
+                visit(at);
+                break;
+            }
+#if defined(__GNUC__)
+            // The child in front mostly comes next in memory.
+            if ((children[kBspBack] & BspNode::kLeaf) == 0) __builtin_prefetch(&tree.node(children[kBspBack]));
+#endif
             const glm::dvec4& p = node.plane;
             const bool in_front = p.x * eye.x + p.y * eye.y + (p.z * eye.z + p.w * eye.w) >= 0;
             const uint32_t side = in_front ? kFirst : 1 - kFirst;
-            stack.push_back({at, node.child[1 - side]});
-            at = tree.below(node.child[side]);
+            stack.push_back({at, children[1 - side]});
+            at = children[side];
         }
         if (stack.empty()) return;
         const BspStep step = stack.back();
         stack.pop_back();
         visit(step.node);
-        at = tree.below(step.after);
+        at = step.after;
     }
 }
 
