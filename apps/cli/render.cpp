@@ -1,6 +1,7 @@
 // The verb `render`: one frame by any hidden-surface method, or by all of them beside one another.
 // SPDX-License-Identifier: MIT
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -77,10 +78,8 @@ void printRun(std::FILE* out, const RenderRun& run) {
         fmt::print(out, "{:<18} left out: {}\n", kHiddenMethodNames[static_cast<int>(left.method)], left.why);
 }
 
-Status writeOutputs(const RenderList& scene, const View& view, const RenderRun& run, const RenderOptions& options) {
-    PictureSettings pictures{run.shading, run.shadows, [&](size_t count, const std::function<void(size_t)>& work) {
-                                 forEach(count, options.threads, work);
-                             }};
+Status writeOutputs(const RenderList& scene, const View& view, const RenderRun& run, const PictureSettings& pictures,
+                    const RenderOptions& options) {
     // Of several methods, files show the z-buffer.
     const MethodResult* const zbuffer = run.find(HiddenMethod::kZBuffer);
     const HiddenImage& image = (zbuffer ? *zbuffer : run.methods.front()).image;
@@ -126,8 +125,12 @@ Status runRender(const CLI::App& verb, RenderOptions& options) {
     run.command = commandOf(verb, options);
     const RenderList list(*scene, view);
     drawMethods(list, view, options, run);
+    const ShareWork share = [&](size_t count, const std::function<void(size_t)>& work) {
+        forEach(count, options.threads, work);
+    };
+    if (!options.report.empty() && run.find(HiddenMethod::kZBuffer)) findFights(list, view, share, run);
     printRun(options.json == "-" ? stderr : stdout, run);
-    return writeOutputs(list, view, run, options);
+    return writeOutputs(list, view, run, {run.shading, run.shadows, share}, options);
 }
 
 }  // namespace

@@ -222,6 +222,31 @@ std::string depthTraffic(const RenderRun& run) {
         bar("plain", plain), bar("compressed", compressed), compressed > 0 ? plain / compressed : 0.0);
 }
 
+/// Where the z-buffer's format cannot tell surfaces apart, and what other formats would make of the frame.
+std::string zFighting(const RenderList& scene, const View& view, const RenderRun& run,
+                      const PictureSettings& settings) {
+    if (run.fights.empty() || run.fight_map.fights.empty()) return "";
+    std::string rows;
+    for (const FormatFights& fights : run.fights) {
+        const bool own = fights.format == run.settings.depth.format;
+        rows += fmt::format("<tr><th scope=\"row\">{}{}</th><td>{}</td><td>{}</td></tr>",
+                            kDepthFormatNames[static_cast<int>(fights.format)],
+                            own ? " <span class=\"tag\">this run</span>" : "", number(fights.fighting),
+                            percent(double(fights.fighting), double(fights.overlaid)));
+    }
+    const Image<Rgb> picture =
+        shadedPicture(scene, view, plainZBuffer(scene.list(), view, run.settings.projector), settings);
+    return fmt::format(
+        R"html(<section class="card" aria-labelledby="h-fights"><h2 id="h-fights">Z-fighting</h2>
+<div class="pair"><figure>{}<figcaption>Red: the two nearest surfaces lie apart, but have the same depth in {}
+(<b>{}</b> pixels). Blue: they lie at the same place, which no format tells apart (<b>{}</b>).</figcaption></figure>
+<div class="scroll"><table class="counts"><thead><tr><th scope="col">format</th><th scope="col">pixels fighting</th>
+<th scope="col">of {} with two surfaces</th></tr></thead><tbody>{}</tbody></table></div></div></section>)html",
+        imageTag(fightPicture(picture, run.fight_map), "Map of z-fighting"),
+        kDepthFormatNames[static_cast<int>(run.settings.depth.format)], number(run.fight_map.fighting),
+        number(run.fight_map.coplanar), number(run.fight_map.overlaid), rows);
+}
+
 /// Where methods show other objects than the plain z-buffer.
 std::string differences(const RenderList& scene, const View& view, const RenderRun& run,
                         const PictureSettings& settings) {
@@ -277,7 +302,7 @@ std::string renderPage(const RenderList& scene, const View& view, const RenderRu
     page += tiles(run) + gallery(scene, view, run, settings) + differences(scene, view, run, settings);
     page += "<section class=\"card\" aria-labelledby=\"h-cost\"><h2 id=\"h-cost\">What each method cost</h2>" +
             costBars(run) + costTable(run) + "</section>";
-    page += depthComplexity(run) + depthTraffic(run) + howMade(run);
+    page += depthComplexity(run) + depthTraffic(run) + zFighting(scene, view, run, settings) + howMade(run);
     return page + "</main><footer>Made by Sightline.</footer></body></html>\n";
 }
 

@@ -19,6 +19,22 @@ Image<Pixel> turnedOver(uint32_t width, uint32_t height, At&& at) {
     return out;
 }
 
+constexpr Rgb kRed(214, 30, 60), kBlue(36, 92, 200);
+
+/// A pale picture with marks.
+/// @param mark  the colour for a sample, or null
+template <class Mark>
+Image<Rgb> marked(const Image<Rgb>& shaded, Mark&& mark) {
+    Image<Rgb> out = shaded;
+    for (uint32_t y = 0; y < out.height; ++y)
+        for (uint32_t x = 0; x < out.width; ++x) {
+            Rgb& pixel = out.at(x, y);
+            const Rgb* const colour = mark(size_t{out.height - 1 - y} * out.width + x);
+            pixel = colour ? *colour : Rgb(static_cast<uint8_t>(160 + (pixel.x + 2 * pixel.y + pixel.z) / 12));
+        }
+    return out;
+}
+
 }  // namespace
 
 Image<Rgb> shadedPicture(const RenderList& scene, const View& view, const HiddenImage& image,
@@ -72,16 +88,13 @@ double heatScale(std::span<const uint16_t> counts) {
 }
 
 Image<Rgb> differencePicture(const Image<Rgb>& shaded, const HiddenImage& a, const HiddenImage& b) {
-    Image<Rgb> out = shaded;
-    for (uint32_t y = 0; y < out.height; ++y)
-        for (uint32_t x = 0; x < out.width; ++x) {
-            const size_t at = size_t{out.height - 1 - y} * out.width + x;
-            Rgb& pixel = out.at(x, y);
-            const bool same = a.surface[at] == b.surface[at];
-            const auto pale = static_cast<uint8_t>(160 + (pixel.x + 2 * pixel.y + pixel.z) / 12);
-            pixel = same ? Rgb(pale) : Rgb(214, 30, 60);
-        }
-    return out;
+    return marked(shaded, [&](size_t at) { return a.surface[at] != b.surface[at] ? &kRed : nullptr; });
+}
+
+Image<Rgb> fightPicture(const Image<Rgb>& shaded, const ZFightingMap& map) {
+    return marked(shaded, [&](size_t at) {
+        return map.fights[at] == Fight::kFormat ? &kRed : map.fights[at] == Fight::kCoplanar ? &kBlue : nullptr;
+    });
 }
 
 Image<Rgb> reduced(const Image<Rgb>& image, uint32_t most) {

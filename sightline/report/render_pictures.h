@@ -9,6 +9,7 @@
 
 #include "sightline/base/result.h"
 #include "sightline/hidden/shade.h"
+#include "sightline/hidden/z_fighting.h"
 #include "sightline/report/png.h"
 #include "sightline/report/render_list.h"
 
@@ -37,6 +38,10 @@ double heatScale(std::span<const uint16_t> counts);
 
 /// A pale picture with the pixels marked where two images show different surfaces.
 Image<Rgb> differencePicture(const Image<Rgb>& shaded, const HiddenImage& a, const HiddenImage& b);
+
+/// A pale picture with the pixels marked where a depth format confuses the two nearest surfaces (red), and where
+/// they lie at the same place (blue).
+Image<Rgb> fightPicture(const Image<Rgb>& shaded, const ZFightingMap& map);
 
 /// Means of squares of pixels, so that no side is longer than `most`.
 Image<Rgb> reduced(const Image<Rgb>& image, uint32_t most);

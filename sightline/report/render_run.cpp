@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "sightline/hidden/scan.h"
+#include "sightline/hidden/zbuffer_method.h"
 #include "sightline/report/camera_json.h"
 #include "sightline/report/chart.h"
 
@@ -171,6 +173,8 @@ MethodResult drawMethod(const RenderList& scene, const View& view, RenderSetting
     const bool counts = settings.want_counts;
     settings.want_counts = false;
     std::vector<uint64_t> drawing, preparing;
+    ZBufferMemory memory;
+    settings.zbuffer_memory = &memory;
     for (int i = 0; i < repeat; ++i) {
         result.image = render(scene.list(), view, settings);
         drawing.push_back(result.image.counters.nanoseconds);
@@ -206,6 +210,16 @@ void judge(const RenderList& scene, const View& view, const HiddenImage& referen
     result.agreement = compareImages(scene.list(), view, reference, result.image, result.bands);
 }
 
+void findFights(const RenderList& scene, const View& view, const ShareWork& share, RenderRun& run) {
+    run.fights.resize(kDepthFormats);
+    shareOut(share, kDepthFormats, [&](size_t i) {
+        const auto format = static_cast<DepthFormat>(i);
+        ZFightingMap map = findZFighting(scene.list(), view, format, run.settings.projector);
+        run.fights[i] = {format, map.overlaid, map.fighting, map.coplanar};
+        if (format == run.settings.depth.format) run.fight_map = std::move(map);
+    });
+}
+
 std::string renderJson(const RenderRun& run) {
     Json out;
     out["schema"] = "sightline.render/1";
@@ -236,6 +250,11 @@ std::string renderJson(const RenderRun& run) {
     out["left_out"] = Json::array();
     for (const LeftOut& left : run.left_out)
         out["left_out"].push_back({{"name", kHiddenMethodNames[static_cast<int>(left.method)]}, {"why", left.why}});
+    for (const FormatFights& fights : run.fights)
+        out["z_fighting"].push_back({{"format", nameIn(kDepthFormatNames, fights.format)},
+                                     {"overlaid", fights.overlaid},
+                                     {"fighting", fights.fighting},
+                                     {"coplanar", fights.coplanar}});
     return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

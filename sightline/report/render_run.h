@@ -11,6 +11,7 @@
 #include "sightline/hidden/compare.h"
 #include "sightline/hidden/render.h"
 #include "sightline/hidden/shade.h"
+#include "sightline/hidden/z_fighting.h"
 #include "sightline/report/render_list.h"
 #include "sightline/scene/camera_path.h"
 
@@ -60,6 +61,14 @@ struct LeftOut {
     std::string why;
 };
 
+/// Samples whose two nearest surfaces a depth format cannot tell apart.
+struct FormatFights {
+    DepthFormat format = DepthFormat::kReversedFloat;
+    uint64_t overlaid = 0;  ///< samples with two surfaces or more
+    uint64_t fighting = 0;  ///< of them: the two lie apart, and have the same depth
+    uint64_t coplanar = 0;  ///< of them: the two lie at the same place
+};
+
 struct RenderRun {
     std::string scene;                                    ///< as it was named by the user
     std::string command;                                  ///< that repeats this run
@@ -76,6 +85,8 @@ struct RenderRun {
     Heat heat = Heat::kGenerated;
     std::vector<MethodResult> methods;
     std::vector<LeftOut> left_out;
+    std::vector<FormatFights> fights;  ///< of all formats, or empty
+    ZFightingMap fight_map;            ///< of the settings' format, if there are `fights`
 
     const MethodResult* find(HiddenMethod method) const;
 };
@@ -92,6 +103,9 @@ MethodResult drawMethod(const RenderList& scene, const View& view, RenderSetting
 /// @param reference  plainZBuffer()'s image
 void judge(const RenderList& scene, const View& view, const HiddenImage& reference, const RenderSettings& settings,
            MethodResult& result);
+
+/// Fills RenderRun::fights and fight_map.
+void findFights(const RenderList& scene, const View& view, const ShareWork& share, RenderRun& run);
 
 /// The schema `sightline.render/1`. Names that are not UTF-8 are mended.
 std::string renderJson(const RenderRun& run);

@@ -15,7 +15,7 @@ namespace sightline::test {
 class SunRays {
 public:
     /// @param eye  that points are relative to
-    SunRays(std::span<const DrawItem> casters, const glm::dvec3& eye, const glm::dvec3& sun) : sun_(sun) {
+    SunRays(std::span<const DrawItem> casters, const glm::dvec3& eye, const glm::dvec3& sun) {
         const glm::dvec3 side = std::abs(sun.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 0, 1);
         const glm::dvec3 x = glm::normalize(glm::cross(side, sun));
         turn_ = glm::transpose(glm::dmat3(x, glm::cross(sun, x), sun));
@@ -80,7 +80,6 @@ private:
         return glm::ivec2(glm::clamp(part * double(kSide), glm::dvec2(0), glm::dvec2(kSide - 1)));
     }
 
-    glm::dvec3 sun_;
     glm::dmat3 turn_{1.0};
     glm::dvec2 low_{1e300}, high_{-1e300};
     std::vector<Triangle> triangles_;

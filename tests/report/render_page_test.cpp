@@ -213,6 +213,24 @@ TEST(RenderPage, ShowsWhereAMethodIsWrong) {
     EXPECT_TRUE(contains(page, "Wrong pixels of warnock"));
 }
 
+TEST(RenderPage, MapsFightsOfDepths) {
+    Made made;
+    made.add(HiddenMethod::kZBuffer);
+    EXPECT_FALSE(contains(renderPage(made.list, made.view, made.run, made.settings), "h-fights"));
+    findFights(made.list, made.view, {}, made.run);
+    ASSERT_EQ(made.run.fights.size(), size_t{kDepthFormats});
+    EXPECT_EQ(made.run.fight_map.fights.size(), made.image.surface.size());
+    for (const FormatFights& fights : made.run.fights) {
+        EXPECT_GT(fights.overlaid, 0u);  // something stands behind the wall
+        EXPECT_EQ(fights.fighting, 0u);  // far behind
+    }
+    made.run.fight_map.fights[made.centre()] = Fight::kFormat;
+    const Image<Rgb> picture = fightPicture(Image<Rgb>(64, 36), made.run.fight_map);
+    EXPECT_GT(picture.at(32, 35 - 18).x, 2 * picture.at(32, 35 - 18).y);
+    EXPECT_TRUE(contains(renderPage(made.list, made.view, made.run, made.settings), "Map of z-fighting"));
+    EXPECT_EQ(nlohmann::json::parse(renderJson(made.run))["z_fighting"].size(), size_t{kDepthFormats});
+}
+
 TEST(RenderPage, TellsDepthTraffic) {
     Made made;
     MethodResult& result = made.add(HiddenMethod::kZBuffer);
