@@ -53,7 +53,7 @@ figcaption b { color: var(--ink); font-variant-numeric: tabular-nums; }
 .costs { display: grid; grid-template-columns: max-content minmax(0, 1fr) max-content; gap: 8px 14px; align-items: center;
   font-variant-numeric: tabular-nums; }
 .costs > span:nth-child(3n) { text-align: right; }
-.costs .share { margin: 0; display: flex; border-radius: 3px; } .costs .share div + div { background: var(--two); }
+.costs .share { margin: 0; display: flex; border-radius: 3px; } .costs .share div { min-width: 0; } .costs .share div + div { background: var(--two); }
 .tag { display: inline-block; font-size: .82rem; padding: 0 8px; border-radius: 9px; background: var(--note-back);
   color: var(--soft); }
 .tag.good { background: var(--good-back); color: var(--good); } .tag.bad { background: var(--bad-back); color: var(--bad); }
@@ -69,7 +69,8 @@ th, td { text-align: right; padding: 7px 12px; border-bottom: 1px solid var(--li
 th:first-child, td:first-child { text-align: left; }
 thead th { color: var(--soft); font-weight: 500; }
 thead tr:first-child th { text-align: center; border-bottom: 0; padding-bottom: 0; }
-.counts thead tr:first-child th { text-align: right; padding-bottom: 7px; } .counts tbody th { font-weight: 400; }
+.counts thead tr:first-child th { text-align: right; padding-bottom: 7px; } .counts tbody th { font-weight: 400; } .counts thead tr:first-child th:first-child { text-align: left; }
+.counts th, .counts td { padding: 6px 8px; font-size: .92rem; }
 .apart { border-left: 1px solid var(--line); }
 .share { height: 14px; border-radius: 7px; background: var(--line); overflow: hidden; margin: 8px 0 4px; }
 .share div { height: 100%; background: var(--one); min-width: 2px; }
