@@ -32,10 +32,10 @@ struct BspPolygons {
 };
 
 struct BspSettings {
-    uint32_t candidates = 8;    ///< polygons of a set that are tried as its splitter  [limit: >= 1]
+    uint32_t candidates = 16;   ///< polygons of a set that are tried as its splitter  [limit: >= 1]
     double split_weight = 8;    ///< a candidate's cost: this times the polygons it splits ...
     double balance_weight = 1;  ///< ... and this times the difference of the two sides; the least is taken
-    uint32_t scored = 512;      ///< polygons that a candidate is tried on; of a larger set a sample  [limit: >= 1]
+    uint32_t scored = 256;      ///< polygons that a candidate is tried on; of a larger set a sample  [limit: >= 1]
     bool axis_planes = true;    ///< also try the medians of the three axes: what is convex has no splitter of its own
                                 ///< that divides it, and its tree would be a list. False: a true autopartition
     uint64_t seed = 1;          ///< of the candidates and the samples
