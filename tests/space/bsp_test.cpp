@@ -139,7 +139,7 @@ TEST(Bsp, CutsASharedEdgeInOnePoint) {
 
 TEST(Bsp, LeavesNoTwoPointsNextToEachOtherOnAnEdge) {
     // A bumpy surface whose triangles share edges, among triangles that cut it.
-    BspPolygons polygons = randomTriangles(6, 60, 0.5);
+    BspPolygons polygons = randomTriangles(6, 200, 0.5);
     Random random(9);
     constexpr int kSide = 12;
     std::vector<glm::dvec3> grid;
