@@ -83,7 +83,9 @@ std::vector<glm::u8vec3> shade(const DrawList& list, const View& view, const Hid
         double reach = smooth ? own : 1.0;
         if (settings.shadows && own > 0) reach *= settings.shadows->reach(point);
         const glm::dvec3 seen = colour * lightOn(normal, settings.sun, reach);
-        return settings.diagonal > 0 ? throughHaze(seen, sky, glm::length(point.position) / settings.diagonal) : seen;
+        if (settings.diagonal <= 0) return seen;
+        const double hazy = std::max(0.0, glm::length(point.position) - settings.clear);
+        return throughHaze(seen, sky, hazy / settings.diagonal);
     };
     shareOut(settings.share, image.height, [&](size_t row) {
         for (uint32_t i = 0; i < image.width; ++i) {

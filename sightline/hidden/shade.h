@@ -30,6 +30,7 @@ struct ShadeSettings {
     glm::dvec3 sun = defaultSun();  ///< towards it, unit length
     double crease_degrees = 40;
     double diagonal = 0;  ///< of the world, for haze; 0: clear air
+    double clear = 0;     ///< distance from the eye at which haze begins: where the world does  [world units]
     /// A triangle's linear colour. From any thread; empty: hashed from DrawItem::id.
     std::function<glm::dvec3(uint32_t item, uint32_t triangle)> colour;
     const ShadowMap* shadows = nullptr;  ///< of the same sun; none: it reaches everywhere

@@ -35,7 +35,7 @@ PictureMaker::PictureMaker(const Scene& scene) : scene_(scene) {
     zeros_.assign(most, 0);
     for (const SceneObject& object : scene.objects)
         bounds_.push_back(transformBox(scene.meshes[object.mesh].bounds, object.transform));
-    diagonal_ = diagonalOf(scene);
+    diagonal_ = diagonalOf(finiteBounds(scene));
 }
 
 PictureMaker::Drawing PictureMaker::render(const View& view, const std::vector<uint32_t>& objects) const {

@@ -9,7 +9,7 @@
 namespace sightline {
 
 RenderList::RenderList(const Scene& scene, const View& view)
-    : scene_(scene), items_(chooseItems(view)), list_(items_), diagonal_(diagonalOf(scene)) {}
+    : scene_(scene), items_(chooseItems(view)), list_(items_), bounds_(finiteBounds(scene)) {}
 
 std::vector<DrawItem> RenderList::chooseItems(const View& view) {
     flags_.resize(scene_.meshes.size());

@@ -23,7 +23,7 @@ public:
     const Scene& scene() const { return scene_; }
     const DrawList& list() const { return list_; }                  ///< of the objects that may be in view
     std::span<const DrawItem> casters() const { return casters_; }  ///< all objects: shadows come from outside, too
-    double diagonal() const { return diagonal_; }
+    const Box3d& bounds() const { return bounds_; }                 ///< of the scene, as far as it is finite
 
     uint64_t keyOf(uint32_t surface) const { return scene_.objects[list_.idOf(surface)].key; }
     glm::dvec3 colourOf(uint32_t item, uint32_t triangle) const;
@@ -38,7 +38,7 @@ private:
     std::vector<Flags> flags_;  // per mesh
     std::vector<DrawItem> casters_, items_;
     DrawList list_;
-    double diagonal_;
+    Box3d bounds_;
 };
 
 }  // namespace sightline

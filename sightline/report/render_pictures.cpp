@@ -7,6 +7,8 @@
 
 #include <fmt/core.h>
 
+#include "sightline/report/scene_look.h"
+
 namespace sightline {
 namespace {
 
@@ -41,7 +43,9 @@ Image<Rgb> shadedPicture(const RenderList& scene, const View& view, const Hidden
                          const PictureSettings& settings) {
     ShadeSettings shading;
     shading.shading = settings.shading;
-    shading.diagonal = scene.diagonal();
+    shading.diagonal = diagonalOf(scene.bounds());
+    if (const glm::dvec3 eye = eyePosition(view); !scene.bounds().empty())
+        shading.clear = glm::length(glm::clamp(eye, scene.bounds().min, scene.bounds().max) - eye);
     shading.colour = [&](uint32_t item, uint32_t triangle) { return scene.colourOf(item, triangle); };
     shading.share = settings.share;
     std::optional<ShadowMap> shadows;

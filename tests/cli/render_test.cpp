@@ -144,6 +144,30 @@ TEST_F(Render, OptionsChangeThePicture) {
     }
 }
 
+TEST_F(Render, ZBufferOptionsReachTheZBuffer) {
+    const auto zbuffer = [&](const std::string& options) { return render(kCity + options)["methods"][0]; };
+    const json plain = zbuffer("");
+    EXPECT_EQ(plain["agreement"]["wrong"], 0);
+    EXPECT_GT(plain["counters"]["depth_bytes"], plain["counters"]["depth_bytes_compressed"]);
+    for (const std::string_view format : kDepthFormatNames) {
+        const json out = render(kCity + "--depth-format " + std::string(format));
+        EXPECT_EQ(out["settings"]["depth_format"], format);
+    }
+    EXPECT_EQ(zbuffer("--depth-comparison never")["counters"]["passed"], 0);
+    const json whole = zbuffer("--hierarchical-z off");
+    EXPECT_EQ(whole["counters"]["hierarchy_rejected_tiles"], 0);
+    EXPECT_GT(whole["counters"]["tested"], plain["counters"]["tested"]);
+    EXPECT_GT(zbuffer("--early-z off")["counters"]["shaded"], plain["counters"]["shaded"]);
+    EXPECT_EQ(zbuffer("--fast-clear off --polygon-offset 0 0")["agreement"], plain["agreement"]);
+    EXPECT_EQ(zbuffer("--back-faces draw")["counters"]["back_facing"], 0);
+    EXPECT_GT(zbuffer("--clipping frustum")["counters"]["clipped"], plain["counters"]["clipped"]);
+    // Fronts that are clockwise: what was seen from outside is seen from inside.
+    ASSERT_EQ(run("render " + kCity + "--ids out.png").exit_code, 0);
+    ASSERT_EQ(run("render " + kCity + "--front cw --ids in.png").exit_code, 0);
+    EXPECT_NE(read(path("out.png")), read(path("in.png")));
+    EXPECT_EQ(zbuffer("--front cw")["agreement"]["wrong"], 0);
+}
+
 TEST_F(Render, WrongArgumentsExitWithTwo) {
     expectError("render", 2, "SCENE");
     expectError("render city:1:10 --method magic", 2, "magic");
@@ -153,6 +177,10 @@ TEST_F(Render, WrongArgumentsExitWithTwo) {
     expectError("render city:1:10 --free-samples list", 2, "list");
     expectError("render city:1:10 --rays magic", 2, "magic");
     expectError("render city:1:10 --heat warm", 2, "warm");
+    expectError("render city:1:10 --depth-format unorm8", 2, "unorm8");
+    expectError("render city:1:10 --depth-comparison nearest", 2, "nearest");
+    expectError("render city:1:10 --polygon-offset 1", 2, "--polygon-offset");
+    expectError("render city:1:10 --polygon-offset 1 nan", 2, "--polygon-offset");
     expectError("render city:1:10 --frames 3 --frame 3", 2, "--frame 3");
     expectError("render city:1:10 --frame -1", 2, "--frame");
     expectError("render city:1:10 --size 0x5", 2, "--size");
