@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sightline/hidden/render.h"
+#include "sightline/report/png.h"
 #include "tests/cli/tool.h"
 
 #define STBI_ONLY_PNG
@@ -67,6 +68,38 @@ TEST_F(Render, IdsAreKeysThatCullingKeeps) {
         if (colour != 0) shown.insert(colour - 1);
     EXPECT_GT(shown.size(), 10u);
     EXPECT_TRUE(std::includes(visible.begin(), visible.end(), shown.begin(), shown.end()));
+}
+
+TEST_F(Render, ShowsNodesOfGltfInTheirColours) {
+    const float positions[9] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+    const std::string data = base64({reinterpret_cast<const char*>(positions), sizeof positions});
+    const json pbr = {{"baseColorFactor", {0.8, 0.1, 0.05, 1}}};
+    const json gltf = {{"asset", {{"version", "2.0"}}},
+                       {"buffers", {{{"byteLength", 36}, {"uri", "data:application/octet-stream;base64," + data}}}},
+                       {"bufferViews", {{{"buffer", 0}, {"byteLength", 36}}}},
+                       {"accessors",
+                        {{{"bufferView", 0},
+                          {"componentType", 5126},
+                          {"count", 3},
+                          {"type", "VEC3"},
+                          {"min", {-1, -1, 0}},
+                          {"max", {1, 1, 0}}}}},
+                       {"materials", {{{"pbrMetallicRoughness", pbr}}}},
+                       {"meshes", {{{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"material", 0}}}}}}},
+                       {"nodes", {{{"name", "empty"}}, {{"name", "also empty"}}, {{"mesh", 0}}}},
+                       {"scenes", {{{"nodes", {0, 1, 2}}}}},
+                       {"scene", 0}};
+    write("red.gltf", gltf.dump());
+    write("path.json", R"({"frames": [{"eye": [0, 0, 3], "target": [0, 0, 0]}]})");
+    ASSERT_EQ(run("render red.gltf --cameras path.json --size 32x32 -o a.png --ids b.png").exit_code, 0);
+    const uint32_t colour = decode("a.png").colours[16 * 32 + 16], id = decode("b.png").colours[16 * 32 + 16];
+    EXPECT_EQ(id, 3u);  // node 2
+    EXPECT_EQ(decode("b.png").colours[0], 0u);
+    EXPECT_GT(colour >> 16, 2 * (colour >> 8 & 255));
+    // Seen from behind it is not there: the material is single-sided.
+    write("behind.json", R"({"frames": [{"eye": [0, 0, -3], "target": [0, 0, 0]}]})");
+    ASSERT_EQ(run("render red.gltf --cameras behind.json --size 32x32 --ids c.png").exit_code, 0);
+    EXPECT_EQ(decode("c.png").colours[16 * 32 + 16], 0u);
 }
 
 TEST_F(Render, EveryMethodDrawsTheSameExceptThePainter) {
