@@ -220,6 +220,94 @@ TEST(DepthBuffer, BoundsHoldWhenTheComparisonChanges) {
     EXPECT_GT(rejected, 1000u);
 }
 
+/// Polygons that were not projected, into a buffer of one's own.
+struct Canvas {
+    Canvas(uint32_t width, uint32_t height, const DepthCodec& codec_, bool counting)
+        : codec(codec_), buffer(width, height, codec.convention.far_value) {
+        image.width = width;
+        image.height = height;
+        image.surface.assign(size_t{width} * height, HiddenImage::kNone);
+        if (counting)
+            for (std::vector<uint16_t>* counts : {&image.generated, &image.tested, &image.passed, &image.shaded})
+                counts->assign(image.surface.size(), 0);
+    }
+    void draw(std::span<const ScreenPolygon> polygons) {
+        PolygonBatch batch;
+        batch.clear(buffer.rows);
+        for (const ScreenPolygon& polygon : polygons) batch.add(polygon, {image.width, image.height, codec});
+        const DepthDraw draw{buffer, codec, settings, codec.convention.comparison, image};
+        for (uint32_t row = 0; row < buffer.rows; ++row) drawTileRow(draw, row, {&batch, 1}, scratch);
+    }
+
+    DepthCodec codec;
+    DepthSettings settings;
+    DepthBuffer buffer;
+    HiddenImage image;
+    DepthDrawScratch scratch;
+};
+
+ScreenPolygon triangleOf(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, double nearness) {
+    ScreenPolygon polygon;
+    polygon.count = 3;
+    polygon.points[0] = a;
+    polygon.points[1] = b;
+    polygon.points[2] = c;
+    polygon.depth = {nearness, 0, 0, nearness, nearness};
+    return polygon;
+}
+
+TEST(DepthBuffer, CoversWhatScanPolygonCoversWhereRoundingDecides) {
+    // Corners on samples and far outside: edges pass through samples exactly, at places that doubles cannot name.
+    constexpr int32_t kWidth = 700, kHeight = 50;
+    Random random(17);
+    for (int trial = 0; trial < 40; ++trial) {
+        Canvas canvas(kWidth, kHeight, {DepthFormat::kReversedFloat, {0.1, 100, false}}, true);
+        std::vector<uint16_t> truth(canvas.image.generated.size(), 0);
+        std::vector<ScreenPolygon> polygons;
+        for (int i = 0; i < 200; ++i) {
+            const auto place = [&] {
+                // A sample of the image, and a whole number of whole steps away from it.
+                const double x = static_cast<double>(random.below(kWidth)) + 0.5,
+                             steps = double(random.below(200)) - 100;
+                const double y = static_cast<double>(random.below(kHeight)) + 0.5;
+                return glm::dvec2(x + steps * double(random.below(40)), y + steps * double(random.below(7)));
+            };
+            polygons.push_back(triangleOf(place(), place(), place(), 1.0));
+            scanPolygon(polygons.back().outline(), 0, kHeight, kWidth, [&](int32_t row, int32_t begin, int32_t end) {
+                for (int32_t k = begin; k < end; ++k) ++truth[size_t(row) * kWidth + size_t(k)];
+            });
+        }
+        canvas.draw(polygons);
+        ASSERT_EQ(canvas.image.generated, truth) << "trial " << trial;
+    }
+}
+
+TEST(DepthBuffer, RejectsNothingThatIsNearerByOneStep) {
+    for (int format = 0; format < kDepthFormats; ++format) {
+        Canvas canvas(24, 16, {static_cast<DepthFormat>(format), {0.1, 100, false}}, false);
+        double nearness = 0.3;
+        for (uint32_t layer = 0; layer < 40; ++layer) {
+            const DepthKey key = canvas.codec.encode(nearness);
+            std::vector<ScreenPolygon> polygons;
+            for (int copy = 0; copy < 2; ++copy) {  // the second comes to equal depths, and is hidden
+                polygons.push_back(triangleOf({-100, -100}, {100, -90}, {0, 200}, nearness));
+                polygons.back().surface = 2 * layer + static_cast<uint32_t>(copy);
+            }
+            canvas.draw(polygons);
+            for (const uint32_t surface : canvas.image.surface)
+                ASSERT_EQ(surface, 2 * layer) << kDepthFormatNames[format] << " layer " << layer;
+            double same = nearness, next = 1.2 * nearness;  // the next depth that there is
+            for (int i = 0; i < 60; ++i) {
+                const double middle = 0.5 * (same + next);
+                (canvas.codec.encode(middle) == key ? same : next) = middle;
+            }
+            nearness = next;
+            ASSERT_EQ(std::abs(int64_t{canvas.codec.encode(nearness)} - key), 1) << kDepthFormatNames[format];
+        }
+        EXPECT_EQ(canvas.scratch.counters.hierarchy_rejected_polygons, 40u);
+    }
+}
+
 TEST(DepthBuffer, BoundsRejectAndAcceptOnlyWhatTheyMay) {
     // All pairs of small ranges, all pairs of keys in them.
     for (int c = 0; c < kDepthComparisons; ++c) {
