@@ -24,10 +24,10 @@ struct Piece {
 constexpr uint32_t kPieceTriangles = 1 << 11;
 
 /// Pieces that are projected before their polygons are drawn. A batch of polygons is a run of pieces, so that small
-/// items share one; where batches begin and end is the same for any number of threads.
+/// items share one.
 class Rounds {
 public:
-    explicit Rounds(const DrawList& list) : list_(list) {}
+    Rounds(const DrawList& list, size_t triangles) : list_(list), limit_(triangles) {}
 
     /// The next pieces, parted into batches; false at the end.
     bool next(std::vector<std::vector<Piece>>& batches) {
@@ -36,7 +36,7 @@ public:
         for (; item_ < list_.items().size(); ++item_, triangle_ = 0) {
             const uint32_t count = static_cast<uint32_t>(list_.items()[item_].mesh.triangles());
             while (triangle_ < count) {
-                if (sum >= kBatchTriangles) return true;
+                if (sum >= limit_) return true;
                 if (in_batch >= kPieceTriangles) {
                     batches.emplace_back();
                     in_batch = 0;
@@ -53,6 +53,7 @@ public:
 
 private:
     const DrawList& list_;
+    const size_t limit_;
     uint32_t item_ = 0, triangle_ = 0;
 };
 
@@ -151,7 +152,8 @@ public:
           buffer_(memory.buffer),
           draw_{buffer_, codec_, depth_, depth_.comparison.value_or(codec_.convention.comparison), image},
           target_{image.width, image.height, codec_, depth_.offset_factor, depth_.offset_units},
-          rounds_(input.list) {
+          rounds_(input.list,
+                  input.settings.threads > 1 && !depth_.compression ? kSharedBatchTriangles : kBatchTriangles) {
         buffer_.resize(image.width, image.height);
         buffer_.clear(depth_.clear_value ? codec_.keyOf(*depth_.clear_value) : codec_.convention.far_value,
                       depth_.fast_clear);

@@ -33,8 +33,10 @@ struct ZBufferMemory {
 /// O(triangles + fragments); memory: 4 bytes a sample, and 200 a polygon of a batch.
 void drawZBuffer(const HiddenInput& input, HiddenImage& image);
 
-/// Triangles that are projected before their polygons are drawn.
+/// Triangles that are projected before their polygons are drawn: few enough to stay in a cache.
 inline constexpr size_t kBatchTriangles = 1 << 14;
+/// The same with several threads, which have to wait for one another. Where bytes are counted, always the former.
+inline constexpr size_t kSharedBatchTriangles = 1 << 16;
 
 /// The codec that drawZBuffer() draws a list with.
 DepthCodec depthCodecFor(const DrawList& list, const View& view, DepthFormat format);
