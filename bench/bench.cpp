@@ -23,6 +23,7 @@ constexpr Case kCases[] = {
 #ifdef SIGHTLINE_GL
     {"gl", benchGl},
 #endif
+    {"hidden", benchHidden},
     {"occlusion", benchOcclusion},
     {"order", benchOrder},
 };

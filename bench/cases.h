@@ -25,6 +25,9 @@ Table benchFrustum(const Options& options);
 Table benchGl(const Options& options);
 #endif
 
+/// Every hidden-surface method on one view, and then all of benchClipping, benchOrder, benchBsp, benchDepth and benchGl.
+Table benchHidden(const Options& options);
+
 /// The whole query while a city grows, beside flat frustum culling; how tight its answer is.
 Table benchOcclusion(const Options& options);
 
