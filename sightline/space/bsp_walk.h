@@ -23,6 +23,12 @@ struct BspStatic {
     const BspNode& node(uint32_t i) const { return tree.nodes[i]; }
     uint32_t root() const { return tree.root; }
     uint32_t below(uint32_t child) const { return child; }
+    void prefetch([[maybe_unused]] uint32_t child) const {
+#if defined(__GNUC__)
+        // Leaves have no larger numbers than nodes, but for one: the address stays within the array's end.
+        __builtin_prefetch(tree.nodes.data() + (child & ~BspNode::kLeaf));
+#endif
+    }
 };
 
 /// The same with moving things in it.
@@ -40,6 +46,7 @@ struct BspOverlaid {
         const uint32_t leaf = child & ~BspNode::kLeaf;
         return leaf < overlay.root_of_leaf.size() ? overlay.root_of_leaf[leaf] : child;
     }
+    void prefetch(uint32_t) const {}
 };
 
 /// A node that is to be visited once what lies before it has been gone through, and the child after it.
@@ -59,20 +66,22 @@ void walkBsp(const Tree& tree, const glm::dvec4& eye, BspStack& stack, Enter&& e
     for (;;) {
         while ((at & BspNode::kLeaf) == 0 && enter(at)) {
             const BspNode& node = tree.node(at);
-            const uint32_t children[2] = {tree.below(node.child[kBspBack]), tree.below(node.child[kBspFront])};
-            if ((children[kBspBack] & children[kBspFront] & BspNode::kLeaf) != 0) {
+            if ((tree.below(node.child[kBspBack]) & tree.below(node.child[kBspFront]) & BspNode::kLeaf) != 0) {
                 visit(at);
                 break;
             }
-#if defined(__GNUC__)
-            // The child in front mostly comes next in memory.
-            if ((children[kBspBack] & BspNode::kLeaf) == 0) __builtin_prefetch(&tree.node(children[kBspBack]));
-#endif
+            tree.prefetch(node.child[kBspBack]);  // the child in front mostly comes next in memory
             const glm::dvec4& p = node.plane;
-            const bool in_front = p.x * eye.x + p.y * eye.y + (p.z * eye.z + p.w * eye.w) >= 0;
-            const uint32_t side = in_front ? kFirst : 1 - kFirst;
-            stack.push_back({at, children[1 - side]});
-            at = children[side];
+            const double distance = p.x * eye.x + p.y * eye.y + (p.z * eye.z + p.w * eye.w);
+            const bool side = kFirst == kBspFront ? distance >= 0 : distance < 0;
+            const uint32_t before = tree.below(node.child[side]), after = tree.below(node.child[1 - side]);
+            if ((before & BspNode::kLeaf) != 0) {
+                visit(at);
+                at = after;
+                continue;
+            }
+            stack.push_back({at, after});
+            at = before;
         }
         if (stack.empty()) return;
         const BspStep step = stack.back();
