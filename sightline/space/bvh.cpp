@@ -15,6 +15,18 @@ namespace {
 
 constexpr int kBins = 16;
 constexpr int kWidth = 8;
+constexpr float kFarthest = std::numeric_limits<float>::max() / 4;
+
+/// Kept where differences are finite and an order holds: boxes may reach beyond float.
+glm::vec3 centerOf(const Box3f& box) {
+    glm::vec3 center = box.center();
+    for (int axis = 0; axis < 3; ++axis) {
+        float& c = center[axis];
+        if (!(c >= -kFarthest)) c = -kFarthest;
+        if (c > kFarthest) c = kFarthest;
+    }
+    return center;
+}
 
 float area(const Box3f& box) {
     if (box.empty()) return 0.0f;
@@ -118,8 +130,11 @@ struct Builder {
         return static_cast<uint32_t>(middle - order.begin());
     }
 
+    /// The scale of a width near the smallest float is infinite, and nothing times that is no number.
     static int binOf(float center, float low, float scale) {
-        return std::min(kBins - 1, static_cast<int>((center - low) * scale));
+        const float bin = (center - low) * scale;
+        if (bin >= kBins - 1) return kBins - 1;
+        return bin > 0 ? static_cast<int>(bin) : 0;
     }
 };
 
@@ -156,7 +171,8 @@ int splitToEight(Builder& builder, const Range& range, Range (&parts)[kWidth]) {
         float widest_cost = -1.0f;
         for (int i = 0; i < count; ++i) {
             const float cost = area(parts[i].bounds) * static_cast<float>(parts[i].count());
-            if (parts[i].count() > 1 && cost > widest_cost) {
+            // Where areas overflow to no number, too, something must be split.
+            if (parts[i].count() > 1 && !(cost <= widest_cost)) {
                 widest = i;
                 widest_cost = cost;
             }
@@ -198,7 +214,7 @@ Bvh buildBvh(std::span<const Box3d> boxes, Memory* memory) {
     for (uint32_t i = 0; i < count; ++i) {
         bvh.order[i] = i;
         builder.boxes[i] = roundOutward(boxes[i], bvh.origin);
-        builder.centers[i] = builder.boxes[i].center();
+        builder.centers[i] = centerOf(builder.boxes[i]);
     }
     struct Job {
         Range range;

@@ -66,6 +66,17 @@ TEST(Bvh, BuildsOverBoxesInOnePlace) {
     expectSound(buildBvh(boxes), boxes);
 }
 
+TEST(Bvh, BuildsOverWidthsBelowAndBeyondFloat) {
+    for (const double size : {1e-45, 1e-40, 1e-38, 1e19, 1e30, 1e38, 1e39, 1e300}) {
+        SCOPED_TRACE(size);
+        const std::vector<Box3d> boxes = randomBoxes(11, 300, size);
+        expectSound(buildBvh(boxes), boxes);
+        std::vector<Box3d> flat = randomBoxes(12, 300, 10.0);
+        for (size_t i = 0; i < flat.size(); ++i) flat[i].min.y = flat[i].max.y = boxes[i].min.y;
+        expectSound(buildBvh(flat), flat);
+    }
+}
+
 TEST(Bvh, IsEmptyWithoutItems) { EXPECT_TRUE(buildBvh({}).nodes.empty()); }
 
 TEST(Bvh, StaysSoundUnderRefits) {
