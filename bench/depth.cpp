@@ -30,6 +30,7 @@ constexpr Way kWays[] = {
     {"z-buffer, 1 thread", "plain z-buffer in double", [](RenderSettings&) {}},
     {"z-buffer, 2 threads", nullptr, [](RenderSettings& s) { s.threads = 2; }},
     {"without hierarchy", nullptr, [](RenderSettings& s) { s.depth.hierarchy = false; }},
+    {"items near to far", nullptr, [](RenderSettings& s) { s.depth.near_to_far = true; }},
     {"with a full clear", nullptr, [](RenderSettings& s) { s.depth.fast_clear = false; }},
     {"compressing tiles", nullptr, [](RenderSettings& s) { s.depth.compression = true; }},
     {"24 bits of fixed point", nullptr, [](RenderSettings& s) { s.depth.format = DepthFormat::kUnorm24; }},
@@ -41,7 +42,7 @@ constexpr size_t kWayCount = std::size(kWays);
 void addScene(const Scene& scene, const CameraPath& path, int repeat, Table& table) {
     const double part = 1.0 / static_cast<double>(path.frames.size());
     double times[kWayCount + 1] = {};
-    HiddenCounters with, without, packed;
+    HiddenCounters with, without, packed, sorted;
     double triangles = 0;
     for (const CameraFrame& frame : path.frames) {
         const View view = makeView(frame, kWidth, kHeight);
@@ -61,12 +62,14 @@ void addScene(const Scene& scene, const CameraPath& path, int repeat, Table& tab
         const auto add = [&](size_t way, HiddenCounters& sum) {
             const HiddenCounters more = render(list, view, settings[way]).counters;
             sum.tested += more.tested;
+            sum.shaded += more.shaded;
             sum.depth_bytes += more.depth_bytes;
             sum.depth_bytes_compressed += more.depth_bytes_compressed;
         };
         add(0, with);
         add(2, without);
-        add(4, packed);
+        add(5, packed);
+        add(3, sorted);
         triangles += part * static_cast<double>(list.surfaces());
     }
     for (size_t i = 0; i < kWayCount; ++i)
@@ -76,6 +79,8 @@ void addScene(const Scene& scene, const CameraPath& path, int repeat, Table& tab
     const auto number = [](uint64_t value) { return static_cast<double>(value); };
     table.rows.push_back({scene.name, "fragments tested", number(with.tested), "fragments", "without hierarchy",
                           number(without.tested)});
+    table.rows.push_back({scene.name, "fragments shaded, items near to far", number(sorted.shaded), "fragments",
+                          "in the list's order", number(with.shaded)});
     table.rows.push_back({scene.name, "bytes of depth, compressed", number(packed.depth_bytes_compressed), "bytes",
                           "not compressed", number(packed.depth_bytes)});
     table.rows.push_back({scene.name, "triangles in view", triangles, "triangles", "", 0});

@@ -34,9 +34,12 @@ struct DepthSettings {
     double offset_factor = 0;  ///< moves polygons away from the eye by so many times their steepest slope ...
     double offset_units = 0;   ///< ... and so many of the smallest differences
     DepthShader shader;
-    bool early_test = true;    ///< before shading, as far as the shader allows
-    bool hierarchy = true;     ///< reject and accept whole polygons and tiles; only where an early test is allowed
-    bool fast_clear = true;    ///< clear by a state per tile
+    bool early_test = true;  ///< before shading, as far as the shader allows
+    bool hierarchy = true;   ///< reject and accept whole polygons and tiles; only where an early test is allowed
+    bool fast_clear = true;  ///< clear by a state per tile
+    bool near_to_far =
+        false;  ///< draw items by their nearest points, nearest first: a painter's order turned about. Of
+                ///< surfaces at the same depth, the first in this order stays
     bool compression = false;  ///< keep tiles compressed between batches of polygons: saves bytes, not time
 };
 

@@ -6,10 +6,12 @@
 #include <atomic>
 #include <barrier>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "sightline/hidden/depth_buffer_draw.h"
 #include "sightline/hidden/depth_buffer_items.h"
+#include "sightline/hidden/presort.h"
 
 namespace sightline {
 namespace {
@@ -27,14 +29,17 @@ constexpr uint32_t kPieceTriangles = 1 << 11;
 /// items share one.
 class Rounds {
 public:
-    Rounds(const DrawList& list, size_t triangles) : list_(list), limit_(triangles) {}
+    /// @param order  of the items; empty for that of the list
+    Rounds(const DrawList& list, size_t triangles, std::vector<uint32_t> order)
+        : list_(list), limit_(triangles), order_(std::move(order)) {}
 
     /// The next pieces, parted into batches; false at the end.
     bool next(std::vector<std::vector<Piece>>& batches) {
         batches.clear();
         size_t sum = 0, in_batch = kPieceTriangles;
-        for (; item_ < list_.items().size(); ++item_, triangle_ = 0) {
-            const uint32_t count = static_cast<uint32_t>(list_.items()[item_].mesh.triangles());
+        for (; next_ < list_.items().size(); ++next_, triangle_ = 0) {
+            const uint32_t item = order_.empty() ? next_ : order_[next_];
+            const uint32_t count = static_cast<uint32_t>(list_.items()[item].mesh.triangles());
             while (triangle_ < count) {
                 if (sum >= limit_) return true;
                 if (in_batch >= kPieceTriangles) {
@@ -42,7 +47,7 @@ public:
                     in_batch = 0;
                 }
                 const uint32_t end = std::min(count, triangle_ + kPieceTriangles - static_cast<uint32_t>(in_batch));
-                batches.back().push_back({item_, triangle_, end});
+                batches.back().push_back({item, triangle_, end});
                 in_batch += end - triangle_;
                 sum += end - triangle_;
                 triangle_ = end;
@@ -54,7 +59,8 @@ public:
 private:
     const DrawList& list_;
     const size_t limit_;
-    uint32_t item_ = 0, triangle_ = 0;
+    const std::vector<uint32_t> order_;
+    uint32_t next_ = 0, triangle_ = 0;
 };
 
 void addUp(ProjectorCounters& sum, const ProjectorCounters& more) {
@@ -153,7 +159,9 @@ public:
           draw_{buffer_, codec_, depth_, depth_.comparison.value_or(codec_.convention.comparison), image},
           target_{image.width, image.height, codec_, depth_.offset_factor, depth_.offset_units},
           rounds_(input.list,
-                  input.settings.threads > 1 && !depth_.compression ? kSharedBatchTriangles : kBatchTriangles) {
+                  input.settings.threads > 1 && !depth_.compression ? kSharedBatchTriangles : kBatchTriangles,
+                  depth_.near_to_far ? orderItems(input.list, input.view, DepthOrder::kNearToFar)
+                                     : std::vector<uint32_t>()) {
         buffer_.resize(image.width, image.height);
         buffer_.clear(depth_.clear_value ? codec_.keyOf(*depth_.clear_value) : codec_.convention.far_value,
                       depth_.fast_clear);

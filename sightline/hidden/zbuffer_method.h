@@ -19,7 +19,7 @@ struct ZBufferMemory {
     std::vector<PolygonBatch> batches;
 };
 
-/// Draws in the order of surfaces, so that of surfaces at the same depth the first stays (as long as only what is nearer
+/// Draws in the order of surfaces (if DepthSettings::near_to_far does not change it), so that of surfaces at the same depth the first stays (as long as only what is nearer
 /// passes). RenderSettings::depth says how depths are kept, tested and saved. What can be told apart is up to the format:
 /// see DepthCodec::stepAt(). The image and the counters are the same for any number of threads and any instruction set.
 ///

@@ -153,6 +153,30 @@ TEST(ZBufferMethod, IsTheSameWhateverItSaves) {
     }
 }
 
+TEST(ZBufferMethod, TestsAndShadesLessNearToFar) {
+    MadeList walls[6];
+    std::vector<DrawItem> items;
+    for (int i = 0; i < 6; ++i) {  // far to near in the list
+        const float z = -20.0f + 2.5f * static_cast<float>(i);
+        walls[i].add({z, z, z}, {-z, z, z - 0.1f}, {0, -2 * z, z});
+        items.push_back(walls[i].items()[0]);
+    }
+    const DrawList list(items);
+    RenderSettings settings;
+    settings.want_counts = true;
+    const HiddenImage far_to_near = render(list, madeView(), settings);
+    settings.depth.near_to_far = true;
+    const HiddenImage near_to_far = render(list, madeView(), settings);
+    expectSame(far_to_near, near_to_far, "near to far", false);
+    EXPECT_EQ(far_to_near.counters.generated, near_to_far.counters.generated);
+    EXPECT_EQ(far_to_near.counters.shaded, far_to_near.counters.generated);
+    uint64_t shown = 0;
+    for (const uint32_t surface : near_to_far.surface) shown += surface != HiddenImage::kNone;
+    EXPECT_EQ(near_to_far.counters.passed, shown);
+    EXPECT_EQ(near_to_far.counters.shaded, shown);
+    EXPECT_LT(2 * near_to_far.counters.tested, far_to_near.counters.generated);
+}
+
 TEST(ZBufferMethod, CountsPerSampleAddUp) {
     const MadeList made = clutter(21, 800, 0.6);
     const std::vector<DrawItem> items = made.items();
