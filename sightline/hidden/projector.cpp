@@ -19,6 +19,14 @@ bool betweenSamples(const glm::dvec2* points) {
     return std::ceil(low.x) > high.x || std::ceil(low.y) > high.y;
 }
 
+/// True if a projection shows the fronts of surfaces clockwise that are counter-clockwise around their normals.
+bool turnsOver(const glm::dmat4& p, bool orthographic) {
+    const glm::dmat2 across(p[0][0], p[0][1], p[1][0], p[1][1]);
+    if (orthographic) return glm::determinant(across) < 0;
+    const glm::dvec3 x(p[0][0], p[1][0], p[2][0]), y(p[0][1], p[1][1], p[2][1]), w(p[0][3], p[1][3], p[2][3]);
+    return glm::dot(x, glm::cross(y, w)) > 0;
+}
+
 }  // namespace
 
 Projector::Projector(const View& view, const SampleGrid& grid, const ProjectorSettings& settings)
@@ -30,10 +38,11 @@ Projector::Projector(const View& view, const SampleGrid& grid, const ProjectorSe
       projection_(view.projection) {
     // z and w are summed as rows: a parallel projection to infinity has a z that double cannot tell from -w.
     for (int column = 0; column < 4; ++column) projection_[column][2] += projection_[column][3];
-    // The usual projection turns a right-handed eye space into a left-handed clip space.
+    // What is seen turned over is so by x, y and w, or x and y if w is one: z may as well run the other way. The usual
+    // perspective turns a right-handed eye space into a left-handed space of these.
     const bool turned = settings.front_face == FrontFace::kClockwise;
     eye_mirrored_ = (glm::determinant(glm::dmat3(view.view)) < 0) != turned;
-    mirrored_ = (glm::determinant(view.projection) > 0) != eye_mirrored_;
+    mirrored_ = turnsOver(view.projection, orthographic_) != eye_mirrored_;
     const double samples = grid.samples;
     // Sample (i, j) lies at clip position x/w = scale * i + start.
     scale_ = glm::dvec2(2.0 / (view.width * samples), 2.0 / (view.height * samples));
