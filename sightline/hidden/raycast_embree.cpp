@@ -34,6 +34,7 @@ struct EmbreeTree::Impl {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
     RayTriangles triangles;
+    glm::dvec3 middle{0.0};  ///< of the triangles' box, where float has most to give
 };
 
 EmbreeTree::EmbreeTree(RayTriangles triangles) : impl_(std::make_unique<Impl>()) {
@@ -43,13 +44,15 @@ EmbreeTree::EmbreeTree(RayTriangles triangles) : impl_(std::make_unique<Impl>())
     rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
     const std::vector<RayTriangle>& all = impl_->triangles.triangles;
     if (!all.empty()) {
+        impl_->middle = impl_->triangles.bounds.center();
         RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
         auto* corners = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
             geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), 3 * all.size()));
         auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
             geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), all.size()));
         for (const RayTriangle& triangle : all)
-            for (const glm::dvec3& corner : {triangle.a, triangle.b, triangle.c}) *corners++ = glm::vec3(corner);
+            for (const glm::dvec3& corner : {triangle.a, triangle.b, triangle.c})
+                *corners++ = glm::vec3(corner - impl_->middle);
         for (uint32_t i = 0; i < 3 * all.size(); ++i) indices[i] = i;
         rtcSetGeometryUserData(geometry, const_cast<RayTriangle*>(all.data()));
         rtcSetGeometryIntersectFilterFunction(geometry, passBackFaces);
@@ -72,7 +75,7 @@ RayHit EmbreeTree::nearest(const SampleRays& rays, const SampleRay& ray) const {
     context.from = ray.origin + (rays.eye() - impl_->triangles.origin);
     context.direction = ray.direction;
     RayHit result;
-    const glm::vec3 origin(context.from + ray.t_near * ray.direction);
+    const glm::vec3 origin(context.from - impl_->middle + ray.t_near * ray.direction);
     const glm::vec3 size = glm::abs(origin);
     // Embree refuses rays that begin beyond about 1e18, and this refuses what is not a number as well.
     if (!(size.x < 1e17f && size.y < 1e17f && size.z < 1e17f && ray.t_near <= ray.t_far)) return result;

@@ -93,7 +93,8 @@ RayTriangles rayTriangles(const DrawList& list, const ProjectorSettings& setting
         }
     }
     if (world.empty()) return result;
-    result.origin = world.center();
+    // No farther out than any corner: one at the end of the world takes no digits from the others.
+    result.origin = glm::clamp(glm::dvec3(0.0), world.min, world.max);
     result.bounds = {world.min - result.origin, world.max - result.origin};
     for (RayTriangle& triangle : result.triangles)
         for (glm::dvec3* corner : {&triangle.a, &triangle.b, &triangle.c}) *corner -= result.origin;

@@ -22,7 +22,8 @@ struct RayTriangle {
     bool double_sided = false;
 };
 
-/// The triangles of a list that write depth and whose corners are finite, relative to the middle of their box.
+/// The triangles of a list that write depth and whose corners are finite, relative to the point of their box that is
+/// nearest to the world's origin.
 struct RayTriangles {
     glm::dvec3 origin{0.0};
     std::vector<RayTriangle> triangles;

@@ -116,6 +116,44 @@ TEST(Raycast, SeesFarFromTheWorldsOrigin) {
     EXPECT_EQ(agreement.wrong, 0u);
 }
 
+TEST(Raycast, SeesBesideATriangleAtTheEndOfTheWorld) {
+    for (const float far : {1e15f, 1e31f, 3e38f}) {
+        MadeList made = clutter(4, 300);
+        made.add({far, far, -far}, {far, 0.5f * far, -far}, {0.7f * far, far, 0.3f * far});
+        const std::vector<DrawItem> items = made.items();
+        const DrawList list(items);
+        for (const NamedView& named : madeViews()) {
+            const HiddenImage truth = nearestSurfaces(list, named.view);
+            const HiddenImage image = render(list, named.view, rays());
+            const Agreement agreement = compareImages(list, named.view, truth, image, bandsOf(1e-5, 1e-8));
+            EXPECT_EQ(agreement.wrong, 0u) << far << " " << named.name;
+        }
+    }
+}
+
+TEST(Raycast, SeesTheFrontsThatTheProjectorDoesWhicheverWayDepthRuns) {
+    const MadeList made = clutter(7, 300);
+    std::vector<DrawItem> items = made.items();
+    for (DrawItem& item : items) item.double_sided = {};
+    const DrawList list(items);
+    for (const NamedView& named : madeViews()) {
+        View view = named.view;
+        for (const bool mirrored : {false, true}) {
+            if (mirrored)
+                for (int column = 0; column < 4; ++column) view.projection[column][0] *= -1;
+            View reversed = view;
+            for (int column = 0; column < 4; ++column) reversed.projection[column][2] *= -1;
+            const HiddenImage truth = nearestSurfaces(list, view);
+            EXPECT_EQ(nearestSurfaces(list, reversed).surface, truth.surface) << named.name << mirrored;
+            for (const View& either : {view, reversed}) {
+                const HiddenImage image = render(list, either, rays());
+                const Agreement agreement = compareImages(list, either, truth, image, bandsOf(1e-5, 1e-8));
+                EXPECT_EQ(agreement.wrong, 0u) << named.name << mirrored;
+            }
+        }
+    }
+}
+
 TEST(Raycast, ShowsTheSameForAnyNumberOfThreads) {
     const MadeList made = clutter(6, 500);
     const std::vector<DrawItem> items = made.items();
