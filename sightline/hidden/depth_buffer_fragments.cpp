@@ -1,4 +1,4 @@
-// Fragments one by one: shaders that discard or write depth, every comparison, counts per sample, tiles kept compressed.
+// Fragments one by one: shaders that discard or write depth, every comparison, counts per sample, compressed tiles.
 // SPDX-License-Identifier: MIT
 #include "sightline/hidden/depth_buffer_fragments.h"
 

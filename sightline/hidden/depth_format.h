@@ -16,14 +16,14 @@
 namespace sightline {
 
 enum class DepthFormat : uint8_t {
-    kUnorm16,        ///< window depth f / (f - n) * (1 - n / z) in fixed point
-    kUnorm24,        ///< the same
-    kUnorm32,        ///< the same
-    kFloat,          ///< the same in single precision
-    kReversedFloat,  ///< 1 less that, n / z if there is no far plane: near at 1, far at 0, where single precision is fine
-    kLinear,         ///< distance from the near to the far plane, 24 bits of fixed point
-    kInverse,        ///< 1 / z in single precision
-    kW,              ///< the distance itself in single precision
+    kUnorm16,         ///< window depth f / (f - n) * (1 - n / z) in fixed point
+    kUnorm24,         ///< the same
+    kUnorm32,         ///< the same
+    kFloat,           ///< the same in single precision
+    kReversedFloat,   ///< 1 less that (n / z without a far plane): far is at 0, where single precision is fine
+    kLinear,          ///< distance from the near to the far plane, 24 bits of fixed point
+    kInverse,         ///< 1 / z in single precision
+    kW,               ///< the distance itself in single precision
     kIntegerInverse,  ///< floor((2^32 - 1) * n / z)
     kIntegerShifted,  ///< floor((2^32 - 1) / (1 + z)): not affine over the image, unlike the one before
 };

@@ -19,9 +19,10 @@ struct ZBufferMemory {
     std::vector<PolygonBatch> batches;
 };
 
-/// Draws in the order of surfaces (if DepthSettings::near_to_far does not change it), so that of surfaces at the same depth the first stays (as long as only what is nearer
-/// passes). RenderSettings::depth says how depths are kept, tested and saved. What can be told apart is up to the format:
-/// see DepthCodec::stepAt(). The image and the counters are the same for any number of threads and any instruction set.
+/// Draws in the order of surfaces, so that of surfaces at the same depth the first stays, as long as only what is nearer
+/// passes; DepthSettings::near_to_far draws in another. RenderSettings::depth says how depths are kept, tested and saved.
+/// What can be told apart is up to the format: DepthCodec::stepAt(). The image and the counters are the same for any
+/// number of threads and any instruction set.
 ///
 /// Counters: fragments of polygons and tiles that the hierarchy rejects are generated only in name; they are counted as
 /// generated with RenderSettings::want_counts alone, which looks for them. A fragment that the hierarchy accepts is
