@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -79,7 +81,58 @@ void addDepth(CLI::App& verb, RenderOptions& options) {
 
 Error usage(const std::string& message) { return {Error::Kind::kUsage, message}; }
 
+/// Where a name leads to, as far as that exists.
+std::filesystem::path placeOf(const std::filesystem::path& name) {
+    std::error_code error;
+    const std::filesystem::path place = weakly_canonical(std::filesystem::absolute(name, error), error);
+    return error ? name : place;
+}
+
+/// Of two outputs in one file the later one would be left, and an output in an input's place would be the end of that.
+/// Devices take any number.
+Status checkApart(const RenderOptions& options) {
+    struct Named {
+        std::string option;
+        std::filesystem::path place;
+    };
+    std::vector<Named> taken;
+    const auto take = [&](const char* option, const std::filesystem::path& name, bool written) -> Status {
+        if (name.empty() || name == "-") return success();
+        std::error_code ignored;
+        if (exists(name, ignored) && !is_regular_file(name, ignored)) return success();
+        const std::filesystem::path place = placeOf(name);
+        for (const Named& other : taken)
+            if (written && other.place == place)
+                return usage(fmt::format("{}: {} is taken by {}", option, name.string(), other.option));
+        taken.push_back({option, place});
+        return success();
+    };
+    if (Status good = take("SCENE", options.scene, false); !good) return good;
+    if (Status good = take("--cameras", options.cameras, false); !good) return good;
+    if (Status good = take("-o", options.image, true); !good) return good;
+    if (Status good = take("--ids", options.ids, true); !good) return good;
+    if (Status good = take("--heat-map", options.heat_map, true); !good) return good;
+    if (Status good = take("--json", options.json, true); !good || options.report.empty()) return good;
+    const std::filesystem::path report = options.report;
+    if (Status good = take("--report", report / "index.html", true); !good) return good;
+    // The same JSON twice does no harm.
+    if (placeOf(options.json) == placeOf(report / "render.json")) return success();
+    return take("--report", report / "render.json", true);
+}
+
+/// The clipless z-buffer is one of its own, in double: what it cannot do is better refused than passed over.
+Status checkClipless(const CLI::App& verb, const RenderOptions& options) {
+    if (options.clipping != "clipless" || !drawsZBuffer(options)) return success();
+    for (const char* option : {"--depth-format", "--depth-comparison", "--depth-write", "--polygon-offset", "--early-z",
+                               "--hierarchical-z", "--fast-clear", "--depth-compression"})
+        if (verb.count(option) > 0)
+            return usage(fmt::format("{}: not with --clipping clipless, which keeps depths in double", option));
+    return success();
+}
+
 }  // namespace
+
+bool drawsZBuffer(const RenderOptions& options) { return options.all() || methodOf(options) == HiddenMethod::kZBuffer; }
 
 void addRenderOptions(CLI::App& verb, RenderOptions& options) {
     options.repeat = 1;
@@ -112,7 +165,8 @@ Status finishRender(const CLI::App& verb, RenderOptions& options) {
     }
     for (const double value : options.polygon_offset)
         if (!std::isfinite(value)) return usage("--polygon-offset: not two finite numbers");
-    return success();
+    if (Status good = checkClipless(verb, options); !good) return good;
+    return checkApart(options);
 }
 
 Status checkOutputs(const RenderOptions& options) {

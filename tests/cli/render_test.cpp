@@ -222,6 +222,25 @@ TEST_F(Render, WrongArgumentsExitWithTwo) {
     expectError("render city:1:10 --stages frustum", 2, "--stages");
 }
 
+TEST_F(Render, RefusesToWriteTwoThingsIntoOneFile) {
+    const std::string city = "render city:1:10 --size 16x16 ";
+    expectError(city + "-o a.png --ids ./a.png", 2, "-o");
+    expectError(city + "--ids a.png --heat-map none/../a.png", 2, "--ids");
+    expectError(city + "-o a --json a", 2, "-o");
+    expectError(city + "-o out/index.html --report out", 2, "out/index.html");
+    expectError(city + "--ids out/render.json --report out", 2, "out/render.json");
+    EXPECT_FALSE(std::filesystem::exists(path("out")));
+    write("cameras.json", R"({"near": 0.1, "frames": [{"eye": [0, 2, 9], "target": [0, 0, 0]}]})");
+    const std::string cameras = read(path("cameras.json"));
+    expectError(city + "--cameras cameras.json --json cameras.json", 2, "--cameras");
+    expectError("render cameras.json -o cameras.json", 2, "SCENE");
+    EXPECT_EQ(read(path("cameras.json")), cameras);
+    EXPECT_EQ(run(city + "-o /dev/null --ids /dev/null").exit_code, 0);
+    EXPECT_EQ(run(city + "--json out/render.json --report out").exit_code, 4);  // there is no such folder yet
+    EXPECT_EQ(run(city + "--report out").exit_code, 0);
+    EXPECT_EQ(run(city + "--json out/render.json --report out").exit_code, 0);
+}
+
 TEST_F(Render, UnreadableInputsExitWithThree) {
     write("text.glb", "this is no glb");
     write("broken.json", "{\"frames\": [");
