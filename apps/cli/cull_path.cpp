@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "apps/cli/progress.h"
+#include "sightline/hidden/threads.h"
 #include "sightline/load/load_world.h"
 #include "sightline/report/output_file.h"
 #include "sightline/run/query.h"
@@ -100,12 +101,11 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
 
 void forEach(size_t count, uint32_t threads, const std::function<void(size_t)>& work) {
     std::atomic<size_t> next{0};
-    const auto loop = [&] {
+    const auto loop = [&](uint32_t) {
         for (size_t i = next++; i < count; i = next++) work(i);
     };
-    std::vector<std::thread> others;
-    for (uint32_t i = 1; i < std::min<size_t>(threads, count); ++i) others.emplace_back(loop);
-    loop();
+    std::vector<std::thread> others = startThreads(static_cast<uint32_t>(std::min<size_t>(threads, count)), loop);
+    loop(0);
     for (std::thread& other : others) other.join();
 }
 

@@ -12,6 +12,7 @@
 #include "sightline/hidden/depth_buffer_draw.h"
 #include "sightline/hidden/depth_buffer_items.h"
 #include "sightline/hidden/presort.h"
+#include "sightline/hidden/threads.h"
 
 namespace sightline {
 namespace {
@@ -175,17 +176,20 @@ public:
         advance();
         std::barrier projected(static_cast<ptrdiff_t>(count), []() noexcept {});
         std::barrier drawn(static_cast<ptrdiff_t>(count), [this]() noexcept { advance(); });
-        const auto work = [&](Worker& worker) {
+        const auto work = [&](uint32_t i) {
             while (!done_) {
-                projectAll(worker);
+                projectAll(workers[i]);
                 projected.arrive_and_wait();
-                drawAll(worker);
+                drawAll(workers[i]);
                 drawn.arrive_and_wait();
             }
         };
-        std::vector<std::thread> threads;
-        for (size_t i = 1; i < count; ++i) threads.emplace_back([&, i] { work(workers[i]); });
-        work(workers[0]);
+        std::vector<std::thread> threads = startThreads(static_cast<uint32_t>(count), work);
+        for (size_t missing = threads.size() + 1; missing < count; ++missing) {
+            projected.arrive_and_drop();
+            drawn.arrive_and_drop();
+        }
+        work(0);
         for (std::thread& thread : threads) thread.join();
         for (Worker& worker : workers) worker.finish(image.counters);
     }

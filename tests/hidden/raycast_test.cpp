@@ -3,6 +3,7 @@
 #include "sightline/hidden/raycast.h"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include "sightline/hidden/raycast_tree.h"
 #include "tests/hidden/agreement.h"
@@ -170,6 +171,27 @@ TEST(Raycast, ShowsTheSameForAnyNumberOfThreads) {
             EXPECT_EQ(many.counters.rays, one.counters.rays) << threads;
         }
     }
+}
+
+TEST(Threads, AreFewerWhereTheSystemGivesNoMore) {
+    const MadeList made = clutter(6, 500);
+    const std::vector<DrawItem> items = made.items();
+    pthread_attr_t usual, greedy;
+    ASSERT_EQ(pthread_getattr_default_np(&usual), 0);
+    ASSERT_EQ(pthread_attr_init(&greedy), 0);
+    ASSERT_EQ(pthread_attr_setstacksize(&greedy, size_t{90} << 40), 0);  // there is room for one at most
+    for (const HiddenMethod method : {HiddenMethod::kZBuffer, HiddenMethod::kRaycast}) {
+        RenderSettings settings;
+        settings.method = method;
+        const HiddenImage one = render(DrawList(items), madeView(), settings);
+        settings.threads = 8;
+        ASSERT_EQ(pthread_setattr_default_np(&greedy), 0);
+        const HiddenImage few = render(DrawList(items), madeView(), settings);
+        ASSERT_EQ(pthread_setattr_default_np(&usual), 0);
+        EXPECT_EQ(few.surface, one.surface) << static_cast<int>(method);
+    }
+    pthread_attr_destroy(&greedy);
+    pthread_attr_destroy(&usual);
 }
 
 TEST(Raycast, CastsARayASample) {
