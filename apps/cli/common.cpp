@@ -75,7 +75,7 @@ bool isCity(const std::string& scene, uint64_t& seed) {
 }  // namespace
 
 void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& shared) {
-    verb.add_option("SCENE", options.scene, "a .glb or .gltf file, or city:SEED:OBJECTS")->required();
+    verb.add_option("SCENE", options.scene, "a .glb or .gltf file, city:SEED:OBJECTS or made:NAME")->required();
     verb.add_option("--cameras", options.cameras, "camera path (JSON)")->type_name("PATH.json");
     verb.add_option("--frames", options.frames,
                     "so many seeded cameras; a city without --seed is walked along its streets")
@@ -136,8 +136,9 @@ Result<Scene> loadScene(const std::string& name) {
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension != ".glb" && extension != ".gltf")
-        return Error{Error::Kind::kInput,
-                     fmt::format("{}: not a scene that can be read (.glb, .gltf, or city:SEED:OBJECTS)", name)};
+        return Error{
+            Error::Kind::kInput,
+            fmt::format("{}: not a scene that can be read (.glb, .gltf, city:SEED:OBJECTS or made:NAME)", name)};
     return loadGltf(name);
 }
 

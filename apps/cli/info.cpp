@@ -123,7 +123,7 @@ Status runInfo(const CLI::App& verb, const InfoOptions& options) {
 void addInfo(CLI::App& tool, int& exit_code) {
     CLI::App* verb = tool.add_subcommand("info", "what a scene holds");
     const auto options = std::make_shared<InfoOptions>();
-    verb->add_option("FILE", options->file, "a .glb or .gltf file, or city:SEED:OBJECTS")->required();
+    verb->add_option("FILE", options->file, "a .glb or .gltf file, city:SEED:OBJECTS or made:NAME")->required();
     verb->add_option("--json", options->json, "write it as JSON (-: standard output)")->type_name("FILE");
     verb->callback([verb, options, &exit_code] {
         const Status done = runInfo(*verb, *options);

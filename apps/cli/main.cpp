@@ -16,7 +16,8 @@ namespace {
 constexpr const char* kAbout =
     "What can be seen, from any view of any world: conservative visibility, measured and proved.";
 constexpr const char* kFooter =
-    "Scenes: .glb and .gltf files, and city:SEED:OBJECTS (a built-in city, any seed, up to 10,000,000 objects).\n"
+    "Scenes: .glb and .gltf files; city:SEED:OBJECTS (a built-in city, any seed, up to 10,000,000 objects);\n"
+    "made:NAME (a few triangles that show where methods fail: cycle, crossing, coplanar, near, walls, eye).\n"
     "Cameras: --cameras, else --frames and --seed, else the scene's own, else 16 seeded ones. A city with --frames\n"
     "and without --seed is walked along its streets.\n"
     "Exit codes: 0 done; 1 the answer is no (verification failed); 2 the arguments are wrong; 3 an input cannot be\n"

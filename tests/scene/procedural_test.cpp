@@ -10,6 +10,8 @@ namespace {
 TEST(Procedural, KnowsItsNames) {
     EXPECT_TRUE(isProcedural("city:1:1000"));
     EXPECT_TRUE(isProcedural("city:"));
+    EXPECT_TRUE(isProcedural("made:cycle"));
+    EXPECT_FALSE(isProcedural("made"));
     EXPECT_FALSE(isProcedural("city"));
     EXPECT_FALSE(isProcedural("city.glb"));
     EXPECT_FALSE(isProcedural("./city:1:1000"));
@@ -43,6 +45,10 @@ TEST(Procedural, RefusesAnythingElseAsUsage) {
                              "city:1.5:5",
                              "city:18446744073709551616:5",
                              "city:1:18446744073709551617",
+                             "made:",
+                             "made:circle",
+                             "made:cycle:1",
+                             "made:Cycle",
                              "village:1:5",
                              "",
                              "city"}) {
