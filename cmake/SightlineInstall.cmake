@@ -18,8 +18,9 @@ endfunction()
 
 set(SIGHTLINE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/sightline)
 
-sightline_install(EXPORT sightline-runtime LIBRARIES run hidden
-  FOLDERS base math geom space raster cull hidden prepare run)
+sightline_install(EXPORT sightline-runtime LIBRARIES run
+  FOLDERS base math geom space raster cull prepare run)
+sightline_install(EXPORT sightline-hidden LIBRARIES hidden FOLDERS hidden)
 if(SIGHTLINE_TOOLS)
   sightline_install(EXPORT sightline-tools LIBRARIES scene import truth report
     FOLDERS scene load import truth report)
@@ -40,6 +41,8 @@ install(CODE "
   set(SIGHTLINE_EMBREE_FLAG $<$<BOOL:${SIGHTLINE_TOOLS}>:-lembree3>)
   set(CMAKE_INSTALL_FULL_LIBDIR \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR})
   set(CMAKE_INSTALL_FULL_INCLUDEDIR \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR})
-  configure_file(${PROJECT_SOURCE_DIR}/cmake/sightline.pc.in
-    \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/pkgconfig/sightline.pc @ONLY)")
+  foreach(name sightline sightline-hidden)
+    configure_file(${PROJECT_SOURCE_DIR}/cmake/\${name}.pc.in
+      \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/pkgconfig/\${name}.pc @ONLY)
+  endforeach()")
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
