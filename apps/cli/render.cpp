@@ -1,5 +1,6 @@
 // The verb `render`: one frame by any hidden-surface method, or by all of them beside one another.
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstdio>
 #include <functional>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "apps/cli/progress.h"
 #include "apps/cli/render_options.h"
 #include "apps/cli/verbs.h"
+#include "sightline/hidden/zbuffer_method.h"
 #include "sightline/report/cull_run.h"
 #include "sightline/report/output_file.h"
 #include "sightline/report/picture.h"
@@ -24,6 +26,12 @@
 namespace sightline::cli {
 namespace {
 
+/// Of several methods, files show the z-buffer.
+const MethodResult& shown(const RenderRun& run) {
+    const MethodResult* const zbuffer = run.find(HiddenMethod::kZBuffer);
+    return zbuffer ? *zbuffer : run.methods.front();
+}
+
 RenderRun describe(const Scene& scene, const CameraPath& path, const RenderOptions& options) {
     RenderRun run;
     applyOptions(options, run);
@@ -32,6 +40,36 @@ RenderRun describe(const Scene& scene, const CameraPath& path, const RenderOptio
     run.frames = static_cast<uint32_t>(path.frames.size());
     run.camera = path.frames[options.frame];
     return run;
+}
+
+/// A picture that is no use is worth a word, lest it be taken for a failure.
+void noteComparison(const RenderList& scene, const View& view, const RenderOptions& options, const RenderRun& run) {
+    const DepthSettings& depth = run.settings.depth;
+    if (!depth.comparison || !drawsZBuffer(options)) return;
+    const bool less = *depth.comparison == DepthComparison::kLess || *depth.comparison == DepthComparison::kLessEqual;
+    const bool greater =
+        *depth.comparison == DepthComparison::kGreater || *depth.comparison == DepthComparison::kGreaterEqual;
+    const bool nearer_is_greater = depthCodecFor(scene.list(), view, depth.format).convention.greaterIsNearer();
+    if (!(nearer_is_greater ? less : greater)) return;
+    fmt::print(stderr,
+               "note: --depth-comparison {}: in {} nearer depths are {}, so that only what is farther than the empty "
+               "buffer passes; the picture will be empty\n",
+               options.depth_comparison, options.depth_format, nearer_is_greater ? "greater" : "less");
+}
+
+/// Of the methods whose heat maps are written.
+void noteHeat(const RenderOptions& options, const RenderRun& run) {
+    if (options.heat_map.empty() && options.report.empty()) return;
+    std::string names;
+    for (const MethodResult& result : run.methods) {
+        if (options.report.empty() && &result != &shown(run)) continue;
+        const std::vector<uint16_t>& counts = countsOf(result.image, run.heat);
+        if (std::any_of(counts.begin(), counts.end(), [](uint16_t count) { return count != 0; })) continue;
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", result.name());
+    }
+    if (!names.empty())
+        fmt::print(stderr, "note: --heat {}: no fragment was {} by {}; heat maps of that are black\n", options.heat,
+                   options.heat, names);
 }
 
 std::vector<HiddenMethod> methodsOf(const RenderOptions& options, RenderRun& run) {
@@ -70,9 +108,13 @@ void printRun(std::FILE* out, const RenderRun& run) {
         if (agreement.differing > 0)
             verdict = fmt::format("differs at {}: {} at edges, {} ties, {} wrong", grouped(agreement.differing),
                                   grouped(agreement.at_edges), grouped(agreement.ties), grouped(agreement.wrong));
-        fmt::print(out, "{:<18} {:>9.2f} ms  {:>12} fragments generated, {:>12} shaded  {}\n", result.name(),
-                   result.milliseconds, grouped(result.image.counters.generated), grouped(result.image.counters.shaded),
-                   verdict);
+        if (const std::string why = whyInexact(run, result); !why.empty()) verdict += ": " + why;
+        std::string prepare;
+        if (result.prepare_milliseconds > 0)
+            prepare = fmt::format(" + {:.2f} ms to prepare", result.prepare_milliseconds);
+        fmt::print(out, "{:<18} {:>9.2f} ms{}  {:>12} fragments generated, {:>12} shaded  {}\n", result.name(),
+                   result.milliseconds, prepare, grouped(result.image.counters.generated),
+                   grouped(result.image.counters.shaded), verdict);
     }
     for (const LeftOut& left : run.left_out)
         fmt::print(out, "{:<18} left out: {}\n", kHiddenMethodNames[static_cast<int>(left.method)], left.why);
@@ -80,9 +122,7 @@ void printRun(std::FILE* out, const RenderRun& run) {
 
 Status writeOutputs(const RenderList& scene, const View& view, const RenderRun& run, const PictureSettings& pictures,
                     const RenderOptions& options) {
-    // Of several methods, files show the z-buffer.
-    const MethodResult* const zbuffer = run.find(HiddenMethod::kZBuffer);
-    const HiddenImage& image = (zbuffer ? *zbuffer : run.methods.front()).image;
+    const HiddenImage& image = shown(run).image;
     if (!options.image.empty()) {
         const std::string png = encodePng(shadedPicture(scene, view, image, pictures));
         if (Status written = writeFileAside(options.image, png); !written) return written;
@@ -102,7 +142,13 @@ Status writeOutputs(const RenderList& scene, const View& view, const RenderRun& 
         if (Status written = writeText(options.json, json); !written) return written;
     if (options.report.empty()) return success();
     if (Status written = writeFileAside(options.report + "/render.json", json); !written) return written;
-    return writeFileAside(options.report + "/index.html", renderPage(scene, view, run, pictures));
+    Status saved = success();
+    const auto save = [&](const MethodResult& result, const Image<Rgb>& picture) {
+        if (saved) saved = writeFileAside(fmt::format("{}/{}.png", options.report, result.name()), encodePng(picture));
+    };
+    const std::string page = renderPage(scene, view, run, pictures, save);
+    if (!saved) return saved;
+    return writeFileAside(options.report + "/index.html", page);
 }
 
 Status runRender(const CLI::App& verb, RenderOptions& options) {
@@ -124,7 +170,9 @@ Status runRender(const CLI::App& verb, RenderOptions& options) {
     RenderRun run = describe(*scene, *path, options);
     run.command = commandOf(verb, options);
     const RenderList list(*scene, view);
+    noteComparison(list, view, options, run);
     drawMethods(list, view, options, run);
+    noteHeat(options, run);
     const ShareWork share = [&](size_t count, const std::function<void(size_t)>& work) {
         forEach(count, options.threads, work);
     };

@@ -48,7 +48,8 @@ void addOutputs(CLI::App& verb, RenderOptions& options) {
         ->type_name("FILE.png");
     verb.add_option("--heat-map", options.heat_map, "write how many fragments each pixel had")->type_name("FILE.png");
     addWord(verb, "--heat", options.heat, words(kHeatNames), "which fragments heat maps count");
-    verb.add_option("--report", options.report, "write DIR/index.html, one page with every method, and DIR/render.json")
+    verb.add_option("--report", options.report,
+                    "write DIR/index.html, one page with every method, DIR/render.json and each method's picture")
         ->type_name("DIR");
     addWord(verb, "--shading", options.shading, words(kShadingNames), "of pictures");
     addWord(verb, "--shadows", options.shadows, kSwitch, "of the sun, in pictures");
@@ -115,6 +116,9 @@ Status checkApart(const RenderOptions& options) {
     if (Status good = take("--json", options.json, true); !good || options.report.empty()) return good;
     const std::filesystem::path report = options.report;
     if (Status good = take("--report", report / "index.html", true); !good) return good;
+    for (const std::string_view method : kHiddenMethodNames)
+        if (options.all() || options.method == method)
+            if (Status good = take("--report", report / (std::string(method) + ".png"), true); !good) return good;
     // The same JSON twice does no harm.
     if (placeOf(options.json) == placeOf(report / "render.json")) return success();
     return take("--report", report / "render.json", true);

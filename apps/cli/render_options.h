@@ -25,6 +25,9 @@ struct RenderOptions : RunOptions {
     bool all() const { return method == "all"; }
 };
 
+/// True if the z-buffer is among the methods asked for.
+bool drawsZBuffer(const RenderOptions& options);
+
 void addRenderOptions(CLI::App& verb, RenderOptions& options);
 
 /// Checks what single options cannot, and that all outputs have names. Errors are kUsage.

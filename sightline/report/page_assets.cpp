@@ -63,6 +63,7 @@ figcaption b { color: var(--ink); font-variant-numeric: tabular-nums; }
 .legend i { display: inline-block; width: .8em; height: .8em; border-radius: 2px; margin-right: .45em; }
 .bar { height: 12px; border-radius: 3px; margin-top: 14px; }
 .scale { display: flex; justify-content: space-between; margin-top: 4px; font-size: .92rem; color: var(--soft); }
+.heatscale { position: relative; height: 1.5em; } .heatscale span { position: absolute; white-space: nowrap; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
 th, td { text-align: right; padding: 7px 12px; border-bottom: 1px solid var(--line); white-space: nowrap; }
@@ -71,6 +72,9 @@ thead th { color: var(--soft); font-weight: 500; }
 thead tr:first-child th { text-align: center; border-bottom: 0; padding-bottom: 0; }
 .counts thead tr:first-child th { text-align: right; padding-bottom: 7px; } .counts tbody th { font-weight: 400; } .counts thead tr:first-child th:first-child { text-align: left; }
 .counts th, .counts td { padding: 6px 8px; font-size: .92rem; }
+.methods th, .methods td { padding: 5px 6px; font-size: .86rem; } .methods th { white-space: normal; }
+.methods td + td, .methods thead th + th { min-width: 5.4em; } .methods tbody th { min-width: 9em; }
+.methods thead th { vertical-align: bottom; } .methods th:first-child { position: sticky; left: 0; background: var(--card); }
 .apart { border-left: 1px solid var(--line); }
 .share { height: 14px; border-radius: 7px; background: var(--line); overflow: hidden; margin: 8px 0 4px; }
 .share div { height: 100%; background: var(--one); min-width: 2px; }
@@ -87,6 +91,7 @@ code { font: .92em ui-monospace, monospace; background: var(--note-back); paddin
 footer { padding-bottom: 30px; color: var(--soft); font-size: .92rem; }
 @media (max-width: 760px) {
   .stage, .pair { grid-template-columns: 1fr; }
+  .methods tbody th { min-width: 6.5em; max-width: 6.5em; overflow-wrap: anywhere; }
   dl { grid-template-columns: 1fr; gap: 0; } dd { margin-bottom: 8px; }
 }
 )css";

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/report/page_parts.h"
 
+#include <cmath>
+
 #include <fmt/core.h>
 
 #include "sightline/report/chart.h"
@@ -41,11 +43,19 @@ std::string heatLegend(double full) {
         const Rgb c = heatColour(i / 12.0);
         stops += fmt::format("{}rgb({},{},{})", i ? "," : "", c.x, c.y, c.z);
     }
-    for (const double at : {0.0, 0.25, 0.5, 0.75, 1.0})  // the colours stand for square roots
-        ticks += fmt::format("<span>{:.2g}{}</span>", at * at * full, at < 1 ? "" : " and more");
+    for (const double part : {0.0, 0.125, 0.25, 0.5, 1.0}) {
+        const double value = part * full, place = std::sqrt(part);  // the colours stand for square roots
+        const bool whole = value >= 10 || value == std::floor(value);
+        ticks += fmt::format("<span style=\"left:{:.2f}%;transform:translateX(-{:.0f}%)\">{}{}</span>", 100 * place,
+                             part == 0.0 ? 0.0
+                             : part < 1  ? 50.0
+                                         : 100.0,
+                             whole ? fmt::format("{:.0f}", value) : fmt::format("{:.2g}", value),
+                             part < 1 ? "" : " or more");
+    }
     return fmt::format(
         "<div class=\"bar\" style=\"background:linear-gradient(90deg,{})\" role=\"img\" aria-label=\"Colour "
-        "scale\"></div>\n<div class=\"scale\">{}</div>",
+        "scale\"></div>\n<div class=\"scale heatscale\">{}</div>",
         stops, ticks);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/core.h>
 
@@ -27,11 +28,21 @@ constexpr std::string_view kAbout[kHiddenMethods] = {
     "A ray through each sample, through a tree of boxes.",
 };
 
+/// Why maps and the timed runs' counters disagree.
+constexpr std::string_view kCountingRun =
+    " There the z-buffer looks at the fragments that its hierarchy rejects unseen, and counts them as generated; in "
+    "the "
+    "runs that were timed it never sees them.";
+
 std::string_view nameOf(HiddenMethod method) { return kHiddenMethodNames[static_cast<int>(method)]; }
 
 std::string imageTag(const Image<Rgb>& image, const std::string& what) {
     return fmt::format("<img alt=\"{}\" src=\"{}\">", escapeHtml(what),
                        dataUri(encodePng(reduced(image, kPictureSide))));
+}
+
+std::string linked(const std::string& image, const std::string& method) {
+    return fmt::format("<a href=\"{}.png\" title=\"{}.png, in full size\">{}</a>", method, method, image);
 }
 
 std::string agreementText(const Agreement& agreement) {
@@ -44,19 +55,32 @@ std::string agreementText(const Agreement& agreement) {
 std::string verdict(const RenderRun& run) {
     uint64_t wrong = 0;
     size_t exact = 0;
+    std::string apart;
     for (const MethodResult& result : run.methods) {
-        if (result.method == HiddenMethod::kPainter) continue;
+        if (const std::string why = whyInexact(run, result); !why.empty())
+            apart = fmt::format("{} samples of {} show a surface that is not the nearest: {}",
+                                number(result.agreement.wrong), result.name(), why);
+        if (!isExact(run, result)) continue;
         ++exact;
         wrong += result.agreement.wrong;
     }
-    if (exact == 0) return "";
-    const std::string what = exact == 1 ? "The method agrees" : fmt::format("All {} exact methods agree", exact);
-    return fmt::format(
-        "<div class=\"verdict {}\" role=\"status\"><strong>{}</strong><span>compared with a plain z-buffer in double, "
-        "sample by sample; differences on edges and between surfaces at one depth are counted apart</span></div>",
-        wrong == 0 ? "good" : "bad",
-        wrong == 0 ? what
-                   : fmt::format("{} samples of exact methods show a surface that is not the nearest", number(wrong)));
+    std::string text =
+        "compared with a plain z-buffer in double, sample by sample; differences on edges and between surfaces at one "
+        "depth are counted apart";
+    std::string what = exact == 1 ? "The method agrees" : fmt::format("All {} exact methods agree", exact);
+    if (wrong > 0)
+        what = fmt::format("{} samples of exact methods show a surface that is not the nearest", number(wrong));
+    if (exact == 0) {
+        if (apart.empty()) return "";
+        what = apart;
+    } else if (!apart.empty()) {
+        text = apart + ", so that it is not counted among the exact methods; " + text;
+    }
+    return fmt::format("<div class=\"verdict{}\" role=\"status\"><strong>{}</strong><span>{}</span></div>",
+                       exact == 0   ? ""
+                       : wrong == 0 ? " good"
+                                    : " bad",
+                       what, text);
 }
 
 std::string tiles(const RenderRun& run) {
@@ -65,11 +89,13 @@ std::string tiles(const RenderRun& run) {
                 fmt::format("polygons to draw, of {} triangles in view", number(run.triangles_in_view)));
     const MethodResult* fastest = nullptr;
     for (const MethodResult& result : run.methods)
-        if (result.method != HiddenMethod::kPainter && (!fastest || result.milliseconds < fastest->milliseconds))
-            fastest = &result;
+        if (isExact(run, result) && (!fastest || result.milliseconds < fastest->milliseconds)) fastest = &result;
     if (fastest)
         out += tile(fmt::format("{} ms", readable(fastest->milliseconds)),
-                    fmt::format("{}, the fastest exact method here", fastest->name()));
+                    fmt::format("{}, the fastest exact method here{}", fastest->name(),
+                                fastest->prepare_milliseconds > 0
+                                    ? ", after " + readable(fastest->prepare_milliseconds) + " ms of preparation"
+                                    : ""));
     const MethodResult* painter = run.find(HiddenMethod::kPainter);
     if (painter && !painter->image.generated.empty())
         out += tile(fmt::format("{:.2f}", statisticsOf(painter->image.generated).mean),
@@ -80,12 +106,13 @@ std::string tiles(const RenderRun& run) {
 
 /// The largest value that heat maps of all methods share.
 double commonScale(const RenderRun& run) {
-    double scale = 2;
+    double scale = 8;
     for (const MethodResult& result : run.methods) scale = std::max(scale, heatScale(countsOf(result.image, run.heat)));
     return scale;
 }
 
-std::string gallery(const RenderList& scene, const View& view, const RenderRun& run, const PictureSettings& settings) {
+std::string gallery(const RenderList& scene, const View& view, const RenderRun& run, const PictureSettings& settings,
+                    const TakePicture& take) {
     const double scale = commonScale(run);
     std::string out =
         "<section class=\"card\" aria-labelledby=\"h-images\"><h2 id=\"h-images\">The image by each "
@@ -96,12 +123,14 @@ std::string gallery(const RenderList& scene, const View& view, const RenderRun& 
         if (!drawn || drawn->surface != result.image.surface)
             picture = shadedPicture(scene, view, result.image, settings);
         drawn = &result.image;
+        if (take) take(result, picture);
         const std::vector<uint16_t>& counts = countsOf(result.image, run.heat);
         const std::string name(result.name());
+        const std::string image = imageTag(picture, "The scene drawn by " + name);
         out += fmt::format("<figure><h3>{} <span class=\"tag {}\">{}</span></h3>{}", name,
                            result.agreement.agrees() ? "good" : "bad",
                            result.agreement.agrees() ? "agrees" : number(result.agreement.wrong) + " wrong",
-                           imageTag(picture, "The scene drawn by " + name));
+                           take ? linked(image, name) : image);
         if (!counts.empty())
             out += "<div class=\"heat\">" +
                    imageTag(heatMap(countPicture(result.image, counts), scale), "Heat map of " + name) + "</div>";
@@ -113,40 +142,91 @@ std::string gallery(const RenderList& scene, const View& view, const RenderRun& 
     }
     out += "</div>";
     if (!run.methods.empty() && !countsOf(run.methods[0].image, run.heat).empty())
-        out += fmt::format("<p class=\"soft\">Below each image, fragments {} at each pixel:</p>",
-                           kHeatNames[static_cast<int>(run.heat)]) +
+        out += fmt::format("<p class=\"soft\">Below each image, fragments {} at each pixel, of a counting run.{}</p>",
+                           kHeatNames[static_cast<int>(run.heat)], kCountingRun) +
                heatLegend(scale);
     for (const LeftOut& left : run.left_out)
         out += fmt::format("<p><b>{}</b> was left out: {}.</p>", nameOf(left.method), escapeHtml(left.why));
     return out + "</section>";
 }
 
+/// Powers of ten around what methods took, and where a time lies between them.
+struct LogScale {
+    double low = 0, high = 1;  // exponents
+
+    explicit LogScale(const RenderRun& run) {
+        double least = HUGE_VAL, most = 0;
+        for (const MethodResult& result : run.methods) {
+            least = std::min(least, result.milliseconds);
+            most = std::max(most, result.milliseconds + result.prepare_milliseconds);
+        }
+        if (!(least <= most)) return;
+        // The shortest bar is to be seen, too.
+        low = std::floor(std::log10(std::max(0.5 * least, 1e-4)));
+        high = std::max(low + 1, std::ceil(std::log10(std::max(most, 1e-4))));
+    }
+    /// [%]
+    double at(double milliseconds) const {
+        const double part = (std::log10(std::max(milliseconds, 1e-6)) - low) / (high - low);
+        return 100 * std::clamp(part, 0.0, 1.0);
+    }
+};
+
+std::string costText(const MethodResult& result) {
+    std::string out = readable(result.milliseconds) + " ms";
+    if (result.prepare_milliseconds > 0) out += fmt::format(" + {} to prepare", readable(result.prepare_milliseconds));
+    return out;
+}
+
 std::string costBars(const RenderRun& run) {
-    double most = 1e-9;
-    for (const MethodResult& result : run.methods)
-        most = std::max(most, result.milliseconds + result.prepare_milliseconds);
-    std::string out;
+    const LogScale scale(run);
+    std::string out, ticks;
     bool prepared = false;
     for (const MethodResult& result : run.methods) {
-        prepared |= result.prepare_milliseconds > 0;
-        out += fmt::format(
-            "<span>{}</span><div class=\"share\"><div style=\"width:{:.3f}%\"></div><div style=\"width:{:.3f}%\">"
-            "</div></div><span>{} ms</span>",
-            result.name(), 100 * result.milliseconds / most, 100 * result.prepare_milliseconds / most,
-            readable(result.milliseconds));
+        const double frame = scale.at(result.milliseconds);
+        const double both = scale.at(result.milliseconds + result.prepare_milliseconds);
+        std::string bars = fmt::format("<div style=\"width:{:.3f}%\"></div>", frame);
+        if (result.prepare_milliseconds > 0) {
+            prepared = true;
+            bars += fmt::format("<div style=\"width:{:.3f}%\"></div>", both - frame);
+        }
+        out += fmt::format("<span>{}</span><div class=\"share\">{}</div><span>{}</span>", result.name(), bars,
+                           costText(result));
     }
+    for (double power = scale.low; power <= scale.high; ++power)
+        ticks += fmt::format("<span>{}</span>", readable(std::pow(10.0, power)));
     std::string legend = "<div class=\"legend\"><span><i class=\"one\"></i>a frame</span>";
     if (prepared) legend += "<span><i class=\"two\"></i>preparation that can be kept: building a tree</span>";
-    return "<div class=\"costs\">" + out + "</div>" + legend + "</div>";
+    return fmt::format(
+        "<div class=\"costs\">{}<span></span><div class=\"scale\">{}</div><span>ms</span></div>{}<span>each step of "
+        "the scale is ten times the one before</span></div>",
+        out, ticks, legend);
+}
+
+/// True if all methods that count at all count the same, and they are two or more.
+bool isCommon(const RenderRun& run, const CounterName& counter, uint64_t& common) {
+    size_t methods = 0;
+    common = 0;
+    for (const MethodResult& result : run.methods) {
+        const uint64_t value = counter.value(result.image.counters);
+        if (value == 0) continue;
+        if (methods++ > 0 && value != common) return false;
+        common = value;
+    }
+    return methods > 1;
 }
 
 std::string costTable(const RenderRun& run) {
-    std::string head = "<th scope=\"col\"></th>", rows;
+    std::string head = "<th scope=\"col\"></th>", rows, commons;
     for (const MethodResult& result : run.methods) head += fmt::format("<th scope=\"col\">{}</th>", result.name());
     const auto row = [&](std::string_view title, auto&& cell) {
         rows += fmt::format("<tr><th scope=\"row\">{}</th>", title);
         for (const MethodResult& result : run.methods) rows += "<td>" + cell(result) + "</td>";
         rows += "</tr>";
+    };
+    const auto counts = [&](std::string_view title, auto&& value) {
+        if (std::any_of(run.methods.begin(), run.methods.end(), [&](const MethodResult& r) { return value(r) > 0; }))
+            row(title, [&](const MethodResult& r) { return value(r) > 0 ? number(value(r)) : "–"; });
     };
     row("ms a frame", [](const MethodResult& r) { return readable(r.milliseconds); });
     row("ms of preparation", [](const MethodResult& r) { return readable(r.prepare_milliseconds); });
@@ -155,12 +235,28 @@ std::string costTable(const RenderRun& run) {
     row("… ties", [](const MethodResult& r) { return number(r.agreement.ties); });
     row("… wrong", [](const MethodResult& r) { return number(r.agreement.wrong); });
     for (const CounterName& counter : counterNames()) {
-        const auto value = [&](const MethodResult& r) { return counter.value(r.image.counters); };
-        if (std::any_of(run.methods.begin(), run.methods.end(), [&](const MethodResult& r) { return value(r) > 0; }))
-            row(counter.title, [&](const MethodResult& r) { return value(r) > 0 ? number(value(r)) : "–"; });
+        const auto* const heat = std::find(std::begin(kHeatNames), std::end(kHeatNames), counter.name);
+        if (uint64_t common = 0; heat == std::end(kHeatNames) && isCommon(run, counter, common)) {
+            commons += fmt::format("{}{} {}", commons.empty() ? "" : ", ", number(common), counter.title);
+            continue;
+        }
+        counts(counter.title, [&](const MethodResult& r) { return counter.value(r.image.counters); });
+        if (heat == std::end(kHeatNames)) continue;
+        const auto counted = [&](const MethodResult& r) {
+            return fragmentsOf(r.counted, static_cast<Heat>(heat - std::begin(kHeatNames)));
+        };
+        if (std::any_of(run.methods.begin(), run.methods.end(), [&](const MethodResult& r) {
+                return counted(r) > 0 && counted(r) != counter.value(r.image.counters);
+            }))
+            counts("… in the counting run", counted);
     }
-    return "<div class=\"scroll\"><table class=\"counts\"><thead><tr>" + head + "</tr></thead><tbody>" + rows +
-           "</tbody></table></div>";
+    std::string out = "<div class=\"scroll\" tabindex=\"0\"><table class=\"counts methods\"><thead><tr>" + head +
+                      "</tr></thead><tbody>" + rows + "</tbody></table></div>";
+    if (!commons.empty()) out += fmt::format("<p>The same for all methods that count it: {}.</p>", commons);
+    return out + fmt::format(
+                     "<p class=\"soft\">Times and counters are of the runs that were timed; bytes of depth, heat "
+                     "maps and the rows that say so, of a counting run.{}</p>",
+                     kCountingRun);
 }
 
 std::string histogramSvg(const CountStatistics& statistics, const std::string& title) {
@@ -197,12 +293,35 @@ std::string depthComplexity(const RenderRun& run) {
     const double scale = heatScale(image.generated);
     return fmt::format(
         R"html(<section class="card" aria-labelledby="h-depth"><h2 id="h-depth">Depth complexity</h2>
-<div class="pair"><figure>{}<figcaption>Fragments generated for each pixel by {}: <b>{:.2f}</b> on average,
+<div class="pair"><figure>{}<figcaption>Fragments generated for each pixel by {}, in the counting run: <b>{:.2f}</b> on average,
 <b>{}</b> at most</figcaption>{}</figure>
 <figure>{}<figcaption>Pixels by their number of fragments</figcaption></figure></div></section>)html",
         imageTag(heatMap(countPicture(image, image.generated), scale), "Heat map of depth complexity"), result->name(),
         statistics.mean, statistics.maximum, heatLegend(scale),
         histogramSvg(statistics, "Pixels by their number of fragments"));
+}
+
+/// What the hierarchy spared the z-buffer: fragments found and fragments tested, on one scale.
+std::string hierarchy(const RenderRun& run) {
+    const MethodResult* result = run.find(HiddenMethod::kZBuffer);
+    if (!result || result->image.tested.empty()) return "";
+    const HiddenCounters& did = result->image.counters;
+    if (did.hierarchy_rejected_polygons + did.hierarchy_rejected_tiles + did.hierarchy_accepted_tiles == 0) return "";
+    const HiddenImage& image = result->image;
+    const double scale = heatScale(image.generated);
+    const auto figure = [&](const std::vector<uint16_t>& counts, const std::string& what, const std::string& text) {
+        return fmt::format("<figure>{}<figcaption>{}: <b>{:.2f}</b> a pixel</figcaption></figure>",
+                           imageTag(heatMap(countPicture(image, counts), scale), what), text,
+                           statisticsOf(counts).mean);
+    };
+    return fmt::format(
+        "<section class=\"card\" aria-labelledby=\"h-hierarchy\"><h2 id=\"h-hierarchy\">What the z-buffer’s "
+        "hierarchy spared</h2><div class=\"pair\">{}{}</div>{}<p class=\"soft\">Both of the counting run. What is "
+        "missing "
+        "on the right was rejected or accepted by whole polygons and tiles.</p></section>",
+        figure(image.generated, "Heat map of fragments generated",
+               "Generated, those included that the hierarchy rejects unseen"),
+        figure(image.tested, "Heat map of fragments tested", "Tested one by one against a depth"), heatLegend(scale));
 }
 
 std::string depthTraffic(const RenderRun& run) {
@@ -280,7 +399,7 @@ std::string howMade(const RenderRun& run) {
                "single-sided back faces are dropped; masked surfaces are drawn whole; blended and "
                "transmissive ones are not drawn");
     const uint32_t threads = run.settings.threads;
-    out += row("Times", fmt::format("{}, on {}; heat maps and depth bytes are from a run of their own",
+    out += row("Times", fmt::format("{}, on {}; heat maps and depth bytes are of a counting run of its own",
                                     run.repeat == 1 ? "one run" : fmt::format("median of {} runs", run.repeat),
                                     threads == 1 ? "one thread" : fmt::format("up to {} threads", threads)));
     out += row("Reference", "a plain z-buffer in double, one thread");
@@ -290,8 +409,8 @@ std::string howMade(const RenderRun& run) {
 
 }  // namespace
 
-std::string renderPage(const RenderList& scene, const View& view, const RenderRun& run,
-                       const PictureSettings& settings) {
+std::string renderPage(const RenderList& scene, const View& view, const RenderRun& run, const PictureSettings& settings,
+                       const TakePicture& take) {
     const std::string name = sceneTitle(run.scene);
     std::string page = pageHead(name);
     page += fmt::format(
@@ -299,10 +418,11 @@ std::string renderPage(const RenderList& scene, const View& view, const RenderRu
         "removed by {} method{}</p>{}</header><main>",
         name, number(run.objects), number(run.triangles), run.width, run.height, run.methods.size(),
         run.methods.size() == 1 ? "" : "s", verdict(run));
-    page += tiles(run) + gallery(scene, view, run, settings) + differences(scene, view, run, settings);
+    page += tiles(run) + gallery(scene, view, run, settings, take) + differences(scene, view, run, settings);
     page += "<section class=\"card\" aria-labelledby=\"h-cost\"><h2 id=\"h-cost\">What each method cost</h2>" +
             costBars(run) + costTable(run) + "</section>";
-    page += depthComplexity(run) + depthTraffic(run) + zFighting(scene, view, run, settings) + howMade(run);
+    page += depthComplexity(run) + hierarchy(run) + depthTraffic(run) + zFighting(scene, view, run, settings) +
+            howMade(run);
     return page + "</main><footer>Made by Sightline.</footer></body></html>\n";
 }
 

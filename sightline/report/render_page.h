@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "sightline/report/render_list.h"
@@ -10,9 +11,13 @@
 
 namespace sightline {
 
+/// Takes a method's picture in full size.
+using TakePicture = std::function<void(const MethodResult&, const Image<Rgb>&)>;
+
 /// The whole page. It needs no network: pictures and style lie in it.
-/// @param run  with counts
-std::string renderPage(const RenderList& scene, const View& view, const RenderRun& run,
-                       const PictureSettings& settings);
+/// @param run   with counts
+/// @param take  is to save each method's picture beside the page as METHOD.png, which is linked to; null: no links
+std::string renderPage(const RenderList& scene, const View& view, const RenderRun& run, const PictureSettings& settings,
+                       const TakePicture& take = nullptr);
 
 }  // namespace sightline

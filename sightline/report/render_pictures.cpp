@@ -84,11 +84,13 @@ Image<float> countPicture(const HiddenImage& image, std::span<const uint16_t> co
 }
 
 double heatScale(std::span<const uint16_t> counts) {
-    if (counts.empty()) return 1;
+    if (counts.empty()) return 8;
     std::vector<uint16_t> sorted(counts.begin(), counts.end());
     const auto place = sorted.begin() + static_cast<ptrdiff_t>((sorted.size() - 1) * 499 / 500);
     std::nth_element(sorted.begin(), place, sorted.end());
-    return std::max<double>(2.0, *place);
+    for (double scale = 8;; scale *= 10)
+        for (const double factor : {1.0, 2.0, 5.0})
+            if (factor * scale >= *place) return factor * scale;
 }
 
 Image<Rgb> differencePicture(const Image<Rgb>& shaded, const HiddenImage& a, const HiddenImage& b) {

@@ -33,7 +33,8 @@ Result<Image<Rgb>> idPicture(const RenderList& scene, const HiddenImage& image);
 /// Counts of samples as an image, top row first.
 Image<float> countPicture(const HiddenImage& image, std::span<const uint16_t> counts);
 
-/// The value that is shown brightest: one sample in 500 may lie above it.
+/// The value that is shown brightest: 8, 16, 40, 80, 160 and so on, so that its ticks are whole. One sample in 500 may
+/// lie above it.
 double heatScale(std::span<const uint16_t> counts);
 
 /// A pale picture with the pixels marked where two images show different surfaces.

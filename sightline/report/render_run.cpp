@@ -23,6 +23,9 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kPainterKeys[] = {"centre", "farthest"};
 constexpr std::string_view kFreeSamples[] = {"check", "segments", "bits"};
 constexpr std::string_view kRayTracers[] = {"bvh", "embree"};
+constexpr std::string_view kClippings[] = {"guard-band", "frustum", "clipless"};
+constexpr std::string_view kComparisons[] = {"never",   "less",          "less-equal", "equal",
+                                             "greater", "greater-equal", "not-equal",  "always"};
 
 template <class T>
 std::string_view nameIn(std::span<const std::string_view> names, T value) {
@@ -33,6 +36,32 @@ double median(std::vector<uint64_t>& nanoseconds) {
     std::sort(nanoseconds.begin(), nanoseconds.end());
     const size_t n = nanoseconds.size();
     return 0.5e-6 * static_cast<double>(nanoseconds[n / 2] + nanoseconds[(n - 1) / 2]);
+}
+
+/// By the names of the options that it is asked for with.
+Json settingsJson(const RenderRun& run) {
+    const RenderSettings& settings = run.settings;
+    const DepthSettings& depth = settings.depth;
+    const bool clockwise = settings.projector.front_face == FrontFace::kClockwise;
+    return {{"threads", settings.threads},
+            {"repeat", run.repeat},
+            {"painter_key", nameIn(kPainterKeys, settings.painter_key)},
+            {"free_samples", nameIn(kFreeSamples, settings.free_samples)},
+            {"rays", nameIn(kRayTracers, settings.ray_tracer)},
+            {"clipping", nameIn(kClippings, settings.projector.clipping)},
+            {"front", clockwise ? "cw" : "ccw"},
+            {"back_faces", settings.projector.cull_back_faces ? "drop" : "draw"},
+            {"depth_format", nameIn(kDepthFormatNames, depth.format)},
+            {"depth_comparison", depth.comparison ? nameIn(kComparisons, *depth.comparison) : "nearer"},
+            {"depth_write", depth.write},
+            {"polygon_offset", {depth.offset_factor, depth.offset_units}},
+            {"early_z", depth.early_test},
+            {"hierarchical_z", depth.hierarchy},
+            {"fast_clear", depth.fast_clear},
+            {"depth_compression", depth.compression},
+            {"heat", nameIn(kHeatNames, run.heat)},
+            {"shading", nameIn(kShadingNames, run.shading)},
+            {"shadows", run.shadows}};
 }
 
 Json methodJson(const MethodResult& result) {
@@ -50,6 +79,7 @@ Json methodJson(const MethodResult& result) {
         const std::vector<uint16_t>& counts = countsOf(result.image, static_cast<Heat>(heat));
         if (counts.empty()) continue;
         const CountStatistics statistics = statisticsOf(counts);
+        out["counting_run"][std::string(kHeatNames[heat])] = fragmentsOf(result.counted, static_cast<Heat>(heat));
         out["per_sample"][std::string(kHeatNames[heat])] = {
             {"mean", statistics.mean}, {"maximum", statistics.maximum}, {"histogram", statistics.histogram}};
     }
@@ -61,6 +91,11 @@ Json methodJson(const MethodResult& result) {
 const std::vector<uint16_t>& countsOf(const HiddenImage& image, Heat heat) {
     const std::vector<uint16_t>* const counts[kHeats] = {&image.generated, &image.tested, &image.passed, &image.shaded};
     return *counts[static_cast<int>(heat)];
+}
+
+uint64_t fragmentsOf(const HiddenCounters& counters, Heat heat) {
+    const uint64_t all[kHeats] = {counters.generated, counters.tested, counters.passed, counters.shaded};
+    return all[static_cast<int>(heat)];
 }
 
 CountStatistics statisticsOf(std::span<const uint16_t> counts) {
@@ -147,6 +182,20 @@ const MethodResult* RenderRun::find(HiddenMethod method) const {
     return nullptr;
 }
 
+bool isExact(const RenderRun& run, const MethodResult& result) {
+    return result.method != HiddenMethod::kPainter && whyInexact(run, result).empty();
+}
+
+std::string whyInexact(const RenderRun& run, const MethodResult& result) {
+    const DepthSettings& depth = run.settings.depth;
+    if (result.method != HiddenMethod::kZBuffer || result.agreement.agrees()) return {};
+    if (run.settings.projector.clipping == Clipping::kClipless) return {};
+    if (depth.comparison || !depth.write || depth.offset_factor != 0 || depth.offset_units != 0)
+        return "its depth comparison, write or offset asks for other surfaces than the nearest";
+    if (depth.format == DepthFormat::kReversedFloat) return {};
+    return fmt::format("{} is too coarse for them", nameIn(kDepthFormatNames, depth.format));
+}
+
 std::string whyImpractical(const RenderRun& run, HiddenMethod method) {
     const auto beyond = [](uint64_t count, uint64_t most, std::string_view what) {
         if (count <= most) return std::string();
@@ -189,6 +238,7 @@ MethodResult drawMethod(const RenderList& scene, const View& view, RenderSetting
     const HiddenCounters totals = result.image.counters;
     result.image = render(scene.list(), view, settings);
     HiddenCounters& counters = result.image.counters;
+    result.counted = counters;
     const uint64_t plain = counters.depth_bytes, compressed = counters.depth_bytes_compressed;
     counters = totals;
     counters.depth_bytes = plain;
@@ -233,18 +283,7 @@ std::string renderJson(const RenderRun& run) {
     out["height"] = run.height;
     out["frame"] = run.frame;
     out["camera"] = cameraJson(run.camera);
-    out["settings"] = {{"threads", run.settings.threads},
-                       {"repeat", run.repeat},
-                       {"painter_key", nameIn(kPainterKeys, run.settings.painter_key)},
-                       {"free_samples", nameIn(kFreeSamples, run.settings.free_samples)},
-                       {"rays", nameIn(kRayTracers, run.settings.ray_tracer)},
-                       {"depth_format", nameIn(kDepthFormatNames, run.settings.depth.format)},
-                       {"early_z", run.settings.depth.early_test},
-                       {"hierarchical_z", run.settings.depth.hierarchy},
-                       {"fast_clear", run.settings.depth.fast_clear},
-                       {"depth_compression", run.settings.depth.compression},
-                       {"shading", nameIn(kShadingNames, run.shading)},
-                       {"shadows", run.shadows}};
+    out["settings"] = settingsJson(run);
     out["methods"] = Json::array();
     for (const MethodResult& result : run.methods) out["methods"].push_back(methodJson(result));
     out["left_out"] = Json::array();

@@ -47,7 +47,8 @@ HiddenImage plainZBuffer(const DrawList& list, const View& view, const Projector
 
 struct MethodResult {
     HiddenMethod method = HiddenMethod::kZBuffer;
-    HiddenImage image;
+    HiddenImage image;                ///< its counters are those of the timed runs, but for bytes of depth
+    HiddenCounters counted;           ///< of the run that filled the counts of samples; zero without
     double milliseconds = 0;          ///< median over the repeats
     double prepare_milliseconds = 0;  ///< what could be kept from frame to frame; not in the above
     Agreement agreement;              ///< with plainZBuffer()'s image
@@ -91,11 +92,22 @@ struct RenderRun {
     const MethodResult* find(HiddenMethod method) const;
 };
 
+/// Why the z-buffer's samples that are wrong are so by what was asked for, and no failure of the method: a coarse depth
+/// format, or another comparison than for what is nearer. Empty if that is no reason, or nothing is wrong.
+std::string whyInexact(const RenderRun& run, const MethodResult& result);
+
+/// False for the painter's algorithm, and for a z-buffer that is wrong with a reason.
+bool isExact(const RenderRun& run, const MethodResult& result);
+
 /// Why a method is not practical for what is in view; empty if it is. Newell's comparisons may grow with the square of
 /// the polygons, and a BSP tree takes some kilobytes a triangle, whether it is seen or not.
 std::string whyImpractical(const RenderRun& run, HiddenMethod method);
 
-/// Draws with one method: `repeat` times for the time, and once more where counts are wanted.
+/// A counter of fragments, of which there are counts of samples.
+uint64_t fragmentsOf(const HiddenCounters& counters, Heat heat);
+
+/// Draws with one method: `repeat` times for the time, and once more where counts are wanted. In that run the z-buffer
+/// looks at the fragments that its hierarchy rejects unseen, and counts them as generated.
 MethodResult drawMethod(const RenderList& scene, const View& view, RenderSettings settings, HiddenMethod method,
                         int repeat);
 

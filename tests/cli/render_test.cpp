@@ -6,6 +6,7 @@
 
 #include "sightline/hidden/render.h"
 #include "sightline/report/png.h"
+#include "sightline/report/render_run.h"
 #include "tests/cli/tool.h"
 
 #define STBI_ONLY_PNG
@@ -145,6 +146,11 @@ TEST_F(Render, AllMethodsFillTheReport) {
     // The picture is the z-buffer's.
     ASSERT_EQ(run("render " + kCity + "--method zbuffer -o z.png").exit_code, 0);
     EXPECT_EQ(read(path("all.png")), read(path("z.png")));
+    for (const std::string_view name : kHiddenMethodNames) {
+        EXPECT_EQ(decode("deep/out/" + std::string(name) + ".png").width, 160) << name;
+        EXPECT_NE(page.find("href=\"" + std::string(name) + ".png\""), std::string::npos) << name;
+    }
+    EXPECT_EQ(read(path("deep/out/zbuffer.png")), read(path("z.png")));
 }
 
 TEST_F(Render, JsonTellsWhatWasDrawn) {
@@ -162,6 +168,14 @@ TEST_F(Render, JsonTellsWhatWasDrawn) {
     EXPECT_EQ(painter["counters"]["generated"], painter["counters"]["shaded"]);
     const double mean = painter["per_sample"]["generated"]["mean"];
     EXPECT_NEAR(mean * 160 * 90, painter["counters"]["generated"].get<double>(), 0.5);
+    // Counts of samples add up to those of the run that they are from.
+    const json zbuffer = render(kCity)["methods"][0];
+    for (const std::string_view heat : kHeatNames) {
+        const double counted = zbuffer["counting_run"][std::string(heat)];
+        EXPECT_NEAR(zbuffer["per_sample"][std::string(heat)]["mean"].get<double>() * 160 * 90, counted, 0.5) << heat;
+    }
+    EXPECT_EQ(zbuffer["counting_run"]["generated"], painter["counters"]["generated"]);
+    EXPECT_LT(zbuffer["counters"]["generated"], painter["counters"]["generated"]);
     // The camera can be used again.
     write("path.json", json{{"frames", {out["camera"]}}}.dump());
     ASSERT_EQ(run("render " + kCity + "--ids a.png").exit_code, 0);
@@ -201,6 +215,66 @@ TEST_F(Render, ZBufferOptionsReachTheZBuffer) {
     EXPECT_EQ(zbuffer("--front cw")["agreement"]["wrong"], 0);
 }
 
+TEST_F(Render, JsonRepeatsTheSettings) {
+    json settings = render(kCity)["settings"];
+    EXPECT_EQ(settings["clipping"], "guard-band");
+    EXPECT_EQ(settings["depth_comparison"], "nearer");
+    EXPECT_EQ(settings["heat"], "generated");
+    settings = render(kCity +
+                      "--clipping frustum --front cw --back-faces draw --depth-comparison greater-equal "
+                      "--depth-write off --polygon-offset 1.5 -2 --heat passed")["settings"];
+    EXPECT_EQ(settings["clipping"], "frustum");
+    EXPECT_EQ(settings["front"], "cw");
+    EXPECT_EQ(settings["back_faces"], "draw");
+    EXPECT_EQ(settings["depth_comparison"], "greater-equal");
+    EXPECT_EQ(settings["depth_write"], false);
+    EXPECT_EQ(settings["polygon_offset"], (json{1.5, -2.0}));
+    EXPECT_EQ(settings["heat"], "passed");
+}
+
+TEST_F(Render, NotesWhatMakesAPictureEmpty) {
+    const auto notes = [&](const std::string& options) {
+        const Outcome outcome = run("render " + kCity + options);
+        EXPECT_EQ(outcome.exit_code, 0) << options;
+        const size_t at = outcome.err.find("note: ");
+        return at == std::string::npos ? std::string() : outcome.err.substr(at);
+    };
+    EXPECT_EQ(notes("--depth-comparison greater"), "");
+    EXPECT_EQ(notes("--depth-comparison always"), "");
+    EXPECT_EQ(notes("--depth-comparison less --depth-format unorm24"), "");
+    EXPECT_EQ(notes("--depth-comparison less --method painter"), "");
+    for (const char* options : {"--depth-comparison less", "--depth-comparison less-equal --method all",
+                                "--depth-comparison greater --depth-format unorm24"}) {
+        const std::string note = notes(options);
+        EXPECT_EQ(note.rfind("note: --depth-comparison", 0), 0u) << options;
+        EXPECT_NE(note.find("empty"), std::string::npos) << options;
+    }
+    EXPECT_EQ(notes("--heat tested --heat-map a.png"), "");
+    EXPECT_EQ(notes("--heat tested --method painter -o a.png"), "");
+    EXPECT_EQ(notes("--heat tested --heat-map a.png --method all"), "");
+    EXPECT_EQ(notes("--heat tested --heat-map a.png --method painter").rfind("note: --heat tested", 0), 0u);
+}
+
+TEST_F(Render, CliplessDrawsTheSameAndTakesNoDepthOptions) {
+    EXPECT_EQ(render(kCity + "--clipping clipless")["methods"][0]["agreement"]["wrong"], 0);
+    for (const char* option : {"--depth-format unorm16", "--depth-comparison less", "--depth-write off",
+                               "--polygon-offset 1 1", "--hierarchical-z off"})
+        expectError("render city:1:10 --clipping clipless " + std::string(option), 2, "--clipping clipless");
+    EXPECT_EQ(run("render " + kCity + "--clipping clipless --method painter --depth-format unorm16").exit_code, 0);
+}
+
+TEST_F(Render, SaysThatAFormatIsTooCoarse) {
+    const Outcome outcome =
+        run("render city:1:2000 --frames 6 --frame 4 --size 320x180 --method all --depth-format unorm16 --report out");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("wrong: unorm16 is too coarse for them"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("ms to prepare"), std::string::npos) << outcome.out;
+    const std::string page = read(path("out/index.html"));
+    EXPECT_NE(page.find("All 5 exact methods agree"), std::string::npos);
+    EXPECT_NE(page.find("unorm16 is too coarse for them, so that it is not counted"), std::string::npos);
+    EXPECT_EQ(page.find("zbuffer, the fastest exact method"), std::string::npos);
+}
+
 TEST_F(Render, WrongArgumentsExitWithTwo) {
     expectError("render", 2, "SCENE");
     expectError("render city:1:10 --method magic", 2, "magic");
@@ -229,6 +303,7 @@ TEST_F(Render, RefusesToWriteTwoThingsIntoOneFile) {
     expectError(city + "-o a --json a", 2, "-o");
     expectError(city + "-o out/index.html --report out", 2, "out/index.html");
     expectError(city + "--ids out/render.json --report out", 2, "out/render.json");
+    expectError(city + "-o out/zbuffer.png --report out", 2, "out/zbuffer.png");
     EXPECT_FALSE(std::filesystem::exists(path("out")));
     write("cameras.json", R"({"near": 0.1, "frames": [{"eye": [0, 2, 9], "target": [0, 0, 0]}]})");
     const std::string cameras = read(path("cameras.json"));

@@ -129,6 +129,15 @@ TEST(RenderPictures, AreTheSameForAnySharingOfTheWork) {
               shadedPicture(made.list, made.view, made.image, backwards).pixels);
 }
 
+TEST(RenderPictures, HeatScalesHaveWholeTicks) {
+    EXPECT_EQ(heatScale({}), 8);
+    for (const auto& [most, scale] :
+         {std::pair{2, 8}, {8, 8}, {9, 16}, {17, 40}, {41, 80}, {81, 160}, {60000, 80000}}) {
+        EXPECT_EQ(heatScale(std::vector<uint16_t>(100, static_cast<uint16_t>(most))), scale) << most;
+        EXPECT_EQ(scale % 8, 0);
+    }
+}
+
 TEST(RenderRun, StatisticsCountSamples) {
     const std::vector<uint16_t> counts = {0, 0, 1, 3, 100};
     const CountStatistics statistics = statisticsOf(counts);
@@ -211,6 +220,38 @@ TEST(RenderPage, ShowsWhereAMethodIsWrong) {
     EXPECT_TRUE(contains(page, "verdict bad"));
     EXPECT_TRUE(contains(page, "Where an image is wrong"));
     EXPECT_TRUE(contains(page, "Wrong pixels of warnock"));
+}
+
+TEST(RenderPage, BlamesACoarseFormatAndNotTheMethod) {
+    Made made;
+    made.add(HiddenMethod::kWarnock);
+    MethodResult& result = made.add(HiddenMethod::kZBuffer);
+    result.agreement.wrong = 12;
+    EXPECT_TRUE(isExact(made.run, made.run.methods[1]));
+    EXPECT_TRUE(contains(renderPage(made.list, made.view, made.run, made.settings), "verdict bad"));
+    made.run.settings.depth.format = DepthFormat::kUnorm16;
+    EXPECT_FALSE(isExact(made.run, made.run.methods[1]));
+    const std::string page = renderPage(made.list, made.view, made.run, made.settings);
+    EXPECT_TRUE(contains(page, "verdict good"));
+    EXPECT_TRUE(contains(page, "12 samples of zbuffer"));
+    EXPECT_TRUE(contains(page, "unorm16 is too coarse"));
+    made.run.methods[0].agreement.wrong = 3;  // no format excuses another method
+    EXPECT_TRUE(contains(renderPage(made.list, made.view, made.run, made.settings), "verdict bad"));
+}
+
+TEST(RenderPage, LinksPicturesThatAreTaken) {
+    Made made;
+    made.add(HiddenMethod::kPainter);
+    made.add(HiddenMethod::kZBuffer);
+    EXPECT_FALSE(contains(renderPage(made.list, made.view, made.run, made.settings), "painter.png"));
+    std::string taken;
+    const std::string page =
+        renderPage(made.list, made.view, made.run, made.settings, [&](const MethodResult& r, const Image<Rgb>& p) {
+            taken += std::string(r.name()) + " ";
+            EXPECT_EQ(p.width, made.view.width);
+        });
+    EXPECT_EQ(taken, "painter zbuffer ");
+    EXPECT_TRUE(contains(page, "href=\"painter.png\""));
 }
 
 TEST(RenderPage, MapsFightsOfDepths) {
