@@ -91,7 +91,9 @@ code { font: .92em ui-monospace, monospace; background: var(--note-back); paddin
 footer { padding-bottom: 30px; color: var(--soft); font-size: .92rem; }
 @media (max-width: 760px) {
   .stage, .pair { grid-template-columns: 1fr; }
-  .methods tbody th { min-width: 6.5em; max-width: 6.5em; overflow-wrap: anywhere; }
+  .methods tbody th { min-width: 7.8em; overflow-wrap: break-word; }
+  .costs { grid-template-columns: 1fr max-content; grid-auto-flow: dense; gap: 2px 14px; }
+  .costs .share, .costs .scale { grid-column: 1 / -1; margin-bottom: 8px; }
   dl { grid-template-columns: 1fr; gap: 0; } dd { margin-bottom: 8px; }
 }
 )css";

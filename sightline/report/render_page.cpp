@@ -28,13 +28,17 @@ constexpr std::string_view kAbout[kHiddenMethods] = {
     "A ray through each sample, through a tree of boxes.",
 };
 
-/// Why maps and the timed runs' counters disagree.
-constexpr std::string_view kCountingRun =
-    " There the z-buffer looks at the fragments that its hierarchy rejects unseen, and counts them as generated; in "
-    "the "
-    "runs that were timed it never sees them.";
-
 std::string_view nameOf(HiddenMethod method) { return kHiddenMethodNames[static_cast<int>(method)]; }
+
+/// Why maps and the timed runs' counters disagree, if they do.
+std::string_view countingNote(const RenderRun& run) {
+    const MethodResult* result = run.find(HiddenMethod::kZBuffer);
+    if (!result || result->counted.generated == result->image.counters.generated) return "";
+    return " There the z-buffer looks at the fragments that its hierarchy rejects unseen, and counts them as "
+           "generated; "
+           "in the runs that were timed it never sees them. It also accepts partly covered tiles there, so that fewer "
+           "fragments are tested one by one.";
+}
 
 std::string imageTag(const Image<Rgb>& image, const std::string& what) {
     return fmt::format("<img alt=\"{}\" src=\"{}\">", escapeHtml(what),
@@ -143,7 +147,7 @@ std::string gallery(const RenderList& scene, const View& view, const RenderRun& 
     out += "</div>";
     if (!run.methods.empty() && !countsOf(run.methods[0].image, run.heat).empty())
         out += fmt::format("<p class=\"soft\">Below each image, fragments {} at each pixel, of a counting run.{}</p>",
-                           kHeatNames[static_cast<int>(run.heat)], kCountingRun) +
+                           kHeatNames[static_cast<int>(run.heat)], countingNote(run)) +
                heatLegend(scale);
     for (const LeftOut& left : run.left_out)
         out += fmt::format("<p><b>{}</b> was left out: {}.</p>", nameOf(left.method), escapeHtml(left.why));
@@ -256,7 +260,7 @@ std::string costTable(const RenderRun& run) {
     return out + fmt::format(
                      "<p class=\"soft\">Times and counters are of the runs that were timed; bytes of depth, heat "
                      "maps and the rows that say so, of a counting run.{}</p>",
-                     kCountingRun);
+                     countingNote(run));
 }
 
 std::string histogramSvg(const CountStatistics& statistics, const std::string& title) {

@@ -239,6 +239,34 @@ TEST(RenderPage, BlamesACoarseFormatAndNotTheMethod) {
     EXPECT_TRUE(contains(renderPage(made.list, made.view, made.run, made.settings), "verdict bad"));
 }
 
+TEST(RenderPage, SaysWhereCountingAndTimedRunsDisagree) {
+    Made made;
+    MethodResult& result = made.add(HiddenMethod::kZBuffer);
+    result.image.counters.generated = result.counted.generated = 1000;
+    result.image.counters.hierarchy_rejected_tiles = 1;
+    std::string page = renderPage(made.list, made.view, made.run, made.settings);
+    EXPECT_FALSE(contains(page, "… in the counting run"));
+    EXPECT_TRUE(contains(page, "hierarchy spared"));
+    result.image.counters.generated = 700;
+    page = renderPage(made.list, made.view, made.run, made.settings);
+    EXPECT_TRUE(contains(page, "… in the counting run"));
+    EXPECT_TRUE(contains(page, "rejects unseen, and counts them as generated"));
+}
+
+TEST(RenderPage, ScaleOfCostIsLogarithmicAndShowsPreparationWhereThereIsSome) {
+    Made made;
+    made.add(HiddenMethod::kZBuffer).milliseconds = 1;
+    made.add(HiddenMethod::kRaycast).milliseconds = 100;
+    std::string page = renderPage(made.list, made.view, made.run, made.settings);
+    EXPECT_TRUE(contains(page, "<span>0.1</span><span>1</span><span>10</span><span>100</span>"));
+    EXPECT_TRUE(contains(page, "width:33.333%"));
+    EXPECT_FALSE(contains(page, "to prepare"));
+    made.run.methods[1].prepare_milliseconds = 900;
+    page = renderPage(made.list, made.view, made.run, made.settings);
+    EXPECT_TRUE(contains(page, "100 ms + 900 to prepare"));
+    EXPECT_TRUE(contains(page, "width:75.000%\"></div><div style=\"width:25.000%"));
+}
+
 TEST(RenderPage, LinksPicturesThatAreTaken) {
     Made made;
     made.add(HiddenMethod::kPainter);
