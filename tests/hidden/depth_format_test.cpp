@@ -149,6 +149,9 @@ TEST(DepthFormat, TellsApartAsManyPairsAsWasMeasured) {
     // At 1e-3 the table's 9.6 % for the first two are of a projection in single precision: see below.
     constexpr Row kRows[] = {{DepthFormat::kFloat, {8.2, 26.9, 46.7}},
                              {DepthFormat::kUnorm24, {8.2, 26.9, 46.7}},
+                             {DepthFormat::kUnorm16, {55.0, 75.0, 94.3}},
+                             {DepthFormat::kUnorm32, {0, 0, 2.4}},
+                             {DepthFormat::kLinear, {8.3, 27.0, 46.9}},
                              {DepthFormat::kReversedFloat, {0, 0, 0}},
                              {DepthFormat::kInverse, {0, 0, 0}},
                              {DepthFormat::kW, {0, 0, 0}},
