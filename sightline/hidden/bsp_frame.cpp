@@ -36,7 +36,7 @@ ScreenWindow windowAround(std::span<const glm::dvec2> outline, double room, int3
 
 BspFrame::BspFrame(const BspScene& scene, const HiddenInput& input, HiddenImage& image)
     : scene_(scene),
-      projector_(input.view, input.grid()),
+      projector_(input.projector()),
       polygons_(projectAll(input.list, projector_)),
       polygon_of_(input.list.surfaces(), HiddenImage::kNone),
       seen_plane_(scene.tree.nodes.size() + scene.overlay.nodes.size(), HiddenImage::kNone),

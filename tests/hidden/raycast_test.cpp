@@ -173,6 +173,27 @@ TEST(Raycast, ShowsTheSameForAnyNumberOfThreads) {
     }
 }
 
+TEST(Render, FrontsAndBackFacesAreThoseAskedForByEveryExactMethod) {
+    MadeList made = clutter(8, 200);
+    std::vector<DrawItem> items = made.items();
+    for (DrawItem& item : items) item.double_sided = {};
+    const DrawList list(items);
+    for (const FrontFace front : {FrontFace::kCounterClockwise, FrontFace::kClockwise})
+        for (const bool drop : {false, true}) {
+            RenderSettings settings = rays();
+            settings.projector.front_face = front;
+            settings.projector.cull_back_faces = drop;
+            AgreementBands bands = bandsOf(1e-5, 0x1p-22);
+            bands.projector = settings.projector;
+            const HiddenImage truth = render(list, madeView(), settings);
+            for (int method = 1; method < kHiddenMethods; ++method) {
+                settings.method = static_cast<HiddenMethod>(method);
+                const HiddenImage image = render(list, madeView(), settings);
+                EXPECT_EQ(compareImages(list, madeView(), truth, image, bands).wrong, 0u) << method << drop;
+            }
+        }
+}
+
 TEST(Threads, AreFewerWhereTheSystemGivesNoMore) {
     const MadeList made = clutter(6, 500);
     const std::vector<DrawItem> items = made.items();
