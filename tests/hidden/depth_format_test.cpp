@@ -156,7 +156,7 @@ TEST(DepthFormat, TellsApartAsManyPairsAsWasMeasured) {
         for (int i = 0; i < 3; ++i) {
             const DepthCodec codec(row.format, kWide);
             const double measured = indistinct(kGaps[i], codec);
-            // What begins within half a step of the far plane ends beyond it, and both are stored as the plane: one pair here.
+            // What begins within half a step of the far plane ends beyond it; both are stored as the plane: one pair here.
             const double at_far_plane = row.format == DepthFormat::kUnorm32 ? 5e-4 : 0;
             EXPECT_NEAR(measured, row.percent[i], 0.1 * row.percent[i] + at_far_plane)
                 << nameOf(codec) << " gap " << kGaps[i];

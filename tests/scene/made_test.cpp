@@ -32,7 +32,7 @@ double distanceTo(const Mesh& mesh, const glm::dvec3& direction) {
     return std::numeric_limits<double>::infinity();
 }
 
-/// Which of two objects is seen in front of the other anywhere, by rays over the image: bit 0 the first, bit 1 the second.
+/// Which of two objects is in front of the other anywhere, by rays over the image: bit 0 the first, bit 1 the second.
 int whoIsInFront(const Scene& scene, size_t first, size_t second) {
     int seen = 0;
     for (int row = -120; row <= 120; ++row)
