@@ -124,16 +124,6 @@ Status checkApart(const RenderOptions& options) {
     return take("--report", report / "render.json", true);
 }
 
-/// The clipless z-buffer is one of its own, in double: what it cannot do is better refused than passed over.
-Status checkClipless(const CLI::App& verb, const RenderOptions& options) {
-    if (options.clipping != "clipless" || !drawsZBuffer(options)) return success();
-    for (const char* option : {"--depth-format", "--depth-comparison", "--depth-write", "--polygon-offset", "--early-z",
-                               "--hierarchical-z", "--fast-clear", "--depth-compression"})
-        if (verb.count(option) > 0)
-            return usage(fmt::format("{}: not with --clipping clipless, which keeps depths in double", option));
-    return success();
-}
-
 }  // namespace
 
 bool drawsZBuffer(const RenderOptions& options) { return options.all() || methodOf(options) == HiddenMethod::kZBuffer; }
@@ -169,7 +159,6 @@ Status finishRender(const CLI::App& verb, RenderOptions& options) {
     }
     for (const double value : options.polygon_offset)
         if (!std::isfinite(value)) return usage("--polygon-offset: not two finite numbers");
-    if (Status good = checkClipless(verb, options); !good) return good;
     return checkApart(options);
 }
 

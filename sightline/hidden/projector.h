@@ -34,8 +34,8 @@ struct ProjectorCounters {
 enum class Clipping : uint8_t {
     kGuardBand,  ///< cut at the near and the far plane; at the sides only if they reach beyond a band far outside
     kFrustum,    ///< cut at all six planes
-    kClipless,   ///< not cut: edge functions in homogeneous space, by the z-buffer alone (drawClipless(),
-                 ///< projectHomogeneous()); other methods clip at the guard band
+    kClipless,   ///< not cut: edge functions in homogeneous space, by the z-buffer alone
+                 ///< (projectHomogeneous()); other methods clip at the guard band
 };
 
 struct ProjectorSettings {

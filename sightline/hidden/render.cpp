@@ -4,10 +4,8 @@
 
 #include <chrono>
 
-#include "sightline/base/assert.h"
 #include "sightline/hidden/bsp_back_to_front.h"
 #include "sightline/hidden/bsp_front_to_back.h"
-#include "sightline/hidden/clipless.h"
 #include "sightline/hidden/newell.h"
 #include "sightline/hidden/painter.h"
 #include "sightline/hidden/raycast.h"
@@ -36,13 +34,7 @@ HiddenImage render(const DrawList& list, const View& view, const RenderSettings&
     if (settings.want_counts)
         for (std::vector<uint16_t>* counts : {&image.generated, &image.tested, &image.passed, &image.shaded})
             counts->assign(samples, 0);
-    if (isUsable(view)) {
-        const bool clipless =
-            settings.method == HiddenMethod::kZBuffer && settings.projector.clipping == Clipping::kClipless;
-        const Draw draw = clipless ? drawClipless : kMethods[static_cast<int>(settings.method)];
-        SIGHTLINE_ASSERT(draw != nullptr);
-        draw({list, view, settings}, image);
-    }
+    if (isUsable(view)) kMethods[static_cast<int>(settings.method)]({list, view, settings}, image);
     const auto spent = std::chrono::steady_clock::now() - start;
     image.counters.nanoseconds =
         static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count()) -

@@ -2,35 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/hidden/scan.h"
 
+#include "sightline/math/expansion.h"
+
 namespace sightline {
 namespace {
-
-/// A sum kept without rounding: components that do not overlap, smallest first.
-struct Expansion {
-    double parts[12];
-    int count = 0;
-
-    void add(double value) {
-        int kept = 0;
-        for (int i = 0; i < count; ++i) {
-            const double sum = value + parts[i];
-            const double virtual_part = sum - value;
-            const double error = (value - (sum - virtual_part)) + (parts[i] - virtual_part);
-            if (error != 0) parts[kept++] = error;
-            value = sum;
-        }
-        parts[kept++] = value;
-        count = kept;
-    }
-
-    void addProduct(double a, double b) {
-        const double product = a * b;
-        add(std::fma(a, b, -product));
-        add(product);
-    }
-
-    int sign() const { return parts[count - 1] > 0 ? 1 : parts[count - 1] < 0 ? -1 : 0; }
-};
 
 int exactOrientation(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     Expansion sum;

@@ -4,50 +4,20 @@
 
 #include <cmath>
 
+#include "sightline/math/expansion.h"
+
 namespace sightline {
 namespace {
 
-/// A sum kept without rounding: components that do not overlap, smallest first.
-struct LongSum {
-    double parts[24];
-    int count = 0;
-
-    void add(double value) {
-        int kept = 0;
-        for (int i = 0; i < count; ++i) {
-            const double sum = value + parts[i];
-            const double virtual_part = sum - value;
-            const double error = (value - (sum - virtual_part)) + (parts[i] - virtual_part);
-            if (error != 0) parts[kept++] = error;
-            value = sum;
-        }
-        parts[kept++] = value;
-        count = kept;
-    }
-
-    void addProduct(double a, double b) {
-        const double product = a * b;
-        add(std::fma(a, b, -product));
-        add(product);
-    }
-
-    void addProduct(double a, double b, double c) {
-        const double product = a * b;
-        addProduct(std::fma(a, b, -product), c);
-        addProduct(product, c);
-    }
-};
-
 int exactSign(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-    LongSum sum;
+    Expansion sum;
     sum.addProduct(a.y, b.z, c.x);
     sum.addProduct(-a.z, b.y, c.x);
     sum.addProduct(a.z, b.x, c.y);
     sum.addProduct(-a.x, b.z, c.y);
     sum.addProduct(a.x, b.y, c.z);
     sum.addProduct(-a.y, b.x, c.z);
-    const double leading = sum.parts[sum.count - 1];
-    return leading > 0 ? 1 : leading < 0 ? -1 : 0;
+    return sum.sign();
 }
 
 }  // namespace

@@ -189,7 +189,6 @@ bool isExact(const RenderRun& run, const MethodResult& result) {
 std::string whyInexact(const RenderRun& run, const MethodResult& result) {
     const DepthSettings& depth = run.settings.depth;
     if (result.method != HiddenMethod::kZBuffer || result.agreement.agrees()) return {};
-    if (run.settings.projector.clipping == Clipping::kClipless) return {};
     if (depth.comparison || !depth.write || depth.offset_factor != 0 || depth.offset_units != 0)
         return "its depth comparison, write or offset asks for other surfaces than the nearest";
     if (depth.format == DepthFormat::kReversedFloat) return {};

@@ -8,51 +8,16 @@
 
 #include <gtest/gtest.h>
 
-#include "sightline/base/random.h"
 #include "sightline/hidden/bsp_back_to_front.h"
 #include "sightline/hidden/bsp_front_to_back.h"
 #include "sightline/hidden/compare.h"
 #include "sightline/import/gltf.h"
 #include "sightline/scene/city.h"
-#include "sightline/truth/scene_facts.h"
 #include "tests/hidden/made_lists.h"
+#include "tests/truth/scene_views.h"
 
 namespace sightline::test {
 namespace {
-
-/// From outside, from within, and in parallel projection.
-std::vector<View> viewsOf(const Box3d& box) {
-    const double size = glm::length(box.size());
-    Random random(7);
-    std::vector<View> views;
-    for (int i = 0; i < 3; ++i) {
-        View view;
-        view.width = 320;
-        view.height = 180;
-        const glm::dvec3 part(random.uniform(0.3, 0.7), random.uniform(0.3, 0.7), random.uniform(0.3, 0.7));
-        const glm::dvec3 inside = box.min + part * box.size();
-        const glm::dvec3 outside = box.center() + glm::dvec3(0.4, 0.3, 0.5) * size;
-        view.view = lookAt(i == 1 ? inside : outside, box.center() + 0.01 * inside, {0, 1, 0});
-        view.projection = i == 2 ? orthographic(0.8 * size, 16.0 / 9, 1e-3 * size, 4 * size)
-                                 : perspective(1.0, 16.0 / 9, 5e-4 * size);
-        views.push_back(view);
-    }
-    return views;
-}
-
-std::vector<DrawItem> itemsOf(const SceneFacts& facts) {
-    std::vector<DrawItem> items;
-    for (uint32_t i = 0; i < facts.scene().objects.size(); ++i) {
-        DrawItem item;
-        item.mesh = {facts.mesh(i).positions, facts.mesh(i).indices};
-        item.double_sided = facts.facts(i).double_sided;
-        if (!facts.facts(i).all_hide) item.writes_depth = facts.facts(i).hides;
-        item.transform = facts.scene().objects[i].transform;
-        item.id = i;
-        items.push_back(item);
-    }
-    return items;
-}
 
 HiddenImage emptyImage(const View& view) {
     HiddenImage image;
@@ -75,7 +40,7 @@ void expectRight(const char* name, const Scene& scene, double pieces_per_polygon
                 name, size_t(statistics.polygons), size_t(statistics.degenerate), size_t(statistics.pieces),
                 statistics.pieces_per_polygon, statistics.depth, statistics.mean_depth, took.count());
     EXPECT_LE(statistics.pieces_per_polygon, pieces_per_polygon) << name;
-    for (const View& view : viewsOf(worldBounds(scene))) {
+    for (const View& view : viewsOf(worldBounds(scene), 7)) {
         const HiddenImage truth = nearestSurfaces(list, view);
         RenderSettings settings;
         const HiddenInput input{list, view, settings};

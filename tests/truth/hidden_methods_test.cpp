@@ -6,51 +6,14 @@
 
 #include <gtest/gtest.h>
 
-#include "sightline/base/random.h"
 #include "sightline/hidden/compare.h"
 #include "sightline/hidden/raycast.h"
 #include "sightline/import/gltf.h"
-#include "sightline/truth/scene_facts.h"
 #include "tests/hidden/made_lists.h"
+#include "tests/truth/scene_views.h"
 
 namespace sightline::test {
 namespace {
-
-/// From outside, from within, and in parallel projection.
-std::vector<View> viewsOf(const Box3d& box) {
-    const double size = glm::length(box.size());
-    Random random(1);
-    std::vector<View> views;
-    for (int i = 0; i < 3; ++i) {
-        View view;
-        view.width = 320;
-        view.height = 180;
-        const glm::dvec3 part(random.uniform(0.3, 0.7), random.uniform(0.3, 0.7), random.uniform(0.3, 0.7));
-        const glm::dvec3 inside = box.min + part * box.size();
-        const glm::dvec3 outside = box.center() + glm::dvec3(0.4, 0.3, 0.5) * size;
-        view.view = lookAt(i == 1 ? inside : outside, box.center() + 0.01 * inside, {0, 1, 0});
-        view.projection = i == 2 ? orthographic(0.8 * size, 16.0 / 9, 1e-3 * size, 4 * size)
-                                 : perspective(1.0, 16.0 / 9, 5e-4 * size);
-        views.push_back(view);
-    }
-    return views;
-}
-
-std::vector<DrawItem> itemsOf(const SceneFacts& facts) {
-    std::vector<DrawItem> items;
-    for (uint32_t i = 0; i < facts.scene().objects.size(); ++i) {
-        const Mesh& mesh = facts.mesh(i);
-        const MeshFacts& mesh_facts = facts.facts(i);
-        DrawItem item;
-        item.mesh = {mesh.positions, mesh.indices};
-        item.double_sided = mesh_facts.double_sided;
-        if (!mesh_facts.all_hide) item.writes_depth = mesh_facts.hides;
-        item.transform = facts.scene().objects[i].transform;
-        item.id = i;
-        items.push_back(item);
-    }
-    return items;
-}
 
 struct NamedSettings {
     const char* name;
@@ -88,7 +51,7 @@ TEST_P(HiddenMethods, ShowWhatIsNearest) {
     const std::vector<DrawItem> items = itemsOf(facts);
     const DrawList list(items);
     uint64_t shown = 0;
-    for (const View& view : viewsOf(worldBounds(*scene))) {
+    for (const View& view : viewsOf(worldBounds(*scene), 1)) {
         const HiddenImage truth = nearestSurfaces(list, view);
         for (const uint32_t surface : truth.surface) shown += surface != HiddenImage::kNone;
         for (const NamedSettings& named : allSettings()) {

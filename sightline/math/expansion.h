@@ -1,0 +1,48 @@
+// Sums of doubles kept without rounding, for predicates whose sign has to be right.
+// SPDX-License-Identifier: MIT
+//
+// Jonathan Shewchuk. Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates. 1997.
+#pragma once
+
+#include <cmath>
+
+namespace sightline {
+
+/// Components that do not overlap, smallest first. Exact as long as nothing overflows or underflows.
+struct Expansion {
+    static constexpr int kMaxParts =
+        24;  ///< terms that may be added in all: a product of two counts as two, of three as four
+
+    double parts[kMaxParts];
+    int count = 0;
+
+    void add(double value) {
+        int kept = 0;
+        for (int i = 0; i < count; ++i) {
+            const double sum = value + parts[i];
+            const double virtual_part = sum - value;
+            const double error = (value - (sum - virtual_part)) + (parts[i] - virtual_part);
+            if (error != 0) parts[kept++] = error;
+            value = sum;
+        }
+        parts[kept++] = value;
+        count = kept;
+    }
+
+    void addProduct(double a, double b) {
+        const double product = a * b;
+        add(std::fma(a, b, -product));
+        add(product);
+    }
+
+    void addProduct(double a, double b, double c) {
+        const double product = a * b;
+        addProduct(std::fma(a, b, -product), c);
+        addProduct(product, c);
+    }
+
+    /// Of the sum; 0 if nothing was added.
+    int sign() const { return count == 0 ? 0 : parts[count - 1] > 0 ? 1 : parts[count - 1] < 0 ? -1 : 0; }
+};
+
+}  // namespace sightline
