@@ -15,15 +15,15 @@
 namespace sightline::cli {
 namespace {
 
-Status runBench(bench::Options options, const std::string& scene_name) {
+Status runBench(bench::Options options, const SceneChoice& choice) {
     const std::vector<std::string> names = bench::names();
     if (std::find(names.begin(), names.end(), options.name) == names.end())
         return Error{Error::Kind::kUsage, fmt::format("bench: there is no case \"{}\" (there are: {})", options.name,
                                                       fmt::join(names, ", "))};
     if (!options.json.empty() && options.json != "-")
         if (Status writable = canWriteFile(options.json); !writable) return writable;
-    if (scene_name.empty()) return bench::run(options);
-    const Result<Scene> scene = loadScene(scene_name);
+    if (choice.names.empty()) return bench::run(options);
+    const Result<Scene> scene = loadScene(choice);
     if (!scene) return scene.error();
     options.scene = &scene.value();
     return bench::run(options);
@@ -34,10 +34,10 @@ Status runBench(bench::Options options, const std::string& scene_name) {
 void addBench(CLI::App& tool, int& exit_code) {
     CLI::App* verb = tool.add_subcommand("bench", "measures this machine: each technique beside its plain baseline");
     const auto options = std::make_shared<bench::Options>();
-    const auto scene = std::make_shared<std::string>();
+    const auto scene = std::make_shared<SceneChoice>();
     verb->add_option("NAME", options->name, fmt::format("one of: {}", fmt::join(bench::names(), ", ")))->required();
     verb->add_option("--json", options->json, "write the rows as JSON (-: standard output)")->type_name("FILE");
-    verb->add_option("--scene", *scene, "measure on this scene instead of the case's own")->type_name("SCENE");
+    verb->add_option("--scene", scene->names, "measure on this scene instead of the case's own")->type_name("SCENE");
     verb->add_option("--repeat", options->repeat, "measurements of each value")
         ->check(CLI::Range(1, 100000))
         ->type_name("N");

@@ -6,7 +6,6 @@
 #include <cctype>
 #include <charconv>
 #include <cstdio>
-#include <filesystem>
 #include <thread>
 
 #include <CLI/CLI.hpp>
@@ -15,12 +14,10 @@
 
 #include "apps/cli/verbs.h"
 #include "sightline/geom/view.h"
-#include "sightline/import/gltf.h"
 #include "sightline/load/seeded_cameras.h"
 #include "sightline/report/chart.h"
 #include "sightline/report/output_file.h"
 #include "sightline/scene/city.h"
-#include "sightline/scene/procedural.h"
 
 namespace sightline::cli {
 namespace {
@@ -75,7 +72,7 @@ bool isCity(const std::string& scene, uint64_t& seed) {
 }  // namespace
 
 void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& shared) {
-    verb.add_option("SCENE", options.scene, "a .glb or .gltf file, city:SEED:OBJECTS or made:NAME")->required();
+    addSceneChoice(verb, options.scene);
     verb.add_option("--cameras", options.cameras, "camera path (JSON)")->type_name("PATH.json");
     verb.add_option("--frames", options.frames,
                     "so many seeded cameras; a city without --seed is walked along its streets")
@@ -123,29 +120,11 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     return success();
 }
 
-Result<Scene> loadScene(const std::string& name) {
-    if (isProcedural(name)) return makeProcedural(name);
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(name, error);
-    if (status.type() == std::filesystem::file_type::not_found)
-        return Error{Error::Kind::kInput, fmt::format("{}: no such file", name.empty() ? "\"\"" : name)};
-    if (error) return Error{Error::Kind::kInput, fmt::format("{}: {}", name, error.message())};
-    if (std::filesystem::is_directory(status))
-        return Error{Error::Kind::kInput, fmt::format("{}: is a directory, not a scene", name)};
-    std::string extension = std::filesystem::path(name).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension != ".glb" && extension != ".gltf")
-        return Error{
-            Error::Kind::kInput,
-            fmt::format("{}: not a scene that can be read (.glb, .gltf, city:SEED:OBJECTS or made:NAME)", name)};
-    return loadGltf(name);
-}
-
 Result<CameraPath> loadPath(const Scene& scene, const RunOptions& options) {
     constexpr uint32_t kDefaultFrames = 16;
     uint64_t city_seed = 0;
-    if (options.cameras.empty() && options.frames > 0 && !options.seed_given && isCity(options.scene, city_seed))
+    if (options.cameras.empty() && options.frames > 0 && !options.seed_given &&
+        isCity(options.scene.procedural(), city_seed))
         return cityStreetPath(city_seed, options.frames);
     PathChoice choice;
     choice.file = options.cameras;

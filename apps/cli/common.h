@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/cli/scene_choice.h"
 #include "sightline/base/result.h"
 #include "sightline/scene/camera_path.h"
 #include "sightline/scene/scene.h"
@@ -18,7 +19,7 @@ namespace sightline::cli {
 
 /// Options of every verb that moves a camera through a scene.
 struct RunOptions {
-    std::string scene;
+    SceneChoice scene;
     std::string cameras;  ///< file; empty: none
     uint32_t frames = 0;  ///< 0: not given
     uint64_t seed = 1;
@@ -42,9 +43,6 @@ void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& sh
 void addSceneOptions(CLI::App& verb, RunOptions& options);
 /// Checks what single options cannot: sizes, stage names. Errors are kUsage.
 Status finish(const CLI::App& verb, RunOptions& options);
-
-/// A glTF file, or a procedural scene by its specification. Errors name the file and say what is wrong.
-Result<Scene> loadScene(const std::string& name);
 
 /// Which path: --cameras; --frames and --seed; a city's streets for --frames alone; the scene's own; 16 seeded.
 Result<CameraPath> loadPath(const Scene& scene, const RunOptions& options);

@@ -87,7 +87,7 @@ std::string directoryOfOutputs(const RunOptions& options) {
 
 /// The command that judges one frame again in the same way.
 std::string replayCommand(const RunOptions& options, const CullRun& run, const std::string& camera_file) {
-    std::string command = fmt::format("sightline verify {} --cameras {} --size {}x{} --rays {}", quoted(options.scene),
+    std::string command = fmt::format("sightline verify {} --cameras {} --size {}x{} --rays {}", options.scene.words(),
                                       quoted(camera_file), run.width, run.height, options.rays);
     if (run.jitter != View().jitter) command += fmt::format(" --jitter {}", run.jitter);
     std::string names;
@@ -112,7 +112,7 @@ void forEach(size_t count, uint32_t threads, const std::function<void(size_t)>& 
 CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options) {
     CullRun run;
     const std::vector<uint32_t> key_order = orderByKey(scene);
-    run.scene = options.scene;
+    run.scene = options.scene.title();
     run.objects = countKeys(scene, key_order);
     run.instances = scene.objects.size();
     run.triangles = drawnTriangles(scene);

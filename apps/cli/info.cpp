@@ -17,7 +17,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct InfoOptions {
-    std::string file, json;
+    SceneChoice scene;
+    std::string json;
 };
 
 /// Counts of a scene. Triangles are drawn ones: a mesh counts once for each object that shows it.
@@ -108,13 +109,13 @@ void printInfo(std::FILE* out, const Scene& scene, const std::string& file, cons
 Status runInfo(const CLI::App& verb, const InfoOptions& options) {
     if (options.json.empty() && verb.count("--json") > 0)
         return Error{Error::Kind::kUsage, "--json: the name is empty"};
-    const Result<Scene> scene = loadScene(options.file);
+    const Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
     const SceneFacts facts = countFacts(*scene);
     const Box3d bounds = worldBounds(*scene);
-    if (options.json != "-") printInfo(stdout, *scene, options.file, facts, bounds);
+    if (options.json != "-") printInfo(stdout, *scene, options.scene.title(), facts, bounds);
     if (options.json.empty()) return success();
-    const Json json = infoJson(*scene, options.file, facts, bounds);
+    const Json json = infoJson(*scene, options.scene.title(), facts, bounds);
     return writeText(options.json, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
@@ -123,7 +124,7 @@ Status runInfo(const CLI::App& verb, const InfoOptions& options) {
 void addInfo(CLI::App& tool, int& exit_code) {
     CLI::App* verb = tool.add_subcommand("info", "what a scene holds");
     const auto options = std::make_shared<InfoOptions>();
-    verb->add_option("FILE", options->file, "a .glb or .gltf file, city:SEED:OBJECTS or made:NAME")->required();
+    addSceneChoice(*verb, options->scene);
     verb->add_option("--json", options->json, "write it as JSON (-: standard output)")->type_name("FILE");
     verb->callback([verb, options, &exit_code] {
         const Status done = runInfo(*verb, *options);

@@ -164,7 +164,7 @@ Status runRender(const CLI::App& verb, RenderOptions& options) {
     if (!isUsable(view))
         return Error{Error::Kind::kInput,
                      fmt::format("{}: frame {}: its matrices are not a camera's",
-                                 options.cameras.empty() ? options.scene : options.cameras, options.frame)};
+                                 options.cameras.empty() ? options.scene.title() : options.cameras, options.frame)};
     if (Status writable = checkOutputs(options); !writable) return writable;
 
     RenderRun run = describe(*scene, *path, options);

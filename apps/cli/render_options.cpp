@@ -108,7 +108,8 @@ Status checkApart(const RenderOptions& options) {
         taken.push_back({option, place});
         return success();
     };
-    if (Status good = take("SCENE", options.scene, false); !good) return good;
+    for (const std::string& name : options.scene.names)
+        if (Status good = take("SCENE", name, false); !good) return good;
     if (Status good = take("--cameras", options.cameras, false); !good) return good;
     if (Status good = take("-o", options.image, true); !good) return good;
     if (Status good = take("--ids", options.ids, true); !good) return good;
@@ -176,7 +177,7 @@ HiddenMethod methodOf(const RenderOptions& options) {
 }
 
 void applyOptions(const RenderOptions& options, RenderRun& run) {
-    run.scene = options.scene;
+    run.scene = options.scene.title();
     run.width = options.width;
     run.height = options.height;
     run.frame = options.frame;
@@ -209,7 +210,7 @@ void applyOptions(const RenderOptions& options, RenderRun& run) {
 std::string commandOf(const CLI::App& verb, const RenderOptions& options) {
     static const std::set<std::string> kOutputs = {"SCENE",      "-o",     "--output", "--ids",
                                                    "--heat-map", "--json", "--report", "--help"};
-    std::string command = "sightline render " + quoted(options.scene);
+    std::string command = "sightline render " + options.scene.words();
     for (const CLI::Option* option : verb.get_options()) {
         if (option->count() == 0 || kOutputs.count(option->get_name()) > 0) continue;
         command += " " + option->get_name();

@@ -85,7 +85,7 @@ void printVerdicts(std::FILE* out, const CullRun& run) {
 }
 
 std::string replayOfRun(const RunOptions& options, bool verify) {
-    std::string command = "sightline cull " + quoted(options.scene);
+    std::string command = "sightline cull " + options.scene.words();
     if (!options.cameras.empty()) command += " --cameras " + quoted(options.cameras);
     if (options.frames > 0) command += fmt::format(" --frames {}", options.frames);
     if (options.seed_given) command += fmt::format(" --seed {}", options.seed);

@@ -40,6 +40,15 @@ struct VerificationRow {
     uint64_t unconfirmed = 0;    ///< sightings of culled objects that exact arithmetic did not bear out
     uint64_t exactly_visible = 0;
     std::vector<FalseCullRow> rows;
+    std::vector<uint32_t> kept_unseen;  ///< objects that were kept and that no witness saw, ascending
+};
+
+/// What an occluder did in one frame.
+struct OccluderCredit {
+    uint32_t object = 0;          ///< index into Scene::objects
+    uint64_t triangles = 0;       ///< of it that were rasterized
+    double hidden = 0;            ///< objects that it hid; one that several hide is shared among them
+    double hidden_triangles = 0;  ///< their triangles, shared alike
 };
 
 struct FrameResult {
@@ -51,7 +60,12 @@ struct FrameResult {
     uint64_t triangles = 0;           ///< of the visible objects: what a renderer would submit
     uint64_t occluder_triangles = 0;  ///< rasterized by the query
     bool budget_spent = false;
-    double query_microseconds = 0;  ///< median over the repeats
+    double query_microseconds = 0;                ///< median over the repeats
+    uint64_t nodes_visited = 0, seam_pixels = 0;  ///< QueryStats
+    std::vector<OccluderCredit> credits;          ///< of all that were rasterized, by object; empty unless asked for
+    uint32_t thread = 0;                          ///< that answered, from 0
+    double begin_microseconds = 0;                ///< when it began with this frame, since the run began
+    double end_microseconds = 0;                  ///< when it had done with it
     std::optional<VerificationRow> verification;
 };
 
@@ -65,6 +79,7 @@ struct CullRun {
     double jitter = 0;             ///< [pixels]
     uint32_t stages = kAllStages;  ///< bits of Stage in use
     int repeat = 1;
+    bool interrupted = false;  ///< the frames after the last one here were not begun, or not finished
     std::vector<FrameResult> frames;
 };
 

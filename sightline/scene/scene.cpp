@@ -17,4 +17,19 @@ Box3d worldBounds(const Scene& scene) {
     return bounds;
 }
 
+std::string objectPath(const Scene& scene, const SceneObject& object) {
+    std::vector<const std::string*> names;
+    if (!object.name.empty()) names.push_back(&object.name);
+    for (uint32_t node = object.node; node != SceneNode::kNone; node = scene.nodes[node].parent) {
+        const std::string& name = scene.nodes[node].name;
+        if (!name.empty() && (node != object.node || name != object.name)) names.push_back(&name);
+    }
+    std::string path;
+    for (auto name = names.rbegin(); name != names.rend(); ++name) {
+        if (!path.empty()) path += '/';
+        path += **name;
+    }
+    return path;
+}
+
 }  // namespace sightline

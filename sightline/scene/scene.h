@@ -46,12 +46,42 @@ struct Mesh {
     size_t triangles() const { return indices.size() / 3; }
 };
 
+/// A name in the tree that a file's objects hang in. Objects carry their whole transform themselves.
+struct SceneNode {
+    static constexpr uint32_t kNone = ~0u;
+
+    std::string name;         ///< may be empty
+    uint32_t parent = kNone;  ///< index into Scene::nodes
+};
+
 /// One drawn instance of a mesh.
 struct SceneObject {
     uint64_t key = 0;           ///< glTF: the node's index; GPU instances of one node share it
     uint32_t mesh = 0;          ///< index into Scene::meshes
     glm::dmat4 transform{1.0};  ///< object to world, affine; a negative determinant flips the winding
     std::string name;
+    uint32_t node = SceneNode::kNone;  ///< index into Scene::nodes
+};
+
+/// A convex region that was declared to be a cell: by hand in the file, or by the generator that made the world.
+struct SceneCell {
+    std::string name;
+    std::vector<glm::dvec4> planes;  ///< unit normal and distance, pointing inward: inside iff n.p + d >= 0
+    Box3d bounds;
+};
+
+/// A hole between two cells through which one is seen from the other.
+struct ScenePortal {
+    std::string name;
+    uint32_t cells[2] = {0, 0};       ///< indices into Scene::cells
+    std::vector<glm::dvec3> polygon;  ///< planar, convex; counter-clockwise as seen from cells[0]
+    uint32_t door = ~0u;              ///< index into Scene::objects of what shuts it; ~0: nothing does
+};
+
+/// A file that a scene was read from.
+struct SceneFile {
+    std::string name;        ///< as the user named it
+    uint64_t first_key = 0;  ///< what was added to the keys of its objects
 };
 
 /// A camera that came with the scene.
@@ -70,7 +100,15 @@ struct Scene {
     std::vector<Mesh> meshes;
     std::vector<SceneObject> objects;
     std::vector<SceneCamera> cameras;
+    std::vector<SceneNode> nodes;      ///< parents need not come first; no cycles
+    std::vector<SceneCell> cells;      ///< may be empty
+    std::vector<ScenePortal> portals;  ///< between these cells
+    std::vector<SceneFile> files;      ///< empty: procedural
 };
+
+/// Names of the nodes above an object and its own, from the root: "Level 1/Kitchen/Door". Nodes without a name are
+/// left out, and so is a node that only repeats the object's name.
+std::string objectPath(const Scene& scene, const SceneObject& object);
 
 /// Triangles that would be drawn: each object's mesh counted once per object.
 uint64_t drawnTriangles(const Scene& scene);

@@ -19,7 +19,7 @@ struct WrongRun {
         scene.objects.resize(1);
         scene.objects[0].key = 7;
         scene.objects[0].name = "a lamp";
-        options.scene = "my scene.glb";
+        options.scene.names = {"my scene.glb"};
         options.rays = 1234;
         run.width = 640;
         run.height = 360;
