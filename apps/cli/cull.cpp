@@ -12,18 +12,22 @@
 #include "apps/cli/verbs.h"
 #include "sightline/report/output_file.h"
 #include "sightline/report/page.h"
+#include "sightline/report/trace_json.h"
 
 namespace sightline::cli {
 namespace {
 
 struct CullOptions : RunOptions {
     bool verify = false;
+    std::string trace;  ///< file, or empty
 };
 
 /// Finds out before the work whether its result can be written.
 Status checkOutputs(const CullOptions& options) {
     if (!options.json.empty() && options.json != "-")
         if (Status writable = canWriteFile(options.json); !writable) return writable;
+    if (!options.trace.empty())
+        if (Status writable = canWriteFile(options.trace); !writable) return writable;
     if (options.report.empty()) return success();
     if (Status made = makeDirectory(options.report); !made) return made;
     return canWriteFile(options.report + "/index.html");
@@ -33,8 +37,11 @@ Status writeOutputs(const Scene& scene, const CullRun& run, const CullOptions& o
     const std::string json = cullJson(run, scene);
     if (!options.json.empty())
         if (Status written = writeText(options.json, json); !written) return written;
+    if (!options.trace.empty())
+        if (Status written = writeFileAside(options.trace, traceJson(run)); !written) return written;
     if (options.report.empty()) return success();
     if (Status written = writeFileAside(options.report + "/cull.json", json); !written) return written;
+    if (Status written = writeFileAside(options.report + "/trace.json", traceJson(run)); !written) return written;
     Progress progress("drawing", "pictures", 0);
     PageSettings settings;
     settings.for_each = [&](size_t count, const std::function<void(size_t)>& work) {
@@ -75,6 +82,8 @@ void addCull(CLI::App& tool, int& exit_code) {
                    "anything visible was culled");
     verb->add_option("--report", options->report, "write DIR/index.html, one page with pictures, and DIR/cull.json")
         ->type_name("DIR");
+    verb->add_option("--trace", options->trace, "write a timeline for chrome://tracing and Perfetto")
+        ->type_name("FILE");
     verb->callback([verb, options, &exit_code] {
         const Result<bool> sound = runCull(*verb, *options);
         exit_code = !sound ? report(sound.error()) : *sound ? kDone : kAnswerIsNo;

@@ -1,65 +1,12 @@
-// What a cull along a camera path gave, as plain data, and its JSON form.
+// What a cull along a camera path gave, counted and summed.
 // SPDX-License-Identifier: MIT
 #include "sightline/report/cull_run.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <numeric>
 
-#include <nlohmann/json.hpp>
-
-#include "sightline/report/camera_json.h"
-
 namespace sightline {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-Json verificationJson(const VerificationRow& verification, const FrameResult& frame, const Scene& scene) {
-    Json out;
-    out["false_culls"] = verification.false_culls;
-    out["samples"] = verification.rays;
-    out["aimed_samples"] = verification.aimed_rays;
-    out["id_samples"] = verification.id_samples;
-    out["supersampling"] = verification.supersampling;
-    out["unconfirmed"] = verification.unconfirmed;
-    out["exactly_visible"] = verification.exactly_visible;
-    out["reported"] = frame.visible.size();
-    out["list"] = Json::array();
-    for (const FalseCullRow& row : verification.rows)
-        out["list"].push_back({{"key", row.key},
-                               {"name", scene.objects[row.object].name},
-                               {"pixel", {row.x, row.y}},
-                               {"witness", row.witness}});
-    return out;
-}
-
-Json frameJson(const FrameResult& frame, const CullRun& run, const Scene& scene) {
-    Json out;
-    out["camera"] = cameraJson(frame.camera);
-    out["visible"] = frame.visible;
-    out["stages"] = Json::array();
-    for (int stage = 0; stage < kStageCount; ++stage) {
-        if (!(run.stages >> stage & 1)) continue;
-        const StageRow& row = frame.stages[stage];
-        out["stages"].push_back({{"name", kStageNames[stage]},
-                                 {"tested", row.tested},
-                                 {"culled", row.culled},
-                                 {"doubt", row.doubt},
-                                 {"microseconds", row.microseconds}});
-    }
-    out["triangles"] = frame.triangles;
-    out["occluder_triangles"] = frame.occluder_triangles;
-    out["budget_spent"] = frame.budget_spent;
-    out["query_microseconds"] = frame.query_microseconds;
-    if (frame.verification) out["verification"] = verificationJson(*frame.verification, frame, scene);
-    return out;
-}
-
-}  // namespace
-
 double Verification::overEstimate() const {
     if (exactly_visible == 0) return reported == 0 ? 1.0 : std::numeric_limits<double>::infinity();
     return static_cast<double>(reported) / static_cast<double>(exactly_visible);
@@ -131,35 +78,43 @@ void countByKey(const Scene& scene, const std::vector<uint32_t>& key_order, uint
     }
 }
 
-std::string cullJson(const CullRun& run, const Scene& scene) {
-    Json head;
-    head["schema"] = "sightline.cull/1";
-    head["scene"] = {
-        {"file", run.scene}, {"objects", run.objects}, {"instances", run.instances}, {"triangles", run.triangles}};
-    head["width"] = run.width;
-    head["height"] = run.height;
-    head["jitter"] = run.jitter;
-    head["repeat"] = run.repeat;
-    std::string text = dump(head);
-    text.pop_back();
-    text += ",\n\"frames\": [";
-    for (size_t i = 0; i < run.frames.size(); ++i)
-        text += (i ? ",\n" : "\n") + dump(frameJson(run.frames[i], run, scene));
-    text += "]";
-    if (const auto sum = sumVerification(run)) {
-        Json verification;
-        verification["false_culls"] = sum->false_culls;
-        verification["samples"] = sum->rays;
-        verification["exactly_visible"] = sum->exactly_visible;
-        verification["reported"] = sum->reported;
-        verification["aimed_samples"] = sum->aimed_rays;
-        verification["id_samples"] = sum->id_samples;
-        verification["unconfirmed"] = sum->unconfirmed;
-        verification["culled"] = sum->culled;
-        verification["over_estimate"] = std::isfinite(sum->overEstimate()) ? Json(sum->overEstimate()) : Json(nullptr);
-        text += ",\n\"verification\": " + dump(verification);
+std::vector<uint64_t> keysKeptUnseen(const FrameResult& frame, const Scene& scene) {
+    std::vector<uint64_t> unseen, seen;
+    if (!frame.verification) return unseen;
+    const std::vector<uint32_t>& objects = frame.verification->kept_unseen;
+    for (const uint32_t object : objects) unseen.push_back(scene.objects[object].key);
+    for (uint32_t i = 0; i < frame.reasons.size() && !objects.empty(); ++i)
+        if (frame.reasons[i] == 0 && !std::binary_search(objects.begin(), objects.end(), i))
+            seen.push_back(scene.objects[i].key);
+    std::sort(unseen.begin(), unseen.end());
+    unseen.erase(std::unique(unseen.begin(), unseen.end()), unseen.end());
+    std::sort(seen.begin(), seen.end());
+    std::erase_if(unseen, [&](uint64_t key) { return std::binary_search(seen.begin(), seen.end(), key); });
+    return unseen;
+}
+
+std::vector<KeyName> keyNames(const CullRun& run, const Scene& scene, const std::vector<uint32_t>& key_order) {
+    std::vector<uint64_t> wanted;
+    for (const FrameResult& frame : run.frames) {
+        wanted.insert(wanted.end(), frame.visible.begin(), frame.visible.end());
+        if (frame.verification)
+            for (const FalseCullRow& row : frame.verification->rows) wanted.push_back(row.key);
+        if (wanted.size() < (size_t{1} << 22)) continue;  // a long path would pile them up
+        std::sort(wanted.begin(), wanted.end());
+        wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
     }
-    return text + "}\n";
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    std::vector<KeyName> names;
+    names.reserve(wanted.size());
+    size_t at = 0;
+    for (const uint64_t key : wanted) {
+        while (at < key_order.size() && scene.objects[key_order[at]].key < key) ++at;
+        if (at == key_order.size()) break;
+        const SceneObject& object = scene.objects[key_order[at]];
+        if (object.key == key) names.push_back({key, object.name, objectPath(scene, object)});
+    }
+    return names;
 }
 
 }  // namespace sightline

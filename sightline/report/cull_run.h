@@ -79,7 +79,8 @@ struct CullRun {
     double jitter = 0;             ///< [pixels]
     uint32_t stages = kAllStages;  ///< bits of Stage in use
     int repeat = 1;
-    bool interrupted = false;  ///< the frames after the last one here were not begun, or not finished
+    bool interrupted = false;    ///< the frames after the last one here were not begun, or not finished
+    uint64_t frames_wanted = 0;  ///< of the path; 0: as many as there are here
     std::vector<FrameResult> frames;
 };
 
@@ -102,6 +103,19 @@ void countByKey(const Scene& scene, const std::vector<uint32_t>& key_order, uint
 /// Indices of the objects sorted by key, equal keys in their own order.
 std::vector<uint32_t> orderByKey(const Scene& scene);
 uint64_t countKeys(const Scene& scene, const std::vector<uint32_t>& key_order);
+
+/// What a key is called: by its first object.
+struct KeyName {
+    uint64_t key = 0;
+    std::string name;
+    std::string path;  ///< objectPath()
+};
+
+/// The keys that any frame kept or a witness saw, ascending: as many as are visible, however large the scene is.
+std::vector<KeyName> keyNames(const CullRun& run, const Scene& scene, const std::vector<uint32_t>& key_order);
+
+/// Keys that a frame kept and of which no witness saw any object, ascending.
+std::vector<uint64_t> keysKeptUnseen(const FrameResult& frame, const Scene& scene);
 
 /// The schema `sightline.cull/1`: one frame a line. Names that are not UTF-8 are mended.
 std::string cullJson(const CullRun& run, const Scene& scene);

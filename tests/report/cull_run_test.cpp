@@ -132,6 +132,53 @@ TEST(CullRun, JsonMendsNamesThatAreNotUtf8) {
     EXPECT_EQ(out["frames"][0]["verification"]["list"][0]["key"], 3);
 }
 
+TEST(CullRun, JsonNamesTheKeysThatItSpeaksOf) {
+    Scene scene = madeScene();
+    scene.nodes = {{"Level 1", SceneNode::kNone}, {"Kitchen", 0}};
+    scene.objects[0].node = 1;
+    CullRun run = madeRun(scene);
+    json out = json::parse(cullJson(run, scene));
+    ASSERT_EQ(out["objects"].size(), 2u);  // 5 and 7; 3 was never kept
+    EXPECT_EQ(out["objects"][0]["key"], 5);
+    EXPECT_EQ(out["objects"][1], json::parse(R"({"key": 7, "name": "wall", "path": "Level 1/Kitchen/wall"})"));
+    run.frames[1].verification->rows.push_back({1, 3, 1.5, 2.5, "rays"});
+    out = json::parse(cullJson(run, scene));
+    ASSERT_EQ(out["objects"].size(), 3u);
+    EXPECT_EQ(out["objects"][0]["key"], 3);
+}
+
+TEST(CullRun, JsonTellsWhatWasKeptUnseen) {
+    const Scene scene = madeScene();
+    CullRun run = madeRun(scene);
+    run.frames[0].reasons = {0, 0, 0, 0};
+    run.frames[0].verification->kept_unseen = {1, 2};  // of key 5, object 3 was seen
+    EXPECT_EQ(keysKeptUnseen(run.frames[0], scene), std::vector<uint64_t>{3});
+    const json out = json::parse(cullJson(run, scene));
+    EXPECT_EQ(out["frames"][0]["verification"]["kept_unseen"], json::parse("[3]"));
+    EXPECT_EQ(out["frames"][1]["verification"]["kept_unseen"], json::array());
+}
+
+TEST(CullRun, JsonTellsAnInterruptedRun) {
+    const Scene scene = madeScene();
+    CullRun run = madeRun(scene);
+    EXPECT_FALSE(json::parse(cullJson(run, scene)).contains("interrupted"));
+    run.interrupted = true;
+    run.frames_wanted = 64;
+    const json out = json::parse(cullJson(run, scene));
+    EXPECT_EQ(out["interrupted"], true);
+    EXPECT_EQ(out["frames_wanted"], 64);
+    EXPECT_EQ(out["frames"].size(), 2u);
+}
+
+TEST(CullRun, JsonTellsTheFilesOfAScene) {
+    Scene scene = madeScene();
+    scene.files = {{"a.glb", 0}};
+    EXPECT_FALSE(json::parse(cullJson(madeRun(scene), scene))["scene"].contains("files"));
+    scene.files.push_back({"b.glb", 100});
+    const json out = json::parse(cullJson(madeRun(scene), scene));
+    EXPECT_EQ(out["scene"]["files"][1], json::parse(R"({"file": "b.glb", "first_key": 100})"));
+}
+
 TEST(CullRun, OverEstimateOfNothingIsOne) {
     EXPECT_EQ(Verification().overEstimate(), 1.0);
     Verification sum;
