@@ -55,10 +55,14 @@ Bytes trimmed(Bytes text) {
     return text;
 }
 
-Scene import(Bytes bytes, const std::string& name, std::optional<std::string> directory) {
+Scene import(Bytes bytes, const std::string& name, std::optional<std::string> directory,
+             const Progress::Report& progress) {
     const Container container = splitContainer(bytes);
     Document document;
+    document.progress = Progress(progress);
+    document.progress.reach(0, Progress::kRead, 1);
     document.root = parseJson(trimmed(container.json));
+    document.progress.reach(Progress::kRead, Progress::kParsed, 1);
     document.chunk = container.binary;
     document.directory = std::move(directory);
     document.budget.grant(bytes.size());
@@ -66,6 +70,7 @@ Scene import(Bytes bytes, const std::string& name, std::optional<std::string> di
     readTables(document);
     Scene scene = makeScene(document);
     scene.name = name;
+    document.progress.reach(Progress::kParsed, Progress::kTotal, 1);
     return scene;
 }
 
@@ -85,16 +90,16 @@ Result<Scene> guarded(const std::string& name, Read&& read) {
 
 }  // namespace
 
-Result<Scene> loadGltf(const std::string& path) {
+Result<Scene> loadGltf(const std::string& path, const std::function<void(size_t done, size_t total)>& progress) {
     return guarded(path, [&] {
         const std::vector<unsigned char> bytes = readFile(path, "", kLargestFile + 1);
         if (bytes.size() > kLargestFile) fail("", "is larger than 4 GiB");
-        return import(bytes, path, std::filesystem::path(path).parent_path().string());
+        return import(bytes, path, std::filesystem::path(path).parent_path().string(), progress);
     });
 }
 
 Result<Scene> parseGltf(std::span<const unsigned char> bytes, const std::string& name) {
-    return guarded(name, [&] { return import(bytes, name, std::nullopt); });
+    return guarded(name, [&] { return import(bytes, name, std::nullopt, {}); });
 }
 
 }  // namespace sightline

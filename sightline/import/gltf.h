@@ -4,6 +4,7 @@
 // Khronos Group. glTF 2.0 Specification. 2021.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <string>
@@ -15,7 +16,7 @@ namespace sightline {
 
 /// Reads `.glb` or `.gltf` (external files and data URIs). Objects are the nodes with a mesh that the
 /// default scene reaches (all scenes' roots if none is marked, all parentless nodes if there is no scene);
-/// an object's key is its node's index.
+/// an object's key is its node's index. Scene::nodes holds every node of the file, in its order.
 ///
 /// Takes triangle lists, strips and fans (points and lines are left out); 8, 16 and 32-bit indices or none;
 /// sparse, normalised and quantised accessors; KHR_mesh_quantization, EXT_meshopt_compression,
@@ -31,7 +32,10 @@ namespace sightline {
 /// indices out of range, positions that are not finite, cyclic nodes, missing buffers, required extensions
 /// that are not known, nothing to draw. Memory is bounded by 64 MiB plus 512 times the size of the files; buffers
 /// that no triangle needs are not opened.
-Result<Scene> loadGltf(const std::string& path);
+///
+/// @param progress  called now and then, from this thread, with how much of the work is done; `total` stays the same,
+///                  `done` grows and ends there
+Result<Scene> loadGltf(const std::string& path, const std::function<void(size_t done, size_t total)>& progress = {});
 
 /// The same from memory, as a fuzzer needs it. External files are not opened.
 Result<Scene> parseGltf(std::span<const unsigned char> bytes, const std::string& name);

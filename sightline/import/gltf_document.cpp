@@ -193,6 +193,13 @@ void Budget::charge(uint64_t count, uint64_t bytes_each, const std::string& plac
     left_ -= count * bytes_each;
 }
 
+void Progress::reach(size_t from, size_t to, double part) {
+    const size_t done = from + static_cast<size_t>(static_cast<double>(to - from) * std::clamp(part, 0.0, 1.0));
+    if (!report_ || done <= told_) return;
+    told_ = done;
+    report_(done, kTotal);
+}
+
 void readTables(Document& document) {
     readBuffers(document);
     readViews(document);

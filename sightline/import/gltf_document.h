@@ -5,9 +5,12 @@
 // Khronos Group. glTF 2.0 Specification, sections 3.6 and 5. 2021.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sightline/import/gltf_container.h"
@@ -78,6 +81,23 @@ private:
     uint64_t left_ = uint64_t(64) << 20;
 };
 
+/// Tells how far an import is, in steps that a reader can see: no more than a thousand calls.
+class Progress {
+public:
+    using Report = std::function<void(size_t done, size_t total)>;
+
+    static constexpr size_t kRead = 100, kParsed = 300, kTotal = 1000;  ///< thousandths of the work
+
+    explicit Progress(Report report = {}) : report_(std::move(report)) {}
+
+    /// @param part  of the way from `from` to `to`  [0..1]
+    void reach(size_t from, size_t to, double part);
+
+private:
+    Report report_;
+    size_t told_ = 0;
+};
+
 /// The JSON and its tables. Buffers are read and views decompressed when first asked for.
 struct Document {
     Json root;
@@ -87,6 +107,7 @@ struct Document {
     std::vector<BufferView> views;
     std::vector<Accessor> accessors;
     Budget budget;
+    Progress progress;
 };
 
 /// Fills the tables from `root`. Afterwards each element of each accessor lies inside its view, and each

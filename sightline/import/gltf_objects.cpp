@@ -104,7 +104,7 @@ void addObject(Document& document, Scene& scene, uint32_t node, uint32_t mesh, c
     for (int axis = 0; axis < 3; ++axis)
         if (!(box.min[axis] >= -kFarthest && box.max[axis] <= kFarthest))
             fail(place, "its bounds in the world are too large");
-    scene.objects.push_back({node, mesh, transform, name});
+    scene.objects.push_back({node, mesh, transform, name, node});
 }
 
 // The objects of one node; `shape_transform` replaces the node's own where joints place the mesh.
@@ -175,11 +175,16 @@ Scene makeScene(Document& document) {
         for (const MeshSource& mesh : parts.meshes) targets.push_back(mesh.targets);
         motions = readMotions(document, parts.tree, targets);
     }
-    for (const Shape& shape : parts.shapes) addShape(document, parts, motions, shape, builder, scene);
+    for (size_t i = 0; i < parts.shapes.size(); ++i) {
+        addShape(document, parts, motions, parts.shapes[i], builder, scene);
+        document.progress.reach(Progress::kParsed, Progress::kTotal, double(i + 1) / double(parts.shapes.size() + 1));
+    }
     if (scene.objects.empty()) fail("", "draws nothing: no triangle in the scene that it shows");
     std::stable_sort(scene.objects.begin(), scene.objects.end(),
                      [](const SceneObject& a, const SceneObject& b) { return a.key < b.key; });
     scene.cameras = placeCameras(parts.tree, cameras);
+    scene.nodes.reserve(nodes);
+    for (Node& node : parts.tree.nodes) scene.nodes.push_back({std::move(node.name), node.parent});
     return scene;
 }
 

@@ -13,7 +13,7 @@
 
 namespace sightline {
 
-Result<Scene> loadSceneFile(const std::string& file, const ImportSettings&) {
+Result<Scene> loadSceneFile(const std::string& file, const ImportSettings& settings) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
     if (status.type() == std::filesystem::file_type::not_found)
@@ -28,7 +28,7 @@ Result<Scene> loadSceneFile(const std::string& file, const ImportSettings&) {
         return Error{
             Error::Kind::kInput,
             fmt::format("{}: not a scene that can be read (.glb, .gltf, city:SEED:OBJECTS or made:NAME)", file)};
-    Result<Scene> scene = loadGltf(file);
+    Result<Scene> scene = loadGltf(file, settings.progress);
     if (scene) scene->files = {{file, 0}};
     return scene;
 }

@@ -38,11 +38,15 @@ inline std::string sceneFault(const Scene& scene) {
         if (const std::string fault = meshFault(scene, mesh); !fault.empty()) return fault;
     for (const SceneObject& object : scene.objects) {
         if (object.mesh >= scene.meshes.size()) return "a mesh is out of range";
+        if (object.node >= scene.nodes.size()) return "a node is out of range";
         if (!transformBox(scene.meshes[object.mesh].bounds, object.transform).finite())
             return "an object is not finite";
         for (int column = 0; column < 4; ++column)
             if (object.transform[column][3] != (column == 3 ? 1 : 0)) return "a transform is not affine";
     }
+    for (size_t i = 0; i < scene.nodes.size(); ++i)
+        if (scene.nodes[i].parent != SceneNode::kNone && scene.nodes[i].parent >= scene.nodes.size())
+            return "a node's parent is out of range";
     for (const SceneCamera& camera : scene.cameras) {
         if ((camera.fov_y > 0) == (camera.orthographic_height > 0)) return "a camera is of neither kind";
         for (int column = 0; column < 4; ++column)

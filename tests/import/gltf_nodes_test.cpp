@@ -86,6 +86,46 @@ TEST(GltfNodes, MakesAnObjectOfEachInstance) {
     EXPECT_LT(glm::determinant(glm::dmat3(scene.objects[3].transform)), 0);
 }
 
+TEST(GltfNodes, KeepsTheTreeOfNames) {
+    GltfBuilder b;
+    const uint32_t mesh = b.triangleMesh();
+    const uint32_t joint = b.node({{"name", "Handle"}, {"mesh", mesh}});
+    const uint32_t door = b.node({{"name", "Door"}, {"mesh", mesh}, {"children", {joint}}});
+    const uint32_t unnamed = b.node({{"children", {door}}});
+    const uint32_t level = b.node({{"name", "Level 1"}, {"children", {unnamed}}});
+    const uint32_t building = b.node({{"name", "Building"}, {"children", {level}}});
+    const Scene scene = load(b.glb());
+    ASSERT_EQ(scene.nodes.size(), 5u);
+    EXPECT_EQ(scene.nodes[door].name, "Door");
+    EXPECT_EQ(scene.nodes[door].parent, unnamed);
+    EXPECT_EQ(scene.nodes[building].parent, SceneNode::kNone);
+    ASSERT_EQ(scene.objects.size(), 2u);
+    EXPECT_EQ(scene.objects[0].node, joint);
+    EXPECT_EQ(objectPath(scene, scene.objects[0]), "Building/Level 1/Door/Handle");
+    EXPECT_EQ(objectPath(scene, scene.objects[1]), "Building/Level 1/Door");
+}
+
+// An object is named after its mesh if its node has no name; its path goes on to say where it hangs.
+TEST(GltfNodes, NamesObjectsOfUnnamedNodesAfterTheirMesh) {
+    GltfBuilder b;
+    const uint32_t mesh = b.triangleMesh();
+    b.json["meshes"][mesh]["name"] = "Chair";
+    const uint32_t chair = b.node({{"mesh", mesh}});
+    b.node({{"name", "Kitchen"}, {"children", {chair}}});
+    const Scene scene = load(b.glb());
+    ASSERT_EQ(scene.objects.size(), 1u);
+    EXPECT_EQ(objectPath(scene, scene.objects[0]), "Kitchen/Chair");
+}
+
+TEST(GltfNodes, GivesInstancesThePathOfTheirNode) {
+    const Scene scene = loadSample("instances.glb");
+    ASSERT_EQ(scene.objects.size(), 4u);
+    for (size_t i = 1; i < 4; ++i) {
+        EXPECT_EQ(scene.objects[i].node, 1u);
+        EXPECT_EQ(objectPath(scene, scene.objects[i]), "grove");
+    }
+}
+
 TEST(GltfNodes, ReadsCameras) {
     const Scene scene = loadSample("cameras.glb");
     ASSERT_EQ(scene.cameras.size(), 3u) << "one that a scale of zero flattens looks nowhere and is left out";

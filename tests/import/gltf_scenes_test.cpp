@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -39,6 +41,21 @@ TEST(GltfScenes, LoadWithTheListedObjects) {
             << file;
         EXPECT_TRUE(worldBounds(*scene).finite()) << file;
     }
+}
+
+TEST(GltfScenes, TellTheirProgress) {
+    const std::filesystem::path file = std::filesystem::path(SIGHTLINE_SHARED_DIR) / "scenes" / "bsi-duplex.glb";
+    if (!std::filesystem::is_regular_file(file)) GTEST_SKIP() << "no scenes in ../shared";
+    std::vector<std::pair<size_t, size_t>> told;
+    const Result<Scene> scene =
+        loadGltf(file.string(), [&](size_t done, size_t total) { told.emplace_back(done, total); });
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    ASSERT_GE(told.size(), 10u);
+    for (size_t i = 1; i < told.size(); ++i) {
+        EXPECT_LT(told[i - 1].first, told[i].first);
+        EXPECT_EQ(told[i - 1].second, told[i].second);
+    }
+    EXPECT_EQ(told.back().first, told.back().second);
 }
 
 }  // namespace
