@@ -1,0 +1,284 @@
+// The walk behind a query: front to back over the hierarchy, frustum and occlusion; and what it notes on request.
+// SPDX-License-Identifier: MIT
+#include "sightline/run/walk.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include "sightline/base/assert.h"
+
+namespace sightline::detail {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+uint64_t since(Clock::time_point start) {
+    return static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count());
+}
+
+/// What is smaller in both directions hides next to nothing, and is not drawn.  [pixels]
+constexpr int32_t kLeastExtent = 4;
+
+bool isSmall(const PixelRect& rect) { return rect.x1 - rect.x0 < kLeastExtent && rect.y1 - rect.y0 < kLeastExtent; }
+
+}  // namespace
+
+void Walk::push(Pending entry) {
+    entry.serial = serial++;
+    undecided += entry.kind != Pending::Kind::kCluster;
+    pending.push_back(entry);
+    std::push_heap(pending.begin(), pending.end());
+}
+
+/// How many objects of a range of places are within the view's layers.
+uint64_t Walk::inLayers(uint32_t first, uint32_t count) const {
+    if (every_layer) return count;
+    uint64_t within = 0;
+    for (uint32_t place = first; place < first + count; ++place)
+        within += ((*state().placed)[place].layers & view.layers) != 0;
+    return within;
+}
+
+/// @param rect  that decided; null: a plane did
+void Walk::cull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect) {
+    of(stage).culled += inLayers(first, count);
+    culled.push_back({first, count, stage});
+    if (record) noteCull(first, count, stage, rect);
+}
+
+void WalkRecord::clear() {
+    draws.clear();
+    culls.clear();
+    owners.clear();
+    stopped = false;
+}
+
+void Walk::noteDraw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box, uint32_t triangles) {
+    record->draws.push_back({static_cast<uint32_t>(&instance - instances.data()), cluster, triangles, box});
+}
+
+void Walk::noteCull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect) {
+    WalkRecord::Cull note{first, count, stage, stage == Stage::kFrustum && rect, PixelRect()};
+    if (rect) note.rect = *rect;
+    record->culls.push_back(note);
+    if (stage == Stage::kOcclusion && record->stopsAt(first, count)) {
+        record->stopped = true;
+        undecided = 0;
+    }
+}
+
+void Walk::noteKept(const Pending& entry) {
+    if (!record->stopsAt(entry.index, 1)) return;
+    record->stopped = true;
+    record->kept = {entry.rect, entry.testable};
+    undecided = 0;
+}
+
+void Walk::begin(const SnapshotState* now, const View& new_view) {
+    snapshot = now;
+    view = new_view;
+    stats = {};
+    serial = undecided = 0;
+    pending.clear();
+    instances.clear();
+    visible.clear();
+    culled.clear();
+    tiles.clear(0, 0);
+    if (record) record->clear();
+    if (!snapshot) return;
+    every_layer = (state().common_layers & view.layers) != 0 || state().count == 0;
+    stats.objects = state().count;
+    if (every_layer) return;
+    stats.objects = 0;
+    for (uint32_t item = 0; item < state().count; ++item)
+        stats.objects += (state().object(item).layers & view.layers) != 0;
+}
+
+/// Keeps an object that no stage can look at.
+void Walk::keep(uint32_t item) {
+    const ObjectRecord& object = state().object(item);
+    if (!(object.layers & view.layers)) return;
+    visible.push_back({object.key, object.id});
+    ++of(Stage::kFrustum).doubt;
+}
+
+/// Keeps the objects at the given places of the hierarchy.
+void Walk::report(uint32_t first, uint32_t count) {
+    const PlacedObject* placed = state().placed->data();
+    for (uint32_t place = first; place < first + count; ++place)
+        if (placed[place].layers & view.layers) visible.push_back(placed[place].visible);
+}
+
+/// Without a usable view nothing can be proved hidden.
+void Walk::keepEverything() {
+    for (uint32_t item = 0; item < state().count; ++item) keep(item);
+}
+
+/// Tests a node's children against the frustum and puts those that are left in line.
+void Walk::expand(uint32_t index, uint8_t planes) {
+    const auto start = view.time_stages ? Clock::now() : Clock::time_point();
+    ++stats.nodes_visited;
+    const BvhNode& node = state().bvh.nodes[index];
+    const EyeBoxes boxes = eyeBoxes(node, state().bvh.origin - frustum.eye);
+    FrustumAnswer answer;
+    if (uses(Stage::kFrustum)) answer = testFrustum(frustum, boxes, planes);
+    if (view.time_stages) of(Stage::kFrustum).nanoseconds += since(start);
+    uint32_t left = 0;
+    for (int slot = 0; slot < 8; ++slot) {
+        if (node.count[slot] == 0) continue;
+        if (answer.outside >> slot & 1) cull(node.first[slot], node.count[slot], Stage::kFrustum, nullptr);
+        else left |= 1u << slot;
+    }
+    if (!left) return;
+    const ScreenAnswer on_screen = projectBoxes(screen, boxes);
+    for (int slot = 0; slot < 8; ++slot)
+        if (left >> slot & 1) meet(node, slot, uses(Stage::kFrustum) ? answer.planes[slot] : 0, on_screen);
+}
+
+void Walk::meet(const BvhNode& node, int slot, uint8_t planes, const ScreenAnswer& on_screen) {
+    const bool doubt = on_screen.doubt >> slot & 1, outside = on_screen.outside >> slot & 1;
+    if (outside && uses(Stage::kFrustum))
+        return cull(node.first[slot], node.count[slot], Stage::kFrustum, &on_screen.rects[slot]);
+    Pending entry;
+    const bool leaf = node.child[slot] & BvhNode::kLeaf;
+    entry.kind = leaf ? Pending::Kind::kObject : Pending::Kind::kNode;
+    entry.index = node.child[slot] & ~BvhNode::kLeaf;
+    entry.first = node.first[slot];
+    entry.count = node.count[slot];
+    entry.planes = planes;
+    entry.rect = on_screen.rects[slot];
+    if (doubt) entry.rect.nearness = std::numeric_limits<float>::infinity();
+    if (outside) entry.rect.nearness = -std::numeric_limits<float>::infinity();
+    entry.testable = !doubt && !outside;
+    if (doubt && leaf) ++of(Stage::kOcclusion).doubt;
+    push(entry);
+}
+
+/// Puts the clusters of a visible object's occluder in line, or draws it at once if there is one only.
+void Walk::offerOccluder(uint32_t place) {
+    const PlacedObject& placed = (*state().placed)[place];
+    if (placed.occluder.index == 0 || !(placed.layers & view.layers)) return;
+    const Occluder& occluder = *state().occluders[placed.occluder.index];
+    const uint32_t owner = static_cast<uint32_t>(instances.size());
+    instances.push_back(makeOccluderInstance(screen, occluder, state().objectAt(place).transform));
+    if (record) record->owners.push_back(place);
+    const uint32_t clusters = static_cast<uint32_t>(occluder.clusters.size());
+    for (uint32_t cluster = 0; cluster < clusters; ++cluster) {
+        const BoxAnswer box = projectBox(instances[owner].screen, occluder.clusters[cluster].bounds);
+        if (box.outside) continue;
+        if (clusters == 1) {
+            draw(instances[owner], cluster, box);
+            continue;
+        }
+        Pending entry;
+        entry.kind = Pending::Kind::kCluster;
+        entry.index = cluster;
+        entry.owner = owner;
+        entry.rect = box.rect;
+        if (box.doubt) entry.rect.nearness = std::numeric_limits<float>::infinity();
+        entry.testable = !box.doubt;
+        push(entry);
+    }
+}
+
+void Walk::draw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box) {
+    if (!box.doubt && isSmall(box.rect)) return;
+    if (stats.occluder_triangles >= view.occluder_triangles) {
+        stats.budget_spent = true;
+        return;
+    }
+    const uint32_t triangles = drawOccluder(tiles, instance, cluster, box);
+    stats.occluder_triangles += triangles;
+    if (record) noteDraw(instance, cluster, box, triangles);
+}
+
+void Walk::visit(const Pending& entry) {
+    const bool occlusion = uses(Stage::kOcclusion);
+    if (entry.kind == Pending::Kind::kCluster) {
+        BoxAnswer box;
+        box.rect = entry.rect;
+        box.doubt = !entry.testable;
+        if (box.doubt || !isHidden(tiles, box.rect, Seams::kLeave)) draw(instances[entry.owner], entry.index, box);
+        return;
+    }
+    // A node in doubt is opened: its children's smaller rectangles need fewer seams.
+    const Seams seams = entry.kind == Pending::Kind::kNode ? Seams::kLeave : Seams::kResolve;
+    if (occlusion && entry.testable && isHidden(tiles, entry.rect, seams))
+        return cull(entry.first, entry.count, Stage::kOcclusion, &entry.rect);
+    if (entry.kind == Pending::Kind::kNode) return expand(entry.index, entry.planes);
+    report(entry.index, 1);
+    if (record) noteKept(entry);
+    if (occlusion && undecided > 0 && !(entry.testable && isSmall(entry.rect))) offerOccluder(entry.index);
+}
+
+/// Without the occlusion stage the order does not matter: depth first, and whole subtrees that are inside at once.
+void Walk::walkFrustumOnly(uint32_t root, uint8_t all_planes) {
+    Array<Visit>& stack = visits;
+    stack.assign(1, {root, all_planes});
+    while (!stack.empty()) {
+        const Visit visit = stack.back();
+        stack.pop_back();
+        ++stats.nodes_visited;
+        const BvhNode& node = state().bvh.nodes[visit.node];
+        const EyeBoxes boxes = eyeBoxes(node, state().bvh.origin - frustum.eye);
+        const FrustumAnswer answer = testFrustum(frustum, boxes, visit.planes);
+        for (int slot = 0; slot < 8; ++slot) {
+            if (node.count[slot] == 0) continue;
+            if (answer.outside >> slot & 1) cull(node.first[slot], node.count[slot], Stage::kFrustum, nullptr);
+            else if (answer.planes[slot] == 0 || (node.child[slot] & BvhNode::kLeaf))
+                report(node.first[slot], node.count[slot]);
+            else stack.push_back({node.child[slot], answer.planes[slot]});
+        }
+    }
+}
+
+void Walk::walk() {
+    frustum = makeFrustum(view);
+    screen = makeScreen(view, view.occlusion_size);
+    if (uses(Stage::kOcclusion)) tiles.clear(screen.width, screen.height);
+    for (uint32_t item : state().unbounded) keep(item);
+    if (state().bvh.nodes.empty()) return;
+    const uint8_t planes = static_cast<uint8_t>(uses(Stage::kFrustum) ? (1u << frustum.count) - 1 : 0);
+    if (!uses(Stage::kOcclusion)) return walkFrustumOnly(0, planes);
+    expand(0, planes);
+    while (undecided > 0) {
+        std::pop_heap(pending.begin(), pending.end());
+        const Pending entry = pending.back();
+        pending.pop_back();
+        undecided -= entry.kind != Pending::Kind::kCluster;
+        visit(entry);
+    }
+}
+
+void Walk::finish() {
+    of(Stage::kFrustum).tested = uses(Stage::kFrustum) ? stats.objects : 0;
+    of(Stage::kOcclusion).tested = uses(Stage::kOcclusion) ? stats.objects - of(Stage::kFrustum).culled : 0;
+    stats.visible = visible.size();
+    stats.seam_pixels = tiles.seam_pixels;
+    uint64_t culled_objects = 0;
+    for (const StageStats& stage : stats.stages) culled_objects += stage.culled;
+    SIGHTLINE_ASSERT(stats.visible + culled_objects == stats.objects || (record && record->stopped));
+}
+
+void Walk::run(const SnapshotState* now, const View& new_view) {
+    begin(now, new_view);
+    if (!now) return;
+    if (isUsable(view)) walk();
+    else keepEverything();
+    finish();
+}
+
+void Walk::reasons(std::span<uint8_t> reasons) const {
+    SIGHTLINE_ASSERT(!snapshot || reasons.size() >= state().count);
+    std::fill(reasons.begin(), reasons.end(), uint8_t{0});
+    if (!snapshot) return;
+    for (const CulledRange& range : culled)
+        for (uint32_t place = range.first; place < range.first + range.count; ++place)
+            reasons[state().itemOf(state().bvh.order[place])] = static_cast<uint8_t>(1 + static_cast<int>(range.stage));
+    if (every_layer) return;
+    for (uint32_t item = 0; item < state().count; ++item)
+        if (!(state().object(item).layers & view.layers)) reasons[item] = 255;
+}
+
+}  // namespace sightline::detail

@@ -1,0 +1,134 @@
+// The walk behind a query: front to back over the hierarchy, frustum and occlusion; and what it notes on request.
+// SPDX-License-Identifier: MIT
+//
+// Ned Greene, Michael Kass, Gavin Miller. Hierarchical Z-Buffer Visibility. 1993.
+#pragma once
+
+#include <cstdint>
+
+#include "sightline/cull/frustum.h"
+#include "sightline/cull/occlusion.h"
+#include "sightline/run/query.h"
+#include "sightline/run/world_state.h"
+
+namespace sightline::detail {
+
+/// Something that the walk has met and not yet looked at. Nearest first; ties in the order of meeting.
+struct Pending {
+    enum class Kind : uint8_t { kNode, kObject, kCluster };
+    PixelRect rect;
+    uint32_t serial = 0;
+    uint32_t index = 0;             ///< node; place of the object; or cluster
+    uint32_t owner = 0;             ///< of a cluster: index into Walk::instances
+    uint32_t first = 0, count = 1;  ///< places of the objects below
+    uint8_t planes = 0;             ///< of a node: frustum planes that it is not inside of
+    Kind kind = Kind::kNode;
+    bool testable = false;  ///< the rectangle stands for the bound; else it is in doubt, or outside and kept
+
+    bool operator<(const Pending& other) const {  // std heaps keep the largest at the front
+        return rect.nearness != other.rect.nearness ? rect.nearness < other.rect.nearness : serial > other.serial;
+    }
+};
+
+/// A node on the way down, and the frustum planes that it is not inside of.
+struct Visit {
+    uint32_t node = 0;
+    uint8_t planes = 0;
+};
+
+/// Objects that were culled together.
+struct CulledRange {
+    uint32_t first = 0, count = 0;
+    Stage stage = Stage::kFrustum;
+};
+
+/// What a walk did, step by step, for those who ask why. Places are the hierarchy's.
+struct WalkRecord {
+    static constexpr uint32_t kNowhere = ~0u;
+
+    /// A cluster that was rasterized.
+    struct Draw {
+        uint32_t instance = 0;  ///< index into Walk::instances
+        uint32_t cluster = 0;
+        uint32_t triangles = 0;
+        BoxAnswer box;
+    };
+    /// Objects that were culled together, and what they were taken for.
+    struct Cull {
+        uint32_t first = 0, count = 0;
+        Stage stage = Stage::kFrustum;
+        bool off_screen = false;  ///< the rectangle misses the buffer; no plane decided
+        PixelRect rect;           ///< by the occlusion stage: what was hidden
+    };
+    /// The rectangle of the object at `stop_at`, where it was kept.
+    struct Kept {
+        PixelRect rect;
+        bool testable = false;  ///< the occlusion stage could look at it
+    };
+
+    Array<Draw> draws;
+    Array<Cull> culls;
+    Array<uint32_t> owners;       ///< per Walk::instances: the object's place
+    uint32_t stop_at = kNowhere;  ///< the walk ends once the occlusion stage has decided on this place
+    bool stopped = false;         ///< it did, and the depth tiles are as they were then
+    Kept kept;
+
+    explicit WalkRecord(Memory* memory) : draws(memory), culls(memory), owners(memory) {}
+
+    void clear();
+    bool stopsAt(uint32_t first, uint32_t count) const { return stop_at >= first && stop_at - first < count; }
+};
+
+/// One answer in the making. What it needs stays from walk to walk.
+struct Walk {
+    explicit Walk(Memory* from) : memory(from) {}
+
+    Memory* const memory;
+    const SnapshotState* snapshot = nullptr;  ///< outlives the answer; null: there is none
+    View view;
+    WalkRecord* record = nullptr;  ///< filled, if there is one
+    bool every_layer = true;       ///< no object is outside the view's layers
+    Frustum frustum;
+    Screen screen;
+    DepthTiles tiles{memory};
+    Array<Pending> pending{memory};
+    Array<Visit> visits{memory};
+    Array<OccluderInstance> instances{memory};
+    Array<Visible> visible{memory};
+    Array<CulledRange> culled{memory};
+    QueryStats stats;
+    uint32_t serial = 0;
+    uint32_t undecided = 0;  ///< nodes and objects in line; without any, nothing is left to hide
+
+    const SnapshotState& state() const { return *snapshot; }
+    bool uses(Stage stage) const { return view.stages & stageBit(stage); }
+    StageStats& of(Stage stage) { return stats.stages[static_cast<int>(stage)]; }
+
+    /// The whole answer: `visible`, `culled` and `stats`, but for the time that it took.
+    void run(const SnapshotState* now, const View& new_view);
+    /// As Query::reasons().
+    void reasons(std::span<uint8_t> reasons) const;
+    /// How many objects of a range of places are within the view's layers.
+    uint64_t inLayers(uint32_t first, uint32_t count) const;
+
+private:
+    void begin(const SnapshotState* now, const View& new_view);
+    void keepEverything();
+    void walk();
+    void walkFrustumOnly(uint32_t node, uint8_t planes);
+    void expand(uint32_t node, uint8_t planes);
+    void meet(const BvhNode& node, int slot, uint8_t planes, const ScreenAnswer& on_screen);
+    void visit(const Pending& entry);
+    void keep(uint32_t item);
+    void report(uint32_t first, uint32_t count);
+    void offerOccluder(uint32_t place);
+    void draw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box);
+    void cull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect);
+    void push(Pending entry);
+    void finish();
+    void noteDraw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box, uint32_t triangles);
+    void noteCull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect);
+    void noteKept(const Pending& entry);
+};
+
+}  // namespace sightline::detail
