@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
+#include "apps/cli/session.h"
 #include "apps/cli/verbs.h"
 #include "sightline/geom/view.h"
 #include "sightline/load/seeded_cameras.h"
@@ -137,7 +138,9 @@ int report(const Error& error) {
     std::string line = error.message;
     for (char& c : line)
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    fmt::print(stderr, "sightline: {}\n", line);
+    line = "sightline: " + line + "\n";
+    (void)std::fwrite(line.data(), 1, line.size(), stderr);
+    logLine(line);
     switch (error.kind) {
         case Error::Kind::kUsage:
             return kWrongArguments;

@@ -51,8 +51,8 @@ Status writeOutputs(const Scene& scene, const CullRun& run, const CullOptions& o
     return writeFileAside(options.report + "/index.html", reportPage(scene, run, settings));
 }
 
-/// The whole verb. Returns whether nothing visible was culled, as far as it was asked.
-Result<bool> runCull(const CLI::App& verb, CullOptions& options) {
+/// The whole verb. Returns the exit code.
+Result<int> runCull(const CLI::App& verb, CullOptions& options) {
     if (Status good = finish(verb, options); !good) return good.error();
     const Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
@@ -61,14 +61,14 @@ Result<bool> runCull(const CLI::App& verb, CullOptions& options) {
     if (Status writable = checkOutputs(options); !writable) return writable.error();
 
     CullRun run = cullPath(*scene, *path, options);
+    if (run.frames.empty()) return exitCodeOf(run, path->frames.size(), options.verify);
     run.command = replayOfRun(options, options.verify);
     if (options.verify) verifyPath(*scene, options, run);
 
     printSummary(options.json == "-" ? stderr : stdout, run);
     if (Status explained = explainFalseCulls(*scene, options, run); !explained) return explained.error();
     if (Status written = writeOutputs(*scene, run, options); !written) return written.error();
-    const auto sum = sumVerification(run);
-    return !sum || sum->false_culls == 0;
+    return exitCodeOf(run, path->frames.size(), options.verify);
 }
 
 }  // namespace
@@ -85,8 +85,8 @@ void addCull(CLI::App& tool, int& exit_code) {
     verb->add_option("--trace", options->trace, "write a timeline for chrome://tracing and Perfetto")
         ->type_name("FILE");
     verb->callback([verb, options, &exit_code] {
-        const Result<bool> sound = runCull(*verb, *options);
-        exit_code = !sound ? report(sound.error()) : *sound ? kDone : kAnswerIsNo;
+        const Result<int> done = runCull(*verb, *options);
+        exit_code = done ? *done : report(done.error());
     });
 }
 

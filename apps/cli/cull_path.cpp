@@ -3,15 +3,22 @@
 #include "apps/cli/cull_path.h"
 
 #include <algorithm>
-#include <atomic>
+#include <chrono>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <optional>
 #include <set>
 #include <thread>
 
 #include <fmt/core.h>
 
 #include "apps/cli/progress.h"
+#include "apps/cli/session.h"
+#include "apps/cli/verbs.h"
 #include "sightline/hidden/threads.h"
 #include "sightline/load/load_world.h"
 #include "sightline/report/output_file.h"
@@ -54,7 +61,7 @@ void cullFrame(const Snapshot& now, const CullRun& run, Query& query, FrameResul
     query.reasons(frame.reasons);
 }
 
-VerificationRow rowOf(const FrameVerdict& verdict, const Scene& scene) {
+VerificationRow rowOf(const FrameVerdict& verdict, const FrameResult& frame, const Scene& scene) {
     VerificationRow row;
     row.rays = verdict.rays;
     row.aimed_rays = verdict.aimed_rays;
@@ -66,6 +73,9 @@ VerificationRow rowOf(const FrameVerdict& verdict, const Scene& scene) {
         if (verdict.seen[i]) keys.push_back(scene.objects[i].key);
     std::sort(keys.begin(), keys.end());
     row.exactly_visible = static_cast<uint64_t>(std::unique(keys.begin(), keys.end()) - keys.begin());
+    for (size_t i = 0; i < frame.reasons.size(); ++i)
+        if (frame.reasons[i] == 0 && !(i < verdict.seen.size() && verdict.seen[i]))
+            row.kept_unseen.push_back(static_cast<uint32_t>(i));
     std::set<uint64_t> hidden;
     for (const FalseCull& cull : verdict.false_culls) {
         const uint64_t key = scene.objects[cull.object].key;
@@ -74,6 +84,51 @@ VerificationRow rowOf(const FrameVerdict& verdict, const Scene& scene) {
     }
     row.false_culls = hidden.size();
     return row;
+}
+
+using Worker = std::function<void(size_t)>;
+
+/// Calls worker(i) for i in [0, count), in rising order as far as threads allow, until `stop` says so: what was begun
+/// is then finished. Where memory does not reach for so many threads, those that find none end, and what they had
+/// begun is done again when the others are through. Throws what work throws, once all threads have ended.
+/// @param stop  may be empty
+/// @param make  makes the worker of a thread, on that thread
+/// @return how many were done: those before it, and no others
+size_t shareOut(size_t count, uint32_t threads, const std::function<bool()>& stop,
+                const std::function<Worker(uint32_t thread)>& make) {
+    std::mutex mutex;
+    size_t next = 0;
+    std::vector<size_t> again;
+    std::exception_ptr fault;
+    const auto take = [&]() -> std::optional<size_t> {
+        const std::lock_guard lock(mutex);
+        if (fault || next >= count || (stop && stop())) return std::nullopt;
+        return next++;
+    };
+    threads = static_cast<uint32_t>(std::min<size_t>(threads, count));
+    again.reserve(threads);
+    const auto loop = [&](uint32_t thread) {
+        std::optional<size_t> mine;
+        try {
+            const Worker work = make(thread);
+            while ((mine = take())) work(*mine);
+        } catch (const std::bad_alloc&) {
+            const std::lock_guard lock(mutex);
+            if (mine) again.push_back(*mine);
+        } catch (...) {
+            const std::lock_guard lock(mutex);
+            if (!fault) fault = std::current_exception();
+        }
+    };
+    std::vector<std::thread> others = startThreads(threads, loop);
+    loop(0);
+    for (std::thread& other : others) other.join();
+    if (fault) std::rethrow_exception(fault);
+    if (again.empty() && (next >= count || (stop && stop()))) return next;
+    const Worker alone = make(0);
+    for (const size_t i : again) alone(i);
+    while (const auto mine = take()) alone(*mine);
+    return next;
 }
 
 /// Where the run's other files go, with a slash, or nothing for the current directory.
@@ -100,13 +155,7 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
 }  // namespace
 
 void forEach(size_t count, uint32_t threads, const std::function<void(size_t)>& work) {
-    std::atomic<size_t> next{0};
-    const auto loop = [&](uint32_t) {
-        for (size_t i = next++; i < count; i = next++) work(i);
-    };
-    std::vector<std::thread> others = startThreads(static_cast<uint32_t>(std::min<size_t>(threads, count)), loop);
-    loop(0);
-    for (std::thread& other : others) other.join();
+    shareOut(count, threads, nullptr, [&](uint32_t) { return work; });
 }
 
 CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options) {
@@ -129,19 +178,28 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     }();
     const Snapshot now = loaded.world.commit();
 
+    stopGently();
     Progress progress("culling", "frames", path.frames.size());
-    const uint32_t threads = std::min<uint32_t>(options.threads, static_cast<uint32_t>(path.frames.size()));
-    std::atomic<size_t> next{0};
-    forEach(threads, threads, [&](size_t) {
-        Query query;
-        for (size_t i = next++; i < path.frames.size(); i = next++) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto since = [&] {
+        return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+    };
+    const size_t done = shareOut(path.frames.size(), options.threads, interrupted, [&](uint32_t thread) {
+        return [&, thread, query = std::make_shared<Query>()](size_t i) {
             FrameResult& frame = run.frames[i];
+            frame = FrameResult();
+            frame.thread = thread;
+            frame.begin_microseconds = since();
             frame.camera = path.frames[i];
-            cullFrame(now, run, query, frame);
+            cullFrame(now, run, *query, frame);
             countByKey(scene, key_order, run.stages, frame);
+            frame.end_microseconds = since();
             progress.step();
-        }
+        };
     });
+    run.frames_wanted = path.frames.size();
+    run.interrupted = done < path.frames.size();
+    run.frames.resize(done);
     return run;
 }
 
@@ -149,13 +207,33 @@ void verifyPath(const Scene& scene, const RunOptions& options, CullRun& run) {
     WitnessSettings settings;
     settings.rays = options.rays;
     settings.aimed_rays = std::min(settings.aimed_rays, options.rays / 5);
+    if (interrupted()) return;
     const Witness witness(scene);
     Progress progress("verifying", "frames", run.frames.size());
-    forEach(run.frames.size(), options.threads, [&](size_t i) {
+    const Worker judge = [&](size_t i) {
         FrameResult& frame = run.frames[i];
-        frame.verification = rowOf(witness.judge(viewOf(frame.camera, run), frame.reasons, settings), scene);
+        const FrameVerdict verdict = witness.judge(viewOf(frame.camera, run), frame.reasons, settings);
+        frame.verification = rowOf(verdict, frame, scene);
         progress.step();
-    });
+    };
+    shareOut(run.frames.size(), options.threads, interrupted, [&](uint32_t) { return judge; });
+}
+
+size_t judgedFrames(const CullRun& run) {
+    const auto judged = [](const FrameResult& frame) { return frame.verification.has_value(); };
+    return static_cast<size_t>(std::count_if(run.frames.begin(), run.frames.end(), judged));
+}
+
+int exitCodeOf(const CullRun& run, size_t frames, bool verify) {
+    const size_t judged = judgedFrames(run), culled = run.frames.size();
+    int exit_code = kDone;
+    if (culled < frames || (verify && judged < culled)) {
+        std::string done = fmt::format("{} of {} frames", culled, frames);
+        if (verify && culled > 0) done += fmt::format(", {} of them verified", judged);
+        exit_code = reportInterruption(done, culled > 0);
+    }
+    const auto sum = sumVerification(run);
+    return sum && sum->false_culls > 0 ? kAnswerIsNo : exit_code;
 }
 
 Status explainFalseCulls(const Scene& scene, const RunOptions& options, const CullRun& run) {

@@ -11,17 +11,28 @@
 namespace sightline::cli {
 
 /// The visible set of each frame, with times and counts; one Query a thread. The same for any number of threads,
-/// but for the times.
+/// but for the times. Interrupted, it hands out no more frames and finishes those begun, so that the run holds the first
+/// frames of the path; CullRun::interrupted says so, and there may be none.
 CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options);
 
-/// Judges every frame of a run. Fills FrameResult::verification.
+/// Judges every frame of a run. Fills FrameResult::verification; interrupted, of the first frames only.
 void verifyPath(const Scene& scene, const RunOptions& options, CullRun& run);
+
+/// Frames that have a verdict.
+size_t judgedFrames(const CullRun& run);
+
+/// What the exit code says of a run: a false cull before all; else an interruption, of which a line is printed.
+/// @param frames  of the path
+/// @param verify  whether every frame was to be judged
+int exitCodeOf(const CullRun& run, size_t frames, bool verify);
 
 /// For each frame with false culls: writes its camera beside the run's other files as replay-frame-N.json, and
 /// prints each false cull with the command that replays it on standard error.
 Status explainFalseCulls(const Scene& scene, const RunOptions& options, const CullRun& run);
 
-/// Calls work(i) for i in [0, count) on so many threads, in any order; returns when all are done.
+/// Calls work(i) for i in [0, count) on so many threads, in any order; returns when all are done. Where memory does not
+/// reach for so many threads there are fewer, and work that found none is done again: it must bear that. What work throws
+/// is thrown here.
 void forEach(size_t count, uint32_t threads, const std::function<void(size_t)>& work);
 
 }  // namespace sightline::cli

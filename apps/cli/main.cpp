@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/cli/common.h"
+#include "apps/cli/session.h"
 #include "apps/cli/verbs.h"
 
 namespace sightline::cli {
@@ -29,6 +30,12 @@ std::string verbOf(const CLI::App& tool) {
     return "sightline" + (chosen.empty() ? std::string() : " " + chosen.front()->get_name());
 }
 
+std::string commandLine(int count, char** words) {
+    std::string line = "sightline";
+    for (int i = 1; i < count; ++i) line += " " + quoted(words[i]);
+    return line;
+}
+
 int runTool(int count, char** words) {
     CLI::App tool(kAbout, "sightline");
     tool.footer(kFooter);
@@ -40,6 +47,13 @@ int runTool(int count, char** words) {
     addRender(tool, exit_code);
     addInfo(tool, exit_code);
     addBench(tool, exit_code);
+    SessionOptions session;
+    addSessionOptions(tool, session);
+    for (CLI::App* verb : tool.get_subcommands({})) addSessionOptions(*verb, session);
+    tool.parse_complete_callback([&] {
+        if (Status begun = beginSession(session, "sightline " SIGHTLINE_VERSION, commandLine(count, words)); !begun)
+            throw CLI::RuntimeError(report(begun.error()));
+    });
     if (count <= 1) {
         std::fputs(tool.help().c_str(), stderr);
         return kWrongArguments;
@@ -50,7 +64,7 @@ int runTool(int count, char** words) {
         return report({Error::Kind::kUsage, "there is no verb \"" + first + "\" (see sightline --help)"});
     try {
         tool.parse(count, words);
-    } catch (const CLI::ParseError& error) {
+    } catch (const CLI::RuntimeError& error) { return error.get_exit_code(); } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return tool.exit(error);  // --help and --version
         return report({Error::Kind::kUsage, std::string(error.what()) + " (see " + verbOf(tool) + " --help)"});
     }
@@ -61,11 +75,17 @@ int runTool(int count, char** words) {
 }  // namespace sightline::cli
 
 int main(int count, char** words) {
+    using sightline::Error;
+    using namespace sightline::cli;
+    openSession();
+    int exit_code = kDone;
     try {
-        return sightline::cli::runTool(count, words);
+        exit_code = runTool(count, words);
     } catch (const std::bad_alloc&) {
-        return sightline::cli::report({sightline::Error::Kind::kInput, "not enough memory for this scene"});
+        exit_code = report({Error::Kind::kInput, "not enough memory for this scene"});
     } catch (const std::exception& error) {
-        return sightline::cli::report({sightline::Error::Kind::kInput, error.what()});
+        // What a full or closed standard output throws is endSession()'s concern.
+        if (!std::ferror(stdout)) exit_code = report({Error::Kind::kInput, error.what()});
     }
+    return endSession(exit_code);
 }

@@ -9,7 +9,8 @@
 
 namespace sightline::cli {
 
-/// Shows how far one piece of work has come. Thread-safe. Work that is done within half a second shows nothing.
+/// Shows how far one piece of work has come, unless quiet; the log has its beginning, a line a second, and its end.
+/// Thread-safe. Work that is done within half a second shows nothing.
 class Progress {
 public:
     /// @param what   what is being done: "culling"
@@ -33,8 +34,8 @@ private:
     std::mutex mutex_;
     std::string what_, unit_;
     size_t done_ = 0, total_ = 0;
-    bool terminal_ = false, colour_ = false, shown_ = false;
-    Clock::time_point start_, last_;
+    bool quiet_ = false, terminal_ = false, colour_ = false, shown_ = false;
+    Clock::time_point start_, last_, last_logged_;
 };
 
 }  // namespace sightline::cli

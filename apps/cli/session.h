@@ -1,13 +1,64 @@
-// What holds for a whole run of the tool: how much it says, where to, and whether it is to stop.
+// What holds for a whole run of the tool: how much it says, where to, in which colours, and whether it is to stop.
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+#include "sightline/base/result.h"
+
+namespace CLI {
+class App;
+}
+
 namespace sightline::cli {
 
+/// What every verb takes, and the tool itself before the verb.
+struct SessionOptions {
+    bool quiet = false;
+    std::string log;              ///< file, or empty
+    std::string colour = "auto";  ///< or "always", "never"
+};
+
+/// Adds --quiet, --log and --color to the tool or to a verb; they may stand before the verb or after it.
+void addSessionOptions(CLI::App& app, SessionOptions& options);
+
+/// Makes sure that standard input, output and error are open, that a reader who has left is an error and not the end,
+/// and that Ctrl-C and a request to end are heard. Before anything else, once.
+void openSession();
+/// Sets what holds from here on, and begins the log with the command. Errors (kOutput): the log cannot be written.
+Status beginSession(const SessionOptions& options, const std::string& version, const std::string& command);
+/// Ends the log with the exit code. What standard output did not take makes an error of what would have been well.
+/// @return the exit code of the process
+int endSession(int exit_code);
+
+/// From here on Ctrl-C, or a request to end, only makes interrupted() true. Before, it ends the process at once with
+/// exit code 130; a second one ends it at once in any case.
+void stopGently();
 /// True once Ctrl-C was pressed, or the process asked to end: loops over frames stop and leave what is finished.
 bool interrupted();
+/// Says on standard error how far it came.
+/// @param done  "3 of 16 frames"
+/// @return the exit code for it, kInterrupted
+int reportInterruption(const std::string& done, bool written);
 
 /// True with --quiet: no progress and no summaries; errors, and what was asked for on standard output, remain.
 bool quiet();
+
+/// Gives a summary to a reader, unless quiet, and to the log. Whether it could be written is endSession()'s concern.
+void tell(std::FILE* out, std::string_view text);
+/// "note: ..." on standard error, unless quiet, and in the log: something that is no error but of use to know.
+void note(const std::string& text);
+/// A line in the log alone, if there is one; written at once. Thread-safe.
+void logLine(std::string_view text);
+
+enum class Tone : uint8_t { kGood, kBad };
+/// Whether what goes there is coloured: by --color; else only terminals are, and not with NO_COLOR or TERM=dumb.
+bool isColoured(std::FILE* out);
+/// The text, green or red if what goes there is coloured.
+std::string paint(std::FILE* out, Tone tone, std::string_view text);
 
 }  // namespace sightline::cli

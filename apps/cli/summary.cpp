@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/core.h>
 #include <fmt/format.h>
+
+#include "apps/cli/cull_path.h"
+#include "apps/cli/session.h"
 
 namespace sightline::cli {
 namespace {
@@ -28,12 +32,17 @@ double medianQuery(const CullRun& run) {
     return times[times.size() / 2];
 }
 
-void printSums(std::FILE* out, const Verification& sum, const CullRun& run) {
-    fmt::print(out, "verified     {} of {} culled objects were visible, by {} rays and {} id samples\n",
-               grouped(sum.false_culls), grouped(sum.culled), rounded(static_cast<double>(sum.rays)),
-               rounded(static_cast<double>(sum.id_samples)));
-    fmt::print(out, "over-estimate {:.3f}: {} reported, {} exactly visible, over {} frames\n", sum.overEstimate(),
-               grouped(sum.reported), grouped(sum.exactly_visible), run.frames.size());
+void addSums(std::string& text, const Verification& sum, const CullRun& run) {
+    const size_t judged = judgedFrames(run);
+    fmt::format_to(std::back_inserter(text),
+                   "verified     {} of {} culled objects were visible, by {} rays and {} id samples\n",
+                   grouped(sum.false_culls), grouped(sum.culled), rounded(static_cast<double>(sum.rays)),
+                   rounded(static_cast<double>(sum.id_samples)));
+    fmt::format_to(std::back_inserter(text), "over-estimate {:.3f}: {} reported, {} exactly visible, over {} frames\n",
+                   sum.overEstimate(), grouped(sum.reported), grouped(sum.exactly_visible), judged);
+    if (judged < run.frames.size())
+        fmt::format_to(std::back_inserter(text), "unverified   {} of {} frames\n", run.frames.size() - judged,
+                       run.frames.size());
 }
 
 }  // namespace
@@ -53,35 +62,46 @@ void printSummary(std::FILE* out, const CullRun& run) {
             sums[stage].microseconds += frame.stages[stage].microseconds;
         }
     }
-    fmt::print(out, "{}: {} objects, {} triangles; {} frames of {}x{}, means over the frames\n", run.scene,
-               grouped(run.objects), grouped(run.triangles), run.frames.size(), run.width, run.height);
-    fmt::print(out, "visible      {:>10} objects  {:7.3f} %\n", rounded(visible / frames),
-               share(visible / frames, static_cast<double>(run.objects)));
+    std::string text;
+    fmt::format_to(std::back_inserter(text),
+                   "{}: {} objects, {} triangles; {} frames of {}x{}, means over the frames\n", run.scene,
+                   grouped(run.objects), grouped(run.triangles), run.frames.size(), run.width, run.height);
+    fmt::format_to(std::back_inserter(text), "visible      {:>10} objects  {:7.3f} %\n", rounded(visible / frames),
+                   share(visible / frames, static_cast<double>(run.objects)));
     for (int stage = 0; stage < kStageCount; ++stage) {
         if (!(run.stages >> stage & 1)) continue;
         const double culled = static_cast<double>(sums[stage].culled) / frames;
-        fmt::print(out, "{:<12} {:>10} culled   {:7.3f} %  {:9.1f} us\n", kStageNames[stage], rounded(culled),
-                   share(culled, static_cast<double>(run.objects)), sums[stage].microseconds / frames);
+        fmt::format_to(std::back_inserter(text), "{:<12} {:>10} culled   {:7.3f} %  {:9.1f} us\n", kStageNames[stage],
+                       rounded(culled), share(culled, static_cast<double>(run.objects)),
+                       sums[stage].microseconds / frames);
     }
-    fmt::print(out, "triangles    {:>10} submitted {:6.3f} % of the scene's\n", rounded(triangles / frames),
-               share(triangles / frames, static_cast<double>(run.triangles)));
-    fmt::print(out, "query        {:>10.1f} us median, {:.1f} us at most\n", medianQuery(run), slowest);
-    if (budget_spent) fmt::print(out, "the work budget was spent in some frames: more was kept than need be\n");
-    if (const auto sum = sumVerification(run)) printSums(out, *sum, run);
+    fmt::format_to(std::back_inserter(text), "triangles    {:>10} submitted {:6.3f} % of the scene's\n",
+                   rounded(triangles / frames), share(triangles / frames, static_cast<double>(run.triangles)));
+    fmt::format_to(std::back_inserter(text), "query        {:>10.1f} us median, {:.1f} us at most\n", medianQuery(run),
+                   slowest);
+    if (budget_spent)
+        fmt::format_to(std::back_inserter(text),
+                       "the work budget was spent in some frames: more was kept than need be\n");
+    if (const auto sum = sumVerification(run)) addSums(text, *sum, run);
+    tell(out, text);
 }
 
 void printVerdicts(std::FILE* out, const CullRun& run) {
+    std::string text;
     for (size_t i = 0; i < run.frames.size(); ++i) {
         const FrameResult& frame = run.frames[i];
+        if (!frame.verification) continue;
         const VerificationRow& row = *frame.verification;
         Verification one;
         one.reported = frame.visible.size();
         one.exactly_visible = row.exactly_visible;
-        fmt::print(out, "frame {:>4}: {}, {} false culls, {} reported, {} exactly visible, over-estimate {:.3f}\n", i,
-                   row.false_culls == 0 ? "sound" : "WRONG", row.false_culls, frame.visible.size(), row.exactly_visible,
-                   one.overEstimate());
+        fmt::format_to(std::back_inserter(text),
+                       "frame {:>4}: {}, {} false culls, {} reported, {} exactly visible, over-estimate {:.3f}\n", i,
+                       row.false_culls == 0 ? paint(out, Tone::kGood, "sound") : paint(out, Tone::kBad, "WRONG"),
+                       row.false_culls, frame.visible.size(), row.exactly_visible, one.overEstimate());
     }
-    printSums(out, *sumVerification(run), run);
+    if (const auto sum = sumVerification(run)) addSums(text, *sum, run);
+    tell(out, text);
 }
 
 std::string replayOfRun(const RunOptions& options, bool verify) {

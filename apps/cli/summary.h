@@ -11,9 +11,10 @@
 namespace sightline::cli {
 
 /// Means over the frames: objects kept, culled by stage, triangles, microseconds; and the verdict if there is one.
+/// Nothing with --quiet. There must be frames.
 void printSummary(std::FILE* out, const CullRun& run);
 
-/// One line a frame, then the sums. The run must have been verified.
+/// One line for each frame that was judged, then the sums. Nothing with --quiet.
 void printVerdicts(std::FILE* out, const CullRun& run);
 
 /// The command that repeats a run.

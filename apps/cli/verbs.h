@@ -15,6 +15,7 @@ enum ExitCode : int {
     kWrongArguments = 2,
     kInputUnreadable = 3,
     kOutputUnwritable = 4,
+    kInterrupted = 130,  ///< by Ctrl-C, or by a request to end; as a shell reports it
 };
 
 /// Each adds its verb with its options to the tool. The verb's action sets the exit code.

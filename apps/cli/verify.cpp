@@ -14,7 +14,8 @@
 namespace sightline::cli {
 namespace {
 
-Result<bool> runVerify(const CLI::App& verb, RunOptions& options) {
+/// The whole verb. Returns the exit code.
+Result<int> runVerify(const CLI::App& verb, RunOptions& options) {
     if (Status good = finish(verb, options); !good) return good.error();
     const Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
@@ -24,13 +25,14 @@ Result<bool> runVerify(const CLI::App& verb, RunOptions& options) {
         if (Status writable = canWriteFile(options.json); !writable) return writable.error();
 
     CullRun run = cullPath(*scene, *path, options);
+    if (run.frames.empty()) return exitCodeOf(run, path->frames.size(), true);
     verifyPath(*scene, options, run);
 
     printVerdicts(options.json == "-" ? stderr : stdout, run);
     if (Status explained = explainFalseCulls(*scene, options, run); !explained) return explained.error();
     if (!options.json.empty())
         if (Status written = writeText(options.json, cullJson(run, *scene)); !written) return written.error();
-    return sumVerification(run)->false_culls == 0;
+    return exitCodeOf(run, path->frames.size(), true);
 }
 
 }  // namespace
@@ -41,8 +43,8 @@ void addVerify(CLI::App& tool, int& exit_code) {
     options->repeat = 1;
     addSceneOptions(*verb, *options);
     verb->callback([verb, options, &exit_code] {
-        const Result<bool> sound = runVerify(*verb, *options);
-        exit_code = !sound ? report(sound.error()) : *sound ? kDone : kAnswerIsNo;
+        const Result<int> done = runVerify(*verb, *options);
+        exit_code = done ? *done : report(done.error());
     });
 }
 
