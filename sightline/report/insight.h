@@ -25,8 +25,9 @@ std::vector<OccluderRow> occluderRows(const CullRun& run);
 /// Objects that no frame kept, those with most triangles first: candidates for removal, as far as the path goes.
 std::vector<uint32_t> neverKept(const CullRun& run, const Scene& scene);
 
-/// Objects that appear and disappear together in every frame, lie beside one another in the file's tree and are small:
-/// candidates for merging into one draw.
+/// Objects that every frame either keeps all of or culls all of, that some frame keeps, hang at the same node of the
+/// file's tree, and are small: at most 2000 triangles each, and all within a box of 5 % of the scene's diagonal.
+/// Candidates for merging into one draw.
 struct TogetherGroup {
     std::vector<uint32_t> objects;  ///< indices into Scene::objects, ascending
     uint64_t triangles = 0;

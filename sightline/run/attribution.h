@@ -1,0 +1,43 @@
+// Which occluder hides each pixel of a recorded walk's buffer: each drawn alone, and the nearest wins.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "sightline/run/walk.h"
+
+namespace sightline::detail {
+
+/// A pixel's occluder. One that no occluder covers alone, but several together, belongs to the first that touches it.
+struct PixelOwner {
+    static constexpr uint32_t kNone = ~0u;
+
+    float nearness = 0;        ///< of what `owner` covers the pixel with
+    float touching = 0;        ///< no point of `toucher` is nearer
+    uint32_t owner = kNone;    ///< index into Walk::instances
+    uint32_t toucher = kNone;  ///< the same
+
+    /// Whose the pixel is, for something that lies behind the given nearness.
+    uint32_t inFrontOf(float depth) const {
+        if (owner != kNone && nearness > depth) return owner;
+        return toucher != kNone && touching > depth ? toucher : kNone;
+    }
+};
+
+/// The owners of a buffer's pixels. What it needs stays from frame to frame.
+struct Attribution {
+    explicit Attribution(Memory* memory) : tiles(memory), pixels(memory), order(memory) {}
+
+    DepthTiles tiles;  ///< of one occluder
+    Array<PixelOwner> pixels;
+    Array<uint32_t> order;  ///< the record's draws, those of an instance beside one another
+
+    /// @param draws  only the first so many of the record
+    void run(const Walk& walk, const WalkRecord& record, uint32_t draws);
+
+    const PixelOwner& at(int32_t x, int32_t y) const {
+        return pixels[static_cast<size_t>(y) * tiles.width + static_cast<size_t>(x)];
+    }
+};
+
+}  // namespace sightline::detail

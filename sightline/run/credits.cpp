@@ -1,0 +1,117 @@
+// What each occluder of a frame was worth: how many objects it hid, beside how many triangles it cost.
+// SPDX-License-Identifier: MIT
+#include "sightline/run/credits.h"
+
+#include <algorithm>
+
+#include "sightline/base/assert.h"
+#include "sightline/run/attribution.h"
+
+namespace sightline {
+
+struct CreditBook::Impl {
+    explicit Impl(Memory* from) : memory(from) {}
+
+    Memory* const memory;
+    Snapshot snapshot;
+    detail::Walk walk{memory};
+    detail::WalkRecord record{memory};
+    detail::Attribution owners{memory};
+    Array<double> weight_before{memory};  ///< per place of the hierarchy: the sum over the places before it
+    Array<Credit> of_instance{memory};
+    Array<uint32_t> pixels{memory};  ///< per instance, of the rectangle at hand
+    Array<uint32_t> met{memory};     ///< instances that have some
+    Array<Credit> credits{memory};
+    double unshared = 0;
+
+    void weigh(std::span<const double> weights);
+    double weightOf(const detail::WalkRecord::Cull& cull) const;
+    void share(const detail::WalkRecord::Cull& cull);
+    void gather();
+};
+
+void CreditBook::Impl::weigh(std::span<const double> weights) {
+    if (!snapshot) return;
+    const detail::SnapshotState& state = snapshot.state();
+    SIGHTLINE_ASSERT(weights.empty() || weights.size() >= state.count);
+    weight_before.assign(1, 0.0);
+    weight_before.reserve(state.bvh.order.size() + 1);
+    for (const uint32_t item : state.bvh.order)
+        weight_before.push_back(weight_before.back() + (weights.empty() ? 1.0 : weights[state.itemOf(item)]));
+}
+
+/// Of the objects within the view's layers.
+double CreditBook::Impl::weightOf(const detail::WalkRecord::Cull& cull) const {
+    if (walk.every_layer) return weight_before[cull.first + cull.count] - weight_before[cull.first];
+    double sum = 0;
+    for (uint32_t place = cull.first; place < cull.first + cull.count; ++place)
+        if (walk.inLayers(place, 1)) sum += weight_before[place + 1] - weight_before[place];
+    return sum;
+}
+
+/// Shares a culled range among the owners of its rectangle's pixels.
+void CreditBook::Impl::share(const detail::WalkRecord::Cull& cull) {
+    uint32_t owned = 0;
+    for (int32_t y = cull.rect.y0; y <= cull.rect.y1; ++y)
+        for (int32_t x = cull.rect.x0; x <= cull.rect.x1; ++x) {
+            const uint32_t instance = owners.at(x, y).inFrontOf(cull.rect.nearness);
+            if (instance == detail::PixelOwner::kNone) continue;
+            if (pixels[instance]++ == 0) met.push_back(instance);
+            ++owned;
+        }
+    const double objects = static_cast<double>(walk.inLayers(cull.first, cull.count)), weight = weightOf(cull);
+    if (owned == 0) unshared += objects;
+    for (const uint32_t instance : met) {
+        const double part = static_cast<double>(pixels[instance]) / owned;
+        of_instance[instance].hidden += part * objects;
+        of_instance[instance].hidden_weight += part * weight;
+        pixels[instance] = 0;
+    }
+    met.clear();
+}
+
+/// Only what was rasterized has a credit: an instance may have been offered and skipped.
+void CreditBook::Impl::gather() {
+    credits.clear();
+    for (const Credit& credit : of_instance)
+        if (credit.triangles > 0) credits.push_back(credit);
+    std::sort(credits.begin(), credits.end(), [](const Credit& a, const Credit& b) { return a.item < b.item; });
+}
+
+CreditBook::CreditBook(const Snapshot& now, std::span<const double> weights, Memory* memory)
+    : impl_(makeOwned<Impl>(memory, memory)) {
+    impl_->snapshot = now;
+    impl_->walk.record = &impl_->record;
+    impl_->weigh(weights);
+}
+CreditBook::~CreditBook() = default;
+CreditBook::CreditBook(CreditBook&&) noexcept = default;
+CreditBook& CreditBook::operator=(CreditBook&&) noexcept = default;
+
+std::span<const Credit> CreditBook::credits(const View& view) {
+    Impl& impl = *impl_;
+    impl.credits.clear();
+    impl.unshared = 0;
+    if (!impl.snapshot) return {};
+    const detail::SnapshotState& state = impl.snapshot.state();
+    impl.record.clear();  // a view that is not usable, or without the occlusion stage, draws nothing
+    impl.walk.run(&state, view);
+    if (impl.record.draws.empty()) return {};
+    impl.owners.run(impl.walk, impl.record, static_cast<uint32_t>(impl.record.draws.size()));
+    impl.of_instance.assign(impl.record.owners.size(), Credit());
+    impl.pixels.assign(impl.record.owners.size(), 0);
+    for (size_t i = 0; i < impl.record.owners.size(); ++i) {
+        impl.of_instance[i].item = state.itemOf(state.bvh.order[impl.record.owners[i]]);
+        impl.of_instance[i].id = state.object(impl.of_instance[i].item).id;
+    }
+    for (const detail::WalkRecord::Draw& draw : impl.record.draws)
+        impl.of_instance[draw.instance].triangles += draw.triangles;
+    for (const detail::WalkRecord::Cull& cull : impl.record.culls)
+        if (cull.stage == Stage::kOcclusion) impl.share(cull);
+    impl.gather();
+    return impl.credits;
+}
+
+double CreditBook::unshared() const { return impl_->unshared; }
+
+}  // namespace sightline
