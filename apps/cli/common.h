@@ -32,8 +32,9 @@ struct RunOptions {
     uint32_t stages = 0;  ///< from `use` and `skip`
     double jitter = 0.5;
     uint64_t rays = 1000000;
-    std::string json;    ///< file, `-`, or empty
-    std::string report;  ///< directory, or empty
+    std::string json;      ///< file, `-`, or empty
+    std::string report;    ///< directory, or empty
+    bool credits = false;  ///< fill FrameResult::credits: costs some tens of queries a frame
 };
 
 /// The scene, its cameras, the size, threads and JSON: what every verb has that looks at a scene.

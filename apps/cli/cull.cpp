@@ -60,6 +60,7 @@ Result<int> runCull(const CLI::App& verb, CullOptions& options) {
     if (!path) return path.error();
     if (Status writable = checkOutputs(options); !writable) return writable.error();
 
+    options.credits = !options.report.empty();
     CullRun run = cullPath(*scene, *path, options);
     if (run.frames.empty()) return exitCodeOf(run, path->frames.size(), options.verify);
     run.command = replayOfRun(options, options.verify);

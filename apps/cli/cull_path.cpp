@@ -22,6 +22,7 @@
 #include "sightline/hidden/threads.h"
 #include "sightline/load/load_world.h"
 #include "sightline/report/output_file.h"
+#include "sightline/run/credits.h"
 #include "sightline/run/query.h"
 #include "sightline/truth/verify.h"
 
@@ -57,8 +58,21 @@ void cullFrame(const Snapshot& now, const CullRun& run, Query& query, FrameResul
     }
     frame.occluder_triangles = stats.occluder_triangles;
     frame.budget_spent = stats.budget_spent;
+    frame.nodes_visited = stats.nodes_visited;
+    frame.seam_pixels = stats.seam_pixels;
     frame.reasons.resize(now.objectCount());
     query.reasons(frame.reasons);
+}
+
+/// What a thread answers frames with.
+struct Answerer {
+    Query query;
+    std::optional<CreditBook> book;  ///< if credits were asked for
+};
+
+void creditFrame(const CullRun& run, CreditBook& book, FrameResult& frame) {
+    for (const Credit& credit : book.credits(viewOf(frame.camera, run)))
+        frame.credits.push_back({credit.item, credit.triangles, credit.hidden, credit.hidden_weight});
 }
 
 VerificationRow rowOf(const FrameVerdict& verdict, const FrameResult& frame, const Scene& scene) {
@@ -178,6 +192,11 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     }();
     const Snapshot now = loaded.world.commit();
 
+    std::vector<double> weights;
+    if (options.credits)
+        for (const SceneObject& object : scene.objects)
+            weights.push_back(static_cast<double>(scene.meshes[object.mesh].triangles()));
+
     stopGently();
     Progress progress("culling", "frames", path.frames.size());
     const auto begin = std::chrono::steady_clock::now();
@@ -185,15 +204,18 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
         return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
     };
     const size_t done = shareOut(path.frames.size(), options.threads, interrupted, [&](uint32_t thread) {
-        return [&, thread, query = std::make_shared<Query>()](size_t i) {
+        const auto answerer = std::make_shared<Answerer>();
+        if (options.credits) answerer->book.emplace(now, weights);
+        return [&, thread, answerer](size_t i) {
             FrameResult& frame = run.frames[i];
             frame = FrameResult();
             frame.thread = thread;
             frame.begin_microseconds = since();
             frame.camera = path.frames[i];
-            cullFrame(now, run, *query, frame);
+            cullFrame(now, run, answerer->query, frame);
             countByKey(scene, key_order, run.stages, frame);
             frame.end_microseconds = since();
+            if (answerer->book) creditFrame(run, *answerer->book, frame);
             progress.step();
         };
     });
