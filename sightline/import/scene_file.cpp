@@ -1,38 +1,70 @@
-// Reads a scene from a file of any format that is known, and joins scenes of several files.
+// Reads a scene from a file of any format that is known.
 // SPDX-License-Identifier: MIT
 #include "sightline/import/scene_file.h"
 
-#include <algorithm>
-#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <memory>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "sightline/import/foreign.h"
 #include "sightline/import/gltf.h"
+#include "sightline/import/scene_kind.h"
 
 namespace sightline {
+namespace {
 
-Result<Scene> loadSceneFile(const std::string& file, const ImportSettings& settings) {
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(file, error);
-    if (status.type() == std::filesystem::file_type::not_found)
-        return Error{Error::Kind::kInput, fmt::format("{}: no such file", file.empty() ? "\"\"" : file)};
-    if (error) return Error{Error::Kind::kInput, fmt::format("{}: {}", file, error.message())};
-    if (std::filesystem::is_directory(status))
-        return Error{Error::Kind::kInput, fmt::format("{}: is a directory, not a scene", file)};
-    std::string extension = std::filesystem::path(file).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension != ".glb" && extension != ".gltf")
-        return Error{
-            Error::Kind::kInput,
-            fmt::format("{}: not a scene that can be read (.glb, .gltf, city:SEED:OBJECTS or made:NAME)", file)};
-    Result<Scene> scene = loadGltf(file, settings.progress);
-    if (scene) scene->files = {{file, 0}};
-    return scene;
+namespace fs = std::filesystem;
+
+Error inputError(const std::string& file, const std::string& what) {
+    return {Error::Kind::kInput, fmt::format("{}: {}", file.empty() ? "\"\"" : file, what)};
 }
 
-Scene joinScenes(std::vector<Scene> scenes) { return std::move(scenes.front()); }
+/// The first bytes of a regular file.
+Result<std::string> headOf(const std::string& file) {
+    std::error_code error;
+    const fs::file_status status = fs::status(file, error);
+    if (status.type() == fs::file_type::not_found) return inputError(file, "no such file");
+    if (error) return inputError(file, error.message());
+    if (fs::is_directory(status)) return inputError(file, "is a directory, not a scene");
+    if (!fs::is_regular_file(status)) return inputError(file, "is not a regular file");
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rbe"), &std::fclose);
+    if (!stream) return inputError(file, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    std::string head(kSceneHead, '\0');
+    head.resize(std::fread(head.data(), 1, head.size(), stream.get()));
+    if (std::ferror(stream.get())) return inputError(file, "cannot be read");
+    return head;
+}
+
+/// A scale that takes objects out of the range of numbers is the settings' fault, but shows in the scene.
+bool inRange(const Scene& scene) {
+    const Box3d bounds = worldBounds(scene);
+    return bounds.finite() && glm::length(bounds.size()) < 1e100;
+}
+
+}  // namespace
+
+Result<Scene> loadSceneFile(const std::string& file, const ImportSettings& settings) {
+    const Result<std::string> head = headOf(file);
+    if (!head) return head.error();
+    std::error_code error;
+    const uint64_t size = fs::file_size(file, error);
+    if (error) return inputError(file, error.message());
+    const SceneKind kind = sceneKind(file, *head, size);
+    if (!kind.format) return inputError(file, kind.refusal);
+    Result<Scene> scene =
+        kind.format->ours ? loadGltf(file, settings.progress) : loadForeign(file, kind.suffix, settings);
+    if (!scene) return scene;
+    scene->name = file;
+    scene->files = {{file, 0}};
+    placeScene(*scene, settings);
+    if (!inRange(*scene)) return inputError(file, "its bounds in the world are too large");
+    return scene;
+}
 
 }  // namespace sightline
