@@ -22,9 +22,10 @@ constexpr uint64_t kLargestFile = uint64_t(4) << 30;  // what a GLB's 32-bit len
 
 // What we read, and what does not change where triangles are.
 bool isHarmless(const std::string& name) {
-    constexpr std::array kExact = {"KHR_mesh_quantization", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing",
-                                   "KHR_node_visibility",   "KHR_animation_pointer",   "MSFT_texture_dds",
-                                   "EXT_mesh_features",     "EXT_structural_metadata", "EXT_instance_features"};
+    constexpr std::array kExact = {"KHR_mesh_quantization",      "EXT_meshopt_compression", "KHR_meshopt_compression",
+                                   "KHR_draco_mesh_compression", "EXT_mesh_gpu_instancing", "KHR_node_visibility",
+                                   "KHR_animation_pointer",      "MSFT_texture_dds",        "EXT_mesh_features",
+                                   "EXT_structural_metadata",    "EXT_instance_features"};
     constexpr std::array kPrefixes = {"KHR_texture_",     "EXT_texture_", "KHR_materials_", "EXT_materials_",
                                       "ADOBE_materials_", "KHR_lights_",  "EXT_lights_",    "KHR_xmp"};
     for (const char* exact : kExact)
@@ -34,7 +35,8 @@ bool isHarmless(const std::string& name) {
     return false;
 }
 
-void checkAsset(const Json& root) {
+void checkAsset(Document& document) {
+    const Json& root = document.root;
     const Json* asset = findObject(root, "asset", "");
     if (!asset) fail("", "not glTF 2.0: asset is missing");
     const std::string version = text(*asset, "version", "asset");
@@ -45,6 +47,7 @@ void checkAsset(const Json& root) {
         if (!required[i].is_string()) fail(place, "is not a string");
         const std::string name = required[i].get<std::string>();
         if (!isHarmless(name)) fail(place, "{} is required but not supported", printable(name));
+        document.draco_required |= name == "KHR_draco_mesh_compression";
     }
 }
 
@@ -66,7 +69,7 @@ Scene import(Bytes bytes, const std::string& name, std::optional<std::string> di
     document.chunk = container.binary;
     document.directory = std::move(directory);
     document.budget.grant(bytes.size());
-    checkAsset(document.root);
+    checkAsset(document);
     readTables(document);
     Scene scene = makeScene(document);
     scene.name = name;

@@ -19,9 +19,10 @@ namespace sightline {
 /// an object's key is its node's index. Scene::nodes holds every node of the file, in its order.
 ///
 /// Takes triangle lists, strips and fans (points and lines are left out); 8, 16 and 32-bit indices or none;
-/// sparse, normalised and quantised accessors; KHR_mesh_quantization, EXT_meshopt_compression,
-/// EXT_mesh_gpu_instancing (an object per instance, sharing the key); cameras; doubleSided, alphaMode,
-/// transmission. Skinned and morphed meshes get bounds that hold for every pose and are marked as deforming:
+/// sparse, normalised and quantised accessors; KHR_mesh_quantization, EXT_meshopt_compression and
+/// KHR_meshopt_compression as far as the library goes, KHR_draco_mesh_compression if this was built with Draco (and only
+/// for primitives that have no other data), EXT_mesh_gpu_instancing (an object per instance, sharing the key); cameras;
+/// doubleSided, alphaMode, transmission. Skinned and morphed meshes get bounds that hold for every pose and are marked as deforming:
 /// joints turned in any way, translated and scaled as at rest or as an animation asks; morph weights from 0
 /// to 1, their defaults, and what animations make of them. Joints place a skinned mesh, its node does not; with
 /// and without a skin, or with other morph weights, one glTF mesh becomes several. Nodes that animations

@@ -12,6 +12,8 @@
 namespace sightline::gltf {
 namespace {
 
+constexpr uint64_t kMostZeros = 1 << 20;  // elements of an accessor that has no bytes to show for them
+
 static_assert(std::endian::native == std::endian::little, "glTF's buffers are little-endian");
 
 // Calls `use` with a value of the component's C++ type.
@@ -73,8 +75,10 @@ void decodeRun(Document& document, const Elements& elements, uint64_t count, uin
 template <class To, class Convert>
 std::vector<To> decode(Document& document, uint32_t index, Convert&& convert) {
     const Accessor& accessor = document.accessors[index];
-    const std::string place = at("accessors", index);
+    const std::string place = accessorPlace(document, index);
     const uint32_t components = accessor.components;
+    if (!accessor.elements.view && accessor.count > kMostZeros)
+        fail(place, "count {} without a bufferView is more than {}", accessor.count, kMostZeros);
     document.budget.charge(accessor.count, components * sizeof(To), place);
     std::vector<To> out(accessor.count * components);
     decodeRun(document, accessor.elements, accessor.count, components, out.data(), convert);
@@ -105,7 +109,7 @@ void checkComponents(const Accessor& accessor, uint32_t components, const char* 
 
 std::vector<float> decodeFloats(Document& document, uint32_t index, uint32_t components, const char* what) {
     const Accessor& accessor = document.accessors[index];
-    const std::string place = at("accessors", index);
+    const std::string place = accessorPlace(document, index);
     checkComponents(accessor, components, what, place);
     if (accessor.elements.component == Component::kUnsignedInt) fail(place, "{} cannot be 32-bit integers", what);
     const bool normalized = accessor.normalized;
@@ -118,7 +122,7 @@ std::vector<float> decodeFloats(Document& document, uint32_t index, uint32_t com
 
 std::vector<uint32_t> decodeIntegers(Document& document, uint32_t index, uint32_t components, const char* what) {
     const Accessor& accessor = document.accessors[index];
-    const std::string place = at("accessors", index);
+    const std::string place = accessorPlace(document, index);
     checkComponents(accessor, components, what, place);
     const Component kind = accessor.elements.component;
     if (kind != Component::kUnsignedByte && kind != Component::kUnsignedShort && kind != Component::kUnsignedInt)

@@ -7,10 +7,11 @@
 #include <array>
 #include <utility>
 
+#include "sightline/import/gltf_draco.h"
+
 namespace sightline::gltf {
 namespace {
 
-constexpr uint64_t kMostZeros = 1 << 20;  // elements of an accessor that has no bytes to show for them
 constexpr uint64_t kBytesPerInputByte = 512;
 
 void readBuffers(Document& document) {
@@ -20,7 +21,7 @@ void readBuffers(Document& document) {
         const Json& json = objectAt(array, i, place);
         Buffer buffer;
         buffer.length = requiredWhole(json, "byteLength", place);
-        const Json* meshopt = extension(json, "EXT_meshopt_compression", place);
+        const Json* meshopt = findMeshopt(json, place);
         const bool fallback = meshopt && flag(*meshopt, "fallback", place);
         if (const Json* uri = find(json, "uri")) {
             if (!uri->is_string()) fail(place, "uri is not a string");
@@ -52,7 +53,7 @@ void readViews(Document& document) {
         const uint64_t stride = whole(json, "byteStride", place).value_or(0);
         if (stride > 65536) fail(place, "byteStride {} is too large", stride);
         view.stride = static_cast<uint32_t>(stride);
-        if (const Json* meshopt = extension(json, "EXT_meshopt_compression", place)) {
+        if (const Json* meshopt = findMeshopt(json, place)) {
             view.compression = readCompression(*meshopt, document.buffers.size(), place);
             checkRange(view.compression->offset, view.compression->length, document.buffers[view.compression->buffer],
                        place);
@@ -121,6 +122,7 @@ void readAccessors(Document& document) {
         const std::string place = at("accessors", i);
         const Json& json = objectAt(array, i, place);
         Accessor accessor;
+        accessor.number = static_cast<uint32_t>(i);
         accessor.elements.view = index(json, "bufferView", document.views.size(), place);
         accessor.elements.offset = whole(json, "byteOffset", place).value_or(0);
         accessor.elements.component = readComponent(json, place);
@@ -128,8 +130,6 @@ void readAccessors(Document& document) {
         accessor.count = requiredWhole(json, "count", place);
         accessor.normalized = flag(json, "normalized", place);
         checkElements(document, accessor.elements, accessor.count, accessor.components, place);
-        if (!accessor.elements.view && accessor.count > kMostZeros)
-            fail(place, "count {} without a bufferView is more than {}", accessor.count, kMostZeros);
         if (accessor.count > 0xffffffff) fail(place, "count {} is too large", accessor.count);
         if (const Json* sparse = findObject(json, "sparse", place))
             accessor.sparse = readSparse(document, *sparse, accessor, place + ".sparse");
@@ -206,8 +206,16 @@ void readTables(Document& document) {
     readAccessors(document);
 }
 
+std::string accessorPlace(const Document& document, uint32_t index) {
+    const Accessor& accessor = document.accessors[index];
+    if (accessor.number != Accessor::kNone) return at("accessors", accessor.number);
+    return document.streams[*document.views[*accessor.elements.view].stream].place;
+}
+
 Bytes viewBytes(Document& document, uint32_t index) {
+    if (document.views[index].stream) unpackDraco(document, *document.views[index].stream);
     BufferView& view = document.views[index];
+    if (view.stream) return view.data;
     if (!view.compression) return bufferBytes(document, view.buffer).subspan(view.offset, view.length);
     if (!view.decoded) {
         const std::string place = at("bufferViews", index);

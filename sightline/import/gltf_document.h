@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -33,6 +34,7 @@ struct BufferView {
     uint64_t offset = 0, length = 0;  ///< [bytes] of the buffer, or of the data once decompressed
     uint32_t stride = 0;              ///< [bytes]; 0: packed
     std::optional<Compression> compression;
+    std::optional<uint32_t> stream;  ///< in Document::streams: has no buffer, holds one of its attributes
     bool decoded = false;
     std::vector<unsigned char> data;  ///< decompressed
 };
@@ -62,6 +64,9 @@ struct Sparse {
 };
 
 struct Accessor {
+    static constexpr uint32_t kNone = ~0u;
+
+    uint32_t number = kNone;  ///< in the file; kNone: it is not there
     Elements elements;
     uint64_t count = 0;
     uint32_t components = 1;  ///< SCALAR 1, VEC2 2, ..., MAT4 16
@@ -76,6 +81,8 @@ public:
     void grant(uint64_t input_bytes);
     /// Throws a Fault if nothing is left.
     void charge(uint64_t count, uint64_t bytes_each, const std::string& place);
+    /// For what was charged and is no longer held.
+    void giveBack(uint64_t bytes) { left_ += bytes; }
 
 private:
     uint64_t left_ = uint64_t(64) << 20;
@@ -98,6 +105,23 @@ private:
     size_t told_ = 0;
 };
 
+/// The Draco data of one or more primitives; gltf_draco.h has what works with it.
+struct DracoStream {
+    struct Attribute {
+        std::string name;
+        uint32_t id = 0;        ///< in the stream
+        uint32_t accessor = 0;  ///< in Document::accessors; added for the stream
+    };
+    std::string place;  ///< of the first primitive
+    uint32_t view = 0;  ///< holds the stream
+    std::vector<Attribute> attributes;
+    std::optional<uint32_t> indices;  ///< accessor, added for the stream
+    bool counts_triangles = false;    ///< the file says how many there are
+    std::optional<uint64_t> triangles, vertices;
+    size_t uses = 0;    ///< that are still to come
+    uint64_t held = 0;  ///< [bytes] unpacked
+};
+
 /// The JSON and its tables. Buffers are read and views decompressed when first asked for.
 struct Document {
     Json root;
@@ -106,6 +130,9 @@ struct Document {
     std::vector<Buffer> buffers;
     std::vector<BufferView> views;
     std::vector<Accessor> accessors;
+    std::vector<DracoStream> streams;
+    std::map<std::vector<uint64_t>, uint32_t> known_streams;
+    bool draco_required = false;  ///< by extensionsRequired: there is no other data
     Budget budget;
     Progress progress;
 };
@@ -113,6 +140,9 @@ struct Document {
 /// Fills the tables from `root`. Afterwards each element of each accessor lies inside its view, and each
 /// view inside its buffer.
 void readTables(Document& document);
+
+/// How to name an accessor in a Fault.
+std::string accessorPlace(const Document& document, uint32_t accessor);
 
 /// The bytes of a view, decompressed.
 Bytes viewBytes(Document& document, uint32_t view);

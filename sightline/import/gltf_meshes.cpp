@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "sightline/import/gltf_accessor.h"
+#include "sightline/import/gltf_draco.h"
 
 namespace sightline::gltf {
 namespace {
@@ -30,8 +31,34 @@ void readTargets(const Json& json, size_t accessors, PrimitiveSource& out) {
     }
 }
 
+// Whether there is other data than the compressed, which then serves a build with and without Draco alike.
+bool hasFallback(const Document& document, const PrimitiveSource& source) {
+    const auto filled = [&](uint32_t accessor) {
+        return document.accessors[accessor].elements.view || document.accessors[accessor].sparse;
+    };
+    bool all = filled(source.positions) && (!source.indices || filled(*source.indices));
+    for (const auto& [joints, weights] : source.influences) all = all && filled(joints) && filled(weights);
+    return all && !document.draco_required;
+}
+
+// Lets the primitive read from its Draco stream.
+void readDraco(Document& document, const Json& json, PrimitiveSource& out) {
+    if (hasFallback(document, out)) return;
+    if (out.mode == kTriangleFan) fail(out.place, "is a fan, which Draco data cannot be");
+    NamedAccessors attributes = {{"POSITION", out.positions}};
+    for (size_t set = 0; set < out.influences.size(); ++set) {
+        attributes.emplace_back(fmt::format("JOINTS_{}", set), out.influences[set].first);
+        attributes.emplace_back(fmt::format("WEIGHTS_{}", set), out.influences[set].second);
+    }
+    out.stream = useDraco(document, json, attributes, out.indices, out.mode == kTriangles, out.place);
+    out.mode = kTriangles;  // of a strip, too, the stream holds triangles
+    out.positions = attributes[0].second;
+    for (size_t set = 0; set < out.influences.size(); ++set)
+        out.influences[set] = {attributes[2 * set + 1].second, attributes[2 * set + 2].second};
+}
+
 // None if it draws no triangles.
-std::optional<PrimitiveSource> readPrimitive(const Document& document, const Json& json, const Materials& materials,
+std::optional<PrimitiveSource> readPrimitive(Document& document, const Json& json, const Materials& materials,
                                              const std::string& place) {
     PrimitiveSource out;
     out.place = place;
@@ -46,11 +73,9 @@ std::optional<PrimitiveSource> readPrimitive(const Document& document, const Jso
     out.indices = index(json, "indices", accessors, place);
     const auto material = index(json, "material", materials.count, place);
     out.material = material ? *material + materials.first : 0;
-    const Accessor& accessor = document.accessors[*positions];
-    if (extension(json, "KHR_draco_mesh_compression", place) && !accessor.elements.view && !accessor.sparse)
-        fail(place, "is compressed with KHR_draco_mesh_compression, which is not supported");
     readInfluences(*attributes, accessors, out);
     readTargets(json, accessors, out);
+    if (const Json* draco = extension(json, "KHR_draco_mesh_compression", place)) readDraco(document, *draco, out);
     return out;
 }
 
@@ -83,13 +108,13 @@ std::vector<uint32_t> readCorners(Document& document, const PrimitiveSource& sou
     corners = decodeIntegers(document, *source.indices, 1, "indices");
     const auto largest = std::max_element(corners.begin(), corners.end());
     if (largest != corners.end() && *largest >= vertices)
-        fail(at("accessors", *source.indices), "index {} is out of range of {} vertices", *largest, vertices);
+        fail(accessorPlace(document, *source.indices), "index {} is out of range of {} vertices", *largest, vertices);
     return corners;
 }
 
 }  // namespace
 
-std::vector<MeshSource> readMeshes(const Document& document, const Materials& materials) {
+std::vector<MeshSource> readMeshes(Document& document, const Materials& materials) {
     const Json& array = table(document.root, "meshes");
     std::vector<MeshSource> out(array.size());
     for (size_t i = 0; i < array.size(); ++i) {
@@ -114,7 +139,15 @@ std::vector<MeshSource> readMeshes(const Document& document, const Materials& ma
 }
 
 void MeshBuilder::expect(const MeshSource& source) {
-    for (const PrimitiveSource& primitive : source.primitives) ++positions_[primitive.positions].uses;
+    for (const PrimitiveSource& primitive : source.primitives) {
+        ++positions_[primitive.positions].uses;
+        if (primitive.stream) retainDraco(document_, *primitive.stream);
+    }
+}
+
+void MeshBuilder::release(const MeshSource& source) {
+    for (const PrimitiveSource& primitive : source.primitives)
+        if (primitive.stream) releaseDraco(document_, *primitive.stream);
 }
 
 BuiltMesh MeshBuilder::build(const MeshSource& source, bool keep_runs) {
@@ -129,6 +162,7 @@ BuiltMesh MeshBuilder::build(const MeshSource& source, bool keep_runs) {
 }
 
 void MeshBuilder::addPrimitive(const PrimitiveSource& source, bool keep_runs, BuiltMesh& out) {
+    if (source.stream) unpackDraco(document_, *source.stream);
     Positions& positions = positions_[source.positions];
     if (!positions.decoded) {
         positions.xyz = decodeFloats(document_, source.positions, 3, "position");

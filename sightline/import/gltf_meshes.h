@@ -14,13 +14,14 @@
 
 namespace sightline::gltf {
 
-/// A primitive that draws triangles; its numbers are accessors.
+/// A primitive that draws triangles; its numbers are accessors, of a Draco stream or of the file.
 struct PrimitiveSource {
     std::string place;
     uint32_t mode = 4;
     std::optional<uint32_t> indices;
     uint32_t positions = 0;
     uint32_t material = 0;                                  ///< in Scene::materials
+    std::optional<uint32_t> stream;                         ///< in Document::streams: where accessors get their data
     std::vector<std::pair<uint32_t, uint32_t>> influences;  ///< joints and weights, set by set
     std::vector<std::optional<uint32_t>> targets;           ///< displacements of the morph targets
 };
@@ -35,7 +36,7 @@ struct MeshSource {
 };
 
 /// Reads all meshes of the JSON, without their data.
-std::vector<MeshSource> readMeshes(const Document& document, const Materials& materials);
+std::vector<MeshSource> readMeshes(Document& document, const Materials& materials);
 
 /// Where the vertices of a primitive came from.
 struct VertexRun {
@@ -60,6 +61,9 @@ public:
     /// Only vertices that a triangle uses are taken. With `keep_runs`, primitives share no vertices and the
     /// runs tell where they came from. Without triangles the mesh is empty.
     BuiltMesh build(const MeshSource& source, bool keep_runs);
+
+    /// After each build, once nothing asks for the vertices' other attributes: lets go of what Draco streams unpacked.
+    void release(const MeshSource& source);
 
 private:
     struct Positions {

@@ -7,11 +7,12 @@
 namespace sightline::gltf {
 namespace {
 
-// The densest that each codec packs: blocks of 16 equal bytes take two bits, a triangle or an index a byte.
+// The densest that each codec packs; a triangle or an index takes a byte.
 bool canHold(const Compression& c) {
     switch (c.mode) {
         case Compression::Mode::kAttributes:
-            return c.decodedSize() / 64 <= c.length;
+            // Version 1 of the codec says in two bits that a byte of 256 elements is always zero.
+            return c.decodedSize() / 1024 <= c.length;
         case Compression::Mode::kTriangles:
             return c.count / 3 <= c.length;
         case Compression::Mode::kIndices:
@@ -28,7 +29,7 @@ void checkShape(const Compression& c, const std::string& place) {
     if (c.mode == Mode::kAttributes) right = c.stride >= 4 && c.stride <= 256 && c.stride % 4 == 0;
     else right = c.stride == 2 || c.stride == 4;
     if (c.mode != Mode::kAttributes && c.filter != Filter::kNone) fail(place, "meshopt filters indices");
-    if (c.filter == Filter::kOctahedral) right = c.stride == 4 || c.stride == 8;
+    if (c.filter == Filter::kOctahedral || c.filter == Filter::kColor) right = c.stride == 4 || c.stride == 8;
     if (c.filter == Filter::kQuaternion) right = c.stride == 8;
     if (!right) fail(place, "meshopt byteStride {} does not suit its mode and filter", c.stride);
     if (c.mode == Mode::kTriangles && c.count % 3 != 0)
@@ -49,10 +50,26 @@ Compression::Filter readFilter(const Json& json, const std::string& place) {
     if (filter == "OCTAHEDRAL") return Compression::Filter::kOctahedral;
     if (filter == "QUATERNION") return Compression::Filter::kQuaternion;
     if (filter == "EXPONENTIAL") return Compression::Filter::kExponential;
+    if (filter == "COLOR") return Compression::Filter::kColor;
     fail(place, "meshopt filter '{}' is not known", printable(filter));
 }
 
+// A library that knows only the first version would call the second damaged.
+void checkVersion(const Compression& c, Bytes source, const std::string& place) {
+    constexpr unsigned kVertices = 0xa0;
+    constexpr unsigned kNewest = MESHOPTIMIZER_VERSION >= 230 ? 1 : 0;
+    if (c.mode != Compression::Mode::kAttributes || source.empty() || (source[0] & 0xf0u) != kVertices) return;
+    if (const unsigned version = source[0] & 0x0fu; version > kNewest)
+        fail(place, "is packed by version {} of meshopt's vertex codec, which meshoptimizer {}.{} cannot read", version,
+             MESHOPTIMIZER_VERSION / 1000, MESHOPTIMIZER_VERSION / 10 % 100);
+}
+
 }  // namespace
+
+const Json* findMeshopt(const Json& json, const std::string& place) {
+    const Json* found = extension(json, "KHR_meshopt_compression", place);
+    return found ? found : extension(json, "EXT_meshopt_compression", place);
+}
 
 Compression readCompression(const Json& json, size_t buffers, const std::string& place) {
     Compression c;
@@ -73,6 +90,8 @@ Compression readCompression(const Json& json, size_t buffers, const std::string&
 std::vector<unsigned char> decompress(const Compression& c, Bytes source, const std::string& place) {
     std::vector<unsigned char> out(c.decodedSize());
     if (out.empty()) return out;
+    if (c.filter == Compression::Filter::kColor) fail(place, "meshopt filter 'COLOR' is for colours alone");
+    checkVersion(c, source, place);
     int failed = 0;
     switch (c.mode) {
         case Compression::Mode::kAttributes:
@@ -97,6 +116,8 @@ std::vector<unsigned char> decompress(const Compression& c, Bytes source, const 
             break;
         case Compression::Filter::kExponential:
             meshopt_decodeFilterExp(out.data(), c.count, c.stride);
+            break;
+        case Compression::Filter::kColor:
             break;
     }
     return out;

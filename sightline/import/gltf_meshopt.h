@@ -1,7 +1,8 @@
-// Decompresses buffer views of EXT_meshopt_compression.
+// Decompresses buffer views of EXT_meshopt_compression and KHR_meshopt_compression.
 // SPDX-License-Identifier: MIT
 //
 // Arseny Kapoulkine, Jasper St. Pierre, Mike Lischke. EXT_meshopt_compression. 2021.
+// Arseny Kapoulkine, Jasper St. Pierre, Alexey Knyazev, Don McCurdy. KHR_meshopt_compression. 2025.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,7 @@ namespace sightline::gltf {
 
 struct Compression {
     enum class Mode : uint8_t { kAttributes, kTriangles, kIndices };
-    enum class Filter : uint8_t { kNone, kOctahedral, kQuaternion, kExponential };
+    enum class Filter : uint8_t { kNone, kOctahedral, kQuaternion, kExponential, kColor };
     uint32_t buffer = 0;
     uint64_t offset = 0, length = 0;  ///< [bytes] compressed
     uint32_t stride = 0;              ///< [bytes] of an element
@@ -25,6 +26,10 @@ struct Compression {
 
     uint64_t decodedSize() const { return count * stride; }
 };
+
+/// The extension's object of a buffer or a buffer view, of whichever name; the second has the layout of the first, a
+/// filter for colours, and a second version of the vertex codec. Null if there is none.
+const Json* findMeshopt(const Json& json, const std::string& place);
 
 /// Reads and checks the extension's object: stride and count suit the mode and the filter, and the decoded
 /// size is one that this many bytes can hold.

@@ -130,9 +130,8 @@ void addShape(Document& document, const Parts& parts, const std::vector<Motion>&
     const std::string place = at("meshes", shape.mesh);
     document.budget.charge(1, sizeof(Mesh) + source.name.size(), place);
     BuiltMesh built = builder.build(source, shape.deforms(source));
-    if (built.mesh.indices.empty()) return;
     std::optional<glm::dmat4> transform;
-    if (shape.deforms(source)) {
+    if (shape.deforms(source) && !built.mesh.indices.empty()) {
         document.budget.charge(source.targets, sizeof(Range), place);
         const MorphReach reach = morphReach(document, built, shape.weights, weightRanges(parts, motions, shape));
         if (shape.skin) {
@@ -144,6 +143,8 @@ void addShape(Document& document, const Parts& parts, const std::vector<Motion>&
             applyMorph(reach, built.mesh);
         }
     }
+    builder.release(source);
+    if (built.mesh.indices.empty()) return;
     const uint32_t mesh = static_cast<uint32_t>(scene.meshes.size());
     scene.meshes.push_back(std::move(built.mesh));
     for (const uint32_t node : shape.nodes) addNode(document, parts, node, mesh, transform, scene);

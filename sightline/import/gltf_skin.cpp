@@ -27,7 +27,7 @@ std::vector<Joint> readJoints(Document& document, const NodeTree& tree, const Sk
     std::vector<float> binds;
     if (skin.inverse_binds) binds = decodeFloats(document, *skin.inverse_binds, 16, "inverse bind matrix");
     if (skin.inverse_binds && binds.size() < joints.size() * 16)
-        fail(at("accessors", *skin.inverse_binds), "{} inverse bind matrices for {} joints", binds.size() / 16,
+        fail(accessorPlace(document, *skin.inverse_binds), "{} inverse bind matrices for {} joints", binds.size() / 16,
              joints.size());
     for (size_t j = 0; j < joints.size(); ++j) {
         glm::dmat4& bind = joints[j].inverse_bind;
@@ -35,7 +35,7 @@ std::vector<Joint> readJoints(Document& document, const NodeTree& tree, const Sk
             for (int row = 0; row < 4; ++row) bind[column][row] = binds[j * 16 + size_t(4 * column + row)];
             const double wanted = column == 3 ? 1 : 0;
             if (std::abs(bind[column][3] - wanted) > kAffineTolerance)
-                fail(at("accessors", *skin.inverse_binds), "inverse bind matrix {} is not affine", j);
+                fail(accessorPlace(document, *skin.inverse_binds), "inverse bind matrix {} is not affine", j);
             bind[column][3] = wanted;
         }
         glm::dmat4 world = tree.nodes[skin.joints[j]].world;
@@ -74,16 +74,17 @@ std::vector<InfluenceSet> readSets(Document& document, const PrimitiveSource& pr
     for (const auto& [joint_accessor, weight_accessor] : primitive.influences) {
         for (const uint32_t accessor : {joint_accessor, weight_accessor})
             if (document.accessors[accessor].count != vertices)
-                fail(at("accessors", accessor), "{} joints or weights for {} vertices",
+                fail(accessorPlace(document, accessor), "{} joints or weights for {} vertices",
                      document.accessors[accessor].count, vertices);
         sets.push_back({decodeIntegers(document, joint_accessor, 4, "joints"),
                         decodeFloats(document, weight_accessor, 4, "weight")});
         const InfluenceSet& set = sets.back();
         for (size_t i = 0; i < set.weights.size(); ++i) {
             if (set.weights[i] < 0)
-                fail(at("accessors", weight_accessor), "weight {} of vertex {} is negative", set.weights[i], i / 4);
+                fail(accessorPlace(document, weight_accessor), "weight {} of vertex {} is negative", set.weights[i],
+                     i / 4);
             if (set.weights[i] > 0 && set.joints[i] >= joints)
-                fail(at("accessors", joint_accessor), "joint {} is out of range of {}", set.joints[i], joints);
+                fail(accessorPlace(document, joint_accessor), "joint {} is out of range of {}", set.joints[i], joints);
         }
     }
     return sets;

@@ -200,6 +200,9 @@ std::vector<Sample> gltfSamples() {
     addNodeSamples(out);
     addCompressedSamples(out);
     addDeformingSamples(out);
+#ifdef SIGHTLINE_HAS_DRACO
+    addDracoSamples(out);
+#endif
     return out;
 }
 

@@ -25,5 +25,8 @@ void addGeometrySamples(std::vector<Sample>& out);
 void addNodeSamples(std::vector<Sample>& out);
 void addCompressedSamples(std::vector<Sample>& out);
 void addDeformingSamples(std::vector<Sample>& out);
+#ifdef SIGHTLINE_HAS_DRACO
+void addDracoSamples(std::vector<Sample>& out);
+#endif
 
 }  // namespace sightline::test
