@@ -16,9 +16,12 @@ Frustum makeFrustum(const View& view) {
     const double wide_y = 1.0 + 2.0 * view.jitter / view.height;
     const glm::dvec4 planes[6] = {wide_x * row(3) + row(0), wide_x * row(3) - row(0), wide_y * row(3) + row(1),
                                   wide_y * row(3) - row(1), row(3) + row(2),          row(3) - row(2)};
-    for (const glm::dvec4& plane : planes) {
+    for (uint8_t side = 0; side < 6; ++side) {
+        const glm::dvec4& plane = planes[side];
         const double length = glm::length(glm::dvec3(plane));
-        if (length > 1e-15 * glm::length(row(3))) frustum.planes[frustum.count++] = plane / length;
+        if (!(length > 1e-15 * glm::length(row(3)))) continue;
+        frustum.side[frustum.count] = side;
+        frustum.planes[frustum.count++] = plane / length;
     }
     return frustum;
 }

@@ -19,6 +19,7 @@ namespace sightline {
 struct Frustum {
     glm::dvec3 eye{0.0};
     glm::dvec4 planes[6];
+    uint8_t side[6] = {};  ///< per plane: which of the six it is, in that order
     uint32_t count = 0;
 };
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <numeric>
 
 namespace sightline::detail {
 namespace {
@@ -30,46 +29,69 @@ PixelRect drawAlone(const Walk& walk, const WalkRecord& record, std::span<const 
 }
 
 /// Covers what can be covered of the pixels that polygons of the instance share.
-void resolveTile(DepthTiles& tiles, uint32_t tile) {
-    pairSeams(tiles, tile, ~tiles.coveredBits(tile));
-    for (uint64_t open = tiles.seam_mask[tile] & ~tiles.coveredBits(tile); open; open &= open - 1)
+void resolveTile(DepthTiles& tiles, uint32_t tile, uint64_t window) {
+    pairSeams(tiles, tile, window & ~tiles.coveredBits(tile));
+    for (uint64_t open = window & tiles.seam_mask[tile] & ~tiles.coveredBits(tile); open; open &= open - 1)
         resolveSeam(tiles, tile, std::countr_zero(open), kFarthest);
+}
+
+/// Bits of a tile's pixels that a rectangle holds.
+uint64_t windowOf(const PixelRect& rect, int32_t column, int32_t row) {
+    uint64_t bits = 0;
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x) {
+            const int32_t px = 8 * column + x, py = 8 * row + y;
+            if (px >= rect.x0 && px <= rect.x1 && py >= rect.y0 && py <= rect.y1) bits |= uint64_t{1} << (8 * y + x);
+        }
+    return bits;
+}
+
+/// Gives an instance the pixels of a tile that it is the nearest to cover.
+void ownTile(Attribution& owners, int32_t column, int32_t row, uint32_t instance, float nearest, uint64_t window) {
+    DepthTiles& tiles = owners.tiles;
+    const uint32_t tile = static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(column);
+    if (tiles.form[tile] == DepthTiles::Form::kEmpty && !tiles.seam_mask[tile]) return;
+    resolveTile(tiles, tile, window);
+    const uint64_t covered = tiles.coveredBits(tile);
+    if (covered) writeOut(tiles, tile);
+    for (uint64_t left = window & (covered | tiles.seam_mask[tile]); left; left &= left - 1) {
+        const int bit = std::countr_zero(left);
+        PixelOwner& pixel = owners.pixels[static_cast<size_t>(8 * row + (bit >> 3)) * tiles.width +
+                                          static_cast<size_t>(8 * column + (bit & 7))];
+        if (!(covered >> bit & 1)) {
+            if (pixel.toucher == PixelOwner::kNone) pixel.toucher = instance, pixel.touching = nearest;
+            continue;
+        }
+        const float nearness = tiles.depthAt(tile, bit);
+        if (pixel.owner != PixelOwner::kNone && pixel.nearness >= nearness) continue;
+        pixel.owner = instance;
+        pixel.nearness = nearness;
+    }
 }
 
 }  // namespace
 
-void Attribution::run(const Walk& walk, const WalkRecord& record, uint32_t draws) {
+void Attribution::run(const Walk& walk, const WalkRecord& record) {
+    run(walk, record,
+        {0, 0, static_cast<int32_t>(walk.screen.width) - 1, static_cast<int32_t>(walk.screen.height) - 1, 0});
+}
+
+void Attribution::run(const Walk& walk, const WalkRecord& record, const PixelRect& within) {
     pixels.assign(size_t{walk.screen.width} * walk.screen.height, PixelOwner());
-    order.resize(draws);
-    std::iota(order.begin(), order.end(), 0u);
+    order.clear();
+    for (uint32_t at = 0; at < record.draws.size(); ++at)
+        if (record.draws[at].box.doubt || overlaps(record.draws[at].box.rect, within)) order.push_back(at);
     std::stable_sort(order.begin(), order.end(),
                      [&](uint32_t a, uint32_t b) { return record.draws[a].instance < record.draws[b].instance; });
     for (size_t first = 0, last = 0; first < order.size(); first = last) {
         const uint32_t instance = record.draws[order[first]].instance;
         while (last < order.size() && record.draws[order[last]].instance == instance) ++last;
-        const PixelRect region = drawAlone(walk, record, std::span(order).subspan(first, last - first), tiles);
+        PixelRect region = drawAlone(walk, record, std::span(order).subspan(first, last - first), tiles);
+        region = {std::max(region.x0, within.x0), std::max(region.y0, within.y0), std::min(region.x1, within.x1),
+                  std::min(region.y1, within.y1), region.nearness};
         for (int32_t row = region.y0 >> 3; row <= region.y1 >> 3; ++row)
-            for (int32_t column = region.x0 >> 3; column <= region.x1 >> 3; ++column) {
-                const uint32_t tile = static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(column);
-                if (tiles.form[tile] == DepthTiles::Form::kEmpty && !tiles.seam_mask[tile]) continue;
-                resolveTile(tiles, tile);
-                const uint64_t covered = tiles.coveredBits(tile);
-                if (covered) writeOut(tiles, tile);
-                for (uint64_t left = covered | tiles.seam_mask[tile]; left; left &= left - 1) {
-                    const int bit = std::countr_zero(left);
-                    PixelOwner& pixel = pixels[static_cast<size_t>(8 * row + (bit >> 3)) * tiles.width +
-                                               static_cast<size_t>(8 * column + (bit & 7))];
-                    if (!(covered >> bit & 1)) {
-                        if (pixel.toucher == PixelOwner::kNone)
-                            pixel.toucher = instance, pixel.touching = region.nearness;
-                        continue;
-                    }
-                    const float nearness = tiles.depthAt(tile, bit);
-                    if (pixel.owner != PixelOwner::kNone && pixel.nearness >= nearness) continue;
-                    pixel.owner = instance;
-                    pixel.nearness = nearness;
-                }
-            }
+            for (int32_t column = region.x0 >> 3; column <= region.x1 >> 3; ++column)
+                ownTile(*this, column, row, instance, region.nearness, windowOf(region, column, row));
     }
 }
 

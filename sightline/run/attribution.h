@@ -24,6 +24,10 @@ struct PixelOwner {
     }
 };
 
+inline bool overlaps(const PixelRect& a, const PixelRect& b) {
+    return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1;
+}
+
 /// The owners of a buffer's pixels. What it needs stays from frame to frame.
 struct Attribution {
     explicit Attribution(Memory* memory) : tiles(memory), pixels(memory), order(memory) {}
@@ -32,8 +36,10 @@ struct Attribution {
     Array<PixelOwner> pixels;
     Array<uint32_t> order;  ///< the record's draws, those of an instance beside one another
 
-    /// @param draws  only the first so many of the record
-    void run(const Walk& walk, const WalkRecord& record, uint32_t draws);
+    /// @param within  pixels that matter: others may be left without an owner
+    void run(const Walk& walk, const WalkRecord& record, const PixelRect& within);
+    /// All pixels.
+    void run(const Walk& walk, const WalkRecord& record);
 
     const PixelOwner& at(int32_t x, int32_t y) const {
         return pixels[static_cast<size_t>(y) * tiles.width + static_cast<size_t>(x)];

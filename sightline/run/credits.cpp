@@ -97,7 +97,7 @@ std::span<const Credit> CreditBook::credits(const View& view) {
     impl.record.clear();  // a view that is not usable, or without the occlusion stage, draws nothing
     impl.walk.run(&state, view);
     if (impl.record.draws.empty()) return {};
-    impl.owners.run(impl.walk, impl.record, static_cast<uint32_t>(impl.record.draws.size()));
+    impl.owners.run(impl.walk, impl.record);
     impl.of_instance.assign(impl.record.owners.size(), Credit());
     impl.pixels.assign(impl.record.owners.size(), 0);
     for (size_t i = 0; i < impl.record.owners.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "sightline/run/explain.h"
 #include "sightline/run/walk.h"
 
 namespace sightline {
@@ -63,6 +64,10 @@ VisibleChanges Query::changes() {
 }
 
 void Query::reasons(std::span<uint8_t> reasons) const { impl_->walk.reasons(reasons); }
+
+Explanation Query::explain(const Snapshot& now, const View& view, ObjectId id) const {
+    return Explainer(now, view, impl_->memory).explain(id);
+}
 
 Query::DepthImage Query::depthImage() {
     Impl& impl = *impl_;

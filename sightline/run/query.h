@@ -43,6 +43,8 @@ struct VisibleChanges {
     std::span<const Visible> appeared, disappeared;  ///< valid until the query's next call
 };
 
+struct Explanation;
+
 /// Scratch of one thread; as many as there are threads. Allocates only when the world or the
 /// viewport has grown.
 class Query {
@@ -70,6 +72,10 @@ public:
     /// left out: 0 visible, 1 + Stage of the stage that culled it, 255 outside View::layers.
     /// @param reasons  [size: Snapshot::objectCount()]
     void reasons(std::span<uint8_t> reasons) const;
+
+    /// Why visible(now, view) has the object in its answer or not; see run/explain.h. The last answer stays as it is.
+    /// For many objects of one answer make an Explainer, which does what they share once.
+    Explanation explain(const Snapshot& now, const View& view, ObjectId id) const;
 
     /// The occlusion buffer after the last answer, for pictures: nearness per buffer pixel, row 0 at the bottom, 0
     /// where nothing is known to cover the whole pixel. Occluders that came after the last object are not in it.

@@ -42,6 +42,33 @@ std::shared_ptr<const Array<PlacedObject>> placeObjects(const SnapshotState& sta
     return placed;
 }
 
+std::shared_ptr<SnapshotState> buildState(const ObjectTable& objects, const OccluderTable& occluders,
+                                          Array<uint32_t> places, Memory* memory) {
+    auto state = makeShared<SnapshotState>(memory, memory);
+    state->objects = objects;
+    state->occluders = occluders;
+    state->count = static_cast<uint32_t>(places.size());
+    Array<Box3d> boxes(memory);
+    Array<uint32_t> boxed(memory);
+    boxes.reserve(places.size());
+    for (uint32_t item = 0; item < places.size(); ++item) {
+        const ObjectRecord& object = objects[places[item]];
+        state->common_layers &= object.layers;
+        const Box3d box = worldBounds(object);
+        if (box.finite()) {
+            boxes.push_back(box);
+            boxed.push_back(item);
+        } else {
+            state->unbounded.push_back(item);
+        }
+    }
+    if (places.size() != objects.size) state->items = std::move(places);
+    if (!state->unbounded.empty()) state->boxed = std::move(boxed);
+    state->bvh = buildBvh(boxes, memory);
+    state->placed = placeObjects(*state, memory);
+    return state;
+}
+
 /// What an ObjectId's index stands for.
 struct IdSlot {
     static constexpr uint32_t kNowhere = ~0u;
@@ -102,33 +129,11 @@ void WorldState::compact() {
 
 std::shared_ptr<SnapshotState> WorldState::build() {
     compact();
-    auto state = makeShared<SnapshotState>(memory, memory);
-    state->objects = objects;
-    state->occluders = occluders;
-    state->count = living;
-    if (living != objects.size) state->items.reserve(living);
-    Array<Box3d> boxes(memory);
-    Array<uint32_t> boxed(memory);
-    boxes.reserve(living);
-    uint32_t item = 0;
-    for (uint32_t place = 0; place < objects.size; ++place) {
-        const ObjectRecord& object = objects[place];
-        if (object.id.index == 0) continue;
-        if (living != objects.size) state->items.push_back(place);
-        state->common_layers &= object.layers;
-        const Box3d box = worldBounds(object);
-        if (box.finite()) {
-            boxes.push_back(box);
-            boxed.push_back(item);
-        } else {
-            state->unbounded.push_back(item);
-        }
-        ++item;
-    }
-    if (!state->unbounded.empty()) state->boxed = std::move(boxed);
-    state->bvh = buildBvh(boxes, memory);
-    state->placed = placeObjects(*state, memory);
-    return state;
+    Array<uint32_t> places(memory);
+    places.reserve(living);
+    for (uint32_t place = 0; place < objects.size; ++place)
+        if (objects[place].id.index != 0) places.push_back(place);
+    return buildState(objects, occluders, std::move(places), memory);
 }
 
 /// The last snapshot with moved objects refitted; null if building anew is better.

@@ -73,6 +73,11 @@ struct SnapshotState {
     const ObjectRecord& objectAt(uint32_t place) const { return object(itemOf(bvh.order[place])); }
 };
 
+/// The state of a world that holds the objects at the given places of a table, which rise and are all in use.
+/// O(places log places), and a copy of the table of chunks.
+std::shared_ptr<SnapshotState> buildState(const ObjectTable& objects, const OccluderTable& occluders,
+                                          Array<uint32_t> places, Memory* memory);
+
 /// The bounds in world space; not finite if they cannot be trusted.
 Box3d worldBounds(const ObjectRecord& object);
 

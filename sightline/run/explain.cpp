@@ -1,0 +1,251 @@
+// Why an object is, or is not, in a query's answer: the plane, the occluders, the place where it is seen, or the doubt.
+// SPDX-License-Identifier: MIT
+#include "sightline/run/explain.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sightline/run/hiders.h"
+#include "sightline/run/open_pixels.h"
+#include "sightline/run/query.h"
+#include "sightline/run/trial.h"
+
+namespace sightline {
+namespace {
+
+using detail::LeafAnswer;
+using detail::PixelOwner;
+using detail::SnapshotState;
+using detail::Trial;
+using detail::WalkRecord;
+
+/// Buffer pixels to viewport pixels: the buffer holds the viewport and the jitter on every side.
+ImageRect imageOf(const PixelRect& rect, const Screen& screen, const View& view) {
+    const double sx = (view.width + 2.0 * view.jitter) / screen.width;
+    const double sy = (view.height + 2.0 * view.jitter) / screen.height;
+    ImageRect image;
+    image.left = sx * rect.x0 - view.jitter;
+    image.right = sx * (rect.x1 + 1) - view.jitter;
+    image.top = view.height + view.jitter - sy * (rect.y1 + 1);
+    image.bottom = view.height + view.jitter - sy * rect.y0;
+    return image;
+}
+
+/// How far each plane has the box outside, in double; and how much rounding the query allows for.
+FrustumReason planesOf(const SnapshotState& state, const Box3d& box, const View& view) {
+    const Frustum frustum = makeFrustum(view);
+    FrustumReason reason;
+    double best = FrustumReason::kNoPlane;
+    for (uint32_t i = 0; i < frustum.count; ++i) {
+        const glm::dvec4& plane = frustum.planes[i];
+        double inside = plane.w, size = std::abs(plane.w);
+        for (int axis = 0; axis < 3; ++axis) {
+            const double low = box.min[axis] - frustum.eye[axis], high = box.max[axis] - frustum.eye[axis];
+            inside += std::max(plane[axis] * low, plane[axis] * high);
+            const double from_origin = std::max(std::abs(box.min[axis] - state.bvh.origin[axis]),
+                                                std::abs(box.max[axis] - state.bvh.origin[axis]));
+            size += std::abs(plane[axis]) * (std::max(std::abs(low), std::abs(high)) + from_origin);
+        }
+        reason.outside[frustum.side[i]] = -inside;
+        if (!(-inside > best)) continue;
+        best = -inside;
+        reason.rounding = 0x1p-18 * size;
+        reason.plane = frustum.side[i];
+    }
+    return reason;
+}
+
+/// How far the image of a box that no plane decided on lies beside the buffer.  [viewport pixels]
+double pixelsOff(const Box3d& box, const Screen& screen, const View& view) {
+    Box3d image;
+    for (int which = 0; which < 8; ++which) {
+        const glm::dvec3 corner(which & 1 ? box.max.x : box.min.x, which & 2 ? box.max.y : box.min.y,
+                                which & 4 ? box.max.z : box.min.z);
+        const glm::dvec4 p(corner - screen.eye, 1.0);
+        const double w = glm::dot(screen.w, p);
+        image.grow(glm::dvec3(glm::dot(screen.x, p) / w, glm::dot(screen.y, p) / w, 0.0));
+    }
+    const double sx = (view.width + 2.0 * view.jitter) / screen.width;
+    const double sy = (view.height + 2.0 * view.jitter) / screen.height;
+    return std::max(std::max(-image.max.x, image.min.x - screen.width) * sx,
+                    std::max(-image.max.y, image.min.y - screen.height) * sy);
+}
+
+}  // namespace
+
+struct Explainer::Impl {
+    Impl(const Snapshot& now, const View& seen_from, Memory* from) : memory(from), snapshot(now), view(seen_from) {}
+
+    Memory* const memory;
+    Snapshot snapshot;
+    View view;
+    Array<uint32_t> item_of{memory};  ///< per ObjectId::index
+    Trial trial{memory};              ///< of the object, in the whole world
+    detail::HiderSearch search{memory};
+    detail::OpenPixels open{memory};
+
+    uint32_t find(ObjectId id) const;
+    void explainVisible(uint32_t item, Explanation& out);
+    void explainOpenPixel(const PixelRect& rect, Explanation& out);
+    KeptBecause doubtOf(const Box3d& box) const;
+    void explainOccluded(uint32_t item, const PixelRect& rect, const ExplainSettings& settings, OcclusionReason& out);
+    void tryWithout(uint32_t item, OcclusionReason& out);
+};
+
+uint32_t Explainer::Impl::find(ObjectId id) const {
+    if (!snapshot || id.index >= item_of.size() || item_of[id.index] == PixelOwner::kNone) return PixelOwner::kNone;
+    const uint32_t item = item_of[id.index];
+    return snapshot.state().object(item).id == id ? item : PixelOwner::kNone;
+}
+
+/// Which doubt keeps a box that has no rectangle.
+KeptBecause Explainer::Impl::doubtOf(const Box3d& box) const {
+    const Screen& screen = trial.walk.screen;
+    bool holds_eye = screen.perspective;
+    for (int axis = 0; axis < 3; ++axis)
+        holds_eye = holds_eye && box.min[axis] <= screen.eye[axis] && screen.eye[axis] <= box.max[axis];
+    if (holds_eye) return KeptBecause::kHoldsEye;
+    double nearest = screen.near.w, size = std::abs(screen.near.w);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = screen.near[axis] * (box.min[axis] - screen.eye[axis]);
+        const double high = screen.near[axis] * (box.max[axis] - screen.eye[axis]);
+        nearest += std::min(low, high);
+        size += std::max(std::abs(low), std::abs(high));
+    }
+    return nearest <= 0x1p-18 * size ? KeptBecause::kNearPlane : KeptBecause::kNotProjectable;
+}
+
+void Explainer::Impl::explainVisible(uint32_t item, Explanation& out) {
+    VisibleReason& why = out.visible;
+    const SnapshotState& state = snapshot.state();
+    const uint32_t place = detail::hierarchyPlace(state, item);
+    if (!isUsable(view)) {
+        why.because = KeptBecause::kViewNotUsable;
+    } else if (place == WalkRecord::kNowhere) {
+        why.because = KeptBecause::kBoundsNotUsable;
+    } else if (!(view.stages & stageBit(Stage::kFrustum)) && out.frustum.outside_any) {
+        why.because = KeptBecause::kStageOff;
+        why.stage = Stage::kFrustum;
+    } else if (!(view.stages & stageBit(Stage::kOcclusion))) {
+        why.because = KeptBecause::kStageOff;
+        why.stage = Stage::kOcclusion;
+    } else if (!trial.record.kept.testable) {
+        why.because = doubtOf(detail::worldBounds(state.object(item)));
+    } else {
+        explainOpenPixel(trial.record.kept.rect, out);
+        if (!trial.walk.stats.budget_spent) return;
+        View generous = view;
+        generous.occluder_triangles = ~0u;
+        if (trial.run(state, generous, item) == Verdict::kOccluded) why.because = KeptBecause::kBudgetSpent;
+    }
+}
+
+/// Looks for what the walk found open, in the depth tiles as they were then.
+void Explainer::Impl::explainOpenPixel(const PixelRect& rect, Explanation& out) {
+    VisibleReason& why = out.visible;
+    const SnapshotState& state = snapshot.state();
+    DepthTiles& tiles = trial.walk.tiles;
+    open.run(tiles, rect);
+    why.pixels = open.pixels;
+    why.open_pixels = open.open;
+    const PixelRect pixel{open.x, open.y, open.x, open.y, 0};
+    const ImageRect image = imageOf(pixel, trial.walk.screen, view);
+    why.x = 0.5 * (image.left + image.right);
+    why.y = 0.5 * (image.top + image.bottom);
+    why.covered = open.covered;
+    if (!open.covered) return;
+    search.owners.run(trial.walk, trial.record, pixel);
+    const PixelOwner& owner = search.owners.at(open.x, open.y);
+    if (owner.owner == PixelOwner::kNone) return;
+    const detail::ObjectRecord& cover = state.objectAt(trial.record.owners[owner.owner]);
+    why.cover = cover.id;
+    why.cover_key = cover.key;
+}
+
+void Explainer::Impl::explainOccluded(uint32_t item, const PixelRect& rect, const ExplainSettings& settings,
+                                      OcclusionReason& out) {
+    if (!settings.hiders) return;
+    if (out.outside_too) {
+        out.sufficient = false;
+        search.own(snapshot.state(), trial, out.hiders);
+    } else {
+        out.sufficient = search.run(snapshot.state(), view, item, trial, rect, out.hiders);
+    }
+    if (settings.without) tryWithout(item, out);
+}
+
+/// Builds the world without the hiders and looks again.
+void Explainer::Impl::tryWithout(uint32_t item, OcclusionReason& out) {
+    const SnapshotState& state = snapshot.state();
+    Array<uint32_t> items(memory);
+    items.reserve(state.count);
+    for (uint32_t i = 0; i < state.count; ++i) items.push_back(i);
+    Array<uint32_t> gone(memory);
+    for (const Hider& hider : out.hiders) gone.push_back(find(hider.id));
+    std::sort(gone.begin(), gone.end());
+    std::erase_if(items, [&](uint32_t i) { return std::binary_search(gone.begin(), gone.end(), i); });
+    const auto left = detail::stateOfSome(state, items, memory);
+    const auto self = static_cast<uint32_t>(std::lower_bound(items.begin(), items.end(), item) - items.begin());
+    const Verdict verdict = trial.run(*left, view, self);
+    out.without = verdict == Verdict::kOccluded         ? Without::kOccluded
+                  : verdict == Verdict::kOutsideFrustum ? Without::kOutsideFrustum
+                                                        : Without::kVisible;
+    if (verdict != Verdict::kOccluded) return;
+    const LeafAnswer leaf = detail::askLeaf(*left, detail::hierarchyPlace(*left, self), view, trial.walk.screen);
+    if (leaf.beyond_plane || leaf.outside()) search.own(*left, trial, out.others);
+    else search.run(*left, view, self, trial, leaf.rect(), out.others);
+}
+
+Explainer::Explainer(const Snapshot& now, const View& view, Memory* memory)
+    : impl_(makeOwned<Impl>(memory, now, view, memory)) {
+    if (!now) return;
+    for (uint32_t item = 0; item < now.state().count; ++item) {
+        const uint32_t index = now.state().object(item).id.index;
+        if (impl_->item_of.size() <= index) impl_->item_of.resize(index + 1, PixelOwner::kNone);
+        impl_->item_of[index] = item;
+    }
+}
+Explainer::~Explainer() = default;
+Explainer::Explainer(Explainer&&) noexcept = default;
+Explainer& Explainer::operator=(Explainer&&) noexcept = default;
+
+Explanation Explainer::explain(ObjectId id, const ExplainSettings& settings) {
+    Impl& impl = *impl_;
+    Explanation out(impl.memory);
+    const uint32_t item = impl.find(id);
+    if (item == PixelOwner::kNone) return out;
+    const SnapshotState& state = impl.snapshot.state();
+    const detail::ObjectRecord& object = state.object(item);
+    out.id = object.id;
+    out.key = object.key;
+    if (!(object.layers & impl.view.layers)) {
+        out.verdict = Verdict::kOutsideLayers;
+        return out;
+    }
+    out.verdict = impl.trial.run(state, impl.view, item);
+    const uint32_t place = detail::hierarchyPlace(state, item);
+    PixelRect rect;
+    if (isUsable(impl.view) && place != WalkRecord::kNowhere) {
+        const Screen& screen = impl.trial.walk.screen;
+        const LeafAnswer leaf = detail::askLeaf(state, place, impl.view, screen);
+        out.on_screen = !leaf.doubt() && !leaf.outside();
+        const Box3d box = detail::worldBounds(object);
+        out.frustum = planesOf(state, box, impl.view);
+        out.frustum.outside_any = leaf.beyond_plane || leaf.outside();
+        out.frustum.off_screen = leaf.outside() && !leaf.beyond_plane;
+        if (out.frustum.off_screen) out.frustum.pixels_off = pixelsOff(box, screen, impl.view);
+        if (out.on_screen) {
+            rect = leaf.rect();
+            out.rect = imageOf(rect, screen, impl.view);
+            out.depth =
+                screen.perspective ? 1.0 / static_cast<double>(rect.nearness) : -static_cast<double>(rect.nearness);
+        }
+    }
+    if (out.verdict == Verdict::kVisible) impl.explainVisible(item, out);
+    else out.together = static_cast<uint32_t>(impl.trial.walk.inLayers(impl.trial.cull.first, impl.trial.cull.count));
+    out.occlusion.outside_too = out.verdict == Verdict::kOccluded && out.frustum.outside_any;
+    if (out.verdict == Verdict::kOccluded) impl.explainOccluded(item, rect, settings, out.occlusion);
+    return out;
+}
+
+}  // namespace sightline

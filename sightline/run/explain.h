@@ -1,0 +1,140 @@
+// Why an object is, or is not, in a query's answer: the plane, the occluders, the place where it is seen, or the doubt.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "sightline/base/memory.h"
+#include "sightline/geom/view.h"
+#include "sightline/run/world.h"
+
+namespace sightline {
+
+/// What a query says of one object.
+enum class Verdict : uint8_t {
+    kNoSuchObject,    ///< the id is null or stale, or the snapshot is empty
+    kOutsideLayers,   ///< View::layers leaves it out
+    kVisible,         ///< it is in the answer
+    kOutsideFrustum,  ///< culled by the frustum stage
+    kOccluded,        ///< culled by the occlusion stage
+};
+
+/// A rectangle of the viewport. What a query looks at is the viewport widened by the jitter, in the whole pixels of its
+/// occlusion buffer, so that the rectangle may reach beyond the viewport.
+struct ImageRect {
+    double left = 0, top = 0, right = 0, bottom = 0;  ///< [viewport pixels from the left and the top]
+};
+
+/// How an object's box lies to the frustum, widened by the jitter. Planes in the order of kPlaneNames.
+struct FrustumReason {
+    static constexpr double kNoPlane = -std::numeric_limits<double>::infinity();
+
+    /// Per plane, how far outside of it the box's nearest corner lies; negative: how far it reaches inside; kNoPlane:
+    /// the view has no such plane.  [world units]
+    double outside[6] = {kNoPlane, kNoPlane, kNoPlane, kNoPlane, kNoPlane, kNoPlane};
+    uint32_t plane = 0;  ///< the one that it is farthest outside of
+    /// Bound on the query's own rounding at that plane: what is outside by less may be kept.  [world units]
+    double rounding = 0;
+    bool off_screen = false;   ///< no plane has the whole box outside: its image misses the viewport all the same
+    double pixels_off = 0;     ///< by so much, if off_screen  [viewport pixels]
+    bool outside_any = false;  ///< the frustum stage would cull the object by itself
+
+    double distance() const { return outside[plane]; }
+};
+inline constexpr const char* kPlaneNames[6] = {"left", "right", "bottom", "top", "near", "far"};
+
+/// One of the occluders that hide an object.
+struct Hider {
+    ObjectId id;
+    uint64_t key = 0;
+    double share = 0;  ///< of the object's rectangle: pixels that it is the nearest to cover. All shares add up to 1
+};
+
+/// What would be said of an object if its hiders were removed from the world.
+enum class Without : uint8_t { kNotAsked, kVisible, kOccluded, kOutsideFrustum };
+
+struct OcclusionReason {
+    /// A minimal sufficient set, those with the largest share first: a world of the object and these alone still hides
+    /// it, and without any one of them the others of the set do not.
+    Array<Hider> hiders;
+    /// False if no set could be found that hides the object without the rest of the world: then the hiders are those
+    /// that own pixels of its rectangle.
+    bool sufficient = true;
+    /// The object itself lies outside of the frustum: it was culled with a node that does not, and the hiders are those
+    /// that own pixels of the node's rectangle.
+    bool outside_too = false;
+    Without without = Without::kNotAsked;  ///< the hiders, removed from the world
+    Array<Hider> others;                   ///< that would hide it then, as `hiders` do now
+
+    explicit OcclusionReason(Memory* memory) : hiders(memory), others(memory) {}
+};
+
+/// Why an object is kept.
+enum class KeptBecause : uint8_t {
+    kOpenPixel,        ///< a pixel of its rectangle is not hidden
+    kViewNotUsable,    ///< matrices that are not finite or cannot be inverted, or no viewport: everything is kept
+    kBoundsNotUsable,  ///< bounds that are empty, not finite, or too far away
+    kHoldsEye,         ///< its box holds the eye
+    kNearPlane,        ///< its box reaches across the near plane
+    kNotProjectable,   ///< its box has no rectangle that rounding could not spoil
+    kStageOff,         ///< the stage that would look at it is switched off: VisibleReason::stage
+    kBudgetSpent,      ///< occluders that would hide it were not rasterized: View::occluder_triangles
+};
+
+struct VisibleReason {
+    KeptBecause because = KeptBecause::kOpenPixel;
+    Stage stage = Stage::kOcclusion;  ///< that is off, if kStageOff
+    /// The middle of an open pixel, as far from hidden ones as can be; beyond the viewport by the jitter at most.
+    /// [viewport pixels from the left and the top]
+    double x = 0, y = 0;
+    uint64_t open_pixels = 0, pixels = 0;  ///< of its rectangle  [pixels of the occlusion buffer]
+    bool covered = false;                  ///< that pixel is covered, but not in front of the object's nearest point
+    ObjectId cover;                        ///< by this object; null: by several together
+    uint64_t cover_key = 0;
+};
+
+/// The answer to "why".
+struct Explanation {
+    Verdict verdict = Verdict::kNoSuchObject;
+    ObjectId id;
+    uint64_t key = 0;
+    /// Objects that were culled in one step with it, itself included: the node of the hierarchy that held them.
+    uint32_t together = 1;
+    bool on_screen = false;  ///< its box has an image: `rect` and `depth` hold
+    ImageRect rect;          ///< of its box
+    double depth = 0;        ///< of its box's nearest point, along the direction of view  [world units]
+    FrustumReason frustum;   ///< not for objects in doubt
+    OcclusionReason occlusion;
+    VisibleReason visible;
+
+    explicit Explanation(Memory* memory = defaultMemory()) : occlusion(memory) {}
+};
+
+/// How much is asked.
+struct ExplainSettings {
+    bool hiders = true;   ///< name the occluders
+    bool without = true;  ///< and tell what would be without them; costs O(objects log objects)
+};
+
+/// Explains the answer of one query, object by object. A thread's own. What it says was found by doing it: each set of
+/// hiders was tried as a world of its own, and the world without them was built and looked at.
+///
+/// Costs a query and O(objects) once; an object that is kept, one more query; one that is occluded, a query and some
+/// tens to hundreds of queries on worlds of a few objects.
+class Explainer {
+public:
+    /// @param memory  outlives the explainer and its explanations
+    Explainer(const Snapshot& now, const View& view, Memory* memory = defaultMemory());
+    ~Explainer();
+    Explainer(Explainer&&) noexcept;
+    Explainer& operator=(Explainer&&) noexcept;
+
+    Explanation explain(ObjectId id, const ExplainSettings& settings = {});
+
+private:
+    struct Impl;
+    Owned<Impl> impl_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,120 @@
+// Which occluders hide an object: a minimal set that does so in a world of its own, and what each contributes.
+// SPDX-License-Identifier: MIT
+#include "sightline/run/hiders.h"
+
+#include <algorithm>
+
+namespace sightline::detail {
+
+bool HiderSearch::run(const SnapshotState& state, const View& view, uint32_t item, const Trial& decided,
+                      const PixelRect& rect, Array<Hider>& hiders) {
+    hiders.clear();
+    owners.run(decided.walk, decided.record, rect);
+    for (const bool anywhere : {false, true}) {
+        collect(state, decided, rect, anywhere);
+        if (!shrink(state, view, item)) continue;
+        share(state, view, item, hiders);
+        return true;
+    }
+    reportOwners(state, hiders);
+    return false;
+}
+
+void HiderSearch::own(const SnapshotState& state, const Trial& decided, Array<Hider>& hiders) {
+    hiders.clear();
+    owners.run(decided.walk, decided.record, decided.cull.rect);
+    collect(state, decided, decided.cull.rect, false);
+    reportOwners(state, hiders);
+}
+
+/// Those of the candidates that own pixels of the rectangle.
+void HiderSearch::reportOwners(const SnapshotState& state, Array<Hider>& hiders) const {
+    uint64_t owned = 0;
+    for (const Candidate& candidate : candidates) owned += candidate.pixels;
+    for (const Candidate& candidate : candidates) {
+        if (candidate.pixels == 0) break;
+        const ObjectRecord& object = state.object(candidate.item);
+        hiders.push_back({object.id, object.key, static_cast<double>(candidate.pixels) / static_cast<double>(owned)});
+    }
+}
+
+/// What may hide the object: what was drawn over its rectangle; or, if that will not do, all that was drawn, for what
+/// hides an occluder's cluster changes what is drawn.
+void HiderSearch::collect(const SnapshotState& state, const Trial& decided, const PixelRect& rect, bool anywhere) {
+    const WalkRecord& record = decided.record;
+    Array<uint8_t> over(record.owners.size(), 0, memory);
+    Array<uint64_t> pixels(record.owners.size(), 0, memory);
+    for (const WalkRecord::Draw& draw : record.draws)
+        if (anywhere || draw.box.doubt || overlaps(draw.box.rect, rect)) over[draw.instance] = 1;
+    for (int32_t y = rect.y0; y <= rect.y1; ++y)
+        for (int32_t x = rect.x0; x <= rect.x1; ++x) {
+            const uint32_t instance = owners.at(x, y).inFrontOf(rect.nearness);
+            if (instance != PixelOwner::kNone) ++pixels[instance];
+        }
+    candidates.clear();
+    for (uint32_t i = 0; i < record.owners.size(); ++i)
+        if (over[i]) candidates.push_back({state.itemOf(state.bvh.order[record.owners[i]]), pixels[i]});
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.pixels > b.pixels; });
+}
+
+/// Whether a world of the object and some others occludes it.
+bool HiderSearch::hides(const SnapshotState& state, const View& view, uint32_t item, std::span<const uint32_t> with) {
+    Array<uint32_t> items(with.begin(), with.end(), memory);
+    items.push_back(item);
+    std::sort(items.begin(), items.end());
+    const auto world = stateOfSome(state, items, memory);
+    const auto at = std::lower_bound(items.begin(), items.end(), item) - items.begin();
+    return trial.run(*world, view, static_cast<uint32_t>(at)) == Verdict::kOccluded;
+}
+
+bool HiderSearch::hidesFirst(const SnapshotState& state, const View& view, uint32_t item, size_t count) {
+    set.clear();
+    for (size_t i = 0; i < count; ++i) set.push_back(candidates[i].item);
+    return hides(state, view, item, set);
+}
+
+/// Finds a set that hides the object and from which nothing can be left out; false if the candidates do not hide it.
+bool HiderSearch::shrink(const SnapshotState& state, const View& view, uint32_t item) {
+    size_t count = std::min<size_t>(1, candidates.size());
+    while (!hidesFirst(state, view, item, count)) {
+        if (count == candidates.size()) return false;
+        count = std::min(2 * count, candidates.size());
+    }
+    // Those that own least go first. More occluders need not hide more, for they hide one another: until nothing goes.
+    Array<uint32_t> without(memory);
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (size_t i = set.size(); i-- > 0;) {
+            without = set;
+            without.erase(without.begin() + static_cast<ptrdiff_t>(i));
+            if (!hides(state, view, item, without)) continue;
+            set = without;
+            changed = true;
+        }
+    }
+    return true;
+}
+
+/// Reports the set, with the pixels that each of it owns in the world of the set.
+void HiderSearch::share(const SnapshotState& state, const View& view, uint32_t item, Array<Hider>& hiders) {
+    Array<uint32_t> items(set.begin(), set.end(), memory);
+    items.push_back(item);
+    std::sort(items.begin(), items.end());
+    const auto world = stateOfSome(state, items, memory);
+    const auto self = static_cast<uint32_t>(std::lower_bound(items.begin(), items.end(), item) - items.begin());
+    trial.run(*world, view, self);
+    const PixelRect rect = askLeaf(*world, hierarchyPlace(*world, self), view, trial.walk.screen).rect();
+    owners.run(trial.walk, trial.record, rect);
+    collect(*world, trial, rect, true);
+    uint64_t owned = 0;
+    for (const Candidate& candidate : candidates) owned += candidate.pixels;
+    for (const Candidate& candidate : candidates) {
+        if (candidate.item == self) continue;
+        const ObjectRecord& object = world->object(candidate.item);
+        const double share = owned ? static_cast<double>(candidate.pixels) / static_cast<double>(owned) : 0.0;
+        hiders.push_back({object.id, object.key, share});
+    }
+}
+
+}  // namespace sightline::detail

@@ -1,0 +1,49 @@
+// Which occluders hide an object: a minimal set that does so in a world of its own, and what each contributes.
+// SPDX-License-Identifier: MIT
+//
+// Andreas Zeller, Ralf Hildebrandt. Simplifying and Isolating Failure-Inducing Input. 2002.
+#pragma once
+
+#include <cstdint>
+
+#include "sightline/run/attribution.h"
+#include "sightline/run/trial.h"
+
+namespace sightline::detail {
+
+/// Finds the hiders of one object after another. What it needs stays.
+struct HiderSearch {
+    explicit HiderSearch(Memory* from) : memory(from), trial(from), owners(from), candidates(from), set(from) {}
+
+    /// An occluder that was drawn before the object was decided, over its rectangle.
+    struct Candidate {
+        uint32_t item = 0;
+        uint64_t pixels = 0;  ///< of the rectangle that it owns
+    };
+
+    Memory* const memory;
+    Trial trial;
+    Attribution owners;
+    Array<Candidate> candidates;  ///< those that own most first
+    Array<uint32_t> set;          ///< items
+
+    /// @param decided  the trial in which the object was occluded, on `state`
+    /// @param rect     of the object
+    /// @param hiders   receives the set
+    /// @returns OcclusionReason::sufficient
+    bool run(const SnapshotState& state, const View& view, uint32_t item, const Trial& decided, const PixelRect& rect,
+             Array<Hider>& hiders);
+
+    /// Those that own pixels of what was culled together.
+    void own(const SnapshotState& state, const Trial& decided, Array<Hider>& hiders);
+
+private:
+    void reportOwners(const SnapshotState& state, Array<Hider>& hiders) const;
+    void collect(const SnapshotState& state, const Trial& decided, const PixelRect& rect, bool anywhere);
+    bool hides(const SnapshotState& state, const View& view, uint32_t item, std::span<const uint32_t> with);
+    bool hidesFirst(const SnapshotState& state, const View& view, uint32_t item, size_t count);
+    bool shrink(const SnapshotState& state, const View& view, uint32_t item);
+    void share(const SnapshotState& state, const View& view, uint32_t item, Array<Hider>& hiders);
+};
+
+}  // namespace sightline::detail

@@ -1,0 +1,27 @@
+// Which pixels of a rectangle the depth tiles leave open, and the one that lies deepest among them.
+// SPDX-License-Identifier: MIT
+//
+// Gunilla Borgefors. Distance Transformations in Digital Images. 1986.
+#pragma once
+
+#include <cstdint>
+
+#include "sightline/raster/tiles.h"
+
+namespace sightline::detail {
+
+/// What it needs stays from rectangle to rectangle.
+struct OpenPixels {
+    explicit OpenPixels(Memory* memory) : depth(memory) {}
+
+    uint64_t pixels = 0, open = 0;
+    int32_t x = 0, y = 0;   ///< of the open pixels the one farthest from all others of the buffer, to one in a row or
+                            ///< column; the rectangle's first if none is open
+    bool covered = false;   ///< that pixel is covered, but not in front of the rectangle
+    Array<uint32_t> depth;  ///< per pixel of the rectangle: steps to the nearest that is not open
+
+    /// Each pixel is asked as isHidden() asks, in its order.
+    void run(DepthTiles& tiles, const PixelRect& rect);
+};
+
+}  // namespace sightline::detail

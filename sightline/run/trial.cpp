@@ -1,0 +1,50 @@
+// What becomes of one object in a world of some of a snapshot's objects: the world is built, and looked at.
+// SPDX-License-Identifier: MIT
+#include "sightline/run/trial.h"
+
+#include <algorithm>
+
+namespace sightline::detail {
+
+uint32_t hierarchyPlace(const SnapshotState& state, uint32_t item) {
+    uint32_t box = item;
+    if (!state.boxed.empty() || !state.unbounded.empty()) {
+        const auto at = std::lower_bound(state.boxed.begin(), state.boxed.end(), item);
+        if (at == state.boxed.end() || *at != item) return WalkRecord::kNowhere;
+        box = static_cast<uint32_t>(at - state.boxed.begin());
+    }
+    const uint32_t slot = state.bvh.slot[box];
+    return state.bvh.nodes[slot / 8].first[slot % 8];
+}
+
+LeafAnswer askLeaf(const SnapshotState& state, uint32_t place, const View& view, const Screen& screen) {
+    const uint32_t slot = state.bvh.slot[state.bvh.order[place]];
+    LeafAnswer answer;
+    answer.boxes = eyeBoxes(state.bvh.nodes[slot / 8], state.bvh.origin - screen.eye);
+    answer.slot = static_cast<int>(slot % 8);
+    answer.on_screen = projectBoxes(screen, answer.boxes);
+    const Frustum frustum = makeFrustum(view);
+    answer.beyond_plane = testFrustum(frustum, answer.boxes, (1u << frustum.count) - 1).outside >> answer.slot & 1;
+    return answer;
+}
+
+Verdict Trial::run(const SnapshotState& state, const View& view, uint32_t item) {
+    record.stop_at = hierarchyPlace(state, item);
+    record.clear();  // a walk for a view that is not usable notes nothing
+    walk.run(&state, view);
+    for (const WalkRecord::Cull& candidate : record.culls) {
+        if (!record.stopsAt(candidate.first, candidate.count)) continue;
+        cull = candidate;
+        return cull.stage == Stage::kFrustum ? Verdict::kOutsideFrustum : Verdict::kOccluded;
+    }
+    return Verdict::kVisible;
+}
+
+std::shared_ptr<SnapshotState> stateOfSome(const SnapshotState& from, std::span<const uint32_t> items, Memory* memory) {
+    Array<uint32_t> places(memory);
+    places.reserve(items.size());
+    for (const uint32_t item : items) places.push_back(from.placeOf(item));
+    return buildState(from.objects, from.occluders, std::move(places), memory);
+}
+
+}  // namespace sightline::detail

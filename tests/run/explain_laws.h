@@ -1,0 +1,258 @@
+// What must hold of every explanation: the world is changed as it says, and asked again.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sightline/geom/frustum.h"
+#include "sightline/run/explain.h"
+#include "sightline/run/query.h"
+#include "sightline/run/world_state.h"
+
+namespace sightline::test {
+
+/// A world of some of a snapshot's objects, made through World alone.
+struct Copy {
+    World world;
+    std::vector<ObjectId> ids;  ///< per item given
+    uint32_t skipped = 0;
+
+    Copy(const Snapshot& from, const std::vector<uint32_t>& items) {
+        std::map<uint32_t, OccluderId> occluders;
+        for (const uint32_t item : items) {
+            const detail::ObjectRecord& object = from.state().object(item);
+            ObjectDef def{object.bounds, object.transform, object.key, OccluderId(), object.layers};
+            if (object.occluder.index != 0) {
+                const auto [at, is_new] = occluders.try_emplace(object.occluder.index);
+                if (is_new) at->second = world.addOccluder(*from.state().occluders[object.occluder.index]);
+                def.occluder = at->second;
+            }
+            ids.push_back(world.add(def));
+        }
+    }
+};
+
+inline std::vector<uint32_t> allItems(const Snapshot& now) {
+    std::vector<uint32_t> items(now.objectCount());
+    for (uint32_t i = 0; i < items.size(); ++i) items[i] = i;
+    return items;
+}
+
+/// The stage that culled an object of a fresh query's answer: 0 visible, 1 + Stage, 255 outside the layers.
+inline uint8_t reasonOf(const Snapshot& now, const View& view, uint32_t item) {
+    Query query;
+    query.visible(now, view);
+    std::vector<uint8_t> reasons(now.objectCount());
+    query.reasons(reasons);
+    return reasons[item];
+}
+
+constexpr uint8_t kByFrustum = 1 + static_cast<uint8_t>(Stage::kFrustum);
+constexpr uint8_t kByOcclusion = 1 + static_cast<uint8_t>(Stage::kOcclusion);
+
+inline uint8_t reasonOf(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::kVisible:
+            return 0;
+        case Verdict::kOutsideFrustum:
+            return kByFrustum;
+        case Verdict::kOccluded:
+            return kByOcclusion;
+        default:
+            return 255;
+    }
+}
+
+/// How often each law was put to the test.
+struct LawCount {
+    uint64_t verdicts = 0, planes = 0, off_screen = 0, occluded = 0, insufficient = 0, without = 0, hidden_again = 0;
+    uint64_t outside_too = 0, open_pixels = 0, covered = 0, doubts = 0, hiders = 0, with_nodes = 0;
+};
+
+/// Holds explanations of one query to their word.
+class Laws {
+public:
+    Laws(const Snapshot& now, const View& view, std::string name)
+        : now_(now), view_(view), name_(std::move(name)), explainer_(now, view), reasons_(now.objectCount()) {
+        Query query;
+        query.visible(now, view);
+        query.reasons(reasons_);
+    }
+
+    LawCount count;
+
+    const std::vector<uint8_t>& reasons() const { return reasons_; }
+
+    /// The verdict alone.
+    Explanation expectVerdict(uint32_t item, const ExplainSettings& settings = {false, false}) {
+        Explanation why = explainer_.explain(now_.state().object(item).id, settings);
+        ++count.verdicts;
+        EXPECT_EQ(int(reasonOf(why.verdict)), int(reasons_[item])) << name_ << ": object " << item;
+        return why;
+    }
+
+    /// All that the explanation claims.
+    void expectTrue(uint32_t item) {
+        const Explanation why = expectVerdict(item, {});
+        if (why.verdict == Verdict::kOutsideFrustum) expectPlane(item, why);
+        if (why.verdict == Verdict::kOccluded) expectHiders(item, why);
+        if (why.verdict == Verdict::kVisible) expectOpenPixel(why, item);
+        count.with_nodes += why.together > 1;
+    }
+
+private:
+    std::string at(uint32_t item) const { return name_ + ": object " + std::to_string(item); }
+
+    /// The object moved along the plane's normal, inward.
+    uint8_t reasonAfterMove(uint32_t item, uint32_t plane, double distance, Explanation* why) const {
+        const Frustum frustum = makeFrustum(view_);
+        uint32_t which = 0;
+        while (frustum.side[which] != plane) ++which;
+        Copy copy(now_, allItems(now_));
+        copy.world.commit();
+        glm::dmat4 transform = now_.state().object(item).transform;
+        transform[3] += glm::dvec4(glm::dvec3(frustum.planes[which]) * distance, 0.0);
+        EXPECT_TRUE(copy.world.move(copy.ids[item], transform));
+        const Snapshot moved = copy.world.commit();
+        if (why) *why = Explainer(moved, view_).explain(copy.ids[item], {false, false});
+        return reasonOf(moved, view_, item);
+    }
+
+    void expectPlane(uint32_t item, const Explanation& why) {
+        if (why.frustum.off_screen) {
+            ++count.off_screen;
+            EXPECT_GT(why.frustum.pixels_off, -1e-3) << at(item);
+            return;
+        }
+        ++count.planes;
+        const double distance = why.frustum.distance(), rounding = why.frustum.rounding;
+        ASSERT_GT(distance, 0) << at(item);
+        EXPECT_LT(rounding, 1e-3 * (1 + distance) + 1e-5 * glm::length(eyePosition(view_))) << at(item);
+        const double less = 0.999 * (distance - rounding);
+        if (less > 0) {
+            // With a node that reaches into the view it may be occluded first.
+            Explanation then;
+            const uint8_t reason = reasonAfterMove(item, why.frustum.plane, less, &then);
+            EXPECT_NE(int(reason), 0) << at(item);
+            EXPECT_TRUE(reason == kByFrustum || then.occlusion.outside_too) << at(item);
+            EXPECT_GT(then.frustum.outside[why.frustum.plane], 0.0) << at(item);
+        }
+        Explanation then;
+        const double hair = 1e-9 * (distance + glm::length(eyePosition(view_)) + 1);
+        const uint8_t reason = reasonAfterMove(item, why.frustum.plane, distance + hair, &then);
+        EXPECT_LE(then.frustum.outside[why.frustum.plane], 0.0) << at(item);
+        if (then.frustum.distance() <= 0 && !then.frustum.off_screen) {
+            EXPECT_NE(int(reason), int(kByFrustum)) << at(item);
+        }
+    }
+
+    /// What becomes of the object in a world of itself and some others.
+    uint8_t reasonAmong(uint32_t item, const std::vector<ObjectId>& others) const {
+        std::vector<uint32_t> items;
+        for (uint32_t i = 0; i < now_.objectCount(); ++i)
+            if (i == item || std::find(others.begin(), others.end(), now_.state().object(i).id) != others.end())
+                items.push_back(i);
+        EXPECT_EQ(items.size(), others.size() + 1);
+        Copy copy(now_, items);
+        const auto self = std::find(items.begin(), items.end(), item) - items.begin();
+        return reasonOf(copy.world.commit(), view_, static_cast<uint32_t>(self));
+    }
+
+    void expectHiders(uint32_t item, const Explanation& why) {
+        ++count.occluded;
+        count.hiders += why.occlusion.hiders.size();
+        ASSERT_FALSE(why.occlusion.hiders.empty()) << at(item);
+        double sum = 0;
+        std::vector<ObjectId> hiders;
+        for (const Hider& hider : why.occlusion.hiders) {
+            EXPECT_GE(hider.share, 0.0);
+            sum += hider.share;
+            hiders.push_back(hider.id);
+        }
+        EXPECT_NEAR(sum, 1.0, 1e-9) << at(item);
+        if (why.occlusion.outside_too) {
+            ++count.outside_too;
+            EXPECT_GT(why.together, 1u) << at(item);
+            EXPECT_EQ(int(reasonAmong(item, hiders)), int(kByFrustum)) << at(item) << ", which is outside by itself";
+        } else if (why.occlusion.sufficient) {
+            EXPECT_EQ(int(reasonAmong(item, hiders)), int(kByOcclusion)) << at(item) << " with its hiders alone";
+            for (size_t k = 0; k < hiders.size(); ++k) {
+                std::vector<ObjectId> fewer = hiders;
+                fewer.erase(fewer.begin() + static_cast<ptrdiff_t>(k));
+                EXPECT_EQ(int(reasonAmong(item, fewer)), 0) << at(item) << " without one of its hiders";
+            }
+        } else {
+            ++count.insufficient;
+        }
+        expectWithout(item, why, hiders);
+    }
+
+    void expectWithout(uint32_t item, const Explanation& why, const std::vector<ObjectId>& hiders) {
+        ++count.without;
+        Copy copy(now_, allItems(now_));
+        copy.world.commit();
+        uint32_t before = 0;
+        for (uint32_t i = 0; i < now_.objectCount(); ++i) {
+            if (std::find(hiders.begin(), hiders.end(), now_.state().object(i).id) == hiders.end()) continue;
+            EXPECT_TRUE(copy.world.remove(copy.ids[i]));
+            before += i < item;
+        }
+        const Snapshot left = copy.world.commit();
+        const uint8_t reason = reasonOf(left, view_, item - before);
+        const Without without = why.occlusion.without;
+        ASSERT_NE(int(without), int(Without::kNotAsked)) << at(item);
+        const uint8_t said = without == Without::kVisible    ? 0
+                             : without == Without::kOccluded ? kByOcclusion
+                                                             : kByFrustum;
+        EXPECT_EQ(int(reason), int(said)) << at(item) << " without its hiders";
+        EXPECT_EQ(without == Without::kOccluded, !why.occlusion.others.empty()) << at(item);
+        count.hidden_again += without == Without::kOccluded;
+        for (const Hider& other : why.occlusion.others)
+            EXPECT_EQ(std::find(hiders.begin(), hiders.end(), other.id), hiders.end()) << at(item);
+    }
+
+    /// A speck at the place that was named, no farther than the object's nearest point, is kept too.
+    void expectOpenPixel(const Explanation& why, uint32_t item) {
+        if (why.visible.because != KeptBecause::kOpenPixel) {
+            ++count.doubts;
+            return;
+        }
+        ++count.open_pixels;
+        count.covered += why.visible.covered;
+        EXPECT_TRUE(why.on_screen) << at(item);
+        EXPECT_GT(why.visible.open_pixels, 0u) << at(item);
+        EXPECT_LE(why.visible.open_pixels, why.visible.pixels) << at(item);
+        EXPECT_GE(why.visible.x, why.rect.left);
+        EXPECT_LE(why.visible.x, why.rect.right);
+        EXPECT_GE(why.visible.y, why.rect.top);
+        EXPECT_LE(why.visible.y, why.rect.bottom);
+        const glm::dmat4& p = view_.projection;
+        const double w = isOrthographic(view_) ? p[3][3] : why.depth;
+        const double x = 2.0 * why.visible.x / view_.width - 1.0, y = 1.0 - 2.0 * why.visible.y / view_.height;
+        const glm::dvec4 eye((x * w + p[2][0] * why.depth - p[3][0]) / p[0][0],
+                             (y * w + p[2][1] * why.depth - p[3][1]) / p[1][1], -why.depth, 1.0);
+        const glm::dvec3 middle(glm::inverse(view_.view) * eye);
+        const double half = 0.05 * w / std::max(p[0][0] * view_.width, p[1][1] * view_.height);
+        Copy copy(now_, allItems(now_));
+        ObjectDef speck;
+        speck.bounds = {middle - glm::dvec3(half), middle + glm::dvec3(half)};
+        speck.key = ~uint64_t{0};
+        speck.layers = view_.layers;
+        copy.world.add(speck);
+        EXPECT_EQ(int(reasonOf(copy.world.commit(), view_, now_.objectCount())), 0)
+            << at(item) << ": nothing is kept at (" << why.visible.x << ", " << why.visible.y << "), which is open";
+    }
+
+    Snapshot now_;
+    View view_;
+    std::string name_;
+    Explainer explainer_;
+    std::vector<uint8_t> reasons_;
+};
+
+}  // namespace sightline::test
