@@ -25,6 +25,9 @@ if(SIGHTLINE_TOOLS)
   sightline_install(EXPORT sightline-tools LIBRARIES scene import truth report
     FOLDERS scene load import truth report)
   install(TARGETS sightline)
+  if(SIGHTLINE_HAS_ASSIMP)
+    install(TARGETS sightline-import DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/sightline)
+  endif()
 endif()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sightline-config.cmake.in

@@ -38,6 +38,7 @@ void addBench(CLI::App& tool, int& exit_code) {
     verb->add_option("NAME", options->name, fmt::format("one of: {}", fmt::join(bench::names(), ", ")))->required();
     verb->add_option("--json", options->json, "write the rows as JSON (-: standard output)")->type_name("FILE");
     verb->add_option("--scene", scene->names, "measure on this scene instead of the case's own")->type_name("SCENE");
+    addImportOptions(*verb, *scene);
     verb->add_option("--repeat", options->repeat, "measurements of each value")
         ->check(CLI::Range(1, 100000))
         ->type_name("N");

@@ -1,4 +1,4 @@
-// Which scene a verb is to look at: files or a procedural one, and how files are read.
+// Which scene a verb is to look at: files, procedural ones or several of both, and how files are read.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -15,7 +15,9 @@ class App;
 namespace sightline::cli {
 
 struct SceneChoice {
-    std::vector<std::string> names;  ///< files, or one procedural scene
+    std::vector<std::string> names;  ///< files and procedural scenes; several are joined in this order
+    // How files are read, as the options say it; empty: not given.
+    std::string up, unit, sides, memory, time;
 
     /// For a reader: "a.glb + b.glb".
     std::string title() const;
@@ -27,9 +29,11 @@ struct SceneChoice {
 
 /// SCENE and the options of importing.
 void addSceneChoice(CLI::App& verb, SceneChoice& choice);
+/// The options of importing alone.
+void addImportOptions(CLI::App& verb, SceneChoice& choice);
 
-/// Files by their formats, or a procedural scene by its specification; shows progress. Errors name the file and say
-/// what is wrong.
+/// Files by their formats, procedural scenes by their specifications; shows progress and notes. Errors name the file
+/// and say what is wrong.
 Result<Scene> loadScene(const SceneChoice& choice);
 
 }  // namespace sightline::cli

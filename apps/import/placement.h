@@ -1,0 +1,27 @@
+// What Assimp leaves to others: units and axes that a file declares, and cameras.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <assimp/scene.h>
+#include <glm/glm.hpp>
+
+#include "sightline/scene/scene.h"
+
+namespace sightline::import {
+
+/// What turns a scene so that y is up, and scales it to metres, where the format says how and Assimp did not: FBX by
+/// its global settings. The identity for all others.
+glm::dmat4 placementOf(const aiScene& scene, const std::string& suffix);
+
+/// Takes the rounding out of the turn that Assimp gives to an IFC's root: what is almost nothing beside the rest of its
+/// matrix becomes nothing.
+void straighten(aiNode& root);
+
+/// A camera in the world; none if it looks nowhere.
+/// @param node  node to world
+std::optional<SceneCamera> cameraOf(const aiCamera& camera, const glm::dmat4& node);
+
+}  // namespace sightline::import

@@ -1,0 +1,251 @@
+// Reads a file with Assimp and sends what it holds: nodes, meshes, objects, cameras.
+// SPDX-License-Identifier: MIT
+#include "apps/import/send_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <assimp/Importer.hpp>
+#include <assimp/ProgressHandler.hpp>
+#include <assimp/config.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include "apps/import/fault.h"
+#include "apps/import/file_access.h"
+#include "apps/import/materials.h"
+#include "apps/import/placement.h"
+#include "apps/import/poses.h"
+#include "apps/import/triangles.h"
+#include "apps/import/warnings.h"
+#include "sightline/import/scene_kind.h"
+
+namespace sightline::import {
+namespace {
+
+constexpr uint64_t kSteps = 100, kReadSteps = 60;  ///< of progress; reading is most of it
+
+class ReadProgress : public Assimp::ProgressHandler {
+public:
+    explicit ReadProgress(SceneStreamWriter& out) : out_(out) {}
+    bool Update(float part) override {
+        if (!(part >= 0 && part <= 1)) return true;
+        const auto step = static_cast<uint64_t>(double(kReadSteps) * std::min(1.0f, 2 * part));  // it counts to a half
+        if (step > told_) out_.progress(told_ = step, kSteps);
+        return true;
+    }
+
+private:
+    SceneStreamWriter& out_;
+    uint64_t told_ = 0;
+};
+
+/// Walks a scene once; what it has to remember meanwhile.
+class Sender {
+public:
+    Sender(const aiScene& scene, const std::string& file, const std::string& suffix, SceneStreamWriter& out)
+        : scene_(scene),
+          file_(file),
+          suffix_(suffix),
+          out_(out),
+          place_(placementOf(scene, suffix)),
+          poses_(scene),
+          materials_(scene, sceneFormat(suffix) ? sceneFormat(suffix)->sides : SidesRule::kNothing,
+                     std::filesystem::path(file).parent_path().string(), out) {}
+
+    void send() {
+        std::vector<std::pair<const aiNode*, uint32_t>> todo{{scene_.mRootNode, SceneNode::kNone}};
+        while (!todo.empty()) {
+            const auto [node, parent] = todo.back();
+            todo.pop_back();
+            const uint32_t index = nodes_++;
+            out_.node({nodeName(*node), parent});
+            sendObject(*node, index);
+            for (unsigned c = node->mNumChildren; c-- > 0;) todo.emplace_back(node->mChildren[c], index);
+        }
+        if (objects_ == 0) throw Fault{nothing()};
+        for (unsigned c = 0; c < scene_.mNumCameras; ++c) sendCamera(*scene_.mCameras[c]);
+    }
+
+private:
+    std::string nodeName(const aiNode& node) const {
+        const std::string name = node.mName.C_Str();
+        // Names that Assimp made up: of the root, of what relates IFC's things to one another, of what has no name.
+        const bool root = !node.mParent;
+        if (root && (name == std::filesystem::path(file_).filename().string() || name == "RootNode" || name == "ROOT" ||
+                     name == "3MF" || name == "DXCC_ROOT" || name == "<DXF_ROOT>" || name == alias_))
+            return {};
+        if (name.starts_with('<') && name.ends_with('>')) return {};
+        if (name.starts_with("$Rel") || name.starts_with("$dummy")) return {};
+        return name;
+    }
+
+    glm::dmat4 worldOf(const aiNode* node) const {
+        glm::dmat4 out(1.0);
+        for (; node; node = node->mParent) {
+            const auto known = worlds_.find(node);
+            if (known != worlds_.end()) return known->second * out;
+            out = toMatrix(node->mTransformation) * out;
+        }
+        return out;
+    }
+
+    void sendObject(const aiNode& node, uint32_t index) {
+        const glm::dmat4 world = worldOf(&node);
+        if (node.mNumChildren > 0) worlds_.emplace(&node, world);
+        if (node.mNumMeshes == 0) return;
+        std::vector<unsigned> group(node.mMeshes, node.mMeshes + node.mNumMeshes);
+        for (const unsigned mesh : group)
+            if (mesh >= scene_.mNumMeshes)
+                throw Fault{fmt::format("node '{}': there is no mesh {}", node.mName.C_Str(), mesh)};
+        const std::optional<uint32_t> mesh = meshOf(group, world, nodeName(node));
+        if (!mesh) return;
+        SceneObject object;
+        object.mesh = *mesh;
+        object.node = index;
+        object.transform = place_ * world;
+        object.name = nodeName(node);
+        if (object.name.empty()) object.name = scene_.mMeshes[group[0]]->mName.C_Str();
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row)
+                if (!std::isfinite(object.transform[column][row]))
+                    throw Fault{fmt::format("node '{}': its transform is not finite", node.mName.C_Str())};
+        out_.object(object);
+        ++objects_;
+    }
+
+    /// The mesh of these, which is sent when first asked for. None if they have no triangles.
+    std::optional<uint32_t> meshOf(const std::vector<unsigned>& group, const glm::dmat4& world,
+                                   const std::string& name) {
+        const bool deforms =
+            std::any_of(group.begin(), group.end(), [&](unsigned m) { return Poses::deforms(*scene_.mMeshes[m]); });
+        // Bones do not move with the node, so that bounds differ from node to node.
+        const auto known = sent_.find(group);
+        if (!deforms && known != sent_.end()) return known->second;
+        size_t corners = 0;
+        for (const unsigned m : group) corners += scene_.mMeshes[m]->mNumVertices;
+        PositionPool pool(corners);
+        Mesh mesh;
+        mesh.name = scene_.mMeshes[group[0]]->mName.C_Str();
+        if (mesh.name.empty()) mesh.name = name;
+        mesh.deforms = deforms;
+        mesh.bounds = {glm::dvec3(0), glm::dvec3(0)};
+        if (deforms) mesh.bounds = Box3d{};
+        for (const unsigned m : group) {
+            addPrimitive(*scene_.mMeshes[m], pool, mesh);
+            if (deforms) mesh.bounds.grow(poses_.bounds(*scene_.mMeshes[m], world));
+        }
+        mesh.positions = std::move(pool.positions);
+        std::optional<uint32_t> out;
+        if (!mesh.indices.empty()) {
+            out = meshes_++;
+            out_.mesh(mesh);
+            for (const unsigned m : group) done_ += scene_.mMeshes[m]->mNumFaces;
+            tellProgress();
+        }
+        if (!deforms) sent_.emplace(group, out);
+        return out;
+    }
+
+    void addPrimitive(const aiMesh& from, PositionPool& pool, Mesh& to) {
+        const auto fail = [&](const std::string& what) -> Fault {
+            return {fmt::format("mesh '{}': {}", from.mName.length > 0 ? from.mName.C_Str() : to.name, what)};
+        };
+        const size_t before = to.triangles();
+        std::vector<uint32_t> map(from.mNumVertices, ~0u);
+        const auto corner = [&](unsigned v) {
+            if (v >= from.mNumVertices) throw fail(fmt::format("vertex {} of {}", v, from.mNumVertices));
+            const aiVector3D& p = from.mVertices[v];
+            if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+                throw fail(fmt::format("vertex {} is not finite", v));
+            if (map[v] == ~0u) map[v] = pool.add({p.x, p.y, p.z});
+            return map[v];
+        };
+        std::vector<glm::dvec3> polygon;
+        std::vector<uint32_t> cut, ring;
+        for (unsigned f = 0; f < from.mNumFaces; ++f) {
+            const aiFace& face = from.mFaces[f];
+            if (face.mNumIndices < 3) {
+                ++thin_;
+                continue;
+            }
+            ring.clear();
+            for (unsigned i = 0; i < face.mNumIndices; ++i) ring.push_back(corner(face.mIndices[i]));
+            if (ring.size() == 3) {
+                to.indices.insert(to.indices.end(), ring.begin(), ring.end());
+                continue;
+            }
+            polygon.clear();
+            for (const uint32_t i : ring) polygon.emplace_back(pool.positions[i]);
+            cut.clear();
+            cutPolygon(polygon, cut);
+            for (const uint32_t i : cut) to.indices.push_back(ring[i]);
+        }
+        const size_t count = to.triangles() - before;
+        if (to.indices.size() > ~0u) throw fail("has more triangles than can be counted");
+        if (count == 0) return;
+        to.primitives.push_back({uint32_t(before), uint32_t(count), materials_.of(from)});
+    }
+
+    void tellProgress() {
+        if (total_ == 0)
+            for (unsigned m = 0; m < scene_.mNumMeshes; ++m) total_ += scene_.mMeshes[m]->mNumFaces;
+        if (total_ == 0) return;
+        const uint64_t step = kReadSteps + (kSteps - kReadSteps) * std::min(done_, total_) / total_;
+        if (step > told_) out_.progress(told_ = step, kSteps);
+    }
+
+    std::string nothing() const {
+        uint64_t points = 0;
+        for (unsigned m = 0; m < scene_.mNumMeshes; ++m) points += scene_.mMeshes[m]->mNumVertices;
+        if (points == 0) return "draws nothing: there is no surface in it";
+        return fmt::format("draws nothing: it has {} points{}, but no triangle", points, thin_ > 0 ? " and lines" : "");
+    }
+
+    void sendCamera(const aiCamera& camera) {
+        const aiNode* node = scene_.mRootNode->FindNode(camera.mName);
+        if (const std::optional<SceneCamera> placed = cameraOf(camera, place_ * worldOf(node))) out_.camera(*placed);
+    }
+
+    const aiScene& scene_;
+    const std::string& file_;
+    const std::string suffix_;
+    const std::string alias_ = std::filesystem::path(file_).stem().string() + "." + suffix_;
+    SceneStreamWriter& out_;
+    const glm::dmat4 place_;
+    const Poses poses_;
+    Materials materials_;
+    std::map<std::vector<unsigned>, std::optional<uint32_t>> sent_;
+    std::map<const aiNode*, glm::dmat4> worlds_;
+    uint32_t nodes_ = 0, meshes_ = 0, objects_ = 0;
+    uint64_t thin_ = 0, done_ = 0, total_ = 0, told_ = kReadSteps;
+};
+
+}  // namespace
+
+void sendScene(const std::string& file, const std::string& suffix, SceneStreamWriter& out) {
+    Warnings warnings;
+    Assimp::Importer importer;
+    FileAccess* const access = new FileAccess(file, suffix);  // the importer's from here on
+    importer.SetIOHandler(access);
+    importer.SetProgressHandler(new ReadProgress(out));
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);  // one node a node
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);    // no surface that is not in the file
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_AC_SEPARATE_BFCULL, false);
+    // No steps after reading: joining and triangulating there moves or drops what is small.
+    const aiScene* scene = importer.ReadFile(access->alias(), 0);
+    if (!scene) throw Fault{importer.GetErrorString()};
+    if (!scene->mRootNode) throw Fault{"draws nothing: there is no node in it"};
+    if (suffix == "ifc" || suffix == "ifczip") straighten(*const_cast<aiNode*>(scene->mRootNode));  // the scene is ours
+    out.progress(kReadSteps, kSteps);
+    Sender(*scene, file, suffix, out).send();
+    warnings.send(out);
+}
+
+}  // namespace sightline::import
