@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -113,31 +112,30 @@ size_t shareOut(size_t count, uint32_t threads, const std::function<bool()>& sto
     std::mutex mutex;
     size_t next = 0;
     std::vector<size_t> again;
-    std::exception_ptr fault;
+    FirstFault fault;
     const auto take = [&]() -> std::optional<size_t> {
         const std::lock_guard lock(mutex);
-        if (fault || next >= count || (stop && stop())) return std::nullopt;
+        if (fault.any() || next >= count || (stop && stop())) return std::nullopt;
         return next++;
     };
     threads = static_cast<uint32_t>(std::min<size_t>(threads, count));
     again.reserve(threads);
     const auto loop = [&](uint32_t thread) {
-        std::optional<size_t> mine;
-        try {
-            const Worker work = make(thread);
-            while ((mine = take())) work(*mine);
-        } catch (const std::bad_alloc&) {
-            const std::lock_guard lock(mutex);
-            if (mine) again.push_back(*mine);
-        } catch (...) {
-            const std::lock_guard lock(mutex);
-            if (!fault) fault = std::current_exception();
-        }
+        fault.guard([&] {
+            std::optional<size_t> mine;
+            try {
+                const Worker work = make(thread);
+                while ((mine = take())) work(*mine);
+            } catch (const std::bad_alloc&) {
+                const std::lock_guard lock(mutex);
+                if (mine) again.push_back(*mine);
+            }
+        });
     };
     std::vector<std::thread> others = startThreads(threads, loop);
     loop(0);
     for (std::thread& other : others) other.join();
-    if (fault) std::rethrow_exception(fault);
+    fault.rethrow();
     if (again.empty() && (next >= count || (stop && stop()))) return next;
     const Worker alone = make(0);
     for (const size_t i : again) alone(i);

@@ -71,14 +71,18 @@ void castAll(const SampleRays& rays, const Reach& reach, uint32_t threads, Hidde
              MakeNearest&& make_nearest) {
     std::atomic<uint32_t> next_row{0};
     std::atomic<uint64_t> met{0};
+    FirstFault fault;
     const auto work = [&](uint32_t) {
-        auto nearest = make_nearest();
-        for (uint32_t row = next_row++; row < image.height; row = next_row++)
-            met += castRow(rays, reach, static_cast<int32_t>(row), image, nearest);
+        fault.guard([&] {
+            auto nearest = make_nearest();
+            for (uint32_t row = next_row++; row < image.height; row = next_row++)
+                met += castRow(rays, reach, static_cast<int32_t>(row), image, nearest);
+        });
     };
     std::vector<std::thread> others = startThreads(std::min(threads, image.height), work);
     work(0);
     for (std::thread& other : others) other.join();
+    fault.rethrow();
     image.counters.rays = uint64_t{image.width} * image.height;
     for (uint64_t* count : {&image.counters.generated, &image.counters.passed, &image.counters.shaded}) *count = met;
 }

@@ -3,6 +3,7 @@
 #include "sightline/hidden/raycast_embree.h"
 
 #include <cstdint>
+#include <new>
 
 #include <embree3/rtcore.h>
 
@@ -37,9 +38,11 @@ struct EmbreeTree::Impl {
     glm::dvec3 middle{0.0};  ///< of the triangles' box, where float has most to give
 };
 
+// What throws here leaves Embree's things where they are: short of memory, it ends the process when it lets them go.
 EmbreeTree::EmbreeTree(RayTriangles triangles) : impl_(std::make_unique<Impl>()) {
     impl_->triangles = std::move(triangles);
     impl_->device = rtcNewDevice(nullptr);
+    if (!impl_->device) throw std::bad_alloc();
     impl_->scene = rtcNewScene(impl_->device);
     rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
     const std::vector<RayTriangle>& all = impl_->triangles.triangles;
@@ -50,6 +53,7 @@ EmbreeTree::EmbreeTree(RayTriangles triangles) : impl_(std::make_unique<Impl>())
             geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), 3 * all.size()));
         auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
             geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), all.size()));
+        if (!corners || !indices) throw std::bad_alloc();
         for (const RayTriangle& triangle : all)
             for (const glm::dvec3& corner : {triangle.a, triangle.b, triangle.c})
                 *corners++ = glm::vec3(corner - impl_->middle);
@@ -61,6 +65,7 @@ EmbreeTree::EmbreeTree(RayTriangles triangles) : impl_(std::make_unique<Impl>())
         rtcReleaseGeometry(geometry);
     }
     rtcCommitScene(impl_->scene);
+    if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE) throw std::bad_alloc();
 }
 
 EmbreeTree::~EmbreeTree() {

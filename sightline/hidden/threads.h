@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <exception>
+#include <mutex>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -21,5 +23,31 @@ std::vector<std::thread> startThreads(uint32_t count, const Work& work) {
     } catch (const std::exception&) {}  // no more threads, or no memory for them: those that run do it all
     return threads;
 }
+
+/// The first of what several threads throw. Nothing may leave a thread's own function: that would end the process.
+class FirstFault {
+public:
+    /// Calls work(), and keeps what it throws.
+    template <class Work>
+    void guard(const Work& work) noexcept {
+        try {
+            work();
+        } catch (...) {
+            const std::lock_guard lock(mutex_);
+            if (!fault_) fault_ = std::current_exception();
+            any_ = true;
+        }
+    }
+    bool any() const noexcept { return any_; }
+    /// Throws it, if there is one. Once the threads have ended.
+    void rethrow() const {
+        if (fault_) std::rethrow_exception(fault_);
+    }
+
+private:
+    std::mutex mutex_;
+    std::exception_ptr fault_;
+    std::atomic<bool> any_{false};
+};
 
 }  // namespace sightline

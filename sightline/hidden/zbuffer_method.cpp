@@ -175,12 +175,16 @@ public:
         for (size_t i = 0; i < count; ++i) workers.emplace_back(input_);
         advance();
         std::barrier projected(static_cast<ptrdiff_t>(count), []() noexcept {});
-        std::barrier drawn(static_cast<ptrdiff_t>(count), [this]() noexcept { advance(); });
+        FirstFault fault;
+        std::barrier drawn(static_cast<ptrdiff_t>(count), [&]() noexcept {
+            fault.guard([this] { advance(); });
+            done_ |= fault.any();
+        });
         const auto work = [&](uint32_t i) {
             while (!done_) {
-                projectAll(workers[i]);
+                fault.guard([&] { projectAll(workers[i]); });
                 projected.arrive_and_wait();
-                drawAll(workers[i]);
+                if (!fault.any()) fault.guard([&] { drawAll(workers[i]); });
                 drawn.arrive_and_wait();
             }
         };
@@ -191,6 +195,7 @@ public:
         }
         work(0);
         for (std::thread& thread : threads) thread.join();
+        fault.rethrow();
         for (Worker& worker : workers) worker.finish(image.counters);
     }
 

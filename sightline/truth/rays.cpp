@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
+#include <stdexcept>
+#include <string>
 
 #include <embree3/rtcore.h>
 
@@ -51,16 +54,26 @@ void passThrough(const RTCFilterFunctionNArguments* arguments) {
     }
 }
 
+/// Throws what Embree complained of since the last time. A tree that was not built would let every ray pass, and a
+/// witness that sees nothing convicts nobody.
+void insist(RTCDevice device) {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (error != RTC_ERROR_NONE) throw std::runtime_error("Embree failed with error " + std::to_string(error));
+}
+
 /// The triangles of one mesh, carried through an affine transform in double; mirrored ones are turned around.
 RTCGeometry makeGeometry(RTCDevice device, const Mesh& mesh, const MeshFacts& facts, const glm::dmat4& transform) {
     const bool turned = glm::determinant(glm::dmat3(transform)) < 0;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), mesh.positions.size()));
+    if (!vertices) throw std::bad_alloc();
     for (size_t i = 0; i < mesh.positions.size(); ++i)
         vertices[i] = glm::vec3(glm::dvec3(transform * glm::dvec4(glm::dvec3(mesh.positions[i]), 1.0)));
     auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                                    3 * sizeof(uint32_t), mesh.triangles()));
+    if (!indices) throw std::bad_alloc();
     for (size_t i = 0; i < 3 * mesh.triangles(); i += 3) {
         indices[i] = mesh.indices[i];
         indices[i + 1] = mesh.indices[turned ? i + 2 : i + 1];
@@ -126,8 +139,10 @@ struct RayScene::Impl {
     double rounding = 0;
 };
 
+// What throws here leaves Embree's things where they are: short of memory, it ends the process when it lets them go.
 RayScene::RayScene(const SceneFacts& facts) : impl_(std::make_unique<Impl>()) {
     impl_->device = rtcNewDevice(nullptr);
+    insist(impl_->device);
     impl_->world = rtcNewScene(impl_->device);
     rtcSetSceneFlags(impl_->world, RTC_SCENE_FLAG_ROBUST);
     impl_->center = facts.center();
@@ -149,6 +164,7 @@ RayScene::RayScene(const SceneFacts& facts) : impl_(std::make_unique<Impl>()) {
         rtcReleaseGeometry(geometry);
     }
     rtcCommitScene(impl_->world);
+    insist(impl_->device);
 }
 
 RayScene::~RayScene() {
