@@ -55,22 +55,6 @@ FrustumReason planesOf(const SnapshotState& state, const Box3d& box, const View&
     return reason;
 }
 
-/// How far the image of a box that no plane decided on lies beside the buffer.  [viewport pixels]
-double pixelsOff(const Box3d& box, const Screen& screen, const View& view) {
-    Box3d image;
-    for (int which = 0; which < 8; ++which) {
-        const glm::dvec3 corner(which & 1 ? box.max.x : box.min.x, which & 2 ? box.max.y : box.min.y,
-                                which & 4 ? box.max.z : box.min.z);
-        const glm::dvec4 p(corner - screen.eye, 1.0);
-        const double w = glm::dot(screen.w, p);
-        image.grow(glm::dvec3(glm::dot(screen.x, p) / w, glm::dot(screen.y, p) / w, 0.0));
-    }
-    const double sx = (view.width + 2.0 * view.jitter) / screen.width;
-    const double sy = (view.height + 2.0 * view.jitter) / screen.height;
-    return std::max(std::max(-image.max.x, image.min.x - screen.width) * sx,
-                    std::max(-image.max.y, image.min.y - screen.height) * sy);
-}
-
 }  // namespace
 
 struct Explainer::Impl {
@@ -232,8 +216,7 @@ Explanation Explainer::explain(ObjectId id, const ExplainSettings& settings) {
         const Box3d box = detail::worldBounds(object);
         out.frustum = planesOf(state, box, impl.view);
         out.frustum.outside_any = leaf.beyond_plane || leaf.outside();
-        out.frustum.off_screen = leaf.outside() && !leaf.beyond_plane;
-        if (out.frustum.off_screen) out.frustum.pixels_off = pixelsOff(box, screen, impl.view);
+        out.frustum.by_rectangle = leaf.outside() && !leaf.beyond_plane;
         if (out.on_screen) {
             rect = leaf.rect();
             out.rect = imageOf(rect, screen, impl.view);

@@ -36,8 +36,8 @@ struct FrustumReason {
     uint32_t plane = 0;  ///< the one that it is farthest outside of
     /// Bound on the query's own rounding at that plane: what is outside by less may be kept.  [world units]
     double rounding = 0;
-    bool off_screen = false;   ///< no plane has the whole box outside: its image misses the viewport all the same
-    double pixels_off = 0;     ///< by so much, if off_screen  [viewport pixels]
+    /// The planes could not tell, for rounding; the rectangle on the screen, which rounds otherwise, decided.
+    bool by_rectangle = false;
     bool outside_any = false;  ///< the frustum stage would cull the object by itself
 
     double distance() const { return outside[plane]; }
