@@ -1,7 +1,11 @@
-// The verb `info`: what a scene holds.
+// The verb `info`: what a scene holds, and what can be read.
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -9,6 +13,8 @@
 
 #include "apps/cli/common.h"
 #include "apps/cli/verbs.h"
+#include "sightline/import/foreign.h"
+#include "sightline/import/scene_kind.h"
 #include "sightline/report/cull_run.h"
 
 namespace sightline::cli {
@@ -19,6 +25,7 @@ using Json = nlohmann::ordered_json;
 struct InfoOptions {
     SceneChoice scene;
     std::string json;
+    bool objects = false, formats = false;
 };
 
 /// Counts of a scene. Triangles are drawn ones: a mesh counts once for each object that shows it.
@@ -59,10 +66,86 @@ SceneFacts countFacts(const Scene& scene) {
     return sum;
 }
 
-Json infoJson(const Scene& scene, const std::string& file, const SceneFacts& facts, const Box3d& bounds) {
+/// The tree of nodes: how many there are, how many have names, and the longest way from a root.
+struct TreeFacts {
+    uint64_t nodes = 0, named = 0, depth = 0;
+};
+
+TreeFacts countTree(const Scene& scene) {
+    TreeFacts out;
+    out.nodes = scene.nodes.size();
+    std::vector<uint32_t> depth(scene.nodes.size(), 0);  // 0: not yet known
+    std::vector<uint32_t> path;
+    for (uint32_t i = 0; i < scene.nodes.size(); ++i) {
+        out.named += !scene.nodes[i].name.empty();
+        for (uint32_t n = i; n != SceneNode::kNone && depth[n] == 0; n = scene.nodes[n].parent) path.push_back(n);
+        for (; !path.empty(); path.pop_back()) {
+            const uint32_t parent = scene.nodes[path.back()].parent;
+            depth[path.back()] = parent == SceneNode::kNone ? 1 : depth[parent] + 1;
+        }
+        out.depth = std::max<uint64_t>(out.depth, depth[i]);
+    }
+    return out;
+}
+
+/// What a scene was read from, and by whom.
+struct FileFacts {
+    std::string name, format, reader;
+    uint64_t first_key = 0, bytes = 0;
+};
+
+std::vector<FileFacts> countFiles(const Scene& scene) {
+    std::vector<FileFacts> out;
+    for (const SceneFile& file : scene.files) {
+        FileFacts facts{file.name, "procedural", "sightline", file.first_key, 0};
+        if (const Result<SceneKind> kind = fileKind(file.name); kind && kind->format) {
+            facts.format = kind->format->name;
+            facts.reader = kind->format->ours ? "sightline" : "assimp";
+            std::error_code error;
+            facts.bytes = std::filesystem::file_size(file.name, error);
+        }
+        out.push_back(facts);
+    }
+    return out;
+}
+
+/// The meshes with the most triangles, the largest first.
+std::vector<const Mesh*> largestMeshes(const Scene& scene) {
+    constexpr size_t kMost = 5;
+    std::vector<const Mesh*> out;
+    for (const Mesh& mesh : scene.meshes) out.push_back(&mesh);
+    const size_t count = std::min(kMost, out.size());
+    std::partial_sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count), out.end(),
+                      [](const Mesh* a, const Mesh* b) {
+                          return a->triangles() != b->triangles() ? a->triangles() > b->triangles() : a < b;
+                      });
+    out.resize(count);
+    return out;
+}
+
+/// All that is told of a scene.
+struct SceneReport {
+    const Scene& scene;
+    std::string title;
+    SceneFacts facts;
+    TreeFacts tree;
+    std::vector<FileFacts> files;
+    Box3d bounds;
+};
+
+Json infoJson(const SceneReport& report) {
+    const Scene& scene = report.scene;
+    const SceneFacts& facts = report.facts;
     Json out;
     out["schema"] = "sightline.info/1";
-    out["file"] = file;
+    out["file"] = report.title;
+    out["files"] = Json::array();
+    for (const FileFacts& file : report.files)
+        out["files"].push_back({{"name", file.name},
+                                {"format", file.format},
+                                {"reader", file.reader},
+                                {"bytes", file.bytes},
+                                {"first_key", file.first_key}});
     out["objects"] = facts.keys;
     out["instances"] = facts.objects;
     out["deforming"] = facts.deforming_objects;
@@ -70,6 +153,9 @@ Json infoJson(const Scene& scene, const std::string& file, const SceneFacts& fac
     out["meshes"] = scene.meshes.size();
     out["materials"] = scene.materials.size();
     out["cameras"] = scene.cameras.size();
+    out["nodes"] = {{"count", report.tree.nodes}, {"named", report.tree.named}, {"depth", report.tree.depth}};
+    out["cells"] = scene.cells.size();
+    out["portals"] = scene.portals.size();
     out["triangles"] = {{"drawn", facts.drawn},
                         {"stored", facts.stored},
                         {"occluding", facts.hiding},
@@ -77,54 +163,120 @@ Json infoJson(const Scene& scene, const std::string& file, const SceneFacts& fac
                         {"blended", facts.blended},
                         {"transmissive", facts.transmissive},
                         {"double_sided", facts.double_sided}};
+    out["largest_meshes"] = Json::array();
+    for (const Mesh* mesh : largestMeshes(scene))
+        out["largest_meshes"].push_back({{"name", mesh->name}, {"triangles", mesh->triangles()}});
+    const Box3d& bounds = report.bounds;
     if (bounds.empty()) return out;
     out["bounds"] = {{"min", {bounds.min.x, bounds.min.y, bounds.min.z}},
                      {"max", {bounds.max.x, bounds.max.y, bounds.max.z}}};
     return out;
 }
 
-void printInfo(std::FILE* out, const Scene& scene, const std::string& file, const SceneFacts& facts,
-               const Box3d& bounds) {
+/// Text of a file, fit for one field of one line.
+std::string field(std::string text) {
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    return text;
+}
+
+void printFiles(std::FILE* out, const SceneReport& report) {
+    if (report.files.size() == 1)
+        fmt::print(out, "  format              {} (read by {})\n", report.files[0].format, report.files[0].reader);
+    if (report.files.size() < 2) return;
+    fmt::print(out, "  files                   first key\n");
+    for (const FileFacts& file : report.files)
+        fmt::print(out, "  {:>32}  {}: {}, read by {}\n", grouped(file.first_key), field(file.name), file.format,
+                   file.reader);
+}
+
+void printInfo(std::FILE* out, const SceneReport& report) {
+    const Scene& scene = report.scene;
+    const SceneFacts& facts = report.facts;
     const auto row = [&](const char* name, uint64_t count, const std::string& more = "") {
         fmt::print(out, "  {:<20}{:>14}{}{}\n", name, grouped(count), more.empty() ? "" : "  ", more);
     };
-    fmt::print(out, "{}\n", file);
+    fmt::print(out, "{}\n", report.title);
+    printFiles(out, report);
     row("objects", facts.keys, facts.keys == facts.objects ? "" : grouped(facts.objects) + " instances");
     row("  deforming", facts.deforming_objects);
     row("  mirrored", facts.mirrored_objects);
+    row("nodes", report.tree.nodes,
+        fmt::format("{} named, {} deep", grouped(report.tree.named), grouped(report.tree.depth)));
     row("meshes", scene.meshes.size());
     row("materials", scene.materials.size());
     row("cameras", scene.cameras.size());
+    row("cells", scene.cells.size());
+    row("portals", scene.portals.size());
     row("triangles drawn", facts.drawn, grouped(facts.stored) + " stored");
     row("  occluding", facts.hiding);
     row("  double-sided", facts.double_sided);
     row("  masked", facts.masked);
     row("  blended", facts.blended);
     row("  transmissive", facts.transmissive);
-    if (bounds.empty()) return;
-    fmt::print(out, "  bounds              ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", bounds.min.x,
-               bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z);
+    const Box3d& bounds = report.bounds;
+    if (!bounds.empty())
+        fmt::print(out, "  bounds              ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", bounds.min.x,
+                   bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z);
+    const std::vector<const Mesh*> largest = largestMeshes(scene);
+    if (largest.size() < 2) return;
+    fmt::print(out, "  largest meshes\n");
+    for (const Mesh* mesh : largest)
+        fmt::print(out, "  {:>34}  {}\n", grouped(mesh->triangles()), mesh->name.empty() ? "-" : field(mesh->name));
+}
+
+/// A line each: key, triangles, path; separated by tabs, in the order of keys.
+void printObjects(std::FILE* out, const Scene& scene) {
+    for (const uint32_t i : orderByKey(scene)) {
+        const SceneObject& object = scene.objects[i];
+        fmt::print(out, "{}\t{}\t{}\n", object.key, scene.meshes[object.mesh].triangles(),
+                   field(objectPath(scene, object)));
+    }
+}
+
+Status printFormats(const std::string& json) {
+    const bool foreign = !findImportWorker({}).empty();
+    Json list = Json::array();
+    for (const SceneFormat& format : sceneFormats()) {
+        const char* reader = format.ours ? "sightline" : "assimp";
+        const bool can = format.ours || foreign;
+        if (json != "-")
+            fmt::print("{:<16}{:<54}{}{}{}\n", format.suffixes, format.name, reader, format.tested ? "" : ", untested",
+                       can ? "" : ", not in this build");
+        list.push_back({{"suffixes", format.suffixes},
+                        {"name", format.name},
+                        {"reader", reader},
+                        {"tested", format.tested},
+                        {"available", can}});
+    }
+    if (json.empty()) return success();
+    return writeText(json, Json{{"schema", "sightline.formats/1"}, {"formats", list}}.dump(1) + "\n");
 }
 
 Status runInfo(const CLI::App& verb, const InfoOptions& options) {
     if (options.json.empty() && verb.count("--json") > 0)
         return Error{Error::Kind::kUsage, "--json: the name is empty"};
+    if (options.formats) return printFormats(options.json);
+    if (options.scene.names.empty()) return Error{Error::Kind::kUsage, "SCENE is required (see sightline info --help)"};
     const Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
-    const SceneFacts facts = countFacts(*scene);
-    const Box3d bounds = worldBounds(*scene);
-    if (options.json != "-") printInfo(stdout, *scene, options.scene.title(), facts, bounds);
+    const SceneReport report{
+        *scene, options.scene.title(), countFacts(*scene), countTree(*scene), countFiles(*scene), worldBounds(*scene)};
+    if (options.objects) printObjects(options.json == "-" ? stderr : stdout, *scene);
+    else if (options.json != "-") printInfo(stdout, report);
     if (options.json.empty()) return success();
-    const Json json = infoJson(*scene, options.scene.title(), facts, bounds);
-    return writeText(options.json, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    return writeText(options.json, infoJson(report).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace
 
 void addInfo(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("info", "what a scene holds");
+    CLI::App* verb = tool.add_subcommand("info", "what a scene holds, and what can be read");
     const auto options = std::make_shared<InfoOptions>();
     addSceneChoice(*verb, options->scene);
+    verb->get_option("SCENE")->required(false);  // --formats needs none
+    verb->add_flag("--objects", options->objects, "a line for each object instead: key, triangles, path (with tabs)");
+    verb->add_flag("--formats", options->formats, "what can be read, and by whom");
     verb->add_option("--json", options->json, "write it as JSON (-: standard output)")->type_name("FILE");
     verb->callback([verb, options, &exit_code] {
         const Status done = runInfo(*verb, *options);

@@ -49,16 +49,21 @@ bool inRange(const Scene& scene) {
 
 }  // namespace
 
-Result<Scene> loadSceneFile(const std::string& file, const ImportSettings& settings) {
+Result<SceneKind> fileKind(const std::string& file) {
     const Result<std::string> head = headOf(file);
     if (!head) return head.error();
     std::error_code error;
     const uint64_t size = fs::file_size(file, error);
     if (error) return inputError(file, error.message());
-    const SceneKind kind = sceneKind(file, *head, size);
-    if (!kind.format) return inputError(file, kind.refusal);
+    return sceneKind(file, *head, size);
+}
+
+Result<Scene> loadSceneFile(const std::string& file, const ImportSettings& settings) {
+    const Result<SceneKind> kind = fileKind(file);
+    if (!kind) return kind.error();
+    if (!kind->format) return inputError(file, kind->refusal);
     Result<Scene> scene =
-        kind.format->ours ? loadGltf(file, settings.progress) : loadForeign(file, kind.suffix, settings);
+        kind->format->ours ? loadGltf(file, settings.progress) : loadForeign(file, kind->suffix, settings);
     if (!scene) return scene;
     scene->name = file;
     scene->files = {{file, 0}};

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "sightline/base/result.h"
+
 namespace sightline {
 
 /// What a format says of the sides of its surfaces.
@@ -41,5 +43,8 @@ constexpr size_t kSceneHead = size_t(1) << 16;
 /// @param head  the first kSceneHead bytes of the file, or all of it
 /// @param size  of the whole file [bytes]
 SceneKind sceneKind(const std::string& file, std::string_view head, uint64_t size);
+
+/// The same of a file on disk. Errors (kInput): it is missing, a directory, or cannot be read.
+Result<SceneKind> fileKind(const std::string& file);
 
 }  // namespace sightline
