@@ -28,6 +28,9 @@ std::vector<unsigned char> readFile(const std::string& path, const std::string& 
 /// True for `data:...`, whatever its case.
 bool isDataUri(const std::string& uri);
 
+/// A URI's text with each %XX as its byte; a % without two digits stays.
+std::string percentDecoded(std::string_view text);
+
 /// The bytes of a data URI, base64 or percent-encoded.
 std::vector<unsigned char> decodeDataUri(const std::string& uri, const std::string& place);
 
