@@ -67,6 +67,7 @@ struct FrameResult {
     double begin_microseconds = 0;                ///< when it began with this frame, since the run began
     double end_microseconds = 0;                  ///< when it had done with it
     std::optional<VerificationRow> verification;
+    std::vector<std::string> notes;  ///< for a reader: why this frame is the slowest or the loosest of its run
 };
 
 struct CullRun {
