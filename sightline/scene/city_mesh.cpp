@@ -1,4 +1,4 @@
-// The solids that the procedural city is built from: boxes, prisms, walls with recesses, turned shapes.
+// The solids that procedural scenes are built from: boxes, prisms, walls with recesses, turned shapes.
 // SPDX-License-Identifier: MIT
 //
 // Gary Meisters. Polygons Have Ears. 1975.
@@ -91,12 +91,21 @@ void addPrism(MeshBuilder& mesh, uint32_t material, const Frame& frame, const st
 
 std::vector<glm::dvec2> regularPolygon(int sides) {
     constexpr double kHalfRoot2 = 0.70710678118654752440, kHalfRoot3 = 0.86602540378443864676;
+    constexpr double kCos22 = 0.92387953251128675613, kSin22 = 0.38268343236508977173;
     if (sides == 3) return {{1, 0}, {-0.5, kHalfRoot3}, {-0.5, -kHalfRoot3}};
     if (sides == 4)
         return {
             {kHalfRoot2, kHalfRoot2}, {-kHalfRoot2, kHalfRoot2}, {-kHalfRoot2, -kHalfRoot2}, {kHalfRoot2, -kHalfRoot2}};
     if (sides == 6)
         return {{1, 0}, {0.5, kHalfRoot3}, {-0.5, kHalfRoot3}, {-1, 0}, {-0.5, -kHalfRoot3}, {0.5, -kHalfRoot3}};
+    if (sides == 12)
+        return {{1, 0},  {kHalfRoot3, 0.5},   {0.5, kHalfRoot3},   {0, 1},  {-0.5, kHalfRoot3}, {-kHalfRoot3, 0.5},
+                {-1, 0}, {-kHalfRoot3, -0.5}, {-0.5, -kHalfRoot3}, {0, -1}, {0.5, -kHalfRoot3}, {kHalfRoot3, -0.5}};
+    if (sides == 16)
+        return {{1, 0},  {kCos22, kSin22},   {kHalfRoot2, kHalfRoot2},   {kSin22, kCos22},
+                {0, 1},  {-kSin22, kCos22},  {-kHalfRoot2, kHalfRoot2},  {-kCos22, kSin22},
+                {-1, 0}, {-kCos22, -kSin22}, {-kHalfRoot2, -kHalfRoot2}, {-kSin22, -kCos22},
+                {0, -1}, {kSin22, -kCos22},  {kHalfRoot2, -kHalfRoot2},  {kCos22, -kSin22}};
     return {{1, 0},  {kHalfRoot2, kHalfRoot2},   {0, 1},  {-kHalfRoot2, kHalfRoot2},
             {-1, 0}, {-kHalfRoot2, -kHalfRoot2}, {0, -1}, {kHalfRoot2, -kHalfRoot2}};
 }

@@ -1,4 +1,4 @@
-// The solids that the procedural city is built from: boxes, prisms, walls with recesses, turned shapes.
+// The solids that procedural scenes are built from: boxes, prisms, walls with recesses, turned shapes.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -55,11 +55,11 @@ struct Ring {
 
 /// A closed solid turned about the vertical through `center`: rings from below to above; a radius of 0 at
 /// either end is a tip, otherwise the end is flat.
-/// @param sides  3, 4, 6 or 8
+/// @param sides  3, 4, 6, 8, 12 or 16
 void addTurned(MeshBuilder& mesh, uint32_t material, const glm::dvec3& center, int sides,
                const std::vector<Ring>& rings);
 
-/// The corners of a regular polygon of 3, 4, 6 or 8 sides and radius 1, counter-clockwise. A square's sides
+/// The corners of a regular polygon of 3, 4, 6, 8, 12 or 16 sides and radius 1, counter-clockwise. A square's sides
 /// lie along the axes.
 std::vector<glm::dvec2> regularPolygon(int sides);
 

@@ -1,7 +1,9 @@
-// Procedural scenes by their specification: city:SEED:OBJECTS, made:NAME.
+// Procedural scenes by their specification: city:SEED:OBJECTS, building:SEED:FLOORS, terrain:SEED:SIZE, made:NAME.
 // SPDX-License-Identifier: MIT
 #include "sightline/scene/procedural.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <optional>
 #include <string_view>
@@ -9,14 +11,29 @@
 
 #include <fmt/core.h>
 
+#include "sightline/scene/building.h"
 #include "sightline/scene/city.h"
 #include "sightline/scene/made.h"
+#include "sightline/scene/terrain.h"
 
 namespace sightline {
 namespace {
 
-constexpr std::string_view kCity = "city", kMade = "made";
-constexpr uint64_t kMostObjects = 10'000'000;
+constexpr std::string_view kMade = "made";
+
+/// A scene that a seed and a size make: name:SEED:SIZE.
+struct Maker {
+    std::string_view name, size;  ///< as in the specification
+    std::string_view size_in_words;
+    uint64_t least, most;  ///< limits of the size
+    Scene (*make)(uint64_t seed, uint32_t size);
+};
+
+constexpr std::array<Maker, 3> kMakers{{
+    {"city", "OBJECTS", "number of objects", 1, 10'000'000, makeCity},
+    {"building", "FLOORS", "number of floors", 1, 200, makeBuilding},
+    {"terrain", "SIZE", "number of samples along a side", 16, 8192, makeTerrain},
+}};
 
 Error usage(const std::string& spec, const std::string& what) {
     return {Error::Kind::kUsage, fmt::format("{}: {}", spec, what)};
@@ -44,24 +61,36 @@ Result<Scene> makeMade(const std::string& spec) {
     return usage(spec, fmt::format("there is no such made scene (there are: {})", names));
 }
 
+Result<Scene> makeSeeded(const std::string& spec, const Maker& maker) {
+    const std::string_view rest = std::string_view(spec).substr(maker.name.size() + 1);
+    const size_t colon = rest.find(':');
+    if (colon == std::string_view::npos)
+        return usage(spec, fmt::format("the {} is missing: {}:SEED:{}", maker.size_in_words, maker.name, maker.size));
+    const std::optional<uint64_t> seed = parseNumber(rest.substr(0, colon));
+    if (!seed) return usage(spec, "the seed is not a number from 0 to 2^64 - 1");
+    const std::optional<uint64_t> size = parseNumber(rest.substr(colon + 1));
+    if (!size || *size < maker.least || *size > maker.most)
+        return usage(spec,
+                     fmt::format("the {} is not a number from {} to {}", maker.size_in_words, maker.least, maker.most));
+    Scene scene = maker.make(*seed, static_cast<uint32_t>(*size));
+    scene.name = spec;
+    return scene;
+}
+
 }  // namespace
 
-bool isProcedural(const std::string& spec) { return begins(spec, kCity) || begins(spec, kMade); }
+bool isProcedural(const std::string& spec) {
+    if (begins(spec, kMade)) return true;
+    return std::any_of(kMakers.begin(), kMakers.end(), [&](const Maker& maker) { return begins(spec, maker.name); });
+}
 
 Result<Scene> makeProcedural(const std::string& spec) {
     if (begins(spec, kMade)) return makeMade(spec);
-    if (!begins(spec, kCity)) return usage(spec, "not a procedural scene; there are city:SEED:OBJECTS and made:NAME");
-    const std::string_view rest = std::string_view(spec).substr(kCity.size() + 1);
-    const size_t colon = rest.find(':');
-    if (colon == std::string_view::npos) return usage(spec, "the number of objects is missing: city:SEED:OBJECTS");
-    const std::optional<uint64_t> seed = parseNumber(rest.substr(0, colon));
-    if (!seed) return usage(spec, "the seed is not a number from 0 to 2^64 - 1");
-    const std::optional<uint64_t> objects = parseNumber(rest.substr(colon + 1));
-    if (!objects || *objects < 1 || *objects > kMostObjects)
-        return usage(spec, fmt::format("the number of objects is not a number from 1 to {}", kMostObjects));
-    Scene scene = makeCity(*seed, static_cast<uint32_t>(*objects));
-    scene.name = spec;
-    return scene;
+    for (const Maker& maker : kMakers)
+        if (begins(spec, maker.name)) return makeSeeded(spec, maker);
+    std::string names;
+    for (const Maker& maker : kMakers) names += fmt::format("{}:SEED:{}, ", maker.name, maker.size);
+    return usage(spec, fmt::format("not a procedural scene (there are {}made:NAME)", names));
 }
 
 }  // namespace sightline

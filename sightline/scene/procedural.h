@@ -1,4 +1,4 @@
-// Procedural scenes by their specification: city:SEED:OBJECTS, made:NAME.
+// Procedural scenes by their specification: city:SEED:OBJECTS, building:SEED:FLOORS, terrain:SEED:SIZE, made:NAME.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -14,8 +14,10 @@ bool isProcedural(const std::string& spec);
 
 /// Makes the scene that a specification names; its name is the specification.
 ///
-///     city:SEED:OBJECTS    makeCity; OBJECTS from 1 to 10,000,000
-///     made:NAME            makeMadeScene
+///     city:SEED:OBJECTS       makeCity; OBJECTS from 1 to 10,000,000
+///     building:SEED:FLOORS    makeBuilding; FLOORS from 1 to 200
+///     terrain:SEED:SIZE       makeTerrain; SIZE from 16 to 8192
+///     made:NAME               makeMadeScene
 ///
 /// Errors (kUsage) quote the specification: an unknown name, a part that is missing or too many, a number that
 /// is malformed or out of its limits.
