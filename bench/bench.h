@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,7 @@ struct Options {
     std::string json;              ///< file for the rows as `sightline.bench/1`; `-`: standard output; empty: none
     const Scene* scene = nullptr;  ///< null: the case's own scenes
     int repeat = 0;                ///< measurements of each value, of which the median counts; 0: the case's own number
+    std::function<void(size_t done, size_t total)> progress;  ///< called by cases that take minutes; may be empty
 };
 
 /// The cases that run() knows, in alphabetical order.

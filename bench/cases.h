@@ -28,7 +28,8 @@ Table benchGl(const Options& options);
 /// Every hidden-surface method on one view, and then all of benchClipping, benchOrder, benchBsp, benchDepth and benchGl.
 Table benchHidden(const Options& options);
 
-/// The whole query while a city grows, beside flat frustum culling; how tight its answer is.
+/// The occlusion buffer by itself on scenes made for it; then the whole query while a city grows, beside flat
+/// frustum culling, and how tight its answer is.
 Table benchOcclusion(const Options& options);
 
 /// Radix sort beside std::sort; Newell's algorithm beside the painter's, Warnock's beside a plain z-buffer, rays by our

@@ -1,10 +1,11 @@
-// The whole query while a city grows, beside flat frustum culling; how tight its answer is.
+// The occlusion buffer by itself; then the whole query while a city grows, beside flat frustum culling.
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
 #include "bench/cases.h"
 #include "bench/exact_boxes.h"
 #include "bench/flat_boxes.h"
+#include "bench/occlusion_core.h"
 #include "bench/stopwatch.h"
 #include "sightline/load/load_world.h"
 #include "sightline/load/seeded_cameras.h"
@@ -90,6 +91,7 @@ Table benchOcclusion(const Options& options) {
         measureTightness(*options.scene, path, where, table);
         return table;
     }
+    measureOcclusionCore(options, table);
     const CameraPath path = cityStreetPath(kSeed, 16);
     double smallest = 0;
     for (uint32_t objects : {1000u, 10000u, 100000u, 1000000u}) {

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/format.h>
 
 #include "apps/cli/common.h"
+#include "apps/cli/progress.h"
 #include "apps/cli/verbs.h"
 #include "bench/bench.h"
 #include "sightline/report/output_file.h"
@@ -22,6 +25,11 @@ Status runBench(bench::Options options, const SceneChoice& choice) {
                                                       fmt::join(names, ", "))};
     if (!options.json.empty() && options.json != "-")
         if (Status writable = canWriteFile(options.json); !writable) return writable;
+    std::optional<Progress> progress(std::in_place, "measuring", "parts", 0);
+    options.progress = [&](size_t done, size_t total) {
+        if (progress) progress->set(done, total);
+        if (done == total) progress.reset();  // clears the bar before the table is printed
+    };
     if (choice.names.empty()) return bench::run(options);
     const Result<Scene> scene = loadScene(choice);
     if (!scene) return scene.error();

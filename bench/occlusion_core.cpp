@@ -1,0 +1,178 @@
+// The occlusion buffer by itself on scenes made for it: drawing, asking boxes, how tight and sound the answers are.
+// SPDX-License-Identifier: MIT
+#include "bench/occlusion_core.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "bench/occlusion_frame.h"
+#include "bench/occlusion_truth.h"
+
+namespace sightline::bench {
+namespace {
+
+struct Size {
+    uint32_t width, height;
+    size_t truths;  ///< views that are held against the truth: the larger the picture, the dearer
+};
+constexpr Size kSizes[] = {{1280, 720, ~size_t{0}}, {1920, 1080, 1}};
+constexpr int kBaselineEvery = 8;  ///< rounds for one of the baseline, which is slow
+
+/// Of one view, or sums over several.
+struct Figures {
+    double draw = 0, draw_all = 0, draw_plain = 0;  ///< [microseconds]
+    double flat = 0, grouped = 0, plain = 0;        ///< all boxes [microseconds]
+    double triangles = 0, offered = 0, boxes = 0, resolved = 0, aside = 0;
+    double kept = 0, kept_exactly = 0;
+    double truths = 0, kept_of_truths = 0, seen = 0, false_culls = 0, false_culls_exactly = 0;
+
+    void add(const Figures& f) {
+        for (auto member :
+             {&Figures::draw, &Figures::draw_all, &Figures::draw_plain, &Figures::flat, &Figures::grouped,
+              &Figures::plain, &Figures::triangles, &Figures::offered, &Figures::boxes, &Figures::resolved,
+              &Figures::aside, &Figures::kept, &Figures::kept_exactly, &Figures::truths, &Figures::kept_of_truths,
+              &Figures::seen, &Figures::false_culls, &Figures::false_culls_exactly})
+            this->*member += f.*member;
+    }
+};
+
+double median(std::vector<double>& times) {
+    const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
+    std::nth_element(times.begin(), middle, times.end());
+    return *middle;
+}
+
+template <class Job>
+void clock(std::vector<double>& times, Job job) {
+    const auto start = std::chrono::steady_clock::now();
+    job();
+    times.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
+}
+
+/// Seam pixels that are open until something asks for them.
+double openSeams(const DepthTiles& tiles) {
+    double count = 0;
+    for (uint32_t tile = 0; tile < tiles.seam_mask.size(); ++tile)
+        count += std::popcount(tiles.seam_mask[tile] & ~tiles.coveredBits(tile));
+    return count;
+}
+
+class ViewMeasurement {
+public:
+    ViewMeasurement(const OcclusionScene& scene, OcclusionFrame& frame, const View& view)
+        : scene_(scene), frame_(frame), view_(view) {
+        frame.begin(view);
+        figures_.boxes = static_cast<double>(frame.boxes().size());
+        figures_.triangles = static_cast<double>(frame.trianglesInView());
+        flat_.resize(frame.boxes().size());
+        grouped_.resize(frame.boxes().size());
+        exact_.resize(frame.boxes().size());
+    }
+
+    /// Each round draws anew before it asks, so that seams are resolved in each of them.
+    void time(int repeat) {
+        std::vector<double> draw, draw_all, draw_plain, flat, grouped, plain, unused;
+        for (int round = -1; round < repeat; ++round) {
+            if (round == 0)
+                for (auto* times : {&draw, &draw_all, &flat, &grouped}) times->clear();  // the first was to warm up
+            clock(draw_all, [&] { frame_.rasterize(tiles_, OcclusionFrame::SelfTest::kNo); });
+            clock(draw, [&] { frame_.rasterize(tiles_); });
+            clock(flat, [&] { frame_.testFlat(tiles_, flat_); });
+            figures_.offered = static_cast<double>(frame_.rasterize(tiles_));
+            figures_.aside = openSeams(tiles_);
+            clock(grouped, [&] { frame_.testGrouped(tiles_, grouped_); });
+            figures_.resolved = static_cast<double>(tiles_.seam_pixels);
+            if (round < 0 || round % kBaselineEvery) continue;
+            ZBufferImage image;
+            clock(draw_plain, [&] { image = drawBatches(scene_, frame_.batches(), view_); });
+            clock(plain, [&] { testPlainly(image); });
+        }
+        figures_.draw = median(draw);
+        figures_.draw_all = median(draw_all);
+        figures_.draw_plain = median(draw_plain);
+        figures_.flat = median(flat);
+        figures_.grouped = median(grouped);
+        figures_.plain = median(plain);
+        for (size_t i = 0; i < flat_.size(); ++i) {
+            figures_.kept += !flat_[i];
+            figures_.kept_exactly += !exact_[i];
+        }
+    }
+
+    /// Both ways of asking must agree with what can be seen.
+    void judge() {
+        const std::vector<uint8_t> seen = boxesInSight(scene_, frame_.batches(), frame_.boxes(), view_, {});
+        figures_.truths = 1;
+        for (size_t i = 0; i < seen.size(); ++i) {
+            figures_.seen += seen[i];
+            figures_.kept_of_truths += !flat_[i];
+            figures_.false_culls += seen[i] && (flat_[i] || grouped_[i]);
+            figures_.false_culls_exactly += seen[i] && exact_[i];
+        }
+    }
+
+    const Figures& figures() const { return figures_; }
+
+private:
+    void testPlainly(const ZBufferImage& image) {
+        const std::vector<BoxAnswer> boxes = frame_.project();
+        for (size_t i = 0; i < boxes.size(); ++i)
+            exact_[i] = !boxes[i].doubt && (boxes[i].outside || isBehind(image, boxes[i].rect));
+    }
+
+    const OcclusionScene& scene_;
+    OcclusionFrame& frame_;
+    const View view_;
+    DepthTiles tiles_;
+    std::vector<uint8_t> flat_, grouped_, exact_;  ///< per box in view: hidden
+    Figures figures_;
+};
+
+void addRows(const std::string& where, const Figures& sum, double views, Table& table) {
+    const auto add = [&](const char* what, double value, const char* unit, const char* baseline, double other) {
+        table.rows.push_back({where, what, value, unit, baseline, other});
+    };
+    const double per_box = 1e3 / std::max(sum.boxes, 1.0);
+    add("rasterize", sum.draw / views * 1e-3, "ms", "scalar z-buffer in double", sum.draw_plain / views * 1e-3);
+    add("rasterize", sum.draw / views * 1e-3, "ms", "without self-test", sum.draw_all / views * 1e-3);
+    add("triangles rasterized", sum.offered / views, "triangles", "in the frustum", sum.triangles / views);
+    add("triangles in the frustum a second", sum.triangles / sum.draw, "million/s", "scalar z-buffer in double",
+        sum.triangles / sum.draw_plain);
+    add("box test, flat", sum.flat * per_box, "ns", "every pixel of the z-buffer", sum.plain * per_box);
+    add("box test, groups of 32", sum.grouped * per_box, "ns", "flat", sum.flat * per_box);
+    add("boxes kept", sum.kept / views, "boxes", "same boxes, exact z-buffer", sum.kept_exactly / views);
+    add("boxes kept (over-estimate)", sum.kept_of_truths / sum.truths, "boxes", "seen by a 4x4 z-buffer",
+        sum.seen / sum.truths);
+    add("false culls against 4x4 samples", sum.false_culls / sum.truths, "boxes", "exact z-buffer at pixel centres",
+        sum.false_culls_exactly / sum.truths);
+    add("seam pixels resolved", sum.resolved / views, "pixels", "kept aside and open", sum.aside / views);
+}
+
+}  // namespace
+
+void measureOcclusionCore(const Options& options, Table& table) {
+    const int repeat = options.repeat ? options.repeat : 24;
+    const std::vector<std::string> names = occlusionSceneNames();
+    size_t done = 0;
+    for (const std::string& name : names) {
+        const OcclusionScene scene = makeOcclusionScene(name);
+        OcclusionFrame frame(scene);
+        for (const Size& size : kSizes) {
+            Figures sum;
+            for (size_t camera = 0; camera < scene.cameras.size(); ++camera) {
+                ViewMeasurement view(scene, frame, occlusionView(scene, camera, size.width, size.height));
+                view.time(repeat);
+                if (camera < size.truths) view.judge();
+                sum.add(view.figures());
+            }
+            addRows(fmt::format("{} {}x{}", name, size.width, size.height), sum,
+                    static_cast<double>(scene.cameras.size()), table);
+            if (options.progress) options.progress(++done, names.size() * std::size(kSizes));
+        }
+    }
+}
+
+}  // namespace sightline::bench
