@@ -45,6 +45,7 @@ int runTool(int count, char** words) {
     addCull(tool, exit_code);
     addVerify(tool, exit_code);
     addRender(tool, exit_code);
+    addExplain(tool, exit_code);
     addInfo(tool, exit_code);
     addBench(tool, exit_code);
     SessionOptions session;

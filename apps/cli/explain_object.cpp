@@ -1,0 +1,165 @@
+// Why one object is kept or culled, along a path: for a reader, and as JSON.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/explain_object.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/cli/progress.h"
+#include "sightline/report/explain_text.h"
+#include "sightline/truth/verify.h"
+
+namespace sightline::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr size_t kColumns = 100;
+
+Json objectJson(const Scene& scene, uint32_t object) {
+    return {{"key", scene.objects[object].key},
+            {"name", scene.objects[object].name},
+            {"path", objectPath(scene, scene.objects[object])}};
+}
+
+Json hidersJson(const AskedScene& asked, const Array<Hider>& hiders) {
+    Json list = Json::array();
+    for (const Hider& hider : hiders) {
+        Json row = objectJson(asked.scene, AskedScene::objectOf(hider.id));
+        row["share"] = hider.share;
+        list.push_back(row);
+    }
+    return list;
+}
+
+Json frustumJson(const FrustumReason& reason) {
+    Json out;
+    out["plane"] = kPlaneNames[reason.plane];
+    out["distance"] = reason.distance();
+    for (uint32_t plane = 0; plane < 6; ++plane)
+        if (reason.outside[plane] != FrustumReason::kNoPlane)
+            out["outside"][kPlaneNames[plane]] = reason.outside[plane];
+    out["by_rectangle"] = reason.by_rectangle;
+    return out;
+}
+
+Json occlusionJson(const AskedScene& asked, const OcclusionReason& reason) {
+    constexpr const char* kWithout[] = {"not asked", "visible", "occluded", "outside frustum"};
+    Json out;
+    out["occluders"] = hidersJson(asked, reason.hiders);
+    out["sufficient"] = reason.sufficient;
+    out["outside_too"] = reason.outside_too;
+    out["without"] = kWithout[static_cast<int>(reason.without)];
+    out["others"] = hidersJson(asked, reason.others);
+    return out;
+}
+
+Json keptJson(const AskedScene& asked, const VisibleReason& reason) {
+    Json out;
+    out["because"] = keptBecauseName(reason.because);
+    if (reason.because == KeptBecause::kStageOff) out["stage"] = kStageNames[static_cast<int>(reason.stage)];
+    if (reason.because != KeptBecause::kOpenPixel) return out;
+    out["pixel"] = {reason.x, reason.y};
+    out["open_pixels"] = reason.open_pixels;
+    out["pixels"] = reason.pixels;
+    out["covered"] = reason.covered;
+    if (reason.cover != ObjectId()) out["cover"] = objectJson(asked.scene, AskedScene::objectOf(reason.cover));
+    return out;
+}
+
+/// What the witnesses say, as a sentence.
+std::string sightingText(const ObjectAnswer& answer) {
+    const Sighting& sighting = *answer.sighting;
+    if (sighting.seen)
+        return fmt::format("It is seen: {} at pixel ({:.1f}, {:.1f}).",
+                           sighting.witness == "rays" ? "a ray meets it" : "the id-buffer has it", sighting.x,
+                           sighting.y);
+    std::string text = fmt::format("No witness saw it, by {} rays and an id-buffer", grouped(sighting.rays));
+    if (answer.why.visible.because == KeptBecause::kOpenPixel)
+        text += ": it is kept because its box is larger than it is";
+    return text + ".";
+}
+
+}  // namespace
+
+AskedScene::AskedScene(const Scene& from) : scene(from) {
+    Progress progress("preparing", "meshes", scene.meshes.size());
+    loaded = loadWorld(scene, [&](size_t done, size_t total) { progress.set(done, total); });
+    now = loaded.world.commit();
+}
+
+View viewOfFrame(const CameraFrame& camera, const RunOptions& options) {
+    View view = makeView(camera, options.width, options.height);
+    view.jitter = options.jitter;
+    view.stages = options.stages;
+    return view;
+}
+
+Sighting lookFor(const Scene& scene, const View& view, uint32_t object, const RunOptions& options) {
+    // Witnesses tell where they saw what was culled: so this object, and no other, is called culled.
+    std::vector<uint8_t> culled(scene.objects.size(), 0);
+    culled[object] = 1;
+    WitnessSettings settings;
+    settings.rays = options.rays;
+    settings.aimed_rays = std::min(settings.aimed_rays, options.rays / 5);
+    const FrameVerdict verdict = Witness(scene).judge(view, culled, settings);
+    Sighting sighting;
+    sighting.rays = verdict.rays;
+    for (const FalseCull& seen : verdict.false_culls) {
+        if (seen.object != object) continue;
+        sighting.seen = true;
+        sighting.x = seen.x;
+        sighting.y = seen.y;
+        sighting.witness = seen.witness;
+    }
+    return sighting;
+}
+
+std::string answerText(const AskedScene& asked, const ObjectAnswer& answer) {
+    const auto name = [&](ObjectId id) { return asked.nameOf(id); };
+    std::string text = explanationText(answer.why, titleOf(asked.scene, answer.object), name);
+    if (answer.sighting) text += " " + sightingText(answer);
+    return wrapped(text, kColumns, "  ") + "\n";
+}
+
+std::string answerLine(const AskedScene& asked, const ObjectAnswer& answer) {
+    const auto name = [&](ObjectId id) { return asked.nameOf(id); };
+    const std::string stage = stageOf(answer.why);
+    std::string line = fmt::format("frame {:>4}  {:<10} {}", answer.frame, stage.empty() ? "kept" : stage,
+                                   explanationClause(answer.why, name));
+    if (line.size() > kColumns) line = line.substr(0, kColumns - 3) + "...";
+    return line + "\n";
+}
+
+Json answerJson(const AskedScene& asked, const ObjectAnswer& answer) {
+    const Explanation& why = answer.why;
+    Json out;
+    out["frame"] = answer.frame;
+    out.update(objectJson(asked.scene, answer.object));
+    out["verdict"] = verdictName(why.verdict);
+    out["stage"] = stageOf(why).empty() ? Json(nullptr) : Json(stageOf(why));
+    out["together"] = why.together;
+    out["rectangle"] = nullptr;
+    if (why.on_screen) {
+        out["rectangle"] = {why.rect.left, why.rect.top, why.rect.right, why.rect.bottom};
+        out["depth"] = why.depth;
+    }
+    if (why.verdict == Verdict::kOutsideFrustum || why.occlusion.outside_too) out["frustum"] = frustumJson(why.frustum);
+    if (why.verdict == Verdict::kOccluded) out["occlusion"] = occlusionJson(asked, why.occlusion);
+    if (why.verdict == Verdict::kVisible) out["kept"] = keptJson(asked, why.visible);
+    if (answer.sighting) {
+        const Sighting& sighting = *answer.sighting;
+        out["witness"] = {{"seen", sighting.seen}, {"rays", sighting.rays}};
+        if (sighting.seen) {
+            out["witness"]["pixel"] = {sighting.x, sighting.y};
+            out["witness"]["by"] = sighting.witness;
+        }
+    }
+    out["text"] =
+        explanationText(why, titleOf(asked.scene, answer.object), [&](ObjectId id) { return asked.nameOf(id); });
+    return out;
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,216 @@
+// An explanation in plain sentences.
+// SPDX-License-Identifier: MIT
+#include "sightline/report/explain_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "sightline/report/chart.h"
+
+namespace sightline {
+namespace {
+
+/// A length with three or four digits that matter.
+std::string units(double length) {
+    const double size = std::abs(length);
+    return size >= 1000 ? fmt::format("{:.0f}", length)
+           : size >= 10 ? fmt::format("{:.1f}", length)
+                        : fmt::format("{:.3g}", length);
+}
+
+std::string percent(double share) {
+    if (share > 0 && share < 0.005) return "under 1 %";
+    return fmt::format("{:.0f} %", 100 * share);
+}
+
+/// "'Wall' (71 %), 'Door' (20 %) and 3 others (9 %)".
+std::string listOf(const Array<Hider>& hiders, const NameOfObject& name) {
+    constexpr size_t kMost = 6;
+    const size_t shown = hiders.size() > kMost + 1 ? kMost : hiders.size();
+    std::vector<std::string> parts;
+    double rest = 1;
+    for (size_t i = 0; i < shown; ++i) {
+        const std::string share = hiders.size() > 1 ? fmt::format(" ({})", percent(hiders[i].share)) : "";
+        parts.push_back(name(hiders[i].id) + share);
+        rest -= hiders[i].share;
+    }
+    if (shown < hiders.size())
+        parts.push_back(fmt::format("{} others ({})", hiders.size() - shown, percent(std::max(rest, 0.0))));
+    std::string text;
+    for (size_t i = 0; i < parts.size(); ++i) text += (i == 0 ? "" : i + 1 < parts.size() ? ", " : " and ") + parts[i];
+    return text;
+}
+
+const char* pronoun(size_t count) { return count == 1 ? "it" : count == 2 ? "these two" : "these"; }
+
+std::string togetherText(const Explanation& why) {
+    if (why.together <= 1) return "";
+    return fmt::format(" It was culled in one step with {} object{} that {} near it.", readable(why.together - 1.0),
+                       why.together == 2 ? "" : "s", why.together == 2 ? "lies" : "lie");
+}
+
+std::string rectangleText(const Explanation& why) {
+    if (!why.on_screen) return "";
+    return fmt::format(" Its box takes {:.0f} x {:.0f} pixels from ({:.0f}, {:.0f}) and begins {} units away.",
+                       why.rect.right - why.rect.left, why.rect.bottom - why.rect.top, why.rect.left, why.rect.top,
+                       units(why.depth));
+}
+
+/// "beyond the left plane by 3.2 units".
+std::string planeText(const FrustumReason& reason) {
+    return fmt::format("beyond the {} plane by {} units", kPlaneNames[reason.plane], units(reason.distance()));
+}
+
+std::string frustumText(const Explanation& why, const std::string& subject) {
+    const FrustumReason& reason = why.frustum;
+    std::string text = fmt::format("culled by frustum: {} lies {}", subject, planeText(reason));
+    std::string also;
+    for (uint32_t plane = 0; plane < 6; ++plane)
+        if (plane != reason.plane && reason.outside[plane] > 0)
+            also +=
+                fmt::format("{}{} by {}", also.empty() ? "" : ", ", kPlaneNames[plane], units(reason.outside[plane]));
+    if (!also.empty()) text += " (and beyond " + also + ")";
+    text +=
+        reason.by_rectangle ? "; its rectangle on the screen showed it, the planes could not tell for rounding." : ".";
+    return text + togetherText(why);
+}
+
+std::string withoutText(const OcclusionReason& reason, const NameOfObject& name) {
+    const std::string who = fmt::format("without {}", pronoun(reason.hiders.size()));
+    switch (reason.without) {
+        case Without::kNotAsked:
+            return "";
+        case Without::kVisible:
+            return "; " + who + " it would be kept";
+        case Without::kOutsideFrustum:
+            return "; " + who + " the frustum would cull it";
+        case Without::kOccluded:
+            break;
+    }
+    return "; " + who + " it would still be hidden, by " + listOf(reason.others, name);
+}
+
+std::string occlusionText(const Explanation& why, const std::string& subject, const NameOfObject& name) {
+    const OcclusionReason& reason = why.occlusion;
+    if (reason.hiders.empty()) return fmt::format("culled by occlusion: {}.", subject) + rectangleText(why);
+    const std::string hiders = listOf(reason.hiders, name);
+    std::string text;
+    if (reason.outside_too)
+        text = fmt::format(
+            "culled by occlusion: {} was culled in one step with {} objects near it, all behind {}. By "
+            "itself it lies {}, out of view",
+            subject, readable(why.together - 1.0), hiders, planeText(why.frustum));
+    else if (reason.sufficient) text = fmt::format("culled by occlusion: {} lies behind {}", subject, hiders);
+    else
+        text =
+            fmt::format("culled by occlusion: {} lies behind {}, and is hidden only with the rest of the world there",
+                        subject, hiders);
+    text += withoutText(reason, name) + ".";
+    return reason.outside_too ? text : text + togetherText(why) + rectangleText(why);
+}
+
+std::string keptText(const Explanation& why, const NameOfObject& name) {
+    const VisibleReason& reason = why.visible;
+    switch (reason.because) {
+        case KeptBecause::kOpenPixel:
+            break;
+        case KeptBecause::kViewNotUsable:
+            return "in doubt: the view's matrices cannot be used, so that everything is kept";
+        case KeptBecause::kBoundsNotUsable:
+            return "in doubt: its bounds are empty, not finite or too far away";
+        case KeptBecause::kHoldsEye:
+            return "in doubt: the eye is inside its box";
+        case KeptBecause::kNearPlane:
+            return "in doubt: its box reaches across the near plane";
+        case KeptBecause::kNotProjectable:
+            return "in doubt: its box cannot be projected without too much rounding";
+        case KeptBecause::kStageOff:
+            if (reason.stage == Stage::kFrustum)
+                return fmt::format("the frustum stage is off; it lies {}", planeText(why.frustum));
+            return "the occlusion stage is off, and it is in the frustum";
+        case KeptBecause::kBudgetSpent:
+            return "in doubt: the budget of occluder triangles was spent before what would hide it was drawn";
+    }
+    std::string where = fmt::format("nothing hides pixel ({:.1f}, {:.1f})", reason.x, reason.y);
+    if (reason.covered)
+        where += fmt::format(": {} covers it, but not in front of the nearest point of its box",
+                             reason.cover == ObjectId() ? "something" : name(reason.cover));
+    const double part = reason.pixels ? double(reason.open_pixels) / double(reason.pixels) : 0.0;
+    return where + fmt::format("; {} of its rectangle is open", percent(part));
+}
+
+}  // namespace
+
+std::string explanationText(const Explanation& why, const std::string& subject, const NameOfObject& name) {
+    switch (why.verdict) {
+        case Verdict::kNoSuchObject:
+            return "there is no such object.";
+        case Verdict::kOutsideLayers:
+            return fmt::format("left out: {} is in none of the view's layers.", subject);
+        case Verdict::kOutsideFrustum:
+            return frustumText(why, subject);
+        case Verdict::kOccluded:
+            return occlusionText(why, subject, name);
+        case Verdict::kVisible:
+            break;
+    }
+    return fmt::format("kept: {}: {}.", subject, keptText(why, name)) + rectangleText(why);
+}
+
+std::string explanationClause(const Explanation& why, const NameOfObject& name) {
+    switch (why.verdict) {
+        case Verdict::kNoSuchObject:
+            return "no such object";
+        case Verdict::kOutsideLayers:
+            return "in none of the view's layers";
+        case Verdict::kOutsideFrustum:
+            return planeText(why.frustum);
+        case Verdict::kOccluded:
+            return "behind " + listOf(why.occlusion.hiders, name);
+        case Verdict::kVisible:
+            break;
+    }
+    return keptText(why, name);
+}
+
+std::string stageOf(const Explanation& why) {
+    if (why.verdict == Verdict::kOutsideFrustum) return kStageNames[static_cast<int>(Stage::kFrustum)];
+    if (why.verdict == Verdict::kOccluded) return kStageNames[static_cast<int>(Stage::kOcclusion)];
+    return "";
+}
+
+const char* verdictName(Verdict verdict) {
+    constexpr const char* kNames[] = {"no such object", "outside layers", "visible", "outside frustum", "occluded"};
+    return kNames[static_cast<int>(verdict)];
+}
+
+const char* keptBecauseName(KeptBecause because) {
+    constexpr const char* kNames[] = {"open pixel", "view not usable", "bounds not usable", "holds the eye",
+                                      "near plane", "not projectable", "stage off",         "budget spent"};
+    return kNames[static_cast<int>(because)];
+}
+
+std::string wrapped(const std::string& text, size_t width, const std::string& indent) {
+    std::string out, line;
+    const std::string_view all = text;
+    for (size_t at = 0; at < all.size();) {
+        const size_t end = std::min(all.find(' ', at), all.size());
+        const std::string_view word = all.substr(at, end - at);
+        if (!line.empty() && line.size() + 1 + word.size() > width) {
+            out += line + "\n";
+            line = indent;
+            line += word;
+        } else {
+            if (!line.empty()) line += ' ';
+            line += word;
+        }
+        at = end + 1;
+    }
+    return out + line;
+}
+
+}  // namespace sightline
