@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "sightline/hidden/light.h"
 #include "sightline/hidden/unprojection.h"
 #include "sightline/hidden/zbuffer.h"
+#include "sightline/report/plan.h"
 #include "sightline/report/scene_look.h"
 
 namespace sightline {
@@ -38,7 +40,8 @@ PictureMaker::PictureMaker(const Scene& scene) : scene_(scene) {
     diagonal_ = diagonalOf(finiteBounds(scene));
 }
 
-PictureMaker::Drawing PictureMaker::render(const View& view, const std::vector<uint32_t>& objects) const {
+PictureMaker::Drawing PictureMaker::render(const View& view, const std::vector<uint32_t>& objects,
+                                           uint32_t samples) const {
     Drawing drawing;
     std::vector<DrawItem> items;
     for (const uint32_t index : objects) {
@@ -62,29 +65,30 @@ PictureMaker::Drawing PictureMaker::render(const View& view, const std::vector<u
         }
     }
     ZBufferSettings settings;
-    settings.samples = kSamples;
+    settings.samples = samples;
     drawing.image = renderZBuffer(items, view, settings);
     return drawing;
 }
 
 /// Flat shading: the normal comes from the depths of neighbouring samples of the same part.
-Image<Rgb> PictureMaker::shade(const View& view, const Drawing& drawing) const {
+void PictureMaker::shade(const View& view, const Drawing& drawing, Frame& frame) const {
     const ZBufferImage& image = drawing.image;
     const uint32_t w = image.width, h = image.height;
     const Unprojection unprojection(view, w, h);
     const glm::dmat3 to_world = glm::transpose(glm::dmat3(view.view));
     const glm::dvec3 sun = defaultSun();
-    std::vector<glm::dvec3> colours;
+    std::vector<glm::dvec3> colours, hashed;
     for (const Part& part : drawing.parts) {
         const SceneObject& object = scene_.objects[part.object];
         colours.push_back(colourOf(scene_, object, scene_.meshes[object.mesh].primitives[part.primitive]));
+        hashed.push_back(hashedColour(object.key));
     }
 
-    const auto sample = [&](uint32_t x, uint32_t y) {
+    const auto sample = [&](uint32_t x, uint32_t y) -> std::pair<glm::dvec3, glm::dvec3> {
         const size_t here = size_t{y} * w + x;
         const glm::dvec3 sky = skyColour(glm::normalize(to_world * unprojection.lineOfSight(x, y).direction).y);
         const uint32_t id = image.id[here];
-        if (id == ZBufferImage::kNone) return sky;
+        if (id == ZBufferImage::kNone) return {sky, sky};
         const auto neighbour = [&](uint32_t nx, uint32_t ny) {
             return nx < w && ny < h && image.id[size_t{ny} * w + nx] == id;
         };
@@ -97,19 +101,23 @@ Image<Rgb> PictureMaker::shade(const View& view, const Drawing& drawing) const {
         const glm::dvec3 eye_normal = glm::cross(slope(x + 1, y, x - 1, y), slope(x, y + 1, x, y - 1));
         const double length = glm::length(eye_normal);
         const double light = length > 0 ? lightOn(to_world * (eye_normal / length), sun) : 0.7;
-        return throughHaze(colours[id] * light, sky, glm::length(point) / diagonal_);
+        const double distance = glm::length(point) / diagonal_;
+        return {throughHaze(colours[id] * light, sky, distance), throughHaze(hashed[id] * light, sky, distance)};
     };
 
-    Image<Rgb> out(w / kSamples, h / kSamples);
-    for (uint32_t y = 0; y < out.height; ++y)
-        for (uint32_t x = 0; x < out.width; ++x) {
-            glm::dvec3 sum(0.0);
-            for (uint32_t k = 0; k < kSamples * kSamples; ++k)
-                sum += sample(kSamples * x + k % kSamples, h - 1 - (kSamples * y + k / kSamples));
-            sum /= double(kSamples * kSamples);
-            out.at(x, y) = toBytes(sum);
+    frame.shaded = Image<Rgb>(w / kSamples, h / kSamples);
+    frame.objects = frame.shaded;
+    for (uint32_t y = 0; y < frame.shaded.height; ++y)
+        for (uint32_t x = 0; x < frame.shaded.width; ++x) {
+            glm::dvec3 sum(0.0), by_object(0.0);
+            for (uint32_t k = 0; k < kSamples * kSamples; ++k) {
+                const auto [a, b] = sample(kSamples * x + k % kSamples, h - 1 - (kSamples * y + k / kSamples));
+                sum += a;
+                by_object += b;
+            }
+            frame.shaded.at(x, y) = toBytes(sum / double(kSamples * kSamples));
+            frame.objects.at(x, y) = toBytes(by_object / double(kSamples * kSamples));
         }
-    return out;
 }
 
 namespace {
@@ -125,18 +133,40 @@ Image<float> countFragments(const ZBufferImage& image) {
 
 }  // namespace
 
+Image<glm::u8vec4> PictureMaker::ghosts(const View& view, const std::vector<uint32_t>& objects,
+                                        std::span<const uint8_t> reasons) const {
+    const Drawing drawn = render(view, objects, 1);
+    const ZBufferImage& image = drawn.image;
+    Image<glm::u8vec4> out(image.width, image.height, glm::u8vec4(0));
+    const auto objectAt = [&](uint32_t x, uint32_t y) { return drawn.objectAt(size_t{y} * image.width + x); };
+    for (uint32_t y = 0; y < image.height; ++y)
+        for (uint32_t x = 0; x < image.width; ++x) {
+            const uint32_t object = objectAt(x, y);
+            if (object == ZBufferImage::kNone) continue;
+            const bool edge = (x > 0 && objectAt(x - 1, y) != object) || (y > 0 && objectAt(x, y - 1) != object) ||
+                              (x + 1 < image.width && objectAt(x + 1, y) != object) ||
+                              (y + 1 < image.height && objectAt(x, y + 1) != object);
+            const uint32_t layers = std::min<uint32_t>(image.generated[size_t{y} * image.width + x], 6);
+            glm::u8vec4 colour = kPlanPalette[std::min<int>(reasons[object], kPlanColours - 1)];
+            colour.w = static_cast<uint8_t>(edge ? 235 : 36 + 22 * layers);
+            out.at(x, image.height - 1 - y) = colour;
+        }
+    return out;
+}
+
 PictureMaker::Frame PictureMaker::draw(const View& view, std::span<const uint8_t> reasons) const {
     const glm::dmat4 clip = view.projection * view.view;
-    std::vector<uint32_t> all, kept;
+    std::vector<uint32_t> all, kept, culled;
     for (uint32_t i = 0; i < scene_.objects.size(); ++i) {
         if (bounds_[i].finite() && !mayBeInView(clip, bounds_[i])) continue;
         all.push_back(i);
-        if (reasons[i] == 0) kept.push_back(i);
+        (reasons[i] == 0 ? kept : culled).push_back(i);
     }
-    const Drawing drawn_all = render(view, all);
-    const Drawing drawn_kept = render(view, kept);
+    const Drawing drawn_all = render(view, all, kSamples);
+    const Drawing drawn_kept = render(view, kept, kSamples);
     Frame frame;
-    frame.shaded = shade(view, drawn_all);
+    shade(view, drawn_all, frame);
+    frame.culled = ghosts(view, culled, reasons);
     frame.all = countFragments(drawn_all.image);
     frame.kept = countFragments(drawn_kept.image);
     for (size_t i = 0; i < drawn_all.image.id.size() && frame.same; ++i)
@@ -157,9 +187,34 @@ Rgb heatColour(double part) {
     return colour;
 }
 
+double heatScaleAbove(double value) {
+    for (double scale = 8;; scale *= 10)
+        for (const double factor : {1.0, 2.0, 5.0})
+            if (!(factor * scale < value)) return factor * scale;
+}
+
+Image<float> reducedCounts(const Image<float>& counts, uint32_t step) {
+    if (step <= 1) return counts;
+    Image<float> out((counts.width + step - 1) / step, (counts.height + step - 1) / step);
+    for (uint32_t y = 0; y < out.height; ++y)
+        for (uint32_t x = 0; x < out.width; ++x) {
+            float sum = 0;
+            uint32_t of = 0;
+            for (uint32_t v = y * step; v < std::min((y + 1) * step, counts.height); ++v)
+                for (uint32_t u = x * step; u < std::min((x + 1) * step, counts.width); ++u, ++of)
+                    sum += counts.at(u, v);
+            out.at(x, y) = sum / static_cast<float>(of);
+        }
+    return out;
+}
+
 Image<Rgb> heatMap(const Image<float>& counts, double full) {
+    constexpr double kColours = 63;  // few enough for a palette, too many to be told apart
     Image<Rgb> out(counts.width, counts.height);
-    for (size_t i = 0; i < counts.pixels.size(); ++i) out.pixels[i] = heatColour(std::sqrt(counts.pixels[i] / full));
+    for (size_t i = 0; i < counts.pixels.size(); ++i) {
+        const double part = std::min(std::sqrt(counts.pixels[i] / full), 1.0);
+        out.pixels[i] = heatColour(std::round(part * kColours) / kColours);
+    }
     return out;
 }
 

@@ -22,9 +22,12 @@ public:
 
     struct Frame {
         Image<Rgb> shaded;
-        Image<float> all;   ///< fragments generated per pixel when every object is submitted
-        Image<float> kept;  ///< the same for the visible objects alone
-        bool same = true;   ///< both drawings show the same surfaces at every sample
+        Image<Rgb> objects;         ///< lit alike, each object in a colour hashed from its key
+        Image<glm::u8vec4> culled;  ///< to be laid over the picture: what was culled within the view, in the colour
+                                    ///< of its stage, denser where more lies behind; transparent elsewhere
+        Image<float> all;           ///< fragments generated per pixel when every object is submitted
+        Image<float> kept;          ///< the same for the visible objects alone
+        bool same = true;           ///< both drawings show the same surfaces at every sample
     };
 
     /// Draws a frame with 2x2 samples a pixel.
@@ -39,8 +42,10 @@ private:
     };
 
     struct Drawing;
-    Drawing render(const View& view, const std::vector<uint32_t>& objects) const;
-    Image<Rgb> shade(const View& view, const Drawing& drawing) const;
+    Drawing render(const View& view, const std::vector<uint32_t>& objects, uint32_t samples) const;
+    void shade(const View& view, const Drawing& drawing, Frame& frame) const;
+    Image<glm::u8vec4> ghosts(const View& view, const std::vector<uint32_t>& objects,
+                              std::span<const uint8_t> reasons) const;
 
     const Scene& scene_;
     std::vector<Box3d> bounds_;
@@ -51,7 +56,14 @@ private:
 /// The colour of a number on a scale from 0 to 1, dark to bright.
 Rgb heatColour(double part);
 
-/// A heat map on a square-root scale, which tells small counts apart; `full` is the value of the brightest colour,
+/// The scale of heat maps over a value that one pixel in 500 lies above: 8, 16, 40, 80, 160 and so on, so that the ticks
+/// of the legend are whole.
+double heatScaleAbove(double value);
+
+/// Means of squares of `step` pixels.
+Image<float> reducedCounts(const Image<float>& counts, uint32_t step);
+
+/// A heat map in 64 colours on a square-root scale, which tells small counts apart; `full` is the value of the brightest colour,
 /// values above share it.
 Image<Rgb> heatMap(const Image<float>& counts, double full);
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sightline/report/plan.h"
 #include "tests/report/made_run.h"
 
 namespace sightline {
@@ -63,6 +64,43 @@ TEST(Picture, HeatIsBrightestAtItsFullValue) {
         EXPECT_GT(light, last) << i;
         last = light;
     }
+}
+
+TEST(Picture, DrawsCulledObjectsThroughWhatHidesThem) {
+    const Scene scene = madeScene();
+    const CullRun run = madeRun(scene);
+    const PictureMaker::Frame frame = PictureMaker(scene).draw(madeView(run), run.frames[0].reasons);
+    const glm::u8vec4 middle = frame.culled.at(run.width / 2, run.height / 2);
+    EXPECT_EQ(glm::u8vec3(middle), glm::u8vec3(kPlanPalette[2]));  // what stands behind the wall
+    EXPECT_GT(middle.w, 0);
+    EXPECT_EQ(frame.culled.at(0, 0).w, 0);
+}
+
+TEST(Picture, ColoursObjectsApart) {
+    const Scene scene = madeScene();
+    const CullRun run = madeRun(scene);
+    const PictureMaker::Frame frame = PictureMaker(scene).draw(madeView(run), run.frames[0].reasons);
+    ASSERT_EQ(frame.objects.pixels.size(), frame.shaded.pixels.size());
+    EXPECT_NE(frame.objects.at(run.width / 2, run.height / 2), frame.objects.at(0, 0));
+}
+
+TEST(Picture, HeatScalesHaveWholeTicks) {
+    EXPECT_EQ(heatScaleAbove(0), 8);
+    EXPECT_EQ(heatScaleAbove(8), 8);
+    EXPECT_EQ(heatScaleAbove(8.5), 16);
+    EXPECT_EQ(heatScaleAbove(19), 40);
+    EXPECT_EQ(heatScaleAbove(300), 400);
+}
+
+TEST(Picture, ReducesCountsByTheirMeans) {
+    Image<float> counts(3, 2);
+    counts.pixels = {1, 3, 5, 1, 3, 7};
+    const Image<float> small = reducedCounts(counts, 2);
+    ASSERT_EQ(small.width, 2u);
+    ASSERT_EQ(small.height, 1u);
+    EXPECT_EQ(small.pixels[0], 2);
+    EXPECT_EQ(small.pixels[1], 6);
+    EXPECT_EQ(reducedCounts(counts, 1).pixels, counts.pixels);
 }
 
 }  // namespace

@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "sightline/base/random.h"
+
 #define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #pragma GCC diagnostic push
@@ -33,6 +36,48 @@ TEST(Png, ReadsBackPixelByPixel) {
 }
 
 TEST(Png, EmptyImageGivesNoBytes) { EXPECT_EQ(encodePng(Image<Rgb>()), ""); }
+
+TEST(Png, PaletteReadsBackPixelByPixelAndIsSmaller) {
+    Image<glm::u8vec4> image(53, 29);
+    Random random(3);
+    for (glm::u8vec4& pixel : image.pixels) {
+        const auto colour = static_cast<uint8_t>(random.below(40));
+        pixel = glm::u8vec4(colour * 6, 255 - colour, colour * colour % 251, colour % 3 ? 255 : 60);
+    }
+    const std::string bytes = encodePalettePng(image);
+    EXPECT_EQ(bytes[25], 3);  // colour type: palette
+    EXPECT_LT(bytes.size(), encodePng(image).size());
+    int width = 0, height = 0, channels = 0;
+    stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()),
+                                            static_cast<int>(bytes.size()), &width, &height, &channels, 4);
+    ASSERT_NE(pixels, nullptr);
+    ASSERT_EQ(width, 53);
+    ASSERT_EQ(height, 29);
+    for (size_t i = 0; i < image.pixels.size(); ++i)
+        for (int c = 0; c < 4; ++c) ASSERT_EQ(pixels[4 * i + size_t(c)], image.pixels[i][c]) << "pixel " << i;
+    stbi_image_free(pixels);
+}
+
+TEST(Png, PaletteOfTooManyColoursIsAPlainPng) {
+    Image<Rgb> image(32, 32);
+    for (uint32_t i = 0; i < 1024; ++i) image.pixels[i] = Rgb(i % 256, i / 256, 0);
+    EXPECT_EQ(encodePalettePng(image), encodePng(image));
+    EXPECT_EQ(encodePalettePng(Image<Rgb>()), "");
+}
+
+TEST(Png, JpegIsNearThePicture) {
+    const Image<Rgb> image(40, 24, Rgb(200, 100, 50));
+    const std::string bytes = encodeJpeg(image, 90);
+    int width = 0, height = 0, channels = 0;
+    stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()),
+                                            static_cast<int>(bytes.size()), &width, &height, &channels, 3);
+    ASSERT_NE(pixels, nullptr);
+    ASSERT_EQ(width, 40);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixels[3 * 500 + c], image.pixels[500][c], 6);
+    stbi_image_free(pixels);
+    EXPECT_EQ(dataUri(bytes).substr(0, 23), "data:image/jpeg;base64,");
+    EXPECT_EQ(encodeJpeg(Image<Rgb>(), 90), "");
+}
 
 TEST(Png, Base64MatchesTheStandardsExamples) {  // RFC 4648, section 10
     EXPECT_EQ(base64(""), "");
