@@ -1,0 +1,14 @@
+// Why the slowest frame of a run is slow, and why the loosest keeps what nobody sees: lines for a reader.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "apps/cli/common.h"
+#include "sightline/report/cull_run.h"
+
+namespace sightline::cli {
+
+/// Fills FrameResult::notes of the slowest frame, and of a verified run's frame with the largest over-estimate. Explains
+/// up to some hundreds of objects, each at the cost of a query.
+void noteFrames(const Scene& scene, const RunOptions& options, CullRun& run);
+
+}  // namespace sightline::cli
