@@ -36,16 +36,17 @@ bool isHarmless(const std::string& name) {
 }
 
 void checkAsset(Document& document) {
-    const Json& root = document.root;
-    const Json* asset = findObject(root, "asset", "");
+    const Json members = document.json.members({"asset"});
+    const Json* asset = findObject(members, "asset", "");
     if (!asset) fail("", "not glTF 2.0: asset is missing");
     const std::string version = text(*asset, "version", "asset");
     if (!version.starts_with("2.")) fail("asset", "version '{}' is not 2.0", printable(version));
-    const Json& required = table(root, "extensionsRequired");
+    const JsonTable required = document.json.table("extensionsRequired");
     for (size_t i = 0; i < required.size(); ++i) {
         const std::string place = at("extensionsRequired", i);
-        if (!required[i].is_string()) fail(place, "is not a string");
-        const std::string name = required[i].get<std::string>();
+        const Json value = required[i];
+        if (!value.is_string()) fail(place, "is not a string");
+        const std::string name = value.get<std::string>();
         if (!isHarmless(name)) fail(place, "{} is required but not supported", printable(name));
         document.draco_required |= name == "KHR_draco_mesh_compression";
     }
@@ -58,22 +59,24 @@ Bytes trimmed(Bytes text) {
     return text;
 }
 
-Scene import(Bytes bytes, const std::string& name, std::optional<std::string> directory,
+Scene import(ByteSource bytes, const std::string& name, std::optional<std::string> directory,
              const Progress::Report& progress) {
-    const Container container = splitContainer(bytes);
     Document document;
     document.progress = Progress(progress);
+    document.bytes = std::move(bytes);
+    const Container container = splitContainer(document.bytes);
+    const Bytes json = document.bytes.read(container.json);
     document.progress.reach(0, Progress::kRead, 1);
-    document.root = parseJson(trimmed(container.json));
-    document.progress.reach(Progress::kRead, Progress::kParsed, 1);
+    document.json = JsonText(trimmed(json));
+    document.progress.reach(Progress::kRead, Progress::kChecked, 1);
     document.chunk = container.binary;
     document.directory = std::move(directory);
-    document.budget.grant(bytes.size());
+    document.budget.grant(document.bytes.size());
     checkAsset(document);
     readTables(document);
     Scene scene = makeScene(document);
     scene.name = name;
-    document.progress.reach(Progress::kParsed, Progress::kTotal, 1);
+    document.progress.reach(Progress::kBuilt, Progress::kTotal, 1);
     return scene;
 }
 
@@ -95,14 +98,14 @@ Result<Scene> guarded(const std::string& name, Read&& read) {
 
 Result<Scene> loadGltf(const std::string& path, const std::function<void(size_t done, size_t total)>& progress) {
     return guarded(path, [&] {
-        const std::vector<unsigned char> bytes = readFile(path, "", kLargestFile + 1);
+        ByteSource bytes = ByteSource::open(path, "", kLargestFile + 1);
         if (bytes.size() > kLargestFile) fail("", "is larger than 4 GiB");
-        return import(bytes, path, std::filesystem::path(path).parent_path().string(), progress);
+        return import(std::move(bytes), path, std::filesystem::path(path).parent_path().string(), progress);
     });
 }
 
 Result<Scene> parseGltf(std::span<const unsigned char> bytes, const std::string& name) {
-    return guarded(name, [&] { return import(bytes, name, std::nullopt, {}); });
+    return guarded(name, [&] { return import(ByteSource(bytes), name, std::nullopt, {}); });
 }
 
 }  // namespace sightline

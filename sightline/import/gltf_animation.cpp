@@ -155,13 +155,13 @@ void applyChannel(Document& document, const Json& samplers, const Json& json, co
 std::vector<Motion> readMotions(Document& document, const NodeTree& tree, const std::vector<size_t>& targets) {
     std::vector<Motion> motions(tree.nodes.size());
     for (size_t i = 0; i < motions.size(); ++i) {
-        motions[i].translation.grow(glm::dvec3(tree.nodes[i].local[3]));
+        motions[i].translation.grow(tree.nodes[i].translation);
         motions[i].scale = tree.nodes[i].scale;
     }
-    const Json& animations = table(document.root, "animations");
+    const JsonTable animations = document.json.table("animations");
     for (size_t a = 0; a < animations.size(); ++a) {
         const std::string animation = at("animations", a);
-        const Json& json = objectAt(animations, a, animation);
+        const Json json = animations.object(a, animation);
         const Json& samplers = table(json, "samplers", animation);
         const Json& channels = table(json, "channels", animation);
         for (size_t c = 0; c < channels.size(); ++c) {

@@ -52,12 +52,12 @@ bool looksSomewhere(const glm::dmat4& world) {
 
 }  // namespace
 
-std::vector<CameraSource> readCameras(const Json& root) {
-    const Json& array = table(root, "cameras");
+std::vector<CameraSource> readCameras(const JsonText& json) {
+    const JsonTable array = json.table("cameras");
     std::vector<CameraSource> out;
     for (size_t i = 0; i < array.size(); ++i) {
         const std::string place = at("cameras", i);
-        out.push_back(readCamera(objectAt(array, i, place), place));
+        out.push_back(readCamera(array.object(i, place), place));
     }
     return out;
 }
@@ -71,7 +71,7 @@ std::vector<SceneCamera> placeCameras(const NodeTree& tree, const std::vector<Ca
         if (!looksSomewhere(node.world)) continue;
         out.push_back(cameras[*node.camera]);
         out.back().transform = node.world;
-        if (!node.name.empty()) out.back().name = node.name;
+        if (!tree.names[i].name.empty()) out.back().name = tree.names[i].name;
     }
     return out;
 }

@@ -12,7 +12,7 @@ namespace sightline::gltf {
 /// A camera without its place.
 using CameraSource = SceneCamera;
 
-std::vector<CameraSource> readCameras(const Json& root);
+std::vector<CameraSource> readCameras(const JsonText& json);
 
 /// One camera for each drawn node that holds one, by node; a node that is flattened to nothing holds none.
 std::vector<SceneCamera> placeCameras(const NodeTree& tree, const std::vector<CameraSource>& cameras);

@@ -8,34 +8,35 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <memory>
 #include <system_error>
+
+#include <sys/types.h>
 
 #include "sightline/import/gltf_fault.h"
 
 namespace sightline::gltf {
 namespace {
 
-constexpr uint32_t kMagic = 0x46546c67;        // "glTF"
 constexpr uint32_t kJsonChunk = 0x4e4f534a;    // "JSON"
 constexpr uint32_t kBinaryChunk = 0x004e4942;  // "BIN"
+constexpr uint64_t kBlock = 1 << 16;           // [bytes] read at once
 
-uint32_t readU32(Bytes bytes, size_t offset) {
+uint32_t readU32(ByteSource& bytes, uint64_t offset) {
     uint32_t value;
-    std::memcpy(&value, bytes.data() + offset, sizeof value);
+    std::memcpy(&value, bytes.read({offset, sizeof value}).data(), sizeof value);
     return value;
 }
 
-Container splitGlb(Bytes bytes) {
+Container splitGlb(ByteSource& bytes) {
     if (bytes.size() < 12) fail("", "truncated: {} of the 12 bytes of a GLB header", bytes.size());
     const uint32_t version = readU32(bytes, 4), length = readU32(bytes, 8);
     if (version != 2) fail("", "is GLB version {}, not 2", version);
-    if (length > bytes.size()) fail("", "truncated: {} of {} bytes", bytes.size(), length);
+    if (length > bytes.size()) fail("", "truncated: {} of the {} bytes that its header tells of", bytes.size(), length);
     if (length < 12) fail("", "GLB length {} is less than its header", length);
 
     Container out;
     bool has_json = false;
-    size_t offset = 12;
+    uint64_t offset = 12;
     while (offset < length) {
         if (length - offset < 8) fail("", "truncated: a GLB chunk header at byte {}", offset);
         const uint32_t size = readU32(bytes, offset), kind = readU32(bytes, offset + 4);
@@ -43,10 +44,10 @@ Container splitGlb(Bytes bytes) {
         if (size > length - offset) fail("", "GLB chunk at byte {} is longer than the file: {} bytes", offset, size);
         if (!has_json) {
             if (kind != kJsonChunk) fail("", "the first GLB chunk is not JSON");
-            out.json = bytes.subspan(offset, size);
+            out.json = {offset, size};
             has_json = true;
         } else if (kind == kBinaryChunk && !out.binary) {
-            out.binary = bytes.subspan(offset, size);
+            out.binary = ByteRange{offset, size};
         }
         offset += size;
     }
@@ -106,14 +107,14 @@ std::string percentDecoded(std::string_view text) {
     return out;
 }
 
-Container splitContainer(Bytes bytes) {
-    if (bytes.empty()) fail("", "is empty");
-    if (bytes.size() >= 4 && readU32(bytes, 0) == kMagic) return splitGlb(bytes);
-    if (bytes.size() < 4 && std::memcmp(bytes.data(), "glTF", bytes.size()) == 0) return splitGlb(bytes);
-    return {bytes, std::nullopt};
+Container splitContainer(ByteSource& bytes) {
+    if (bytes.size() == 0) fail("", "is empty");
+    const size_t head = std::min<uint64_t>(bytes.size(), 4);
+    if (std::memcmp(bytes.read({0, head}).data(), "glTF", head) == 0) return splitGlb(bytes);
+    return {{0, bytes.size()}, std::nullopt};
 }
 
-std::vector<unsigned char> readFile(const std::string& path, const std::string& place, uint64_t most) {
+ByteSource ByteSource::open(const std::string& path, const std::string& place, uint64_t most) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
     if (!std::filesystem::exists(status)) {
@@ -123,17 +124,39 @@ std::vector<unsigned char> readFile(const std::string& path, const std::string& 
     if (std::filesystem::is_directory(status)) fail(place, "is a directory");
     if (!std::filesystem::is_regular_file(status)) fail(place, "is not a regular file");
 
+    ByteSource out;
     errno = 0;
-    const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-    if (!file) fail(place, "cannot be opened: {}", std::generic_category().message(errno));
+    out.file_.reset(std::fopen(path.c_str(), "rb"));
+    if (!out.file_) fail(place, "cannot be opened: {}", std::generic_category().message(errno));
     const uint64_t size = std::filesystem::file_size(path, error);
     if (error) fail(place, "cannot be read: {}", error.message());
-
-    std::vector<unsigned char> out(std::min(size, most));
-    const size_t got = std::fread(out.data(), 1, out.size(), file.get());
-    if (got < out.size() && std::ferror(file.get())) fail(place, "cannot be read");
-    out.resize(got);
+    std::setvbuf(out.file_.get(), nullptr, _IONBF, 0);
+    out.place_ = place;
+    out.size_ = std::min(size, most);
+    out.data_ = std::make_unique_for_overwrite<unsigned char[]>(out.size_);
+    out.loaded_.resize((out.size_ + kBlock - 1) / kBlock);
     return out;
+}
+
+Bytes ByteSource::read(ByteRange range) {
+    if (!file_) return memory_.subspan(range.offset, range.length);
+    const uint64_t last = (range.offset + range.length + kBlock - 1) / kBlock;
+    for (uint64_t block = range.offset / kBlock; range.length > 0 && block < last; ++block) {
+        if (loaded_[block]) continue;
+        uint64_t end = block + 1;
+        while (end < last && !loaded_[end]) ++end;
+        load(block, end);
+        block = end;
+    }
+    return Bytes(data_.get(), size_).subspan(range.offset, range.length);
+}
+
+void ByteSource::load(uint64_t first, uint64_t end) {
+    const uint64_t offset = first * kBlock, length = std::min(size_, end * kBlock) - offset;
+    const bool there = ::fseeko(file_.get(), static_cast<off_t>(offset), SEEK_SET) == 0 &&
+                       std::fread(data_.get() + offset, 1, length, file_.get()) == length;
+    if (!there) fail(place_, "cannot be read: {}", std::ferror(file_.get()) ? "input error" : "it became shorter");
+    for (uint64_t block = first; block < end; ++block) loaded_[block] = true;
 }
 
 bool isDataUri(const std::string& uri) {
@@ -147,7 +170,9 @@ std::vector<unsigned char> decodeDataUri(const std::string& uri, const std::stri
     const size_t comma = uri.find(',');
     if (comma == std::string::npos) fail(place, "data URI without data");
     const std::string_view head = std::string_view(uri).substr(0, comma);
-    const std::string data = percentDecoded(std::string_view(uri).substr(comma + 1));
+    const std::string_view body = std::string_view(uri).substr(comma + 1);
+    if (head.ends_with(";base64") && body.find('%') == std::string_view::npos) return base64Decoded(body, place);
+    const std::string data = percentDecoded(body);
     if (head.ends_with(";base64")) return base64Decoded(data, place);
     return {data.begin(), data.end()};
 }

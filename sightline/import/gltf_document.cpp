@@ -15,10 +15,10 @@ namespace {
 constexpr uint64_t kBytesPerInputByte = 512;
 
 void readBuffers(Document& document) {
-    const Json& array = table(document.root, "buffers");
+    const JsonTable array = document.json.table("buffers");
     for (size_t i = 0; i < array.size(); ++i) {
         const std::string place = at("buffers", i);
-        const Json& json = objectAt(array, i, place);
+        const Json json = array.object(i, place);
         Buffer buffer;
         buffer.length = requiredWhole(json, "byteLength", place);
         const Json* meshopt = findMeshopt(json, place);
@@ -28,9 +28,9 @@ void readBuffers(Document& document) {
             buffer.source = Buffer::Source::kUri;
         } else if (i == 0 && document.chunk && !fallback) {
             buffer.source = Buffer::Source::kChunk;
-            if (buffer.length > document.chunk->size())
+            if (buffer.length > document.chunk->length)
                 fail(place, "byteLength {} is more than the {} bytes of the GLB's BIN chunk", buffer.length,
-                     document.chunk->size());
+                     document.chunk->length);
         }
         document.buffers.push_back(std::move(buffer));
     }
@@ -42,10 +42,10 @@ void checkRange(uint64_t offset, uint64_t length, const Buffer& buffer, const st
 }
 
 void readViews(Document& document) {
-    const Json& array = table(document.root, "bufferViews");
+    const JsonTable array = document.json.table("bufferViews");
     for (size_t i = 0; i < array.size(); ++i) {
         const std::string place = at("bufferViews", i);
-        const Json& json = objectAt(array, i, place);
+        const Json json = array.object(i, place);
         BufferView view;
         view.buffer = requiredIndex(json, "buffer", document.buffers.size(), place);
         view.offset = whole(json, "byteOffset", place).value_or(0);
@@ -117,10 +117,10 @@ Sparse readSparse(const Document& document, const Json& json, const Accessor& ac
 }
 
 void readAccessors(Document& document) {
-    const Json& array = table(document.root, "accessors");
+    const JsonTable array = document.json.table("accessors");
     for (size_t i = 0; i < array.size(); ++i) {
         const std::string place = at("accessors", i);
-        const Json& json = objectAt(array, i, place);
+        const Json json = array.object(i, place);
         Accessor accessor;
         accessor.number = static_cast<uint32_t>(i);
         accessor.elements.view = index(json, "bufferView", document.views.size(), place);
@@ -137,35 +137,39 @@ void readAccessors(Document& document) {
     }
 }
 
-void loadFile(Document& document, Buffer& buffer, const std::string& uri, const std::string& place) {
+void openFile(Document& document, Buffer& buffer, const std::string& uri, const std::string& place) {
     if (!document.directory) fail(place, "file '{}' is not opened: the glTF came from memory", printable(uri));
     const std::string path = uriPath(uri, *document.directory, place);
-    buffer.owned = readFile(path, place + ": '" + printable(uri) + "'", buffer.length);
-    if (buffer.owned.size() < buffer.length)
-        fail(place, "'{}' holds {} of {} bytes", printable(uri), buffer.owned.size(), buffer.length);
-    document.budget.grant(buffer.owned.size());
+    buffer.file = ByteSource::open(path, place + ": '" + printable(uri) + "'", buffer.length);
+    if (buffer.file.size() < buffer.length)
+        fail(place, "'{}' holds {} of {} bytes", printable(uri), buffer.file.size(), buffer.length);
+    document.budget.grant(buffer.file.size());
 }
 
-Bytes bufferBytes(Document& document, uint32_t index) {
+void openBuffer(Document& document, uint32_t index, const std::string& place) {
     Buffer& buffer = document.buffers[index];
-    if (buffer.loaded) return buffer.bytes;
-    const std::string place = at("buffers", index);
-    if (buffer.source == Buffer::Source::kNone) fail(place, "has no data");
-    if (buffer.source == Buffer::Source::kChunk) {
-        buffer.bytes = document.chunk->first(buffer.length);
-    } else {
-        const std::string uri = text(table(document.root, "buffers")[index], "uri", place);
+    if (buffer.source == Buffer::Source::kUri) {
+        const std::string uri = text(document.json.table("buffers")[index], "uri", place);
         if (isDataUri(uri)) {
             buffer.owned = decodeDataUri(uri, place);
             if (buffer.owned.size() < buffer.length)
                 fail(place, "data URI holds {} of {} bytes", buffer.owned.size(), buffer.length);
+            buffer.file = ByteSource(buffer.owned);
         } else {
-            loadFile(document, buffer, uri, place);
+            openFile(document, buffer, uri, place);
         }
-        buffer.bytes = Bytes(buffer.owned).first(buffer.length);
     }
-    buffer.loaded = true;
-    return buffer.bytes;
+    buffer.opened = true;
+}
+
+// Bytes of a buffer that are known to lie in it.
+Bytes bufferBytes(Document& document, uint32_t index, uint64_t offset, uint64_t length) {
+    Buffer& buffer = document.buffers[index];
+    const std::string place = at("buffers", index);
+    if (buffer.source == Buffer::Source::kNone) fail(place, "has no data");
+    if (!buffer.opened) openBuffer(document, index, place);
+    if (buffer.source == Buffer::Source::kChunk) return document.bytes.read({document.chunk->offset + offset, length});
+    return buffer.file.read({offset, length});
 }
 
 }  // namespace
@@ -216,11 +220,11 @@ Bytes viewBytes(Document& document, uint32_t index) {
     if (document.views[index].stream) unpackDraco(document, *document.views[index].stream);
     BufferView& view = document.views[index];
     if (view.stream) return view.data;
-    if (!view.compression) return bufferBytes(document, view.buffer).subspan(view.offset, view.length);
+    if (!view.compression) return bufferBytes(document, view.buffer, view.offset, view.length);
     if (!view.decoded) {
         const std::string place = at("bufferViews", index);
         const Bytes source =
-            bufferBytes(document, view.compression->buffer).subspan(view.compression->offset, view.compression->length);
+            bufferBytes(document, view.compression->buffer, view.compression->offset, view.compression->length);
         document.budget.charge(view.length, 1, place);
         view.data = decompress(*view.compression, source, place);
         view.decoded = true;

@@ -17,6 +17,7 @@
 #include "sightline/import/gltf_container.h"
 #include "sightline/import/gltf_json.h"
 #include "sightline/import/gltf_meshopt.h"
+#include "sightline/import/gltf_text.h"
 
 namespace sightline::gltf {
 
@@ -24,9 +25,9 @@ struct Buffer {
     enum class Source : uint8_t { kNone, kChunk, kUri };
     Source source = Source::kNone;  ///< kNone: a fallback that nothing may read
     uint64_t length = 0;            ///< [bytes]
-    bool loaded = false;
-    std::vector<unsigned char> owned;
-    Bytes bytes;  ///< [size: length] once loaded
+    bool opened = false;
+    std::vector<unsigned char> owned;  ///< of a data URI
+    ByteSource file;
 };
 
 struct BufferView {
@@ -93,7 +94,7 @@ class Progress {
 public:
     using Report = std::function<void(size_t done, size_t total)>;
 
-    static constexpr size_t kRead = 100, kParsed = 300, kTotal = 1000;  ///< thousandths of the work
+    static constexpr size_t kRead = 100, kChecked = 200, kParsed = 400, kBuilt = 900, kTotal = 1000;  ///< thousandths
 
     explicit Progress(Report report = {}) : report_(std::move(report)) {}
 
@@ -122,10 +123,11 @@ struct DracoStream {
     uint64_t held = 0;  ///< [bytes] unpacked
 };
 
-/// The JSON and its tables. Buffers are read and views decompressed when first asked for.
+/// The JSON and its tables. What buffers hold is read and views decompressed when first asked for.
 struct Document {
-    Json root;
-    std::optional<Bytes> chunk;            ///< the GLB's BIN chunk
+    JsonText json;
+    ByteSource bytes;                      ///< of the file itself
+    std::optional<ByteRange> chunk;        ///< the GLB's BIN chunk
     std::optional<std::string> directory;  ///< none: from memory, no files
     std::vector<Buffer> buffers;
     std::vector<BufferView> views;
@@ -137,7 +139,7 @@ struct Document {
     Progress progress;
 };
 
-/// Fills the tables from `root`. Afterwards each element of each accessor lies inside its view, and each
+/// Fills the tables from `json`. Afterwards each element of each accessor lies inside its view, and each
 /// view inside its buffer.
 void readTables(Document& document);
 

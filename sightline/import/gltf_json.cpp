@@ -8,27 +8,6 @@
 namespace sightline::gltf {
 namespace {
 
-constexpr int kDeepest = 256;
-
-// Before the parser sees the text: what it builds is walked by others, some of them recursive.
-void checkDepth(std::span<const unsigned char> text) {
-    int depth = 0;
-    bool in_string = false;
-    for (size_t i = 0; i < text.size(); ++i) {
-        const unsigned char c = text[i];
-        if (in_string) {
-            if (c == '\\') ++i;
-            if (c == '"') in_string = false;
-        } else if (c == '"') {
-            in_string = true;
-        } else if (c == '[' || c == '{') {
-            if (++depth > kDeepest) fail("", "JSON is nested deeper than {} at byte {}", kDeepest, i);
-        } else if (c == ']' || c == '}') {
-            --depth;
-        }
-    }
-}
-
 uint64_t wholeValue(const Json& value, const char* key, const std::string& place) {
     constexpr uint64_t kMost = uint64_t(1) << 53;
     if (value.is_number_unsigned()) {
@@ -57,18 +36,6 @@ uint32_t indexValue(const Json& value, const char* key, size_t count, const std:
 }
 
 }  // namespace
-
-Json parseJson(std::span<const unsigned char> text) {
-    checkDepth(text);
-    Json root;
-    try {
-        root = Json::parse(text.data(), text.data() + text.size());
-    } catch (const Json::parse_error& error) {
-        fail("", "not JSON: syntax error at byte {}", error.byte);
-    } catch (const Json::exception&) { fail("", "not JSON: a number is out of range"); }
-    if (!root.is_object()) fail("", "not glTF: the JSON is not an object");
-    return root;
-}
 
 const Json* find(const Json& object, const char* key) {
     if (!object.is_object()) return nullptr;

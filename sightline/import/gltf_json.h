@@ -16,9 +16,6 @@ namespace sightline::gltf {
 
 using Json = nlohmann::json;
 
-/// Parses a text whose nesting is at most 256 deep; anything else is a Fault.
-Json parseJson(std::span<const unsigned char> text);
-
 /// The member of an object, or null if it has none (or is no object).
 const Json* find(const Json& object, const char* key);
 

@@ -7,9 +7,10 @@
 namespace sightline::gltf {
 namespace {
 
-bool needsDefault(const Json& root) {
-    const Json& meshes = table(root, "meshes");
-    for (const Json& mesh : meshes) {
+bool needsDefault(const JsonText& json) {
+    const JsonTable meshes = json.table("meshes");
+    for (size_t i = 0; i < meshes.size(); ++i) {
+        const Json mesh = meshes[i];
         const Json* primitives = find(mesh, "primitives");
         if (!primitives || !primitives->is_array()) continue;
         for (const Json& primitive : *primitives)
@@ -50,17 +51,17 @@ Material readMaterial(const Json& json, const std::string& place) {
 
 }  // namespace
 
-Materials readMaterials(const Json& root) {
+Materials readMaterials(const JsonText& json) {
     Materials out;
-    const Json& array = table(root, "materials");
+    const JsonTable array = json.table("materials");
     out.count = array.size();
-    if (array.empty() || needsDefault(root)) {
+    if (array.empty() || needsDefault(json)) {
         out.list.push_back({});
         out.first = 1;
     }
     for (size_t i = 0; i < array.size(); ++i) {
         const std::string place = at("materials", i);
-        out.list.push_back(readMaterial(objectAt(array, i, place), place));
+        out.list.push_back(readMaterial(array.object(i, place), place));
     }
     return out;
 }

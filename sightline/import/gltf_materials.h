@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "sightline/import/gltf_json.h"
+#include "sightline/import/gltf_text.h"
 #include "sightline/scene/scene.h"
 
 namespace sightline::gltf {
@@ -16,6 +16,6 @@ struct Materials {
 };
 
 /// The default material comes first if a primitive names none.
-Materials readMaterials(const Json& root);
+Materials readMaterials(const JsonText& json);
 
 }  // namespace sightline::gltf

@@ -115,11 +115,11 @@ std::vector<uint32_t> readCorners(Document& document, const PrimitiveSource& sou
 }  // namespace
 
 std::vector<MeshSource> readMeshes(Document& document, const Materials& materials) {
-    const Json& array = table(document.root, "meshes");
+    const JsonTable array = document.json.table("meshes");
     std::vector<MeshSource> out(array.size());
     for (size_t i = 0; i < array.size(); ++i) {
         const std::string place = at("meshes", i);
-        const Json& json = objectAt(array, i, place);
+        const Json json = array.object(i, place);
         MeshSource& mesh = out[i];
         mesh.name = text(json, "name", place);
         mesh.weights = floats(json, "weights", place);

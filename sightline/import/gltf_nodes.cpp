@@ -26,23 +26,24 @@ glm::dmat4 readMatrix(const double (&m)[16], const std::string& place) {
     return out;
 }
 
+// In the parent's frame, until parents are known.
 void readTransform(const Json& json, Node& node, const std::string& place) {
     double matrix[16];
     double translation[3] = {0, 0, 0}, rotation[4] = {0, 0, 0, 1}, scale[3] = {1, 1, 1};
     if (numbers(json, "matrix", matrix, place)) {
-        node.local = readMatrix(matrix, place);
-        node.scale = largestStretch(node.local);
+        node.world = readMatrix(matrix, place);
+        node.scale = largestStretch(node.world);
         return;
     }
     numbers(json, "translation", translation, place);
     numbers(json, "rotation", rotation, place);
     numbers(json, "scale", scale, place);
-    node.local = composeTransform(translation, rotation, scale);
+    node.world = composeTransform(translation, rotation, scale);
     node.scale = std::max({std::abs(scale[0]), std::abs(scale[1]), std::abs(scale[2])});
-    if (!finiteMatrix(node.local)) fail(place, "transform is not finite");
+    if (!finiteMatrix(node.world)) fail(place, "transform is not finite");
 }
 
-void readChildren(const Json& json, uint32_t parent, std::vector<Node>& nodes, const std::string& place) {
+void readChildren(const Json& json, uint32_t parent, std::vector<SceneNode>& nodes, const std::string& place) {
     const Json& children = table(json, "children", place);
     for (size_t i = 0; i < children.size(); ++i) {
         const uint32_t child = indexAt(children, i, "children", nodes.size(), place);
@@ -52,22 +53,24 @@ void readChildren(const Json& json, uint32_t parent, std::vector<Node>& nodes, c
     }
 }
 
-void readNode(const Json& json, uint32_t i, const NodeTargets& targets, std::vector<Node>& nodes) {
+void readNode(const Json& json, uint32_t i, const NodeTargets& targets, NodeTree& tree) {
     const std::string place = at("nodes", i);
-    Node& node = nodes[i];
-    node.name = text(json, "name", place);
+    Node& node = tree.nodes[i];
+    tree.names[i].name = text(json, "name", place);
     node.mesh = index(json, "mesh", targets.meshes, place);
     node.skin = index(json, "skin", targets.skins, place);
     node.camera = index(json, "camera", targets.cameras, place);
     node.weights = floats(json, "weights", place);
+    node.extended = json.contains("extensions");
     readTransform(json, node, place);
-    readChildren(json, i, nodes, place);
+    node.translation = glm::dvec3(node.world[3]);
+    readChildren(json, i, tree.names, place);
 }
 
 // Breadth first from the parentless: what is not reached hangs in a cycle.
-std::vector<uint32_t> parentsFirst(const std::vector<Node>& nodes) {
+std::vector<uint32_t> parentsFirst(const std::vector<SceneNode>& nodes) {
     std::vector<uint32_t> first(nodes.size() + 1, 0), children(nodes.size()), order;
-    for (const Node& node : nodes)
+    for (const SceneNode& node : nodes)
         if (node.parent != kNoNode) ++first[node.parent + 1];
     for (size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
     std::vector<uint32_t> next(first.begin(), first.end() - 1);
@@ -90,20 +93,21 @@ std::vector<uint32_t> parentsFirst(const std::vector<Node>& nodes) {
 }
 
 // The roots of the scene that is shown: marks them as drawn.
-void markRoots(const Json& root, std::vector<Node>& nodes) {
-    const Json& scenes = table(root, "scenes");
-    const std::optional<uint32_t> shown = index(root, "scene", scenes.size(), "");
-    if (scenes.empty())
-        for (Node& node : nodes) node.drawn = node.parent == kNoNode;
+void markRoots(const JsonText& json, NodeTree& tree) {
+    const JsonTable scenes = json.table("scenes");
+    const std::optional<uint32_t> shown = index(json.members({"scene"}), "scene", scenes.size(), "");
+    for (size_t i = 0; scenes.empty() && i < tree.nodes.size(); ++i)
+        tree.nodes[i].drawn = tree.names[i].parent == kNoNode;
     for (size_t i = 0; i < scenes.size(); ++i) {
         if (shown && *shown != i) continue;
         const std::string place = at("scenes", i);
-        const Json& roots = table(objectAt(scenes, i, place), "nodes", place);
+        const Json scene = scenes.object(i, place);
+        const Json& roots = table(scene, "nodes", place);
         for (size_t k = 0; k < roots.size(); ++k) {
-            const uint32_t node = indexAt(roots, k, "nodes", nodes.size(), place);
-            if (nodes[node].parent != kNoNode)
-                fail(place, "nodes[{}] is not a root: nodes[{}] is its parent", node, nodes[node].parent);
-            nodes[node].drawn = true;
+            const uint32_t node = indexAt(roots, k, "nodes", tree.nodes.size(), place);
+            if (tree.names[node].parent != kNoNode)
+                fail(place, "nodes[{}] is not a root: nodes[{}] is its parent", node, tree.names[node].parent);
+            tree.nodes[node].drawn = true;
         }
     }
 }
@@ -116,23 +120,26 @@ bool hiddenByFile(const Json& json, const std::string& place) {
 
 }  // namespace
 
-NodeTree readNodes(const Json& root, const NodeTargets& targets) {
-    const Json& array = table(root, "nodes");
+NodeTree readNodes(const JsonText& json, const NodeTargets& targets, const std::function<void(size_t)>& told) {
+    const JsonTable array = json.table("nodes");
     NodeTree tree;
     tree.nodes.resize(array.size());
-    for (uint32_t i = 0; i < array.size(); ++i) readNode(objectAt(array, i, at("nodes", i)), i, targets, tree.nodes);
-    tree.order = parentsFirst(tree.nodes);
+    tree.names.resize(array.size());
+    for (uint32_t i = 0; i < array.size(); ++i) {
+        readNode(array.object(i, at("nodes", i)), i, targets, tree);
+        if (i % 1024 == 0) told(i);
+    }
+    tree.order = parentsFirst(tree.names);
     tree.rank.resize(tree.order.size());
     for (uint32_t i = 0; i < tree.order.size(); ++i) tree.rank[tree.order[i]] = i;
-    markRoots(root, tree.nodes);
+    markRoots(json, tree);
     for (const uint32_t i : tree.order) {
         Node& node = tree.nodes[i];
-        node.world = node.local;
-        if (node.parent != kNoNode) {
-            node.world = tree.nodes[node.parent].world * node.local;
-            node.drawn = tree.nodes[node.parent].drawn;
+        if (const uint32_t parent = tree.names[i].parent; parent != kNoNode) {
+            node.world = tree.nodes[parent].world * node.world;
+            node.drawn = tree.nodes[parent].drawn;
         }
-        if (node.drawn && array[i].contains("extensions")) node.drawn = !hiddenByFile(array[i], at("nodes", i));
+        if (node.drawn && node.extended) node.drawn = !hiddenByFile(array[i], at("nodes", i));
     }
     return tree;
 }

@@ -3,33 +3,35 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
 
-#include "sightline/import/gltf_json.h"
+#include "sightline/import/gltf_text.h"
+#include "sightline/scene/scene.h"
 
 namespace sightline::gltf {
 
-constexpr uint32_t kNoNode = 0xffffffff;
+constexpr uint32_t kNoNode = SceneNode::kNone;
 
 struct Node {
-    std::string name;
-    uint32_t parent = kNoNode;
     std::optional<uint32_t> mesh, skin, camera;
-    glm::dmat4 local{1.0};
     glm::dmat4 world{1.0};
-    double scale = 1;            ///< the most by which `local` stretches any vector
-    std::vector<float> weights;  ///< of morph targets; empty: the mesh's own
-    bool drawn = false;          ///< the default scene reaches it, and nothing hides it
+    glm::dvec3 translation{0.0};  ///< in the parent's frame
+    double scale = 1;             ///< the most by which it stretches any vector of its own
+    std::vector<float> weights;   ///< of morph targets; empty: the mesh's own
+    bool drawn = false;           ///< the default scene reaches it, and nothing hides it
+    bool extended = false;        ///< its JSON has extensions
 };
 
 struct NodeTree {
     std::vector<Node> nodes;
-    std::vector<uint32_t> order;  ///< all nodes, parents before children
-    std::vector<uint32_t> rank;   ///< where each node stands in `order`
+    std::vector<SceneNode> names;  ///< and parents  [size: nodes]
+    std::vector<uint32_t> order;   ///< all nodes, parents before children
+    std::vector<uint32_t> rank;    ///< where each node stands in `order`
 };
 
 /// How many elements the tables that a node refers to have.
@@ -39,7 +41,8 @@ struct NodeTargets {
 
 /// Reads nodes and scenes. A Fault if a node has two parents or is its own ancestor, if a transform is not
 /// finite or not affine, or if a scene's root has a parent.
-NodeTree readNodes(const Json& root, const NodeTargets& targets);
+/// @param told  is called now and then with how many nodes have been read
+NodeTree readNodes(const JsonText& json, const NodeTargets& targets, const std::function<void(size_t)>& told);
 
 /// Rotation (x, y, z, w), of any length: normalised; all zeros is no rotation.
 glm::dmat3 rotationMatrix(const double rotation[4]);

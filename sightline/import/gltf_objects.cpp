@@ -107,63 +107,57 @@ void addObject(Document& document, Scene& scene, uint32_t node, uint32_t mesh, c
     scene.objects.push_back({node, mesh, transform, name, node});
 }
 
-// The objects of one node; `shape_transform` replaces the node's own where joints place the mesh.
-void addNode(Document& document, const Parts& parts, uint32_t index, uint32_t mesh,
-             const std::optional<glm::dmat4>& shape_transform, Scene& scene) {
+/// A shape once it is built: a mesh of the scene, or none if it has no triangles.
+struct Built {
+    std::optional<uint32_t> mesh;
+    std::optional<glm::dmat4> transform;  ///< replaces the nodes' own where joints place the mesh
+};
+
+// The objects of one node.
+void addNode(Document& document, const Parts& parts, uint32_t index, const Built& built, Scene& scene) {
     const Node& node = parts.tree.nodes[index];
-    const std::string place = at("nodes", index);
-    const std::string& name = node.name.empty() ? scene.meshes[mesh].name : node.name;
-    const Json& json = table(document.root, "nodes")[index];
-    const Json* instancing = extension(json, "EXT_mesh_gpu_instancing", place);
-    if (!instancing) {
-        addObject(document, scene, index, mesh, shape_transform.value_or(node.world), name);
-        return;
+    const std::string& own = parts.tree.names[index].name;
+    const std::string& name = own.empty() ? scene.meshes[*built.mesh].name : own;
+    if (node.extended) {
+        const std::string place = at("nodes", index);
+        const Json json = document.json.table("nodes")[index];
+        if (const Json* instancing = extension(json, "EXT_mesh_gpu_instancing", place)) {
+            if (built.transform) fail(place, "a skinned mesh has no GPU instances");
+            for (const glm::dmat4& instance : readInstances(document, *instancing, place))
+                addObject(document, scene, index, *built.mesh, node.world * instance, name);
+            return;
+        }
     }
-    if (shape_transform) fail(place, "a skinned mesh has no GPU instances");
-    for (const glm::dmat4& instance : readInstances(document, *instancing, place))
-        addObject(document, scene, index, mesh, node.world * instance, name);
+    addObject(document, scene, index, *built.mesh, built.transform.value_or(node.world), name);
 }
 
-void addShape(Document& document, const Parts& parts, const std::vector<Motion>& motions, const Shape& shape,
-              MeshBuilder& builder, Scene& scene) {
+Built buildShape(Document& document, const Parts& parts, const std::vector<Motion>& motions, const Shape& shape,
+                 MeshBuilder& builder, Scene& scene) {
     const MeshSource& source = parts.meshes[shape.mesh];
     const std::string place = at("meshes", shape.mesh);
     document.budget.charge(1, sizeof(Mesh) + source.name.size(), place);
     BuiltMesh built = builder.build(source, shape.deforms(source));
-    std::optional<glm::dmat4> transform;
+    Built out;
     if (shape.deforms(source) && !built.mesh.indices.empty()) {
         document.budget.charge(source.targets, sizeof(Range), place);
         const MorphReach reach = morphReach(document, built, shape.weights, weightRanges(parts, motions, shape));
         if (shape.skin) {
             const glm::dvec3 anchor =
                 applySkin(document, parts.tree, motions, parts.skins[*shape.skin], reach, place, built);
-            transform = glm::dmat4(1.0);
-            (*transform)[3] = glm::dvec4(anchor, 1.0);
+            out.transform = glm::dmat4(1.0);
+            (*out.transform)[3] = glm::dvec4(anchor, 1.0);
         } else {
             applyMorph(reach, built.mesh);
         }
     }
     builder.release(source);
-    if (built.mesh.indices.empty()) return;
-    const uint32_t mesh = static_cast<uint32_t>(scene.meshes.size());
+    if (built.mesh.indices.empty()) return out;
+    out.mesh = static_cast<uint32_t>(scene.meshes.size());
     scene.meshes.push_back(std::move(built.mesh));
-    for (const uint32_t node : shape.nodes) addNode(document, parts, node, mesh, transform, scene);
+    return out;
 }
 
-}  // namespace
-
-Scene makeScene(Document& document) {
-    Scene scene;
-    Materials materials = readMaterials(document.root);
-    Parts parts;
-    parts.meshes = readMeshes(document, materials);
-    const std::vector<CameraSource> cameras = readCameras(document.root);
-    const size_t nodes = table(document.root, "nodes").size();
-    parts.skins = readSkins(document, nodes);
-    parts.tree = readNodes(document.root, {parts.meshes.size(), parts.skins.size(), cameras.size()});
-    parts.shapes = gatherShapes(parts);
-    scene.materials = std::move(materials.list);
-
+std::vector<Built> buildShapes(Document& document, const Parts& parts, Scene& scene) {
     MeshBuilder builder(document);
     bool deforms = false;
     for (const Shape& shape : parts.shapes) {
@@ -176,16 +170,49 @@ Scene makeScene(Document& document) {
         for (const MeshSource& mesh : parts.meshes) targets.push_back(mesh.targets);
         motions = readMotions(document, parts.tree, targets);
     }
-    for (size_t i = 0; i < parts.shapes.size(); ++i) {
-        addShape(document, parts, motions, parts.shapes[i], builder, scene);
-        document.progress.reach(Progress::kParsed, Progress::kTotal, double(i + 1) / double(parts.shapes.size() + 1));
+    std::vector<Built> built;
+    for (const Shape& shape : parts.shapes) {
+        built.push_back(buildShape(document, parts, motions, shape, builder, scene));
+        document.progress.reach(Progress::kParsed, Progress::kBuilt,
+                                double(built.size()) / double(parts.shapes.size()));
     }
+    return built;
+}
+
+// In the order of the nodes.
+void addObjects(Document& document, const Parts& parts, const std::vector<Built>& built, Scene& scene) {
+    constexpr uint32_t kNone = ~0u;
+    std::vector<uint32_t> shape_of(parts.tree.nodes.size(), kNone);
+    size_t objects = 0;
+    for (uint32_t s = 0; s < built.size(); ++s) {
+        if (!built[s].mesh) continue;
+        for (const uint32_t node : parts.shapes[s].nodes) shape_of[node] = s;
+        objects += parts.shapes[s].nodes.size();
+    }
+    scene.objects.reserve(objects);
+    for (uint32_t node = 0; node < shape_of.size(); ++node)
+        if (shape_of[node] != kNone) addNode(document, parts, node, built[shape_of[node]], scene);
+}
+
+}  // namespace
+
+Scene makeScene(Document& document) {
+    Scene scene;
+    Materials materials = readMaterials(document.json);
+    Parts parts;
+    parts.meshes = readMeshes(document, materials);
+    const std::vector<CameraSource> cameras = readCameras(document.json);
+    const size_t nodes = document.json.table("nodes").size();
+    parts.skins = readSkins(document, nodes);
+    parts.tree = readNodes(document.json, {parts.meshes.size(), parts.skins.size(), cameras.size()}, [&](size_t read) {
+        document.progress.reach(Progress::kChecked, Progress::kParsed, double(read) / double(nodes));
+    });
+    parts.shapes = gatherShapes(parts);
+    scene.materials = std::move(materials.list);
+    addObjects(document, parts, buildShapes(document, parts, scene), scene);
     if (scene.objects.empty()) fail("", "draws nothing: no triangle in the scene that it shows");
-    std::stable_sort(scene.objects.begin(), scene.objects.end(),
-                     [](const SceneObject& a, const SceneObject& b) { return a.key < b.key; });
     scene.cameras = placeCameras(parts.tree, cameras);
-    scene.nodes.reserve(nodes);
-    for (Node& node : parts.tree.nodes) scene.nodes.push_back({std::move(node.name), node.parent});
+    scene.nodes = std::move(parts.tree.names);
     return scene;
 }
 

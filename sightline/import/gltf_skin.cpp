@@ -127,7 +127,7 @@ public:
     void gather(Document& document, const Skin& skin, const std::vector<Joint>& joints, const std::string& place) {
         for (size_t j = 0; j < joints.size(); ++j) {
             for (uint32_t n = skin.joints[j]; n != kNoNode && places_.emplace(n, steps_.size()).second;
-                 n = tree_.nodes[n].parent) {
+                 n = tree_.names[n].parent) {
                 document.budget.charge(1, 96, place);
                 steps_.push_back({n, -1, motions_[n].animated, false});
             }
@@ -151,7 +151,7 @@ public:
             const double radius = motions_[step.node].scale * step.reach * kSlack;
             const Box3d& translation = motions_[step.node].translation;
             const double offset = glm::length(glm::max(glm::abs(translation.min), glm::abs(translation.max)));
-            const Box3d box = ballBox(translation, radius, tree_.nodes[step.node].parent, anchor);
+            const Box3d box = ballBox(translation, radius, tree_.names[step.node].parent, anchor);
             // Here and not on the union, which would lose a NaN.
             if (!std::isfinite(offset + radius) || (!step.carried && !box.finite()))
                 fail(place, "its bounds over all poses are not finite");
@@ -167,7 +167,7 @@ public:
 
 private:
     Step* above(const Step& step) {
-        const uint32_t parent = tree_.nodes[step.node].parent;
+        const uint32_t parent = tree_.names[step.node].parent;
         return parent == kNoNode ? nullptr : &steps_[places_.at(parent)];
     }
 
@@ -193,11 +193,11 @@ private:
 }  // namespace
 
 std::vector<Skin> readSkins(const Document& document, size_t nodes) {
-    const Json& array = table(document.root, "skins");
+    const JsonTable array = document.json.table("skins");
     std::vector<Skin> out(array.size());
     for (size_t i = 0; i < array.size(); ++i) {
         const std::string place = at("skins", i);
-        const Json& json = objectAt(array, i, place);
+        const Json json = array.object(i, place);
         const Json& joints = table(json, "joints", place);
         if (joints.empty()) fail(place, "has no joints");
         for (size_t j = 0; j < joints.size(); ++j) out[i].joints.push_back(indexAt(joints, j, "joints", nodes, place));

@@ -43,7 +43,11 @@ TEST(GltfBadInput, Containers) {
     expectError(parse(glb), "is GLB version 1, not 2");
     glb = gltfSample("list.glb");
     const std::string size = std::to_string(glb.size());
-    expectError(parse(glb.substr(0, 100)), "truncated: 100 of " + size + " bytes");
+    expectError(parse(glb.substr(0, 100)), "truncated: 100 of the " + size + " bytes that its header tells of");
+    expectError(parse(R"({"asset": {"version")"), "truncated: the JSON ends at byte 20, before it is complete");
+    expectError(parse(R"({"asset": "2.)"), "truncated: the JSON ends at byte 13, before it is complete");
+    expectError(parse(R"({"asset": {"version": "2.0"}]})"), "not JSON: syntax error at byte 29");
+    expectError(parse(R"({"asset": 1e999})"), "not JSON: a number is out of range");
     glb[15] = 0x7f;
     ASSERT_FALSE(parse(glb).ok());
     EXPECT_NE(parse(glb).error().message.find("GLB chunk at byte 20 is longer than the file"), std::string::npos);
