@@ -31,17 +31,21 @@ glm::vec4 baseColour(const aiMaterial& material) {
     return out;
 }
 
-/// A vertex colour that is not wholly opaque.
-bool fades(const aiMesh& mesh) {
-    if (!mesh.HasVertexColors(0)) return false;
+/// A vertex colour that is not wholly opaque. DXF has none such; the reader of AMF makes up nothing at all as a colour.
+bool fades(const aiMesh& mesh, const std::string& suffix) {
+    if (!mesh.HasVertexColors(0) || suffix == "dxf") return false;
     const aiColor4D* colours = mesh.mColors[0];
-    return std::any_of(colours, colours + mesh.mNumVertices, [](const aiColor4D& c) { return !(c.a >= 1); });
+    const bool made_up = suffix == "amf";
+    return std::any_of(colours, colours + mesh.mNumVertices,
+                       [&](const aiColor4D& c) { return !(c.a >= 1) && !(made_up && c == aiColor4D(0, 0, 0, 0)); });
 }
 
 }  // namespace
 
-Materials::Materials(const aiScene& scene, SidesRule sides, std::string folder, SceneStreamWriter& out)
-    : scene_(scene), sides_(sides), textures_(scene, std::move(folder)), out_(out) {}
+Materials::Materials(const aiScene& scene, std::string suffix, std::string folder, SceneStreamWriter& out)
+    : scene_(scene), suffix_(std::move(suffix)), textures_(scene, std::move(folder)), out_(out) {
+    if (const SceneFormat* format = sceneFormat(suffix_)) sides_ = format->sides;
+}
 
 Material Materials::convert(const aiMaterial& material) {
     Material out;
@@ -73,7 +77,7 @@ Material Materials::convert(const aiMaterial& material) {
 
 uint32_t Materials::of(const aiMesh& mesh) {
     const bool known = mesh.mMaterialIndex < scene_.mNumMaterials;
-    const bool blends = fades(mesh);
+    const bool blends = fades(mesh, suffix_);
     const auto [place, fresh] = sent_.try_emplace({known ? mesh.mMaterialIndex : ~0u, blends}, uint32_t(sent_.size()));
     if (!fresh) return place->second;
     Material material;

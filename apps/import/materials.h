@@ -18,7 +18,9 @@ namespace sightline::import {
 /// Sends each material when it is first used.
 class Materials {
 public:
-    Materials(const aiScene& scene, SidesRule sides, std::string folder, SceneStreamWriter& out);
+    /// @param suffix  of the format
+    /// @param folder  of the file, for its textures
+    Materials(const aiScene& scene, std::string suffix, std::string folder, SceneStreamWriter& out);
 
     /// The index, in the stream, of a mesh's material. A mesh with vertex colours that are not opaque has a material of its own.
     uint32_t of(const aiMesh& mesh);
@@ -27,7 +29,8 @@ private:
     Material convert(const aiMaterial& material);
 
     const aiScene& scene_;
-    SidesRule sides_;
+    std::string suffix_;
+    SidesRule sides_ = SidesRule::kNothing;
     TextureAlpha textures_;
     SceneStreamWriter& out_;
     std::map<std::pair<unsigned, bool>, uint32_t> sent_;

@@ -55,8 +55,7 @@ public:
           out_(out),
           place_(placementOf(scene, suffix)),
           poses_(scene),
-          materials_(scene, sceneFormat(suffix) ? sceneFormat(suffix)->sides : SidesRule::kNothing,
-                     std::filesystem::path(file).parent_path().string(), out) {}
+          materials_(scene, suffix, std::filesystem::path(file).parent_path().string(), out) {}
 
     void send() {
         std::vector<std::pair<const aiNode*, uint32_t>> todo{{scene_.mRootNode, SceneNode::kNone}};
@@ -78,7 +77,8 @@ private:
         // Names that Assimp made up: of the root, of what relates IFC's things to one another, of what has no name.
         const bool root = !node.mParent;
         if (root && (name == std::filesystem::path(file_).filename().string() || name == "RootNode" || name == "ROOT" ||
-                     name == "3MF" || name == "DXCC_ROOT" || name == "<DXF_ROOT>" || name == alias_))
+                     name == "3MF" || name == "DXCC_ROOT" || name == "<DXF_ROOT>" || suffix_ == "dae" ||
+                     suffix_ == "zae" || name == alias_))
             return {};
         if (name.starts_with('<') && name.ends_with('>')) return {};
         if (name.starts_with("$Rel") || name.starts_with("$dummy")) return {};

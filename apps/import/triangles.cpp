@@ -70,11 +70,12 @@ struct Ring {
     }
 };
 
-bool isEar(const std::vector<glm::dvec2>& points, const Ring& ring, uint32_t corner) {
+/// @param flat  takes ears without area, too
+bool isEar(const std::vector<glm::dvec2>& points, const Ring& ring, uint32_t corner, bool flat) {
     const uint32_t before = ring.previous[corner], after = ring.next[corner];
     const glm::dvec2 &a = points[before], &b = points[corner], &c = points[after];
     const double area = turn(a, b, c);
-    if (area < 0) return false;
+    if (area < 0 || (area == 0 && !flat)) return false;
     for (uint32_t i = ring.next[after]; i != before; i = ring.next[i]) {
         const glm::dvec2& p = points[i];
         if (p == a || p == b || p == c) continue;  // a bridge to a hole runs along the same corners twice
@@ -91,14 +92,18 @@ void cutEars(const std::vector<glm::dvec2>& points, std::vector<uint32_t>& out) 
     Ring ring(points.size());
     uint32_t corner = 0;
     size_t since_last = 0;
-    while (ring.left > 3 && since_last <= ring.left) {
+    // Ears with area first: a corner on a straight edge then stays the corner of a triangle.
+    for (bool flat = false; ring.left > 3;) {
         const uint32_t after = ring.next[corner];
-        if (isEar(points, ring, corner)) {
+        if (isEar(points, ring, corner, flat)) {
             out.insert(out.end(), {ring.previous[corner], corner, after});
             ring.remove(corner);
             since_last = 0;
-        } else {
-            ++since_last;
+            flat = false;
+        } else if (++since_last > ring.left) {
+            if (flat) break;
+            flat = true;
+            since_last = 0;
         }
         corner = after;
     }
