@@ -18,6 +18,7 @@
 
 #include "apps/import/fault.h"
 #include "apps/import/file_access.h"
+#include "apps/import/ifc_check.h"
 #include "apps/import/materials.h"
 #include "apps/import/placement.h"
 #include "apps/import/poses.h"
@@ -229,6 +230,7 @@ private:
 }  // namespace
 
 void sendScene(const std::string& file, const std::string& suffix, SceneStreamWriter& out) {
+    if (suffix == "ifc") checkIfc(file);
     Warnings warnings;
     Assimp::Importer importer;
     FileAccess* const access = new FileAccess(file, suffix);  // the importer's from here on

@@ -6,12 +6,9 @@
 #include <cmath>
 #include <cstring>
 #include <new>
-#include <optional>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
-
-#include <fmt/core.h>
 
 namespace sightline {
 namespace {
@@ -316,7 +313,7 @@ SceneObject takeObject(Records& in, const Scene& scene) {
     out.transform = in.take<glm::dmat4>();
     out.name = in.takeText();
     if (out.mesh >= scene.meshes.size()) throw Broken{"a mesh is out of range"};
-    if (out.node != SceneNode::kNone && out.node >= scene.nodes.size()) throw Broken{"a node is out of range"};
+    if (out.node >= scene.nodes.size()) throw Broken{"a node is out of range"};
     if (!finite(out.transform) || !affine(out.transform)) throw Broken{"a transform is not affine"};
     if (!within(transformBox(scene.meshes[out.mesh].bounds, out.transform)))
         throw Broken{"an object's bounds in the world are too large"};

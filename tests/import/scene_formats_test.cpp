@@ -6,11 +6,13 @@
 #include <map>
 #include <vector>
 
+#include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
 #include "foreign_files.h"
 #include "foreign_reading.h"
 #include "gltf_builder.h"
+#include "sightline/base/random.h"
 
 namespace sightline {
 namespace {
@@ -114,6 +116,63 @@ TEST_F(SceneFormats, IfcComesInMetresWithYUp) {
         EXPECT_EQ(way.find('$'), std::string::npos) << way;
         EXPECT_TRUE(scene->materials[0].double_sided);
     }
+}
+
+TEST_F(SceneFormats, Ifc4ThatAssimpCannotReadIsRefusedInWords) {
+    std::string text = ifcText("IFC4");
+    const std::string solid = "IFCEXTRUDEDAREASOLID(#28,#12,#10,3000.)";
+    text.replace(text.find(solid), solid.size(), "IfcTriangulatedFaceSet(#40,$,.T.,((1,2,3)),$)");
+    expectRefused(write("faces.ifc", text),
+                  "IFC4 geometry that is not read (IFCTRIANGULATEDFACESET): export it as IFC2x3");
+    text = ifcText("IFC2X3");  // a name is no geometry
+    text.replace(text.find("North wall"), 10, "=IFCTRIANGULATEDFACESET(");
+    EXPECT_TRUE(load(write("name.ifc", text)).ok());
+}
+
+/// A triangle on two bones: the first at (0, 2, 0), the second 3 above it.
+std::string skinnedX() {
+    const auto matrix = [](double y) {
+        return "1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0," + std::to_string(y) + ",0.0,1.0;;";
+    };
+    return "xof 0303txt 0032\nFrame Root {\n Frame Bone1 {\n  FrameTransformMatrix { " + matrix(2) +
+           " }\n  Frame Bone2 {\n   FrameTransformMatrix { " + matrix(3) +
+           " }\n  }\n }\n Mesh Skin {\n  3;\n  0.0;2.0;0.0;,\n  0.0;5.0;0.0;,\n  0.0;6.0;1.0;;\n  1;\n  3;0,1,2;;\n"
+           "  XSkinMeshHeader { 1; 1; 2; }\n  SkinWeights { \"Bone1\"; 1; 0; 1.0; " +
+           matrix(-2) + " }\n  SkinWeights { \"Bone2\"; 2; 1,2; 1.0,1.0; " + matrix(-5) + " }\n }\n}\n";
+}
+
+TEST_F(SceneFormats, BoundsOfSkinsHoldForEveryPose) {
+    const Result<Scene> scene = load(write("skin.x", skinnedX()));
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    EXPECT_EQ(sceneFault(*scene), "");
+    ASSERT_EQ(scene->objects.size(), 1u);
+    EXPECT_TRUE(scene->meshes[0].deforms);
+    const Box3d bounds = worldBounds(*scene);
+    // The second bone turns about the first, 3 away; its farthest vertex is the root of 2 away from it.
+    const double reach = 3 + std::sqrt(2.0);
+    EXPECT_LT(glm::length(bounds.min - glm::dvec3(-reach, 2 - reach, -reach)), 1e-5);
+    EXPECT_LT(glm::length(bounds.max - glm::dvec3(reach, 2 + reach, reach)), 1e-5);
+    Random random(1);
+    for (int i = 0; i < 1000; ++i) {
+        const auto turn = [&] {
+            glm::dvec4 q(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+            q = glm::normalize(q);
+            return glm::dmat3(glm::dquat(q.w, q.x, q.y, q.z));
+        };
+        const glm::dmat3 first = turn(), second = turn();
+        const glm::dvec3 elbow = glm::dvec3(0, 2, 0) + first * glm::dvec3(0, 3, 0);
+        const glm::dvec3 tip = elbow + first * (second * glm::dvec3(0, 1, -1));
+        for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_GE(tip[axis], bounds.min[axis]);
+            EXPECT_LE(tip[axis], bounds.max[axis]);
+        }
+    }
+}
+
+TEST_F(SceneFormats, ABoneWithoutANodeIsAnError) {
+    std::string text = skinnedX();
+    text.replace(text.find("Frame Bone2"), 11, "Frame Other");
+    expectRefused(write("skin.x", text), "mesh 'Root': bone 'Bone2' is no node, so that its poses have no bounds");
 }
 
 TEST_F(SceneFormats, MaterialsOfAnObjSayWhatMayHide) {
