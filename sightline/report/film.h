@@ -29,7 +29,7 @@ struct Shot {
 struct Film {
     std::vector<Shot> shots;
     uint32_t width = 0, height = 0;  ///< of the pictures
-    double heat_scale = 8;           ///< what both heat maps of all shots show brightest
+    double heat_scale = 8;           ///< what both heat maps of all shots show brightest; 0: not known, nor means
 };
 
 /// Draws the frames that pictureFrames() chooses; hands full pictures to settings.save.

@@ -87,6 +87,8 @@ g.stage-1 polygon { fill: var(--stage-1); } g.stage-2 polygon { fill: var(--stag
 .objects th:nth-child(2) { text-align: left; } .objects td:last-child { text-align: left; } .objects th:last-child { text-align: left; }
 .sort { background: none; border: 0; padding: 0; min-width: 0; color: inherit; text-decoration: underline dotted; }
 .wide tbody th { white-space: normal; overflow-wrap: anywhere; min-width: 12em; }
+i.swatch { display: inline-block; width: .8em; height: .8em; border-radius: 2px; margin-right: .45em; }
+.sides td { white-space: normal; overflow-wrap: anywhere; } .path { white-space: normal; overflow-wrap: anywhere; min-width: 10em; }
 .mini { display: inline-block; width: 70px; height: 9px; margin-right: 10px; border-radius: 3px; background: var(--line); overflow: hidden; }
 .mini i { display: block; height: 100%; background: var(--stage-2); }
 figure { margin: 0; }

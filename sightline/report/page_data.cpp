@@ -54,13 +54,16 @@ Json picturesJson(const Film& film) {
     for (const Shot& shot : film.shots) {
         Json images;
         for (const FilmImage& image : shot.images) images[image.id] = dataUri(image.bytes);
-        out.push_back({{"frame", shot.frame},
-                       {"images", std::move(images)},
-                       {"plan", shot.plan_text},
-                       {"section", shot.section_text},
-                       {"depth_all", rounded(shot.depth_all)},
-                       {"depth_kept", rounded(shot.depth_kept)},
-                       {"same", shot.same}});
+        Json entry = {{"frame", shot.frame},
+                      {"images", std::move(images)},
+                      {"plan", shot.plan_text},
+                      {"section", shot.section_text}};
+        if (film.heat_scale > 0) {
+            entry["depth_all"] = rounded(shot.depth_all);
+            entry["depth_kept"] = rounded(shot.depth_kept);
+            entry["same"] = shot.same;
+        }
+        out.push_back(std::move(entry));
     }
     return out;
 }

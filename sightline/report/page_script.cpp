@@ -53,12 +53,7 @@ function valuesAt(id, f) {
     series.name + ' ' + readable(series.values[f])).join(', ') + ' ' + data.charts[id][0].unit;
 }
 function share(f) { return data.frames > 1 ? 100 * f / (data.frames - 1) : 50; }
-function show(f) {
-  frame = Math.min(Math.max(f, 0), data.frames - 1);
-  const now = data.frame;
-  slider.value = frame;
-  slider.setAttribute('aria-valuetext', 'frame ' + frame);
-  put('at', 'frame ' + frame + ' of ' + data.frames);
+function showNumbers(now) {
   put('this-frame', 'frame ' + frame);
   put('at-kept', grouped(now.kept[frame]) + ' of ' + grouped(data.objects));
   put('at-exact', now.exact[frame] === null ? '–' : grouped(now.exact[frame]));
@@ -70,6 +65,13 @@ function show(f) {
   });
   put('query-culled', grouped(data.objects - now.kept[frame]));
   put('query-time', now.query[frame].toFixed(1));
+}
+function show(f) {
+  frame = Math.min(Math.max(f, 0), data.frames - 1);
+  slider.value = frame;
+  slider.setAttribute('aria-valuetext', 'frame ' + frame);
+  put('at', data.labels ? data.labels[frame] : 'frame ' + frame + ' of ' + data.frames);
+  if (data.frame) showNumbers(data.frame);
   showPicture(frame);
   for (const plot of all('.plot')) {
     plot.querySelector('.now').style.left = share(frame) + '%';

@@ -153,13 +153,15 @@ std::string depthSection(const Film& film) {
     if (film.shots.empty()) return "";
     const auto& images = film.shots[0].images;
     if (std::none_of(images.begin(), images.end(), [](const FilmImage& i) { return i.id == "heat-all"; })) return "";
-    return card("depth", "Depth complexity: surfaces drawn for a pixel",
-                "<div class=\"pair\">" +
-                    figureOf("heat-all", "Heat map of surfaces drawn for each pixel without culling",
-                             "Without culling: <b id=\"depth-all\"></b> a pixel on average") +
-                    figureOf("heat-kept", "Heat map of surfaces drawn for each pixel with culling",
-                             "With culling: <b id=\"depth-kept\"></b> a pixel on average") +
-                    "</div>" + heatLegend(film.heat_scale));
+    const bool measured = film.heat_scale > 0;  // not if the pictures were read from files
+    return card(
+        "depth", "Depth complexity: surfaces drawn for a pixel",
+        "<div class=\"pair\">" +
+            figureOf("heat-all", "Heat map of surfaces drawn for each pixel without culling",
+                     measured ? "Without culling: <b id=\"depth-all\"></b> a pixel on average" : "Without culling") +
+            figureOf("heat-kept", "Heat map of surfaces drawn for each pixel with culling",
+                     measured ? "With culling: <b id=\"depth-kept\"></b> a pixel on average" : "With culling") +
+            "</div>" + (measured ? heatLegend(film.heat_scale) : ""));
 }
 
 std::string stageSection(const CullRun& run, const RunMeans& means) {

@@ -1,0 +1,159 @@
+// What cull's JSON holds reads back; what it should not hold is told by its place.
+// SPDX-License-Identifier: MIT
+#include "sightline/report/run_reader.h"
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "sightline/report/compare_runs.h"
+#include "sightline/report/film.h"
+#include "sightline/report/page.h"
+#include "tests/report/made_run.h"
+
+namespace sightline {
+namespace {
+
+using nlohmann::json;
+
+TEST(RunReader, ReadsBackWhatWasWritten) {
+    const Scene scene = madeScene();
+    CullRun run = madeRun(scene, 3);
+    run.interrupted = true;
+    run.frames_wanted = 9;
+    run.frames[1].nodes_visited = 77;
+    run.frames[1].thread = 3;
+    run.frames[2].verification->kept_unseen = {0};
+    run.frames[2].verification->rows.push_back({1, 3, 1.5, 2.5, "rays"});
+    run.frames[2].verification->false_culls = 1;
+    run.frames[0].camera.view = lookAt({1, 2, 3}, {4, 5, -6}, {0, 1, 0});
+    run.frames[0].camera.projection = perspective(1.0, 1.5, 0.1);
+    const Result<RunFile> read = parseRun(cullJson(run, scene), "run.json");
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(read->run.scene, run.scene);
+    EXPECT_EQ(read->run.objects, run.objects);
+    EXPECT_EQ(read->run.frames_wanted, 9u);
+    EXPECT_TRUE(read->run.interrupted);
+    ASSERT_EQ(read->run.frames.size(), 3u);
+    for (size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(read->run.frames[i].visible, run.frames[i].visible);
+        EXPECT_EQ(read->run.frames[i].stages[1].culled, run.frames[i].stages[1].culled);
+        EXPECT_EQ(read->run.frames[i].query_microseconds, run.frames[i].query_microseconds);
+        EXPECT_EQ(read->run.frames[i].verification->exactly_visible, 2u);
+    }
+    EXPECT_EQ(read->run.frames[0].camera.view, run.frames[0].camera.view);
+    EXPECT_EQ(read->run.frames[1].nodes_visited, 77u);
+    EXPECT_EQ(read->run.frames[1].thread, 3u);
+    ASSERT_EQ(read->names.size(), 3u);
+    EXPECT_EQ(read->labelOf(7), "wall");
+    EXPECT_EQ(read->labelOf(12), "object 12");
+    EXPECT_EQ(read->names[read->run.frames[2].verification->kept_unseen.at(0)].key, 7u);
+    EXPECT_EQ(read->names[read->run.frames[2].verification->rows.at(0).object].key, 3u);
+    EXPECT_EQ(sumVerification(read->run)->false_culls, 1u);
+}
+
+TEST(RunReader, ReadsFilesOfTheFirstRelease) {
+    const Scene scene = madeScene();
+    json old = json::parse(cullJson(madeRun(scene), scene));
+    old.erase("objects");
+    old.erase("jitter");
+    old["scene"].erase("instances");
+    for (json& frame : old["frames"]) {
+        for (const char* name : {"nodes_visited", "seam_pixels", "thread", "begin_microseconds", "end_microseconds"})
+            frame.erase(name);
+        frame["verification"].erase("kept_unseen");
+    }
+    const Result<RunFile> read = parseRun(old.dump(), "old.json");
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(read->names.size(), 2u);
+    EXPECT_EQ(read->labelOf(7), "object 7");
+}
+
+/// The message for the JSON after a change.
+std::string faultOf(const std::function<void(json&)>& change) {
+    const Scene scene = madeScene();
+    json run = json::parse(cullJson(madeRun(scene), scene));
+    change(run);
+    const Result<RunFile> read = parseRun(run.dump(), "run.json");
+    return read.ok() ? "" : read.error().message;
+}
+
+TEST(RunReader, NamesThePlaceOfAFault) {
+    EXPECT_EQ(faultOf([](json&) {}), "");
+    EXPECT_EQ(faultOf([](json& run) { run["schema"] = "other/1"; }), "run.json: schema: not sightline.cull/1");
+    EXPECT_EQ(faultOf([](json& run) { run.erase("frames"); }), "run.json: frames: missing");
+    EXPECT_EQ(faultOf([](json& run) { run["frames"][1]["visible"][0] = -1; }),
+              "run.json: frames[1].visible[0]: not a whole number");
+    EXPECT_EQ(faultOf([](json& run) {
+                  run["frames"][1]["visible"] = {7, 5};
+              }),
+              "run.json: frames[1].visible[1]: keys do not ascend");
+    EXPECT_EQ(faultOf([](json& run) {
+                  run["frames"][0]["visible"] = {1, 2, 3, 4};
+              }),
+              "run.json: frames[0].visible: more than the scene has");
+    EXPECT_EQ(faultOf([](json& run) { run["frames"][0]["stages"][1]["name"] = "magic"; }),
+              "run.json: frames[0].stages[1].name: there is no such stage");
+    EXPECT_EQ(faultOf([](json& run) { run["frames"][0]["stages"][1]["name"] = "frustum"; }),
+              "run.json: frames[0].stages[1].name: named twice");
+    EXPECT_EQ(faultOf([](json& run) { run["frames"][1]["stages"].erase(0); }),
+              "run.json: frames[1].stages: other stages than frame 0");
+    EXPECT_EQ(faultOf([](json& run) { run["frames"][0]["query_microseconds"] = -3; }),
+              "run.json: frames[0].query_microseconds: negative");
+    EXPECT_EQ(faultOf([](json& run) {
+                  run["frames"][0]["camera"]["eye"] = {1, 2};
+              }),
+              "run.json: frames[0].camera.eye: not 3 numbers");
+    EXPECT_EQ(faultOf([](json& run) { run["objects"][0]["name"] = 5; }), "run.json: objects[0].name: not a string");
+    EXPECT_EQ(faultOf([](json& run) { run["width"] = 0; }), "run.json: width: not between 1 and 1048576");
+    EXPECT_EQ(faultOf([](json& run) { run["frames"][0]["verification"]["false_culls"] = 2; }),
+              "run.json: frames[0].verification.false_culls: more than are listed");
+    for (const char* text : {"", "{", "[1,2", "null", "7", "{\"schema\": \"sightline.cull/1\"}", "[[[[[[[["}) {
+        const Result<RunFile> read = parseRun(text, "run.json");
+        ASSERT_FALSE(read.ok()) << text;
+        EXPECT_EQ(read.error().message.substr(0, 10), "run.json: ") << text;
+        EXPECT_EQ(read.error().message.find('\n'), std::string::npos) << text;
+    }
+}
+
+TEST(RunReader, TakesDeepNestingWithoutAStackOverflow) {
+    EXPECT_FALSE(parseRun(std::string(2000000, '['), "deep.json").ok());
+}
+
+TEST(RunReader, ReplaysTheCorpusOfTheFuzzer) {
+    const std::filesystem::path corpus = std::filesystem::path(__FILE__).parent_path() / "../fuzz/corpus/run";
+    size_t files = 0, good = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
+        std::stringstream text;
+        text << std::ifstream(entry.path(), std::ios::binary).rdbuf();
+        const Result<RunFile> read = parseRun(text.str(), "run.json");
+        ++files;
+        if (!read.ok()) continue;
+        ++good;
+        EXPECT_FALSE(runPage(read->run, read->names, Film()).empty());
+        EXPECT_TRUE(compareRuns(*read, *read).ok);
+    }
+    EXPECT_GE(files, 6u);
+    EXPECT_GE(good, 3u);
+}
+
+TEST(RunReader, APageIsMadeOfAFile) {
+    const Scene scene = madeScene();
+    CullRun run = madeRun(scene, 3);
+    run.frames[2].verification->kept_unseen = {0};
+    run.frames[2].verification->exactly_visible = 1;
+    const Result<RunFile> read = parseRun(cullJson(run, scene), "run.json");
+    ASSERT_TRUE(read.ok());
+    const std::string page = runPage(read->run, read->names, Film());
+    EXPECT_NE(page.find("The loosest: frame 2"), std::string::npos);
+    EXPECT_NE(page.find("<li>wall</li>"), std::string::npos);
+    EXPECT_EQ(page.find("id=\"plan\""), std::string::npos);
+    EXPECT_EQ(page.find("http"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sightline
