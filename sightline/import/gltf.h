@@ -33,7 +33,8 @@ namespace sightline {
 /// indices out of range, positions that are not finite, cyclic nodes, missing buffers, required extensions
 /// that are not known, nothing to draw.
 ///
-/// Memory is bounded by 64 MiB plus 512 times the size of the files. What reading takes beside the scene itself is far
+/// Memory is bounded by 64 MiB plus 512 times the size of the files, and 4096 times that of Draco data, though
+/// not above 2 GiB for that reason. What reading takes beside the scene itself is far
 /// less: the JSON stays text, of which one element of a table at a time becomes values, 250 bytes or so a node, and those
 /// blocks of the files that some triangle needs, once. A file of a million named nodes takes four times its size.
 ///

@@ -13,6 +13,7 @@ namespace sightline::gltf {
 namespace {
 
 constexpr uint64_t kBytesPerInputByte = 512;
+constexpr uint64_t kBytesPerPackedByte = 4096;
 
 void readBuffers(Document& document) {
     const JsonTable array = document.json.table("buffers");
@@ -190,6 +191,12 @@ uint32_t componentSize(Component component) {
 }
 
 void Budget::grant(uint64_t input_bytes) { left_ += input_bytes * kBytesPerInputByte; }
+
+void Budget::grantPacked(uint64_t input_bytes) {
+    const uint64_t more = std::min(packed_left_, input_bytes * (kBytesPerPackedByte - kBytesPerInputByte));
+    packed_left_ -= more;
+    left_ += more;
+}
 
 void Budget::charge(uint64_t count, uint64_t bytes_each, const std::string& place) {
     if (bytes_each != 0 && count > left_ / bytes_each)

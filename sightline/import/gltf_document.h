@@ -80,6 +80,8 @@ struct Accessor {
 class Budget {
 public:
     void grant(uint64_t input_bytes);
+    /// More for data that honestly packs a triangle into a sixth of a byte, as Draco does with smooth height fields.
+    void grantPacked(uint64_t input_bytes);
     /// Throws a Fault if nothing is left.
     void charge(uint64_t count, uint64_t bytes_each, const std::string& place);
     /// For what was charged and is no longer held.
@@ -87,6 +89,7 @@ public:
 
 private:
     uint64_t left_ = uint64_t(64) << 20;
+    uint64_t packed_left_ = uint64_t(2) << 30;  // of what grantPacked may give in all
 };
 
 /// Tells how far an import is, in steps that a reader can see: no more than a thousand calls.
@@ -119,6 +122,7 @@ struct DracoStream {
     std::optional<uint32_t> indices;  ///< accessor, added for the stream
     bool counts_triangles = false;    ///< the file says how many there are
     std::optional<uint64_t> triangles, vertices;
+    bool granted = false;
     size_t uses = 0;    ///< that are still to come
     uint64_t held = 0;  ///< [bytes] unpacked
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace sightline::gltf {
 namespace {
@@ -98,6 +99,7 @@ void unpackDraco(Document& document, uint32_t index) {
     if (document.streams[index].held > 0) return;
     const Bytes bytes = viewBytes(document, document.streams[index].view);
     DracoStream& stream = document.streams[index];
+    if (!std::exchange(stream.granted, true)) document.budget.grantPacked(bytes.size());
     std::vector<DracoAttribute> wanted;
     for (const DracoStream::Attribute& attribute : stream.attributes) {
         const Accessor& accessor = document.accessors[attribute.accessor];

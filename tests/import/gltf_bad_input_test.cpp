@@ -189,6 +189,26 @@ TEST(GltfBadInput, CompressedData) {
     spoil("byteLength", 2147483648u, "2147483648 bytes at 0 reach beyond the 42 bytes of its buffer");
 }
 
+// The second extension has a filter for colours, which no triangle needs, and another version of the vertex codec.
+TEST(GltfBadInput, CompressedDataOfTheSecondExtension) {
+    std::string glb = gltfSample("meshopt_triangles_32.glb");
+    const size_t json_length = *reinterpret_cast<const uint32_t*>(glb.data() + 12);
+    ASSERT_EQ(uint8_t(glb[20 + json_length + 8]), 0xa0);
+    glb[20 + json_length + 8] = char(0xa3);
+    const Result<Scene> scene = parse(glb);
+    ASSERT_FALSE(scene.ok());
+    EXPECT_NE(scene.error().message.find("bufferViews[0]: is packed by version 3 of meshopt's vertex codec"),
+              std::string::npos)
+        << scene.error().message;
+    GltfBuilder b;
+    b.node({{"mesh", b.triangleMesh()}});
+    const uint32_t colors = b.view(std::string(64, '\0'));
+    b.json["bufferViews"][colors]["extensions"]["KHR_meshopt_compression"] = {
+        {"buffer", 0}, {"byteLength", 64},     {"byteStride", 4},
+        {"count", 3},  {"mode", "ATTRIBUTES"}, {"filter", "COLOR"}};
+    EXPECT_TRUE(parse(b.glb()).ok());
+}
+
 TEST(GltfBadInput, Instances) {
     GltfBuilder b;
     const uint32_t mesh = b.triangleMesh();

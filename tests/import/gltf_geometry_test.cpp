@@ -110,6 +110,20 @@ TEST(GltfGeometry, UnpacksMeshoptFilters) {
     EXPECT_LT(glm::length(glm::dvec3(second[0]) - glm::dvec3(0, 1, 0)), 1e-3);
 }
 
+// KHR_meshopt_compression has the layout of EXT_meshopt_compression, and reads the same data.
+TEST(GltfGeometry, UnpacksMeshoptUnderItsSecondName) {
+    for (const char* name : {"meshopt_indices_32.glb", "meshopt_triangles_16.glb", "meshopt_instances.glb"}) {
+        std::string bytes = gltfSample(name);
+        const Scene expected = load(bytes);
+        for (size_t at = 0; (at = bytes.find("EXT_meshopt", at)) != std::string::npos; ++at)
+            bytes.replace(at, 3, "KHR");
+        const Scene scene = load(bytes);
+        ASSERT_EQ(scene.objects.size(), expected.objects.size());
+        EXPECT_EQ(scene.meshes[0].positions, expected.meshes[0].positions) << name;
+        EXPECT_EQ(scene.meshes[0].indices, expected.meshes[0].indices) << name;
+    }
+}
+
 TEST(GltfGeometry, ReadsMaterialsAndPrimitivesInOrder) {
     const Scene scene = loadSample("materials.glb");
     ASSERT_EQ(scene.materials.size(), 6u) << "the default comes first";
