@@ -45,7 +45,7 @@ std::string listOf(const Array<Hider>& hiders, const NameOfObject& name) {
     return text;
 }
 
-const char* pronoun(size_t count) { return count == 1 ? "it" : count == 2 ? "these two" : "these"; }
+const char* pronoun(size_t count) { return count == 1 ? "that one" : count == 2 ? "these two" : "these"; }
 
 std::string togetherText(const Explanation& why) {
     if (why.together <= 1) return "";
@@ -55,9 +55,10 @@ std::string togetherText(const Explanation& why) {
 
 std::string rectangleText(const Explanation& why) {
     if (!why.on_screen) return "";
+    const double left = std::max(why.rect.left, 0.0), right = std::min<double>(why.rect.right, why.width);
+    const double top = std::max(why.rect.top, 0.0), bottom = std::min<double>(why.rect.bottom, why.height);
     return fmt::format(" Its box takes {:.0f} x {:.0f} pixels from ({:.0f}, {:.0f}) and begins {} units away.",
-                       why.rect.right - why.rect.left, why.rect.bottom - why.rect.top, why.rect.left, why.rect.top,
-                       units(why.depth));
+                       std::max(right - left, 0.0), std::max(bottom - top, 0.0), left, top, units(why.depth));
 }
 
 /// "beyond the left plane by 3.2 units".

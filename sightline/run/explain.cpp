@@ -202,6 +202,8 @@ Explanation Explainer::explain(ObjectId id, const ExplainSettings& settings) {
     const detail::ObjectRecord& object = state.object(item);
     out.id = object.id;
     out.key = object.key;
+    out.width = impl.view.width;
+    out.height = impl.view.height;
     if (!(object.layers & impl.view.layers)) {
         out.verdict = Verdict::kOutsideLayers;
         return out;

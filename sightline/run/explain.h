@@ -101,10 +101,11 @@ struct Explanation {
     uint64_t key = 0;
     /// Objects that were culled in one step with it, itself included: the node of the hierarchy that held them.
     uint32_t together = 1;
-    bool on_screen = false;  ///< its box has an image: `rect` and `depth` hold
-    ImageRect rect;          ///< of its box
-    double depth = 0;        ///< of its box's nearest point, along the direction of view  [world units]
-    FrustumReason frustum;   ///< not for objects in doubt
+    uint32_t width = 0, height = 0;  ///< of the viewport
+    bool on_screen = false;          ///< its box has an image: `rect` and `depth` hold
+    ImageRect rect;                  ///< of its box
+    double depth = 0;                ///< of its box's nearest point, along the direction of view  [world units]
+    FrustumReason frustum;           ///< not for objects in doubt
     OcclusionReason occlusion;
     VisibleReason visible;
 

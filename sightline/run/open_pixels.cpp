@@ -3,6 +3,7 @@
 #include "sightline/run/open_pixels.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace sightline::detail {
 namespace {
@@ -43,11 +44,16 @@ void OpenPixels::run(DepthTiles& tiles, const PixelRect& rect) {
     for (int32_t row = 0; row < height; ++row)
         for (int32_t column = 0; column < width; ++column) step(column, row, -1);
     uint32_t deepest = 0;
+    int32_t farthest = 0;  // of those that are as deep, from the middle, twice
     for (int32_t row = height; row-- > 0;)
         for (int32_t column = width; column-- > 0;) {
             step(column, row, 1);
-            if (at(column, row) <= deepest || !isOpen(tiles, rect.x0 + column, rect.y0 + row, rect.nearness)) continue;
-            deepest = at(column, row);
+            const uint32_t here = at(column, row);
+            const int32_t off = std::abs(2 * column + 1 - width) + std::abs(2 * row + 1 - height);
+            if (here == 0 || here < deepest || (here == deepest && off >= farthest)) continue;
+            if (!isOpen(tiles, rect.x0 + column, rect.y0 + row, rect.nearness)) continue;
+            deepest = here;
+            farthest = off;
             x = rect.x0 + column;
             y = rect.y0 + row;
         }

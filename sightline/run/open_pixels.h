@@ -15,8 +15,8 @@ struct OpenPixels {
     explicit OpenPixels(Memory* memory) : depth(memory) {}
 
     uint64_t pixels = 0, open = 0;
-    int32_t x = 0, y = 0;   ///< of the open pixels the one farthest from all others of the buffer, to one in a row or
-                            ///< column; the rectangle's first if none is open
+    int32_t x = 0, y = 0;   ///< of the open pixels one that is farthest, in steps along rows and columns, from those
+                            ///< that are not, nearest to the middle; the rectangle's first if none is open
     bool covered = false;   ///< that pixel is covered, but not in front of the rectangle
     Array<uint32_t> depth;  ///< per pixel of the rectangle: steps to the nearest that is not open
 

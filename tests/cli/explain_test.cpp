@@ -1,0 +1,147 @@
+// The verb explain as a user sees it: sentences, lists, pictures, the schema, and what it refuses.
+// SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/tool.h"
+
+namespace sightline {
+namespace {
+
+using nlohmann::json;
+
+class ExplainVerb : public Tool {
+protected:
+    json answersOf(const std::string& arguments) const {
+        const Outcome outcome = run("explain " + arguments + " --json -");
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        const json all = json::parse(outcome.out);
+        EXPECT_EQ(all["schema"], "sightline.explain/1");
+        return all["answers"];
+    }
+
+    void expectNarrow(const std::string& text) const {
+        std::stringstream lines(text);
+        for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
+    }
+};
+
+TEST_F(ExplainVerb, TellsWhatStandsBeforeWhat) {
+    const Outcome hidden = run("explain made:walls --object 'red wall'");
+    EXPECT_EQ(hidden.exit_code, 0) << hidden.err;
+    EXPECT_NE(hidden.out.find("culled by occlusion: object 0 'red wall' lies behind 'grey wall'"), std::string::npos)
+        << hidden.out;
+    expectNarrow(hidden.out);
+    const Outcome kept = run("explain made:walls --object 7");
+    EXPECT_NE(kept.out.find("kept: object 7 'grey wall'"), std::string::npos) << kept.out;
+    EXPECT_NE(kept.out.find("It is seen"), std::string::npos) << kept.out;
+    expectNarrow(kept.out);
+    EXPECT_EQ(run("explain made:walls --object 'RED w'").out, hidden.out) << "a part that is its own names it, too";
+    EXPECT_EQ(run("explain made:walls --object 0").out, hidden.out);
+}
+
+TEST_F(ExplainVerb, WritesTheSchema) {
+    const json answers = answersOf("made:walls --object 3");
+    ASSERT_EQ(answers.size(), 1u);
+    const json& answer = answers[0];
+    EXPECT_EQ(answer["key"], 3);
+    EXPECT_EQ(answer["frame"], 0);
+    EXPECT_EQ(answer["name"], "green wall");
+    EXPECT_EQ(answer["verdict"], "occluded");
+    EXPECT_EQ(answer["stage"], "occlusion");
+    ASSERT_EQ(answer["occlusion"]["occluders"].size(), 1u);
+    EXPECT_EQ(answer["occlusion"]["occluders"][0]["key"], 7);
+    EXPECT_EQ(answer["occlusion"]["occluders"][0]["share"], 1.0);
+    EXPECT_EQ(answer["occlusion"]["sufficient"], true);
+    EXPECT_EQ(answer["occlusion"]["without"], "occluded") << "six walls more stand before it";
+    EXPECT_EQ(answer["occlusion"]["others"][0]["name"], "cyan wall");
+    const json kept = answersOf("made:walls --object 7")[0];
+    EXPECT_EQ(kept["verdict"], "visible");
+    EXPECT_TRUE(kept["stage"].is_null());
+    EXPECT_EQ(kept["kept"]["because"], "open pixel");
+    EXPECT_EQ(kept["witness"]["seen"], true);
+    const json city = answersOf("city:1:300 --frames 3 --object 7 --frame all");
+    EXPECT_EQ(city.size(), 3u);
+    for (size_t i = 0; i < city.size(); ++i) EXPECT_EQ(city[i]["frame"], i);
+}
+
+TEST_F(ExplainVerb, SaysWhatCullSays) {
+    const Outcome culled = run("cull city:1:400 --frames 2 --json -");
+    const json visible = json::parse(culled.out)["frames"][1]["visible"];
+    for (int key = 0; key < 400; key += 23) {
+        const json answer = answersOf("city:1:400 --frames 2 --frame 1 --rays 1000 --object " + std::to_string(key))[0];
+        const bool kept = std::find(visible.begin(), visible.end(), json(key)) != visible.end();
+        EXPECT_EQ(answer["verdict"] == "visible", kept) << key;
+    }
+}
+
+TEST_F(ExplainVerb, LooksThroughAPixel) {
+    const json answers = answersOf("made:walls --at 640,360");
+    ASSERT_EQ(answers.size(), 8u);
+    for (size_t i = 0; i < answers.size(); ++i) EXPECT_EQ(answers[i]["key"], 7 - i) << "front to back";
+    const Outcome outcome = run("explain made:walls --at 640,360");
+    EXPECT_NE(outcome.out.find("behind it, at pixel (640, 360):"), std::string::npos) << outcome.out;
+    expectNarrow(outcome.out);
+    EXPECT_NE(run("explain made:eye --at 0,0").out.find("pixel (0, 0)"), std::string::npos);
+}
+
+TEST_F(ExplainVerb, TellsOfAWholePath) {
+    const Outcome outcome = run("explain city:1:1000 --frames 4 --top 3 --json path.json");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    expectNarrow(outcome.out);
+    for (const char* part : {"Who hides most", "Which pay best", "hid nothing", "Never kept", "together"})
+        EXPECT_NE(outcome.out.find(part), std::string::npos) << part;
+    const json path = json::parse(read(this->path("path.json")));
+    EXPECT_EQ(path["schema"], "sightline.explain/1");
+    double hidden = 0;
+    for (const json& row : path["occluders"]) hidden += row["hidden"].get<double>();
+    const json run_json = json::parse(run("cull city:1:1000 --frames 4 --json -").out);
+    double culled = 0;
+    for (const json& frame : run_json["frames"]) culled += frame["stages"][1]["culled"].get<double>();
+    EXPECT_NEAR(hidden, culled, 1e-3) << "credits add up to what was culled";
+    for (const json& row : path["never_kept"])
+        for (const json& frame : run_json["frames"])
+            EXPECT_EQ(std::find(frame["visible"].begin(), frame["visible"].end(), row["key"]), frame["visible"].end());
+    EXPECT_EQ(run("explain city:1:1000 --frames 4 --top 3 --threads 3").out, outcome.out);
+}
+
+TEST_F(ExplainVerb, DrawsTheFrame) {
+    const Outcome outcome = run("explain made:walls --object 'blue wall' --size 320x180 -o why.png");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(read(path("why.png")).substr(1, 3), "PNG");
+    expectError("explain made:walls --object 1 -o /nowhere/why.png", 4, "/nowhere/why.png");
+}
+
+TEST_F(ExplainVerb, RefusesWhatItCannotAnswer) {
+    expectError("explain made:walls --object wall", 2, "8 objects are called so: 0 'red wall', 1 'blue wall'");
+    expectError("explain made:walls --object door", 2, "--object door");
+    expectError("explain made:walls --object ''", 2, "--object");
+    expectError("explain made:walls --object 99", 2, "99");
+    expectError("explain made:walls --object 1 --frame 7", 2, "1 frames");
+    expectError("explain made:walls --object 1 --frame soon", 2, "soon");
+    expectError("explain made:walls --frame 0", 2, "--frame");
+    expectError("explain made:walls --at 5", 2, "--at 5");
+    expectError("explain made:walls --at 5,720", 2, "--at 5,720");
+    expectError("explain made:walls --at 5,5 --object 1", 2, "--at");
+    expectError("explain made:walls --at 5,5 --frame all", 2, "--at");
+    expectError("explain made:walls -o a.png", 2, "-o");
+    expectError("explain made:walls --object 1 --frame all -o a.png", 2, "-o");
+    expectError("explain made:walls --top 0", 2, "--top");
+}
+
+TEST_F(ExplainVerb, NamesDoubts) {
+    const json off = answersOf("made:walls --object 0 --skip occlusion --rays 1000")[0];
+    EXPECT_EQ(off["kept"]["because"], "stage off");
+    EXPECT_EQ(off["kept"]["stage"], "occlusion");
+    EXPECT_EQ(off["witness"]["seen"], false);
+}
+
+TEST_F(ExplainVerb, ReportsTellOfTheirSlowestAndLoosestFrames) {
+    const Outcome outcome = run("cull city:1:2000 --frames 3 --verify --rays 20000 --size 320x180 --report out");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::string page = read(path("out/index.html"));
+    EXPECT_NE(page.find("Slowest: "), std::string::npos);
+    EXPECT_NE(page.find("Loosest: "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sightline
