@@ -1,0 +1,144 @@
+// Files of all formats on the command line: several at once, units and axes, what info tells, limits.
+// SPDX-License-Identifier: MIT
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/tool.h"
+#include "tests/import/foreign_files.h"
+
+namespace sightline {
+namespace {
+
+using nlohmann::json;
+using namespace test;
+
+class Formats : public Tool {
+protected:
+    void SetUp() override {
+        Tool::SetUp();
+        write("arch.glb", glbBytes(twoBoxes()));
+        write("mep.glb", glbBytes({twoBoxes()[1]}));
+    }
+    json info(const std::string& arguments) const {
+        const Outcome outcome = run("info " + arguments + " --json -");
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return json::parse(outcome.out);
+    }
+};
+
+TEST_F(Formats, SeveralFilesAreOneScene) {
+    const json facts = info("arch.glb mep.glb made:cycle");
+    EXPECT_EQ(facts["file"], "arch.glb + mep.glb + made:cycle");
+    ASSERT_EQ(facts["files"].size(), 3u);
+    EXPECT_EQ(facts["files"][0]["first_key"], 0);
+    EXPECT_EQ(facts["files"][1]["first_key"], 2);
+    EXPECT_EQ(facts["files"][2]["first_key"], 3);
+    EXPECT_EQ(facts["files"][0]["reader"], "sightline");
+    EXPECT_EQ(facts["files"][0]["format"], "glTF 2.0");
+    EXPECT_EQ(facts["files"][2]["format"], "procedural");
+    const Outcome objects = run("info arch.glb mep.glb --objects");
+    EXPECT_EQ(objects.out, "0\t12\tarch/Large\n1\t12\tarch/Small\n2\t12\tmep/Small\n");
+    const Outcome cull = run("cull arch.glb mep.glb --frames 2 --size 64x64 --verify --rays 10000 --json -");
+    EXPECT_EQ(cull.exit_code, 0) << cull.err;
+    EXPECT_EQ(json::parse(cull.out)["scene"]["objects"], 3);
+    expectError("info arch.glb missing.glb", 3, "missing.glb");
+}
+
+TEST_F(Formats, InfoTellsOfTheTree) {
+    const json facts = info("arch.glb");
+    EXPECT_EQ(facts["nodes"]["count"], 2);
+    EXPECT_EQ(facts["nodes"]["named"], 2);
+    EXPECT_EQ(facts["nodes"]["depth"], 1);
+    EXPECT_EQ(info("arch.glb mep.glb")["nodes"]["depth"], 2);
+    EXPECT_EQ(facts["cells"], 0);
+    EXPECT_EQ(facts["portals"], 0);
+    EXPECT_EQ(facts["largest_meshes"].size(), 2u);
+    const Outcome words = run("info arch.glb");
+    for (const char* word : {"glTF 2.0 (read by sightline)", "2 named, 1 deep", "cells", "portals", "largest meshes"})
+        EXPECT_NE(words.out.find(word), std::string::npos) << word << "\n" << words.out;
+}
+
+TEST_F(Formats, UnitsAndAxesHold) {
+    const json bounds = info("arch.glb --unit mm --up z")["bounds"];
+    EXPECT_NEAR(bounds["min"][0].get<double>(), -0.007, 1e-9);
+    EXPECT_NEAR(bounds["max"][1].get<double>(), 0.010, 1e-9);
+    EXPECT_NEAR(bounds["min"][2].get<double>(), -0.0045, 1e-9);
+    EXPECT_NEAR(info("arch.glb --unit 10")["bounds"]["max"][0].get<double>(), 50, 1e-9);
+    EXPECT_NEAR(info("arch.glb --unit ft")["bounds"]["max"][0].get<double>(), 1.524, 1e-9);
+    EXPECT_EQ(info("arch.glb --sides both")["triangles"]["double_sided"], 24);
+    EXPECT_EQ(info("arch.glb --sides one")["triangles"]["double_sided"], 0);
+    for (const char* wrong :
+         {"--unit 0", "--unit -1", "--unit parsec", "--unit nan", "--unit 1m", "--up w", "--sides all",
+          "--import-memory none", "--import-memory 8X", "--import-memory 1K", "--import-time 0", "--import-time soon"})
+        expectError(std::string("info arch.glb ") + wrong, 2,
+                    std::string(wrong).substr(0, std::string(wrong).find(' ')));
+    expectError("info city:1:10 --unit mm", 2, "--unit");
+}
+
+TEST_F(Formats, ListsWhatCanBeRead) {
+    const Outcome words = run("info --formats");
+    EXPECT_EQ(words.exit_code, 0) << words.err;
+    for (const char* word : {"glb gltf", "obj", "Industry Foundation Classes"})
+        EXPECT_NE(words.out.find(word), std::string::npos) << word;
+    const json list = json::parse(run("info --formats --json -").out);
+    EXPECT_EQ(list["schema"], "sightline.formats/1");
+    EXPECT_EQ(list["formats"][0]["suffixes"], "glb gltf");
+    EXPECT_EQ(list["formats"][0]["available"], true);
+    expectError("info", 2, "SCENE");
+}
+
+TEST_F(Formats, WhatIsNotReadIsRefusedInWords) {
+    write("house.zip", "PK\3\4 and so on");
+    write("path.json", R"({"frames": []})");
+    write("house.rvt", "x");
+    expectError("cull house.zip", 3, "house.zip: is a zip archive: unpack it first");
+    expectError("cull path.json", 3, "path.json: is a camera path, not a scene: give it with --cameras");
+    expectError("verify house.rvt", 3, "export it as IFC or glTF");
+}
+
+#ifdef SIGHTLINE_HAS_ASSIMP
+
+TEST_F(Formats, ForeignFilesAreSeenAsGltfIs) {
+    // Far enough from the boxes to see both; the small one is hidden by the large one in the second frame.
+    write("path.json", R"({"fov_y_degrees": 60, "near": 0.1, "frames": [
+        {"eye": [-20, 3, 20], "target": [0, 2, 0]}, {"eye": [30, 3, 20], "target": [-6.75, 0.75, -2]},
+        {"eye": [0, 40, 3], "target": [0, 0, 3], "up": [1, 0, 0]}]})");
+    const auto visible = [&](const std::string& file) {
+        const Outcome outcome =
+            run("cull " + file + " --cameras path.json --size 160x120 --verify --rays 10000 --json -");
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        std::vector<json> out;
+        for (const json& frame : json::parse(outcome.out)["frames"]) out.push_back(frame["visible"]);
+        return out;
+    };
+    const std::vector<json> expected = visible("arch.glb");
+    for (const ForeignFile& file : foreignFiles(twoBoxes())) {
+        write(file.name, file.bytes);
+        const std::vector<json> seen = visible(file.name);
+        if (!file.objects) continue;
+        EXPECT_EQ(seen, expected) << file.name;
+    }
+    write("wall.ifc", ifcText("IFC2X3"));
+    const Outcome together = run("cull wall.ifc boxes.obj arch.glb --frames 3 --size 64x64 --verify --rays 10000");
+    EXPECT_EQ(together.exit_code, 0) << together.err;
+}
+
+TEST_F(Formats, LimitsOfReadersAreOneLine) {
+    std::string text;
+    for (int i = 0; i < 300000; ++i) text.append("v ").append(std::to_string(i)).append(" 0 0\n");
+    write("large.obj", text + "f 1 2 3\n");
+    expectError("info large.obj --import-time 0.001", 3, "large.obj: took longer than 0.001 s to read (--import-time)");
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    expectError("info large.obj --import-memory 40M", 3, "large.obj: needs more memory than 40 MiB (--import-memory)");
+#endif
+    expectError("bench frustum --scene large.obj --import-time 0.001", 3, "took longer");
+    write("broken.fbx", "; FBX 7.4.0 project file\nObjects: {\n");
+    expectError("cull broken.fbx", 3, "broken.fbx: ");
+}
+
+#endif
+
+}  // namespace
+}  // namespace sightline
