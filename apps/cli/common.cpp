@@ -74,16 +74,24 @@ bool isCity(const std::string& scene, uint64_t& seed) {
 
 void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& shared) {
     addSceneChoice(verb, options.scene);
-    verb.add_option("--cameras", options.cameras, "camera path (JSON)")->type_name("PATH.json");
+    verb.add_option("--cameras", options.cameras, "camera path (JSON)")->type_name("PATH.json")->group("Cameras");
     verb.add_option("--frames", options.frames,
                     "so many seeded cameras; a city without --seed is walked along its streets")
         ->check(CLI::Range(1u, kMostFrames))
-        ->type_name("N");
-    verb.add_option("--seed", options.seed, "of the seeded cameras")->type_name("S")->capture_default_str();
-    verb.add_option("--size", options.size, "of the viewport [pixels]")->type_name("WxH")->capture_default_str();
+        ->type_name("N")
+        ->group("Cameras");
+    verb.add_option("--seed", options.seed, "of the seeded cameras")
+        ->type_name("S")
+        ->capture_default_str()
+        ->group("Cameras");
+    verb.add_option("--size", options.size, "of the viewport [pixels]")
+        ->type_name("WxH")
+        ->capture_default_str()
+        ->group("Cameras");
     verb.add_option("--threads", options.threads, "share " + shared + " among so many threads (default: one a core)")
         ->check(CLI::Range(1u, kMostThreads))
-        ->type_name("N");
+        ->type_name("N")
+        ->group("General");
     verb.add_option("--json", options.json, "write the result as JSON (-: standard output)")->type_name("FILE");
 }
 
@@ -92,19 +100,23 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
     verb.add_option("--repeat", options.repeat, "queries a frame; times are their medians")
         ->check(CLI::Range(1, 100000))
         ->type_name("N")
-        ->capture_default_str();
+        ->capture_default_str()
+        ->group("Culling");
     verb.add_option("--use", options.use, "only these stages, separated by commas (" + stageNames() + ")")
         ->delimiter(',')
-        ->type_name("LIST");
-    verb.add_option("--skip", options.skip, "not these stages")->delimiter(',')->type_name("LIST");
+        ->type_name("LIST")
+        ->group("Culling");
+    verb.add_option("--skip", options.skip, "not these stages")->delimiter(',')->type_name("LIST")->group("Culling");
     verb.add_option("--jitter", options.jitter, "largest shift of the image that the answer must hold for")
         ->check(CLI::Range(0.0, 1024.0))
         ->type_name("PX")
-        ->capture_default_str();
+        ->capture_default_str()
+        ->group("Culling");
     verb.add_option("--rays", options.rays, "that the first witness casts for a frame")
         ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
         ->type_name("N")
-        ->capture_default_str();
+        ->capture_default_str()
+        ->group("Culling");
 }
 
 Status finish(const CLI::App& verb, RunOptions& options) {

@@ -1,34 +1,28 @@
 // The command line tool: verbs, their help, and what the exit code says.
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "apps/cli/common.h"
+#include "apps/cli/completions.h"
+#include "apps/cli/config.h"
+#include "apps/cli/help.h"
+#include "apps/cli/man.h"
+#include "apps/cli/option_facts.h"
 #include "apps/cli/session.h"
 #include "apps/cli/verbs.h"
+#include "apps/cli/watch.h"
 
 namespace sightline::cli {
 namespace {
-
-constexpr const char* kAbout =
-    "What can be seen, from any view of any world: conservative visibility, measured and proved.";
-constexpr const char* kFooter =
-    "Scenes: .glb and .gltf files; city:SEED:OBJECTS (a built-in city, any seed, up to 10,000,000 objects);\n"
-    "made:NAME (a few triangles that show where methods fail: cycle, crossing, coplanar, near, walls, eye).\n"
-    "Cameras: --cameras, else --frames and --seed, else the scene's own, else 16 seeded ones. A city with --frames\n"
-    "and without --seed is walked along its streets.\n"
-    "Exit codes: 0 done; 1 the answer is no (verification failed); 2 the arguments are wrong; 3 an input cannot be\n"
-    "read; 4 an output cannot be written.";
-
-/// The verb that was being parsed, as "sightline cull".
-std::string verbOf(const CLI::App& tool) {
-    const auto chosen = tool.get_subcommands();
-    return "sightline" + (chosen.empty() ? std::string() : " " + chosen.front()->get_name());
-}
 
 std::string commandLine(int count, char** words) {
     std::string line = "sightline";
@@ -36,10 +30,54 @@ std::string commandLine(int count, char** words) {
     return line;
 }
 
+/// The verb that was being parsed, as "sightline cull".
+std::string verbOf(const CLI::App& tool) {
+    const auto chosen = tool.get_subcommands();
+    return "sightline" + (chosen.empty() ? std::string() : " " + chosen.front()->get_name());
+}
+
+std::vector<std::string> verbNames(const CLI::App& tool) {
+    std::vector<std::string> names;
+    for (const CLI::App* verb : verbsOf(tool)) names.push_back(verb->get_name());
+    return names;
+}
+
+/// What the parser found wrong, with a word that may have been meant.
+std::string explained(const CLI::App& tool, const CLI::ParseError& error) {
+    std::string meant;
+    if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
+        const auto chosen = tool.get_subcommands();
+        const CLI::App& app = chosen.empty() ? tool : *chosen.front();
+        const std::vector<std::string> extras = app.remaining();
+        std::vector<std::string> names;
+        for (const OptionFacts& facts : optionsOf(app))
+            names.insert(names.end(), facts.names.begin(), facts.names.end());
+        if (!extras.empty() && extras[0].substr(0, 2) == "--")
+            meant = suggestion(extras[0].substr(0, extras[0].find('=')), names);
+    }
+    return fmt::format("{}{} (see {} --help)", error.what(), meant, verbOf(tool));
+}
+
+/// All that happens between the command line and the verb.
+void beginVerb(CLI::App& tool, SessionOptions& session, const std::string& command) {
+    CLI::App& verb = *tool.get_subcommands().front();
+    const auto insist = [](const Status& status) {
+        if (!status) throw CLI::RuntimeError(report(status.error()));
+    };
+    if (!session.config.empty() && session.no_config)
+        insist(Error{Error::Kind::kUsage, "--no-config excludes --config"});
+    if (session.watch)
+        if (const std::optional<int> ended = watchRuns(verb, session)) throw CLI::RuntimeError(*ended);
+    const ConfigChoice config = findConfig(session);
+    const Status configured = applyConfig(tool, verb, config);
+    insist(beginSession(session, "sightline " SIGHTLINE_VERSION, command));
+    if (config.here && verb.get_configurable()) note("options are taken from ./" + config.file);
+    insist(configured);
+}
+
 int runTool(int count, char** words) {
     CLI::App tool(kAbout, "sightline");
-    tool.footer(kFooter);
-    tool.set_version_flag("--version", "sightline " SIGHTLINE_VERSION);
+    tool.set_version_flag("--version", "sightline " SIGHTLINE_VERSION, "print the version");
     tool.require_subcommand(1);
     int exit_code = kDone;
     addCull(tool, exit_code);
@@ -49,26 +87,36 @@ int runTool(int count, char** words) {
     addReport(tool, exit_code);
     addInfo(tool, exit_code);
     addBench(tool, exit_code);
+    // The options that every verb has; what follows tells of the tool itself.
     SessionOptions session;
     addSessionOptions(tool, session);
-    for (CLI::App* verb : tool.get_subcommands({})) addSessionOptions(*verb, session);
-    tool.parse_complete_callback([&] {
-        if (Status begun = beginSession(session, "sightline " SIGHTLINE_VERSION, commandLine(count, words)); !begun)
-            throw CLI::RuntimeError(report(begun.error()));
-    });
+    for (CLI::App* verb : tool.get_subcommands({})) {
+        addSessionOptions(*verb, session);
+        verb->configurable();
+        if (verb->get_option_no_throw("SCENE")) addWatchOption(*verb, session);
+    }
+    addConfig(tool, session, exit_code);
+    addSessionOptions(*tool.get_subcommand("config"), session);
+    addHelp(tool, exit_code);
+    addCompletions(tool, exit_code);
+    addMan(tool, "sightline " SIGHTLINE_VERSION, exit_code);
+    dressHelp(tool);
+    tool.parse_complete_callback([&] { beginVerb(tool, session, commandLine(count, words)); });
+
     if (count <= 1) {
         std::fputs(tool.help().c_str(), stderr);
         return kWrongArguments;
     }
     const std::string first = words[1];
-    const auto named = tool.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == first; });
-    if (first.substr(0, 1) != "-" && named.empty())
-        return report({Error::Kind::kUsage, "there is no verb \"" + first + "\" (see sightline --help)"});
+    const std::vector<std::string> names = verbNames(tool);
+    if (first.substr(0, 1) != "-" && std::find(names.begin(), names.end(), first) == names.end())
+        return report({Error::Kind::kUsage, fmt::format("there is no verb \"{}\"{} (see sightline --help)", first,
+                                                        suggestion(first, names))});
     try {
         tool.parse(count, words);
     } catch (const CLI::RuntimeError& error) { return error.get_exit_code(); } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return tool.exit(error);  // --help and --version
-        return report({Error::Kind::kUsage, std::string(error.what()) + " (see " + verbOf(tool) + " --help)"});
+        return report({Error::Kind::kUsage, explained(tool, error)});
     }
     return exit_code;
 }

@@ -42,6 +42,15 @@ void addWord(CLI::App& verb, const std::string& name, std::string& value, const 
     verb.add_option(name, value, help)->check(CLI::IsMember(all))->capture_default_str();
 }
 
+/// Puts all options under a heading that have none and write nothing.
+void headRest(CLI::App& verb, const char* heading) {
+    for (CLI::Option* option : verb.get_options())
+        if (option->get_group() == "Options" && option->nonpositional() && option != verb.get_help_ptr() &&
+            option->get_type_name().find("FILE") == std::string::npos &&
+            option->get_type_name().find("DIR") == std::string::npos)
+            option->group(heading);
+}
+
 void addOutputs(CLI::App& verb, RenderOptions& options) {
     verb.add_option("-o,--output", options.image, "write the picture")->type_name("FILE.png");
     verb.add_option("--ids", options.ids, "write the object at each pixel: 24-bit colour = key + 1, black for none")
@@ -142,9 +151,12 @@ void addRenderOptions(CLI::App& verb, RenderOptions& options) {
         ->check(CLI::Range(1, 100000))
         ->type_name("N")
         ->capture_default_str();
-    addOutputs(verb, options);
     addMethods(verb, options);
+    headRest(verb, "Methods");
+    addOutputs(verb, options);
+    headRest(verb, "Pictures");
     addDepth(verb, options);
+    headRest(verb, "Depth");
 }
 
 Status finishRender(const CLI::App& verb, RenderOptions& options) {

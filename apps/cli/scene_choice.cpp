@@ -147,16 +147,21 @@ void addSceneChoice(CLI::App& verb, SceneChoice& choice) {
 void addImportOptions(CLI::App& verb, SceneChoice& choice) {
     verb.add_option("--up", choice.up, "the axis of the files that points up")
         ->check(CLI::IsMember({"x", "y", "z"}))
-        ->type_name("x|y|z");
+        ->type_name("x|y|z")
+        ->group("Input");
     verb.add_option("--unit", choice.unit, "length of one unit of the files: m, cm, mm, km, in, ft or so many metres")
-        ->type_name("UNIT");
+        ->type_name("UNIT")
+        ->group("Input");
     verb.add_option("--sides", choice.sides, "which sides of surfaces are drawn (default: as the files say)")
         ->check(CLI::IsMember({"file", "one", "both"}))
-        ->type_name("file|one|both");
+        ->type_name("file|one|both")
+        ->group("Input");
     verb.add_option("--import-memory", choice.memory, "for readers of foreign formats (default: 8G)")
-        ->type_name("SIZE");
+        ->type_name("SIZE")
+        ->group("Input");
     verb.add_option("--import-time", choice.time, "for readers of foreign formats (default: 300 seconds)")
-        ->type_name("S");
+        ->type_name("S")
+        ->group("Input");
 }
 
 Result<Scene> loadScene(const SceneChoice& choice) {

@@ -14,6 +14,8 @@
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <malloc.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "apps/cli/common.h"
@@ -115,6 +117,11 @@ void addSessionOptions(CLI::App& app, SessionOptions& options) {
         ->check(CLI::IsMember({"auto", "always", "never"}))
         ->capture_default_str()
         ->group("General");
+    app.add_option("--config", options.config, "take defaults of options from this file alone")
+        ->type_name("FILE.toml")
+        ->configurable(false)
+        ->group("General");
+    app.add_flag("--no-config", options.no_config, "take them from no file")->configurable(false)->group("General");
 }
 
 void openSession() {
@@ -125,6 +132,9 @@ void openSession() {
         if (::fcntl(descriptor, F_GETFD) < 0 && errno == EBADF)
             (void)::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
     ::signal(SIGPIPE, SIG_IGN);
+    // Each of malloc's arenas reserves 64 MB of addresses, which a limit of these counts as if they were used.
+    rlimit addresses{};
+    if (::getrlimit(RLIMIT_AS, &addresses) == 0 && addresses.rlim_cur != RLIM_INFINITY) ::mallopt(M_ARENA_MAX, 1);
     hear(SIGINT);
     hear(SIGTERM);
 }
@@ -155,6 +165,12 @@ int endSession(int exit_code) {
 void stopGently() { g_gentle = true; }
 
 bool interrupted() { return g_interrupted; }
+
+void forgetInterruption() {
+    g_gentle = g_interrupted = false;
+    hear(SIGINT);
+    hear(SIGTERM);
+}
 
 int reportInterruption(const std::string& done, bool written) {
     const std::string line = fmt::format("sightline: interrupted after {}: {}\n", done,

@@ -21,9 +21,12 @@ struct SessionOptions {
     bool quiet = false;
     std::string log;              ///< file, or empty
     std::string colour = "auto";  ///< or "always", "never"
+    std::string config;           ///< file, or empty
+    bool no_config = false;
+    bool watch = false;
 };
 
-/// Adds --quiet, --log and --color to the tool or to a verb; they may stand before the verb or after it.
+/// Adds all but --watch to the tool or to a verb: they may stand before the verb or after it.
 void addSessionOptions(CLI::App& app, SessionOptions& options);
 
 /// Makes sure that standard input, output and error are open, that a reader who has left is an error and not the end,
@@ -40,6 +43,8 @@ int endSession(int exit_code);
 void stopGently();
 /// True once Ctrl-C was pressed, or the process asked to end: loops over frames stop and leave what is finished.
 bool interrupted();
+/// In a process that was forked from one that may have been interrupted: begins anew, as openSession() leaves it.
+void forgetInterruption();
 /// Says on standard error how far it came.
 /// @param done  "3 of 16 frames"
 /// @return the exit code for it, kInterrupted
