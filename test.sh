@@ -19,7 +19,7 @@ build() {
     cmake --build --preset "$1"
 }
 
-tools/setup ${full:+--full}
+if [ -n "$full" ]; then tools/setup --full; else tools/setup --tests; fi
 
 if [ -n "$full" ]; then
     step "format"

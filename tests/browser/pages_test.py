@@ -1,0 +1,250 @@
+# Opens the pages that the tool writes in a real browser, and looks at them as a reader would.
+# SPDX-License-Identifier: MIT
+#
+# pages_test.py TOOL [TEST ...]; exit code 77 where there is no Chromium. SIGHTLINE_SHOTS=DIR keeps screenshots.
+import base64
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from browser import Browser, find_chromium  # noqa: E402
+
+TOOL = os.path.abspath(sys.argv[1]) if len(sys.argv) > 1 else ""
+TAB = ("Tab", "Tab", 9)
+PAGES = ("a", "b", "single", "both", "again", "drawn")
+
+# Every text that is shown, its colour, and the first opaque colour behind it. Texts over pictures are passed over.
+CONTRASTS = """(() => {
+  const parse = (text) => (text.match(/[\\d.]+/g) || []).map(Number);
+  const light = (c) => { const f = (v) => (v /= 255) <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
+    return 0.2126 * f(c[0]) + 0.7152 * f(c[1]) + 0.0722 * f(c[2]); };
+  const poor = []; let count = 0;
+  const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let node = walk.nextNode(); node; node = walk.nextNode()) {
+    const at = node.parentElement, style = getComputedStyle(at);
+    if (!node.textContent.trim() || at.closest('script, style, .unseen, .screen, svg') || !at.getClientRects().length ||
+        style.visibility === 'hidden') continue;
+    let back = null;
+    for (let up = at; up && !back; up = up.parentElement) {
+      const c = parse(getComputedStyle(up).backgroundColor);
+      if (c.length === 3 || c[3] === 1) back = c;
+    }
+    back = back || [255, 255, 255];
+    const a = light(parse(style.color)), b = light(back);
+    const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05), size = parseFloat(style.fontSize);
+    ++count;
+    if (ratio < (size >= 24 || (size >= 18.66 && +style.fontWeight >= 700) ? 3 : 4.5))
+      poor.push(node.textContent.trim().slice(0, 40) + ': ' + ratio.toFixed(2));
+  }
+  return {count, poor};
+})()"""
+
+# Pictures without pixels, drawings without lines, lines without length.
+UNDRAWN = """(() => {
+  const bad = [];
+  const images = [...document.images].filter((image) => !image.hidden);
+  for (const image of document.images)
+    if (!image.complete || image.naturalWidth === 0) bad.push('image ' + (image.id || image.alt));
+  const drawings = [...document.querySelectorAll('svg')];
+  for (const svg of drawings) {
+    const shapes = [...svg.querySelectorAll('path, polyline, polygon, rect')];
+    const drawn = shapes.filter((shape) => (shape.getAttribute('d') || shape.getAttribute('points') ||
+      shape.getAttribute('width') || '').length > 0 && shape.getTotalLength() > 0);
+    if (drawn.length === 0) bad.push('svg ' + (svg.getAttribute('aria-label') || svg.parentElement.className));
+    if (svg.getBoundingClientRect().height < 20) bad.push('flat svg');
+  }
+  for (const plot of document.querySelectorAll('.plot'))
+    if (plot.querySelectorAll('polyline, polygon').length === 0) bad.push('plot ' + plot.id);
+  for (const canvas of document.querySelectorAll('canvas')) {
+    const pixels = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+    if (!pixels.some((value) => value !== 0)) bad.push('canvas ' + canvas.id);
+  }
+  return {bad, images: images.length, drawings: drawings.length};
+})()"""
+
+WIDE = """(() => {
+  const wide = [];
+  for (const at of document.querySelectorAll('body *'))
+    if (at.getBoundingClientRect().right > innerWidth + 1 && !at.closest('.scroll, svg, .unseen'))
+      wide.push(at.tagName + '.' + at.className + '#' + at.id);
+  return {wide: wide.slice(0, 8), page: document.documentElement.scrollWidth, window: innerWidth};
+})()"""
+
+CONTROLS = """[...document.querySelectorAll('a[href], button, input, [tabindex="0"]')].filter((at) =>
+  at.getClientRects().length && !at.disabled && !(at.type === 'radio' && !at.checked)).length"""
+
+FOCUSED = """(() => {
+  const at = document.activeElement;
+  if (!at || at === document.body) return null;
+  const shown = at.type === 'radio' ? at.nextElementSibling : at, style = getComputedStyle(shown);
+  return {name: at.id || at.className || at.textContent.trim().slice(0, 20) || at.tagName,
+          order: [...document.querySelectorAll('*')].indexOf(at),
+          ring: style.outlineStyle !== 'none' && parseFloat(style.outlineWidth) >= 2,
+          label: !!(at.getAttribute('aria-label') || at.textContent.trim() || at.querySelector('img[alt]') ||
+            (at.labels && at.labels.length))};
+})()"""
+
+
+class Pages(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.directory = tempfile.mkdtemp(prefix="sightline-browser-")
+        cls.addClassCleanup(shutil.rmtree, cls.directory, ignore_errors=True)
+        cls.browser = Browser(find_chromium(), os.path.join(cls.directory, "profile"))
+        cls.addClassCleanup(cls.browser.close)
+        common = ["--frames", "5", "--size", "320x180", "--repeat", "1"]
+        cls.run_tool("cull", "city:1:400", *common, "--verify", "--rays", "20000", "--report", "a")
+        cls.run_tool("cull", "city:1:400", *common, "--skip", "occlusion", "--report", "b")
+        cls.run_tool("cull", "city:1:400", "--frames", "1", "--size", "90x160", "--repeat", "1", "--report", "single")
+        cls.run_tool("report", "--compare", "a", "b", "-o", "both")
+        cls.run_tool("report", "a", "-o", "again")
+        cls.run_tool("render", "made:cycle", "--size", "160x90", "--method", "all", "--report", "drawn")
+
+    @classmethod
+    def run_tool(cls, *words):
+        done = subprocess.run([TOOL, *words], cwd=cls.directory, capture_output=True, text=True)
+        if done.returncode not in (0, 1):
+            raise RuntimeError(" ".join(words) + ": " + done.stderr)
+
+    def open(self, name, width=1280, height=900, **features):
+        self.browser.size(width, height)
+        self.browser.emulate(prefers_color_scheme="light", **features)
+        self.browser.open(os.path.join(self.directory, name, "index.html"))
+        self.browser.evaluate("Promise.all([...document.images].map((image) => image.decode().catch(() => 0)))"
+                              ".then(() => 1)")
+
+    def shot(self, name):
+        folder = os.environ.get("SIGHTLINE_SHOTS")
+        if not folder:
+            return
+        height = self.browser.evaluate("document.documentElement.scrollHeight")
+        picture = self.browser.call("Page.captureScreenshot", captureBeyondViewport=True, clip={
+            "x": 0, "y": 0, "width": self.browser.evaluate("innerWidth"), "height": height, "scale": 1})
+        with open(os.path.join(folder, name + ".png"), "wb") as file:
+            file.write(base64.b64decode(picture["data"]))
+
+    def test_opens_without_a_complaint_or_a_request(self):
+        for name in PAGES:
+            with self.subTest(page=name):
+                self.open(name)
+                self.browser.evaluate("new Promise((done) => setTimeout(() => done(1), 50))")
+                self.assertEqual(self.browser.complaints(), [])
+
+    def test_draws_every_picture_and_chart(self):
+        least = {"a": (7, 4), "b": (7, 3), "single": (7, 3), "both": (6, 4), "again": (6, 4), "drawn": (8, 1)}
+        for name in PAGES:
+            with self.subTest(page=name):
+                self.open(name)
+                found = self.browser.evaluate(UNDRAWN)
+                self.assertEqual(found["bad"], [])
+                self.assertGreaterEqual(found["images"] + (2 if name in "a b single again" else 0), least[name][0])
+                self.assertGreaterEqual(found["drawings"], least[name][1])
+                self.shot(name)
+
+    def test_tab_reaches_every_control_in_order_and_shows_where_it_is(self):
+        for name in PAGES:
+            with self.subTest(page=name):
+                self.open(name)
+                wanted, reached, last = self.browser.evaluate(CONTROLS), [], -1
+                for _ in range(wanted + 5):
+                    self.browser.press(*TAB)
+                    here = self.browser.evaluate(FOCUSED)
+                    if here is None or here["order"] <= last:
+                        break
+                    self.assertTrue(here["ring"], here["name"] + " shows no focus")
+                    self.assertTrue(here["label"], here["name"] + " has no name")
+                    last = here["order"]
+                    reached.append(here["name"])
+                self.assertEqual(len(reached), wanted, reached)
+
+    def test_arrow_keys_and_charts_move_the_film(self):
+        self.open("a")
+        film = """({frame: +document.getElementById('frame').value,
+                    source: document.getElementById('shaded').src.length})"""
+        first = self.browser.evaluate(film)
+        self.assertEqual(first["frame"], 0)
+        self.browser.press("ArrowRight", number=39)
+        self.assertEqual(self.browser.evaluate(film)["frame"], 1)
+        self.browser.evaluate("document.getElementById('frame').focus()")
+        self.browser.press("ArrowRight", number=39)
+        self.assertEqual(self.browser.evaluate(film)["frame"], 2)
+        self.browser.evaluate("document.getElementById('time-chart').focus()")
+        self.browser.press("ArrowLeft", number=37)
+        self.assertEqual(self.browser.evaluate(film)["frame"], 1)
+        self.assertNotEqual(self.browser.evaluate(film)["source"], first["source"])
+        self.assertIn("frame 1:", self.browser.evaluate("document.getElementById('time-chart-values').textContent"))
+        box = self.browser.evaluate("""(() => { const at = document.querySelector('#kept-chart .area');
+            at.scrollIntoView(); const b = at.getBoundingClientRect();
+            return [b.right - 2, b.top + b.height / 2]; })()""")
+        for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
+            self.browser.call("Input.dispatchMouseEvent", type=kind, x=box[0], y=box[1], button="left", clickCount=1)
+        self.assertEqual(self.browser.evaluate(film)["frame"], 4)
+        self.assertEqual(self.browser.complaints(), [])
+
+    def test_play_runs_and_stops(self):
+        self.open("a")
+        frame = "document.getElementById('frame').value"
+        self.browser.evaluate("document.getElementById('play').click()")
+        moved = self.browser.evaluate("new Promise((done) => setTimeout(() => done(+" + frame + "), 1600))")
+        self.assertGreater(moved, 0)
+        self.browser.evaluate("document.getElementById('play').click()")
+        stood = self.browser.evaluate("[+" + frame + ", new Promise((done) => setTimeout(() => done(0), 900))][0]")
+        self.assertEqual(self.browser.evaluate("+" + frame), stood)
+
+    def test_switch_shows_what_was_culled_and_one_colour_an_object(self):
+        self.open("a")
+        shown = "['objects', 'culled'].filter((id) => !document.getElementById(id).hidden).join()"
+        self.assertEqual(self.browser.evaluate(shown), "")
+        for look in ("culled", "objects"):
+            self.browser.evaluate("document.querySelector('input[value=" + look + "]').click()")
+            self.assertEqual(self.browser.evaluate(shown), look)
+
+    def test_search_finds_objects(self):
+        self.open("a")
+        count = "document.querySelectorAll('#rows tr').length"
+        self.assertGreater(self.browser.evaluate(count), 5)
+        search = "(() => {{ const at = document.getElementById('search'); at.value = {}; " \
+                 "at.dispatchEvent(new Event('input')); return {}; }})()"
+        self.assertEqual(self.browser.evaluate(search.format("'no such thing'", count)), 0)
+        self.assertEqual(self.browser.evaluate(search.format("String(data.rows[3][0])", count)), 1)
+        self.assertGreater(self.browser.evaluate(search.format("''", count)), 5)
+
+    def test_both_schemes_can_be_read(self):
+        for name in PAGES:
+            with self.subTest(page=name):
+                self.open(name)
+                back = "getComputedStyle(document.body).backgroundColor"
+                light = self.browser.evaluate(back)
+                for scheme in ("light", "dark"):
+                    self.browser.emulate(prefers_color_scheme=scheme)
+                    found = self.browser.evaluate(CONTRASTS)
+                    self.assertGreater(found["count"], 20)
+                    self.assertEqual(found["poor"], [], scheme)
+                self.assertNotEqual(self.browser.evaluate(back), light)
+                self.shot(name + "-dark")
+
+    def test_fits_a_phone(self):
+        for name in PAGES:
+            with self.subTest(page=name):
+                self.open(name, 390, 844)
+                found = self.browser.evaluate(WIDE)
+                self.assertLessEqual(found["page"], found["window"], found["wide"])
+                self.assertEqual(found["wide"], [])
+                self.assertEqual(self.browser.evaluate(UNDRAWN)["bad"], [])
+                self.shot(name + "-phone")
+
+    def test_less_motion_moves_less(self):
+        self.open("a", prefers_reduced_motion="reduce")
+        style = "getComputedStyle(document.getElementById('shaded')).transitionDuration"
+        self.assertEqual(self.browser.evaluate(style), "0s")
+
+
+if __name__ == "__main__":
+    if not find_chromium():
+        print("skipped: there is no Chromium on this machine (tools/setup --tests installs it)")
+        sys.exit(77)
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
