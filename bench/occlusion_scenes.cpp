@@ -295,13 +295,13 @@ OcclusionScene makeOcclusionSoup(SoupSize size) {
 OcclusionScene makeOcclusionWall(WallBond bond, double gap) {
     constexpr float kFov = 60 * kPi / 180, kDistance = 20;
     constexpr int kColumns = 24, kRows = 32;  // on each side of the middle
-    constexpr float kWide = 2, kTall = 1, kTilt = 0.2f;
+    constexpr float kWide = 2, kTall = 1;
     static constexpr const char* kNames[] = {"grid", "brick", "tilted"};
     OcclusionScene scene{fmt::format("wall-{}-{}", kNames[static_cast<int>(bond)], gap), kFov, {}, {}, {}};
     const float slope = std::tan(kFov / 2);
-    const float half_gap = static_cast<float>(gap) * slope * kDistance / 720;
-    const float sine = bond == WallBond::kTilted ? std::sin(kTilt) : 0.0f;
-    const float cosine = bond == WallBond::kTilted ? std::cos(kTilt) : 1.0f;
+    // Turned by a vector of short binary numbers, so that a corner which meets an edge lies on it exactly.
+    const glm::vec2 along(1.0f, bond == WallBond::kTilted ? 0.1875f : 0.0f);
+    const float half_gap = static_cast<float>(gap) * slope * kDistance / 720 / glm::length(along);
     for (int row = -kRows; row < kRows; ++row)
         for (int column = -kColumns; column < kColumns; ++column) {
             const float shift = bond != WallBond::kGrid && (row & 1) ? 0.5f : 0.0f;
@@ -311,7 +311,7 @@ OcclusionScene makeOcclusionWall(WallBond bond, double gap) {
             const float y1 = static_cast<float>(row + 1) * kTall - half_gap;
             OccluderBatch panel;
             for (const glm::vec2& p : {glm::vec2(x0, y0), glm::vec2(x0, y1), glm::vec2(x1, y1), glm::vec2(x1, y0)})
-                panel.positions.emplace_back(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y, kDistance);
+                panel.positions.emplace_back(along.x * p.x - along.y * p.y, along.y * p.x + along.x * p.y, kDistance);
             panel.indices = {0, 1, 2, 0, 2, 3};
             addBatch(scene, std::move(panel));
         }

@@ -110,6 +110,26 @@ TEST(OcclusionScenes, PanelsOfAWallAreAsFarApartAsAsked) {
     }
 }
 
+// Without a gap a wall has no slit: what rounding would open between a corner and the edge that it meets is seen through.
+TEST(OcclusionScenes, CornersOfTouchingBricksLieOnTheirNeighboursEdgesExactly) {
+    for (WallBond bond : {WallBond::kBrick, WallBond::kTilted}) {
+        const OcclusionScene wall = makeOcclusionWall(bond, 0);
+        // Corners 1 and 2 are the ends of its upper side.
+        const std::vector<glm::vec3>& brick = wall.batches[48 * 20 + 20].positions;
+        const glm::dvec2 from(brick[1]), to(brick[2]);
+        int between = 0;
+        for (const OccluderBatch& other : wall.batches)
+            for (const glm::vec3& corner : other.positions) {
+                const glm::dvec2 d = to - from, p = glm::dvec2(corner) - from;
+                const double along = glm::dot(p, d) / glm::dot(d, d);
+                if (along <= 0 || along >= 1 || std::abs(d.x * p.y - d.y * p.x) > 1e-3) continue;
+                EXPECT_EQ(d.x * p.y - d.y * p.x, 0.0);
+                ++between;
+            }
+        EXPECT_EQ(between, 2);  // the lower corners of the two bricks above
+    }
+}
+
 TEST(OcclusionScenes, ViewsHaveTheSceneInFront) {
     for (const std::string& name : occlusionSceneNames()) {
         const OcclusionScene scene = makeOcclusionScene(name);
