@@ -110,7 +110,7 @@ TEST(OcclusionScenes, PanelsOfAWallAreAsFarApartAsAsked) {
     }
 }
 
-// Without a gap a wall has no slit: what rounding would open between a corner and the edge that it meets is seen through.
+// Without a gap a wall has no slit: one that rounding opened between a corner and an edge would be seen through.
 TEST(OcclusionScenes, CornersOfTouchingBricksLieOnTheirNeighboursEdgesExactly) {
     for (WallBond bond : {WallBond::kBrick, WallBond::kTilted}) {
         const OcclusionScene wall = makeOcclusionWall(bond, 0);
