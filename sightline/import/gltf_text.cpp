@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "sightline/import/gltf_grammar.h"
+
 namespace sightline::gltf {
 namespace {
 
@@ -33,7 +35,6 @@ void checkDepth(Text text) {
 /// Reads the grammar and keeps nothing.
 struct Grammar final : nlohmann::json_sax<Json> {
     size_t size = 0;
-    bool object = false;
     int depth = 0;
 
     explicit Grammar(size_t bytes) : size(bytes) {}
@@ -44,10 +45,7 @@ struct Grammar final : nlohmann::json_sax<Json> {
     bool number_float(number_float_t, const string_t&) override { return true; }
     bool string(string_t&) override { return true; }
     bool binary(binary_t&) override { return true; }
-    bool start_object(std::size_t) override {
-        if (depth++ == 0) object = true;
-        return true;
-    }
+    bool start_object(std::size_t) override { return ++depth, true; }
     bool key(string_t&) override { return true; }
     bool end_object() override { return --depth, true; }
     bool start_array(std::size_t) override { return ++depth, true; }
@@ -113,10 +111,12 @@ Json JsonTable::object(size_t index, const std::string& place) const {
 }
 
 JsonText::JsonText(Text text) : text_(text) {
-    checkDepth(text);
-    Grammar grammar(text.size());
-    Json::sax_parse(text.data(), text.data() + text.size(), &grammar);
-    if (!grammar.object || text[skipSpace(text, 0)] != '{') fail("", "not glTF: the JSON is not an object");
+    if (!plainJson(text)) {
+        checkDepth(text);
+        Grammar grammar(text.size());
+        Json::sax_parse(text.data(), text.data() + text.size(), &grammar);
+    }
+    if (text[skipSpace(text, 0)] != '{') fail("", "not glTF: the JSON is not an object");
     index();
 }
 
