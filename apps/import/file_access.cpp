@@ -4,10 +4,16 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <system_error>
 #include <utility>
+
+#include <assimp/MemoryIOWrapper.h>
+
+#include "apps/import/fault.h"
 
 namespace sightline::import {
 
@@ -23,6 +29,16 @@ FileAccess::FileAccess(std::string file, const std::string& suffix) : file_(std:
     alias_ = alias.string();
 }
 
+std::string FileAccess::text() const {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file_.c_str(), "rb"), &std::fclose);
+    if (!stream) throw Fault{"cannot be opened"};
+    std::error_code ignored;
+    std::string out(fs::file_size(file_, ignored), '\0');
+    if (ignored) throw Fault{"cannot be read"};
+    out.resize(std::fread(out.data(), 1, out.size(), stream.get()));
+    return out;
+}
+
 std::string FileAccess::realName(const char* name) const { return name == alias_ ? file_ : name; }
 
 bool FileAccess::Exists(const char* name) const {
@@ -32,6 +48,8 @@ bool FileAccess::Exists(const char* name) const {
 
 Assimp::IOStream* FileAccess::Open(const char* name, const char* mode) {
     if (std::strpbrk(mode, "wa+") || !Exists(name)) return nullptr;
+    if (!text_.empty() && name == alias_)
+        return new Assimp::MemoryIOStream(reinterpret_cast<const uint8_t*>(text_.data()), text_.size());
     return DefaultIOSystem::Open(realName(name).c_str(), mode);
 }
 

@@ -18,7 +18,7 @@
 
 #include "apps/import/fault.h"
 #include "apps/import/file_access.h"
-#include "apps/import/ifc_check.h"
+#include "apps/import/ifc_rewrite.h"
 #include "apps/import/materials.h"
 #include "apps/import/placement.h"
 #include "apps/import/poses.h"
@@ -230,11 +230,11 @@ private:
 }  // namespace
 
 void sendScene(const std::string& file, const std::string& suffix, SceneStreamWriter& out) {
-    if (suffix == "ifc") checkIfc(file);
     Warnings warnings;
     Assimp::Importer importer;
     FileAccess* const access = new FileAccess(file, suffix);  // the importer's from here on
     importer.SetIOHandler(access);
+    if (suffix == "ifc") access->replace(rewriteIfc(access->text()));
     importer.SetProgressHandler(new ReadProgress(out));
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);  // one node a node
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);    // no surface that is not in the file

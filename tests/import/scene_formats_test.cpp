@@ -118,14 +118,63 @@ TEST_F(SceneFormats, IfcComesInMetresWithYUp) {
     }
 }
 
-TEST_F(SceneFormats, Ifc4ThatAssimpCannotReadIsRefusedInWords) {
+/// The wall's solid, replaced by something of IFC4; more entities go before the end.
+std::string ifc4(const std::string& solid, const std::string& more = "") {
     std::string text = ifcText("IFC4");
-    const std::string solid = "IFCEXTRUDEDAREASOLID(#28,#12,#10,3000.)";
-    text.replace(text.find(solid), solid.size(), "IfcTriangulatedFaceSet(#40,$,.T.,((1,2,3)),$)");
-    expectRefused(write("faces.ifc", text),
-                  "IFC4 geometry that is not read (IFCTRIANGULATEDFACESET): export it as IFC2x3");
-    text = ifcText("IFC2X3");  // a name is no geometry
-    text.replace(text.find("North wall"), 10, "=IFCTRIANGULATEDFACESET(");
+    const std::string was = "IFCEXTRUDEDAREASOLID(#28,#12,#10,3000.)";
+    text.replace(text.find(was), was.size(), solid);
+    text.insert(text.find("ENDSEC;\nEND-ISO"), more);
+    return text;
+}
+
+TEST_F(SceneFormats, FacesByIndexOfIfc4AreFaces) {
+    const std::string points =
+        "#140 = "
+        "IFCCARTESIANPOINTLIST3D(((0.,0.,0.),(1000.,0.,0.),(0.,2000.,0.),(0.,0.,3000.),(250.,0.,250.),(500.,0.,250.),("
+        "250.,0.,500.)));\n";
+    const double slope = 0.5 * glm::length(glm::cross(glm::dvec3(-1, 2, 0), glm::dvec3(-1, 0, 3)));
+    const Result<Scene> triangles = load(
+        write("triangles.ifc", ifc4("IfcTriangulatedFaceSet(#140,$,.T.,((1,3,2),(1,2,4),(1,4,3),(2,3,4)),$)", points)));
+    ASSERT_TRUE(triangles.ok()) << triangles.error().message;
+    EXPECT_EQ(triangles->meshes[0].triangles(), 4u);
+    EXPECT_NEAR(area(*triangles), 1 + 1.5 + 3 + slope, 1e-4);
+    const Box3d bounds = worldBounds(*triangles);
+    EXPECT_LT(glm::length(bounds.max - glm::dvec3(1, 3, 0)), 1e-5);
+    EXPECT_LT(glm::length(bounds.min - glm::dvec3(0, 0, -2)), 1e-5);
+
+    const Result<Scene> polygons = load(write(
+        "polygons.ifc",
+        ifc4("IFCPOLYGONALFACESET(#140,.T.,(#141,#142,#143,#144),$)",
+             points +
+                 "#141=IFCINDEXEDPOLYGONALFACE((1,3,2));\n#142=IFCINDEXEDPOLYGONALFACEWITHVOIDS((1,2,4),((5,7,8,6)));\n"
+                 "#143=IFCINDEXEDPOLYGONALFACE((1,4,3));\n#144=IFCINDEXEDPOLYGONALFACE((2,3,4));\n")));
+    ASSERT_TRUE(polygons.ok()) << polygons.error().message;
+    EXPECT_NEAR(area(*polygons), 1 + 1.5 - 0.0625 + 3 + slope, 1e-4);
+}
+
+TEST_F(SceneFormats, CurvesByIndexOfIfc4AreLines) {
+    for (const char* segments : {"$", "(IFCLINEINDEX((1,2,3)),IFCLINEINDEX((3,4,1)))"}) {
+        const Result<Scene> scene = load(write(
+            "curve.ifc", ifc4("IFCEXTRUDEDAREASOLID(#150,#12,#10,3000.)",
+                              "#150=IFCARBITRARYCLOSEDPROFILEDEF(.AREA.,$,#151);\n#151=IFCINDEXEDPOLYCURVE(#152," +
+                                  std::string(segments) +
+                                  ",.F.);\n#152=IFCCARTESIANPOINTLIST2D(((0.,0.),(5000.,0.),(5000.,200.),(0.,200.)" +
+                                  (segments[0] == '$' ? ",(0.,0.)" : "") + "));\n")));
+        ASSERT_TRUE(scene.ok()) << scene.error().message;
+        EXPECT_NEAR(area(*scene), 2 * (5 * 3 + 5 * 0.2 + 3 * 0.2), 1e-4);
+    }
+}
+
+TEST_F(SceneFormats, Ifc4ThatAssimpCannotReadIsRefusedInWords) {
+    expectRefused(write("brep.ifc", ifc4("IfcAdvancedBrep(#40)")),
+                  "IFC4 geometry that is not read (IFCADVANCEDBREP): export it as IFC2x3");
+    expectRefused(write("lost.ifc", ifc4("IFCTRIANGULATEDFACESET(#140,$,.T.,((1,2,3)),$)")),
+                  "refers to what is not there");
+    expectRefused(write("range.ifc", ifc4("IFCTRIANGULATEDFACESET(#140,$,.T.,((1,2,4)),$)",
+                                          "#140=IFCCARTESIANPOINTLIST3D(((0.,0.,0.),(1.,0.,0.),(0.,1.,0.)));\n")),
+                  "#29 (IFCTRIANGULATEDFACESET) has no point 4");
+    std::string text = ifcText("IFC2X3");  // a name is no geometry
+    text.replace(text.find("North wall"), 10, "=IFCADVANCEDBREP(;#1=");
     EXPECT_TRUE(load(write("name.ifc", text)).ok());
 }
 
