@@ -132,7 +132,6 @@ Scene makeBuilding(uint64_t seed, uint32_t floors) {
     std::vector<ShellPart> parts = building::makeShell(plan);
     size_t next = 0;
     Placer placer(scene);
-    const uint32_t root = placer.enter("Building", SceneNode::kNone);
     Random random(mixSeed(seed, 0x6c696674ull));
     const auto cab_floor = static_cast<uint32_t>(random.below(floors));
     std::vector<std::vector<uint32_t>> leaves;
@@ -140,7 +139,7 @@ Scene makeBuilding(uint64_t seed, uint32_t floors) {
         const Floor& floor = plan.floors[f];
         std::vector<uint32_t>& floor_leaves = leaves.emplace_back();
         floor_leaves.assign(floor.openings.size(), ~0u);
-        const uint32_t node = placer.enter(floor.name, root);
+        const uint32_t node = placer.enter(floor.name, SceneNode::kNone);
         placer.enter("Outside", node);
         putParts(parts, next, f, building::kOutside, placer);
         if (f == 0) furnishPlot(plan, Random(mixSeed(seed, 0x706c6f74ull)), placer);

@@ -61,8 +61,7 @@ MeshBuilder monitor() {
     addBox(mesh, kBlackPlastic, {-0.03125, 0.0078125, -0.0625}, {0.03125, 0.25, -0.03125});
     addBox(mesh, kBlackPlastic, {-0.296875, 0.125, -0.03125}, {0.296875, 0.46875, 0});
     addBox(mesh, kBlackPlastic, {-0.15625, 0.1875, -0.0625}, {0.15625, 0.40625, -0.015625});
-    mesh.quad(kScreenBlack, {-0.28125, 0.140625, 0.001}, {0.28125, 0.140625, 0.001}, {0.28125, 0.453125, 0.001},
-              {-0.28125, 0.453125, 0.001});
+    addBox(mesh, kScreenBlack, {-0.28125, 0.140625, 0}, {0.28125, 0.453125, 0.0009765625});
     return mesh;
 }
 
@@ -176,9 +175,8 @@ MeshBuilder plant(double pot, double height, double spread, int leaves) {
 MeshBuilder panel(double half, double height, double depth, uint32_t rim, uint32_t face) {
     MeshBuilder mesh;
     addBox(mesh, rim, {-half, 0, 0}, {half, height, depth});
-    const double z = depth + 0.001, edge = 0.03125;
-    mesh.quad(face, {-half + edge, edge, z}, {half - edge, edge, z}, {half - edge, height - edge, z},
-              {-half + edge, height - edge, z});
+    const double edge = 0.03125;
+    addBox(mesh, face, {-half + edge, edge, depth}, {half - edge, height - edge, depth + 0.0009765625});
     return mesh;
 }
 

@@ -66,6 +66,7 @@ Library makeLibrary() {
     Library library;
     library.materials = makeMaterials();
     addFurniture(library.meshes);
+    addWetRooms(library.meshes);
     addEquipment(library.meshes);
     addFittings(library.meshes);
     addOutdoorItems(library.meshes);

@@ -148,7 +148,8 @@ Library makeLibrary();
 std::vector<Material> makeMaterials();
 using Shelf = std::vector<Mesh>;
 void addFurniture(Shelf& meshes);     ///< kDesk to kVisitorChair
-void addEquipment(Shelf& meshes);     ///< kCounter to kColumn
+void addWetRooms(Shelf& meshes);      ///< kCounter to kHandDryer
+void addEquipment(Shelf& meshes);     ///< kMetalShelf to kColumn
 void addFittings(Shelf& meshes);      ///< kDoorLeaf to kLiftRail
 void addOutdoorItems(Shelf& meshes);  ///< kCooler and on
 

@@ -10,6 +10,8 @@
 #include <tuple>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "sightline/base/assert.h"
 #include "sightline/scene/building_library.h"
 #include "sightline/scene/city_mesh.h"
@@ -296,6 +298,15 @@ const char* partName(const Plan& plan, const Face& face) {
     return face.positive ? "North wall" : "South wall";
 }
 
+/// A facade's faces are a window wide: they are grouped by where they begin, so that no object is as long as the house.
+int pieceOf(const Plan& plan, const Face& face) {
+    constexpr double kPiece = 6;  // [metres]
+    if (face.owner != kAir || face.axis == 1) return 0;
+    const bool along_x = face.axis == 2;
+    const double from = (face.floor == 0 ? plan.plot : plan.footprint).min[along_x ? 0 : 1];
+    return static_cast<int>((face.low[along_x ? 0 : 1] - from) / kPiece);
+}
+
 }  // namespace
 
 std::vector<std::array<uint32_t, 3>> triangulateConvex(const std::vector<glm::dvec2>& outline) {
@@ -340,9 +351,10 @@ std::vector<ShellPart> makeShell(const Plan& plan) {
     Corners corners;
     for (const Face& face : faces) corners.add(face);
     corners.sort();
-    // Parts in the order of floors, rooms and directions.
-    std::map<std::tuple<uint32_t, int32_t, int, bool>, std::vector<const Face*>> groups;
-    for (const Face& face : faces) groups[{face.floor, face.owner, face.axis, face.positive}].push_back(&face);
+    // Parts in the order of floors, rooms and directions; facades in pieces.
+    std::map<std::tuple<uint32_t, int32_t, int, bool, int>, std::vector<const Face*>> groups;
+    for (const Face& face : faces)
+        groups[{face.floor, face.owner, face.axis, face.positive, pieceOf(plan, face)}].push_back(&face);
     std::vector<ShellPart> parts;
     for (const auto& [key, group] : groups) {
         ShellPart part;
@@ -350,6 +362,7 @@ std::vector<ShellPart> makeShell(const Plan& plan) {
         part.floor = first.floor;
         part.room = first.owner == kAir ? kOutside : static_cast<uint32_t>(first.owner) - 1;
         part.name = partName(plan, first);
+        if (first.owner == kAir && first.axis != 1) part.name += fmt::format(" {}", std::get<4>(key) + 1);
         city::MeshBuilder mesh;
         for (const Face* face : group) addFace(mesh, materialOf(plan, *face), *face, corners);
         part.mesh = mesh.finish(part.name);

@@ -108,8 +108,9 @@ void addObject(Scene& scene, Mesh mesh, std::string name, uint32_t node) {
     scene.meshes.push_back(std::move(mesh));
 }
 
-void addGround(const HeightField& field, uint32_t root, Scene& scene) {
-    const uint32_t ground = addNode(scene, "Ground", root), water = addNode(scene, "Water", root);
+void addGround(const HeightField& field, Scene& scene) {
+    const uint32_t ground = addNode(scene, "Ground", SceneNode::kNone);
+    const uint32_t water = addNode(scene, "Water", SceneNode::kNone);
     const uint32_t squares = field.size() - 1, chunks = (squares + kChunk - 1) / kChunk;
     scene.meshes.reserve(scene.meshes.size() + size_t{chunks} * chunks);
     std::vector<Chunk> wet;
@@ -179,9 +180,8 @@ Scene makeTerrain(uint64_t seed, uint32_t size) {
     scene.meshes = std::move(library.meshes);
     const uint64_t stream = mixSeed(seed, 0x74657272ull);
     const HeightField field(stream, size);
-    const uint32_t root = addNode(scene, "Terrain", SceneNode::kNone);
-    addGround(field, root, scene);
-    terrain::strew(field, stream, root, scene);
+    addGround(field, scene);
+    terrain::strew(field, stream, scene);
     addCameras(field, scene);
     return scene;
 }

@@ -78,16 +78,16 @@ double heightAt(uint64_t seed, const glm::dvec2& at) {
     // The land, its mountains where it is high, hills all over, and valleys along the zeros of one more field.
     const glm::dvec2 wide = at / 640.0;
     const glm::dvec2 warp(noise(seed + 11, wide).value, noise(seed + 12, wide).value);
-    const double land = noise(seed + 21, at / 2600.0 + 0.37).value;
+    const double land = noise(seed + 21, at / 2200.0 + 0.37).value;
     const glm::dvec2 bent = at + 90.0 * warp;
-    const double mountains = smooth(-0.25, 0.45, land);
-    const double hills = wornNoise(seed + 31, bent / 380.0, 6);
-    const double crests = ridges(seed + 41, bent / 900.0 + 0.21, 6);
-    const double valley = 1 - smooth(0.02, 0.28, std::abs(noise(seed + 51, (at + 35.0 * warp) / 1300.0).value));
-    double height = 40 * land + 34 * hills + (30 + 300 * mountains) * crests * crests;
+    const double mountains = smooth(-0.2, 0.35, land);
+    const double hills = wornNoise(seed + 31, bent / 340.0, 7);
+    const double crests = ridges(seed + 41, bent / 820.0 + 0.21, 6);
+    const double valley = 1 - smooth(0.01, 0.16, std::abs(noise(seed + 51, (at + 60.0 * warp) / 900.0).value));
+    double height = 60 * land + 85 * hills + (60 + 380 * mountains) * crests * crests;
     // A valley pulls the ground towards its floor, which rises and falls along it.
-    const double floor = -10 + 14 * noise(seed + 61, at / 700.0).value + 5 * hills;
-    height += (floor - height) * 0.92 * valley;
+    const double floor = -12 + 30 * noise(seed + 61, at / 420.0).value + 8 * hills;
+    height += (floor - height) * 0.94 * valley;
     return height;
 }
 

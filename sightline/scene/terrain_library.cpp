@@ -150,9 +150,7 @@ std::vector<Material> makeMaterials() {
     set(kScree, "scree", 0.52f, 0.50f, 0.47f);
     set(kSnow, "snow", 0.94f, 0.95f, 0.97f);
     set(kSand, "shore", 0.72f, 0.66f, 0.50f);
-    Material& water = set(kWater, "water", 0.20f, 0.38f, 0.50f);
-    water.base_color.a = 0.75f;
-    water.alpha_mode = AlphaMode::kBlend;
+    set(kWater, "water", 0.20f, 0.38f, 0.50f);
     set(kBark, "bark", 0.34f, 0.26f, 0.19f);
     set(kBirchBark, "birch bark", 0.80f, 0.79f, 0.75f);
     set(kNeedles, "needles", 0.13f, 0.29f, 0.18f);

@@ -29,7 +29,7 @@ uint64_t placeOf(int64_t x, int64_t z) {
 /// A direction of the plan, uniform enough, and the same on every machine.
 glm::dvec2 anyDirection(Random& random) {
     for (;;) {
-        const glm::dvec2 d(random.uniform(-1, 1), random.uniform(-1, 1));
+        const glm::dvec2 d{random.uniform(-1, 1), random.uniform(-1, 1)};  // braces keep the order
         const double length2 = glm::dot(d, d);
         if (length2 > 0.01 && length2 <= 1) return d / std::sqrt(length2);
     }
@@ -37,20 +37,20 @@ glm::dvec2 anyDirection(Random& random) {
 
 class Strewer {
 public:
-    Strewer(const HeightField& field, uint64_t seed, uint32_t root, Scene& scene)
+    Strewer(const HeightField& field, uint64_t seed, Scene& scene)
         : field_(field),
           seed_(seed),
-          root_(root),
+
           scene_(scene),
-          trees_(node("Trees", root)),
-          rocks_(node("Rocks", root)) {
+          trees_(node("Trees", SceneNode::kNone)),
+          rocks_(node("Rocks", SceneNode::kNone)) {
         const double side = (field.high() - field.low()) / kCell;
         const double expected = side * side * (kMostInCell + 1);
         keep_ = std::min(1.0, kMostObjects / (1.05 * expected));
     }
 
     void strew() {
-        const uint32_t farms = node("Farms", root_);
+        const uint32_t farms = node("Farms", SceneNode::kNone);
         eachCell(kFarmCell, [&](int64_t x, int64_t z) { addFarm(x, z, farms); });
         eachCell(kCell, [&](int64_t x, int64_t z) { fillCell(x, z); });
     }
@@ -113,7 +113,7 @@ private:
         for (int tries = 0; tries < 12; ++tries) {
             const double share = kFarmReach / kFarmCell;
             const glm::dvec2 at =
-                (glm::dvec2(x, z) + glm::dvec2(random.uniform(share, 1 - share), random.uniform(share, 1 - share))) *
+                (glm::dvec2(x, z) + glm::dvec2{random.uniform(share, 1 - share), random.uniform(share, 1 - share)}) *
                 kFarmCell;
             const glm::dvec2 front = anyDirection(random);
             if (!inside(at, kFarmReach + 4) || relief(at, 22) > 9 || field_.ground(at) < kLakeLevel + 4) continue;
@@ -121,13 +121,15 @@ private:
             farms_[{x, z}] = at;
             const uint32_t farm = node("Farm " + std::to_string(farms_.size()), parent);
             const glm::dvec2 right(front.y, -front.x);
-            put(random.below(4) ? kHouse : kHut, at, front, glm::dvec3(random.uniform(0.9, 1.1)), farm);
+            const double size = random.uniform(0.9, 1.1);
+            put(random.below(4) ? kHouse : kHut, at, front, glm::dvec3(size), farm);
             const glm::dvec2 barn = at - front * 2.0 + right * (random.below(2) ? 17.0 : -17.0);
             if (relief(barn, 8) < 3) put(kBarn, barn, random.below(2) ? right : front, glm::dvec3(1), farm);
             put(kWell, at + front * 9.0 - right * 4.0, front, glm::dvec3(1), farm);
             addFence(at, front, 6 + static_cast<int>(random.below(2)), 5, farm);
             for (int i = 0; i < 4; ++i) {
-                const glm::dvec2 tree = at - front * random.uniform(10, 15) + right * random.uniform(-16, 16);
+                const double back = random.uniform(10, 15), aside = random.uniform(-16, 16);
+                const glm::dvec2 tree = at - front * back + right * aside;
                 const double tall = random.uniform(0.4, 0.7);
                 put(kOak, tree, anyDirection(random), glm::dvec3(tall), farm);
             }
@@ -157,7 +159,7 @@ private:
     void fillCell(int64_t x, int64_t z) {
         Random random(mixSeed(seed_ ^ 0x747265ull, placeOf(x, z)));
         for (int i = 0; i <= kMostInCell; ++i) {
-            const glm::dvec2 at = (glm::dvec2(x, z) + glm::dvec2(random.uniform(), random.uniform())) * kCell;
+            const glm::dvec2 at = (glm::dvec2(x, z) + glm::dvec2{random.uniform(), random.uniform()}) * kCell;
             const glm::dvec2 front = anyDirection(random);
             const double kept = random.uniform(), chance = random.uniform(), size = random.uniform(0.7, 1.2),
                          kind = random.uniform();
@@ -193,7 +195,6 @@ private:
 
     const HeightField& field_;
     uint64_t seed_;
-    uint32_t root_;
     Scene& scene_;
     uint32_t trees_, rocks_;
     double keep_ = 1;
@@ -204,8 +205,6 @@ private:
 
 }  // namespace
 
-void strew(const HeightField& field, uint64_t seed, uint32_t root, Scene& scene) {
-    Strewer(field, seed, root, scene).strew();
-}
+void strew(const HeightField& field, uint64_t seed, Scene& scene) { Strewer(field, seed, scene).strew(); }
 
 }  // namespace sightline::terrain

@@ -11,8 +11,8 @@ namespace sightline::terrain {
 
 inline constexpr uint32_t kMostObjects = 200'000;  ///< that stand on the ground
 
-/// Adds instances of the library, with which the scene's meshes begin, and their nodes under `root`. The place of
+/// Adds instances of the library, with which the scene's meshes begin, and their nodes. The place of
 /// each follows from the seed and the ground alone; where there would be too many, they thin out evenly.
-void strew(const HeightField& field, uint64_t seed, uint32_t root, Scene& scene);
+void strew(const HeightField& field, uint64_t seed, Scene& scene);
 
 }  // namespace sightline::terrain
