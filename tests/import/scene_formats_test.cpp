@@ -131,7 +131,7 @@ TEST_F(SceneFormats, FacesByIndexOfIfc4AreFaces) {
     const std::string points =
         "#140 = "
         "IFCCARTESIANPOINTLIST3D(((0.,0.,0.),(1000.,0.,0.),(0.,2000.,0.),(0.,0.,3000.),(250.,0.,250.),(500.,0.,250.),("
-        "250.,0.,500.)));\n";
+        "250.,0.,500.),(500.,0.,500.)));\n";
     const double slope = 0.5 * glm::length(glm::cross(glm::dvec3(-1, 2, 0), glm::dvec3(-1, 0, 3)));
     const Result<Scene> triangles = load(
         write("triangles.ifc", ifc4("IfcTriangulatedFaceSet(#140,$,.T.,((1,3,2),(1,2,4),(1,4,3),(2,3,4)),$)", points)));

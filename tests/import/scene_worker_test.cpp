@@ -229,13 +229,13 @@ TEST_F(SceneWorker, TellsHowFarItIs) {
 }
 
 TEST_F(SceneWorker, AnswersWhateverIsDoneToAFile) {
-    settings_.time_limit = 2;
+    settings_.time_limit = 1;
     settings_.memory_limit = uint64_t(1) << 30;
     std::vector<ForeignFile> files = foreignFiles(twoBoxes());
     files.push_back({"wall.ifc", ifcText("IFC2X3")});
     int scenes = 0, lines = 0;
     for (const ForeignFile& file : files)
-        for (uint64_t seed = 0; seed < 20; ++seed) {
+        for (uint64_t seed = 0; seed < 15; ++seed) {
             SCOPED_TRACE(file.name + ", seed " + std::to_string(seed));
             Random random(seed);
             std::string bytes = file.bytes;
