@@ -127,8 +127,11 @@ std::string answerText(const AskedScene& asked, const ObjectAnswer& answer) {
 std::string answerLine(const AskedScene& asked, const ObjectAnswer& answer) {
     const auto name = [&](ObjectId id) { return asked.nameOf(id); };
     const std::string stage = stageOf(answer.why);
-    std::string line = fmt::format("frame {:>4}  {:<10} {}", answer.frame, stage.empty() ? "kept" : stage,
-                                   explanationClause(answer.why, name));
+    std::string line;
+    for (const size_t most : {size_t{6}, size_t{1}})
+        if (line.empty() || line.size() > kColumns)
+            line = fmt::format("frame {:>4}  {:<10} {}", answer.frame, stage.empty() ? "kept" : stage,
+                               explanationClause(answer.why, name, most));
     if (line.size() > kColumns) line = line.substr(0, kColumns - 3) + "...";
     return line + "\n";
 }

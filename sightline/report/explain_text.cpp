@@ -28,9 +28,9 @@ std::string percent(double share) {
 }
 
 /// "'Wall' (71 %), 'Door' (20 %) and 3 others (9 %)".
-std::string listOf(const Array<Hider>& hiders, const NameOfObject& name) {
-    constexpr size_t kMost = 6;
-    const size_t shown = hiders.size() > kMost + 1 ? kMost : hiders.size();
+/// @param most  names; of more than one, another rather than "1 other"
+std::string listOf(const Array<Hider>& hiders, const NameOfObject& name, size_t most = 6) {
+    const size_t shown = hiders.size() > most + (most > 1) ? most : hiders.size();
     std::vector<std::string> parts;
     double rest = 1;
     for (size_t i = 0; i < shown; ++i) {
@@ -39,7 +39,8 @@ std::string listOf(const Array<Hider>& hiders, const NameOfObject& name) {
         rest -= hiders[i].share;
     }
     if (shown < hiders.size())
-        parts.push_back(fmt::format("{} others ({})", hiders.size() - shown, percent(std::max(rest, 0.0))));
+        parts.push_back(fmt::format("{} other{} ({})", hiders.size() - shown, hiders.size() - shown == 1 ? "" : "s",
+                                    percent(std::max(rest, 0.0))));
     std::string text;
     for (size_t i = 0; i < parts.size(); ++i) text += (i == 0 ? "" : i + 1 < parts.size() ? ", " : " and ") + parts[i];
     return text;
@@ -162,7 +163,7 @@ std::string explanationText(const Explanation& why, const std::string& subject, 
     return fmt::format("kept: {}: {}.", subject, keptText(why, name)) + rectangleText(why);
 }
 
-std::string explanationClause(const Explanation& why, const NameOfObject& name) {
+std::string explanationClause(const Explanation& why, const NameOfObject& name, size_t most) {
     switch (why.verdict) {
         case Verdict::kNoSuchObject:
             return "no such object";
@@ -171,7 +172,7 @@ std::string explanationClause(const Explanation& why, const NameOfObject& name) 
         case Verdict::kOutsideFrustum:
             return planeText(why.frustum);
         case Verdict::kOccluded:
-            return "behind " + listOf(why.occlusion.hiders, name);
+            return "behind " + listOf(why.occlusion.hiders, name, most);
         case Verdict::kVisible:
             break;
     }

@@ -18,7 +18,8 @@ using NameOfObject = std::function<std::string(ObjectId)>;
 std::string explanationText(const Explanation& why, const std::string& subject, const NameOfObject& name);
 
 /// One clause without the object's name: "behind 'Wall 12' (71 %) and 'Door 3' (29 %)", for lists of frames.
-std::string explanationClause(const Explanation& why, const NameOfObject& name);
+/// @param most  occluders that are named; of more, their number is
+std::string explanationClause(const Explanation& why, const NameOfObject& name, size_t most = 6);
 
 /// "frustum", "occlusion", or empty where no stage culled it.
 std::string stageOf(const Explanation& why);
