@@ -111,7 +111,7 @@ std::string differenceTable(const RunComparison& c) {
     std::string rest;
     if (c.differences.size() > kMostRows)
         rest = fmt::format("<p class=\"soft\">and {} more, in the JSON</p>", number(c.differences.size() - kMostRows));
-    return "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Objects that differ\"><table "
+    return "<div class=\"scroll tall\" tabindex=\"0\" role=\"region\" aria-label=\"Objects that differ\"><table "
            "class=\"counts wide\"><thead><tr><th scope=\"col\">object</th><th scope=\"col\">path</th><th "
            "scope=\"col\">key</th><th scope=\"col\">frames, only A</th><th scope=\"col\">frames, only B</th></tr>"
            "</thead><tbody>" +

@@ -68,7 +68,7 @@ button:focus-visible, input:focus-visible, a:focus-visible, [tabindex]:focus-vis
 i[class^=stage-], i.in-view, i.ink { display: inline-block; width: .8em; height: .8em; border-radius: 2px; margin-right: .45em; }
 i.stage-0 { background: var(--stage-0); } i.stage-1 { background: var(--stage-1); } i.stage-2 { background: var(--stage-2); }
 i.in-view { background: var(--in-view); } i.ink { background: var(--ink); }
-g.stage-1 polygon { fill: var(--stage-1); } g.stage-2 polygon { fill: var(--stage-2); }
+.plot polygon { stroke: none; } g.one polygon { fill: var(--one); } g.two polygon { fill: var(--two); } g.stage-1 polygon { fill: var(--stage-1); } g.stage-2 polygon { fill: var(--stage-2); }
 .plot { padding: 10px 14px 30px 64px; border-radius: 8px; cursor: pointer; touch-action: pan-y; }
 .plot .area { position: relative; height: 210px; }
 .plot svg { position: absolute; inset: 0; width: 100%; height: 100%; overflow: visible; }
@@ -83,8 +83,8 @@ g.stage-1 polygon { fill: var(--stage-1); } g.stage-2 polygon { fill: var(--stag
 .cards > .card:first-child:last-child { grid-column: 1 / -1; } .cards { align-items: stretch; } .cards > .card { margin: 0; }
 .cards { margin: 18px 0; }
 .names { padding-left: 1.2em; margin: 4px 0 12px; } .names li { overflow-wrap: anywhere; }
-.objects td:nth-child(1), .objects td:nth-child(2) { text-align: left; white-space: normal; overflow-wrap: anywhere; min-width: 11em; }
-.objects th:nth-child(2) { text-align: left; } .objects td:last-child { text-align: left; } .objects th:last-child { text-align: left; }
+.objects td:nth-child(1), .objects .path, .objects #paths { text-align: left; white-space: normal; overflow-wrap: anywhere; }
+.objects td:nth-child(1) { min-width: 9em; } .objects td:last-child { text-align: left; } .objects th:last-child { text-align: left; }
 .sort { background: none; border: 0; padding: 0; min-width: 0; color: inherit; text-decoration: underline dotted; }
 .wide tbody th { white-space: normal; overflow-wrap: anywhere; min-width: 12em; }
 i.swatch { display: inline-block; width: .8em; height: .8em; border-radius: 2px; margin-right: .45em; }
@@ -114,7 +114,8 @@ figcaption b { color: var(--ink); font-variant-numeric: tabular-nums; }
 .bar { height: 12px; border-radius: 3px; margin-top: 14px; }
 .scale { display: flex; justify-content: space-between; margin-top: 4px; font-size: .92rem; color: var(--soft); }
 .heatscale { position: relative; height: 1.5em; } .heatscale span { position: absolute; white-space: nowrap; }
-.scroll { overflow-x: auto; }
+.scroll { overflow-x: auto; } .tall { max-height: 560px; overflow-y: auto; } .tall thead th { position: sticky; top: 0; background: var(--card); }
+.pair > figure.plan img { max-height: 440px; width: auto; max-width: 100%; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
 tbody th { font-weight: 400; }
 th, td { text-align: right; padding: 7px 12px; border-bottom: 1px solid var(--line); white-space: nowrap; }
@@ -149,7 +150,7 @@ footer { padding-bottom: 30px; color: var(--soft); font-size: .92rem; }
 @media print {
   :root { color-scheme: light; } body { background: #fff; font-size: 11pt; }
   .player button, .player input, .switch, nav, .go, #more { display: none; }
-  .card { break-inside: avoid; border-color: #999; } .scroll { overflow: visible; }
+  .card { break-inside: avoid; border-color: #999; } .scroll { overflow: visible; max-height: none; }
   * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 }
 )css";

@@ -138,7 +138,7 @@ for (const button of all('.go')) button.addEventListener('click', () => {
 });
 
 const rows = at('rows');
-let order = data.rows.map((row, i) => i), shown = 50, sorted = null, rising = false;
+let order = data.rows.map((row, i) => i), shown = 20, sorted = null, rising = false;
 function cell(line, text, tag) {
   const made = document.createElement(tag || 'td');
   made.textContent = text;
@@ -155,11 +155,11 @@ function fillTable() {
   put('found', grouped(found.length) + ' found');
   put('table-frame', frame);
   at('more').hidden = found.length <= shown;
-  const lines = document.createDocumentFragment(), triangles = !!document.querySelector('.sort[data-by="3"]');
+  const paths = !!at('paths'), lines = document.createDocumentFragment(), triangles = !!document.querySelector('.sort[data-by="3"]');
   for (const i of found.slice(0, shown)) {
     const [key, name, path, count, frames] = data.rows[i], line = document.createElement('tr');
     cell(line, name || 'object ' + key);
-    cell(line, path === name ? '' : path);
+    if (paths) cell(line, path === name ? '' : path).className = 'path';
     cell(line, key);
     if (triangles) cell(line, grouped(count));
     cell(line, frames + ' of ' + data.frames);
@@ -172,7 +172,7 @@ function fillTable() {
   rows.replaceChildren(lines);
 }
 if (rows) {
-  at('search').addEventListener('input', () => { shown = 50; fillTable(); });
+  at('search').addEventListener('input', () => { shown = 20; fillTable(); });
   at('only-kept').addEventListener('change', fillTable);
   at('more').addEventListener('click', () => { shown += 200; fillTable(); });
   for (const button of all('.sort')) button.addEventListener('click', () => {

@@ -201,6 +201,8 @@ std::string tableSection(const ObjectTable& table) {
     if (table.rows.empty()) return "";
     const bool triangles =
         std::any_of(table.rows.begin(), table.rows.end(), [](const auto& row) { return row.triangles > 0; });
+    const bool paths =
+        std::any_of(table.rows.begin(), table.rows.end(), [](const auto& row) { return row.path != row.name; });
     std::string note;
     if (table.left_out > 0)
         note = fmt::format(
@@ -212,11 +214,12 @@ std::string tableSection(const ObjectTable& table) {
 <input type="search" id="search" autocomplete="off" spellcheck="false"><label class="tick-box"><input type="checkbox" id="only-kept">
 kept in this frame</label><output id="found" for="search"></output></div>
 <div class="scroll" tabindex="0" role="region" aria-label="Objects"><table class="objects"><thead><tr>
-<th scope="col">object</th><th scope="col">path</th><th scope="col"><button type="button" class="sort" data-by="0">key</button></th>
+<th scope="col">object</th>{}<th scope="col"><button type="button" class="sort" data-by="0">key</button></th>
 {}<th scope="col"><button type="button" class="sort" data-by="4">frames kept</button></th>
 <th scope="col">in frame <span id="table-frame"></span></th></tr></thead><tbody id="rows"></tbody></table></div>
 <p><button type="button" id="more">Show more</button></p>)html",
-                            note,
+                            note, paths ? "<th scope=\"col\" id=\"paths\">path</th>" : "",
+
                             triangles ? "<th scope=\"col\"><button type=\"button\" class=\"sort\" "
                                         "data-by=\"3\">triangles</button></th>"
                                       : ""));
