@@ -11,6 +11,7 @@
 #include "apps/cli/common.h"
 #include "apps/cli/cull_path.h"
 #include "apps/cli/explain_object.h"
+#include "apps/cli/session.h"
 #include "apps/cli/verbs.h"
 #include "sightline/report/explain_picture.h"
 #include "sightline/report/explain_text.h"
@@ -117,16 +118,22 @@ Status explainInFrame(const ExplainOptions& options, const AskedScene& asked, co
 }
 
 /// One line a frame. Of objects that share a key: the first, and how many there are.
-void explainInAll(const ExplainOptions& options, const AskedScene& asked, const CameraPath& path,
-                  const std::vector<uint32_t>& objects, Json& body) {
+/// @returns the exit code
+int explainInAll(const ExplainOptions& options, const AskedScene& asked, const CameraPath& path,
+                 const std::vector<uint32_t>& objects, Json& body) {
     const uint32_t object = objects.front();
     fmt::print(readerOf(options), "{}\n", titleOf(asked.scene, object));
-    for (uint32_t i = 0; i < path.frames.size(); ++i) {
-        Explainer explainer(asked.now, viewOfFrame(path.frames[i], options));
-        const ObjectAnswer answer{i, object, explainer.explain(asked.loaded.ids[object], {true, false}), {}};
+    if (objects.size() > 1) fmt::print(readerOf(options), "the first of {} objects with this key\n", objects.size());
+    stopGently();
+    uint32_t done = 0;
+    for (; done < path.frames.size() && !interrupted(); ++done) {
+        Explainer explainer(asked.now, viewOfFrame(path.frames[done], options));
+        const ObjectAnswer answer{done, object, explainer.explain(asked.loaded.ids[object], {true, false}), {}};
         fmt::print(readerOf(options), "{}", answerLine(asked, answer));
         body["answers"].push_back(answerJson(asked, answer));
     }
+    if (done == path.frames.size()) return kDone;
+    return reportInterruption(fmt::format("{} of {} frames", done, path.frames.size()), done > 0);
 }
 
 /// What lies at a pixel, front to back, and why the first of it is kept.
@@ -165,7 +172,7 @@ Status explainPath(const ExplainOptions& options, const Scene& scene, const Came
     return writeJson(options, scene, pathJson(scene, run));
 }
 
-Status explainObjects(const ExplainOptions& options, const Scene& scene, const CameraPath& path) {
+Status explainObjects(const ExplainOptions& options, const Scene& scene, const CameraPath& path, int& exit_code) {
     Json body;
     body["answers"] = Json::array();
     Result<std::vector<uint32_t>> objects = std::vector<uint32_t>();
@@ -173,7 +180,7 @@ Status explainObjects(const ExplainOptions& options, const Scene& scene, const C
     if (!objects) return objects.error();
     const AskedScene asked(scene);
     if (options.all_frames) {
-        explainInAll(options, asked, path, *objects, body);
+        exit_code = explainInAll(options, asked, path, *objects, body);
     } else {
         const CameraFrame& camera = path.frames[options.first_frame];
         Status done = options.has_pixel ? explainPixel(options, asked, camera, body)
@@ -194,7 +201,7 @@ Status runExplain(const CLI::App& verb, ExplainOptions& options, int& exit_code)
     if (Status writable = checkOutputs(options); !writable) return writable;
     options.credits = true;
     if (verb.count("--object") == 0 && !options.has_pixel) return explainPath(options, *scene, *path, exit_code);
-    return explainObjects(options, *scene, *path);
+    return explainObjects(options, *scene, *path, exit_code);
 }
 
 }  // namespace
