@@ -61,7 +61,7 @@ std::string option(const OptionFacts& facts) {
     return tagged(term, text.empty() ? "\\&" : text + ".");
 }
 
-std::string verbText(const CLI::App& verb) {
+std::string verbText(const CLI::App& tool, const CLI::App& verb) {
     std::string page = fmt::format(".SS {}\n{}.\n", escaped(verb.get_name()), escaped(verb.get_description()));
     page += ".PP\n" + bold("sightline " + verb.get_name());
     const std::vector<OptionFacts> options = optionsOf(verb);
@@ -72,7 +72,8 @@ std::string verbText(const CLI::App& verb) {
     page += " [" + italic("OPTIONS") + "]\n";
     std::string group;
     for (const OptionFacts& facts : options) {
-        if (facts.group == "General" && facts.option->get_name() != "--watch") continue;  // said once, for all verbs
+        // What the tool itself takes is said once, for all verbs.
+        if (!facts.positional && tool.get_option_no_throw(facts.names.back())) continue;
         if (facts.group != group) page += fmt::format(".PP\n{}:\n", italic(facts.group));
         group = facts.group;
         page += option(facts);
@@ -103,7 +104,7 @@ std::string manualPage(const CLI::App& tool, const std::string& version) {
                 "one ends the tool at once. Files are written aside and renamed, so that an old one stays until "
                 "the new one is whole.") +
             "\n.SH VERBS\n";
-    for (const CLI::App* verb : verbsOf(tool)) page += verbText(*verb);
+    for (const CLI::App* verb : verbsOf(tool)) page += verbText(tool, *verb);
     page += ".SH OPTIONS OF EVERY VERB\n";
     for (const OptionFacts& facts : optionsOf(tool)) page += option(facts);
     page += entries("SCENES", sceneEntries()) + entries("CAMERAS", cameraEntries());

@@ -1,0 +1,194 @@
+// Configuration files: what is read, what comes before what, and what a file that was only found may not say.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/config_file.h"
+
+#include <random>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/tool.h"
+
+namespace sightline::cli {
+namespace {
+
+class Config : public Tool {
+protected:
+    void SetUp() override {
+        Tool::SetUp();
+        ::setenv("XDG_CONFIG_HOME", path("home").c_str(), 1);
+        std::filesystem::create_directories(path("home/sightline"));
+    }
+    size_t frames(const std::string& arguments) const {
+        const Outcome outcome = run("cull city:1:50 --size 64x36 --quiet --json - " + arguments);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return outcome.exit_code == 0 ? nlohmann::json::parse(outcome.out)["frames"].size() : 0;
+    }
+};
+
+TEST_F(Config, TheCommandLineComesFirstThenTheVerbThenTheTop) {
+    write("c.toml", "frames = 3\n[cull]\nframes = 4\n[verify]\nframes = 9\n");
+    EXPECT_EQ(frames("--config c.toml"), 4u);
+    EXPECT_EQ(frames("--config c.toml --frames 5"), 5u);
+    write("c.toml", "frames = 3\n[verify]\nframes = 9\n");
+    EXPECT_EQ(frames("--config c.toml"), 3u);
+}
+
+TEST_F(Config, OneFileIsReadThatIsNamedOrHereOrAtHome) {
+    EXPECT_EQ(frames(""), 16u);
+    write("home/sightline/config.toml", "frames = 2");
+    EXPECT_EQ(frames(""), 2u);
+    write("sightline.toml", "frames = 3");
+    EXPECT_EQ(frames(""), 3u);
+    write("c.toml", "seed = 2");
+    EXPECT_EQ(frames("--config c.toml"), 16u);
+    EXPECT_EQ(frames("--no-config"), 16u);
+    const Outcome told = run("info city:1:50");
+    EXPECT_NE(told.err.find("./sightline.toml"), std::string::npos);
+    expectError("cull city:1:50 --config c.toml --no-config", 2, "--no-config");
+    expectError("cull city:1:50 --config absent.toml", 3, "absent.toml");
+}
+
+TEST_F(Config, CamerasOfTheCommandLineRuleOutFramesOfTheFile) {
+    write("path.json", R"({"frames": [{"eye": [0, 2, 10], "target": [0, 2, 0]}]})");
+    write("c.toml", "frames = 3\nseed = 4\nunit = \"mm\"\n");
+    EXPECT_EQ(frames("--config c.toml --cameras path.json"), 1u);
+    write("c.toml", "cameras = \"path.json\"\n");
+    EXPECT_EQ(frames("--config c.toml --frames 3"), 3u);
+    EXPECT_EQ(frames("--config c.toml"), 1u);
+}
+
+TEST_F(Config, FaultsNameTheFileAndTheLine) {
+    const std::pair<const char*, const char*> faults[] = {
+        {"frames = 3\nframse = 3", "c.toml:2: no verb has option \"framse\" that a file may set; did you mean frames?"},
+        {"[cul]\n", "c.toml:1: there is no verb \"cul\""},
+        {"[info]\nframes = 3\n", "c.toml:2: \"info\" has no option \"frames\""},
+        {"\nframes = 0", "c.toml:2: \"frames\""},
+        {"frames = many", "c.toml:1: many is neither"},
+        {"frames = true", "c.toml:1: \"frames\" is no switch"},
+        {"frames = [1, 2]", "c.toml:1: \"frames\" takes one value"},
+        {"[cull]\nverify = 1", "c.toml:2: \"verify\""},
+        {"size = \"x", "c.toml:1: a string does not end"},
+        {"frames 3", "c.toml:1: \"frames\" has no ="},
+        {"frames = 3\n\nframes = 4", "c.toml:3: \"frames\" is there already, in line 1"},
+        {"config = \"other.toml\"", "c.toml:1: no verb has option \"config\""},
+        {"watch = true", "c.toml:1: no verb has option \"watch\""},
+        {"SCENE = \"a.glb\"", "c.toml:1: no verb has option \"SCENE\""},
+    };
+    for (const auto& [text, fault] : faults) {
+        write("c.toml", text);
+        const Outcome outcome = run("cull city:1:50 --config c.toml");
+        EXPECT_EQ(outcome.exit_code, 3) << text;
+        EXPECT_EQ(outcome.errorLines(), 1u) << outcome.err;
+        std::string said = outcome.err;
+        if (const size_t colon = said.find("\": "); colon != std::string::npos) said.erase(colon + 1, 1);
+        EXPECT_NE(said.find(fault), std::string::npos) << text << "\n" << outcome.err;
+    }
+}
+
+TEST_F(Config, AFileThatWasOnlyFoundHereWritesNothing) {
+    const Outcome all = run("config --template");
+    size_t refused = 0;
+    std::string section;
+    std::istringstream lines(all.out);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.substr(0, 1) == "[") section = line;
+        const bool writes = line.find("= \"FILE") != std::string::npos || line.find("= \"DIR") != std::string::npos;
+        if (line.find("# ") != 0 || line.find(" = ") == std::string::npos) continue;
+        const std::string key = line.substr(2, line.find(" = ") - 2);
+        // Every option whose help says that it writes must be among those that are refused.
+        if (!writes) {
+            EXPECT_EQ(line.find("  # write "), std::string::npos) << section << " " << line;
+            EXPECT_EQ(line.find("  # draw "), std::string::npos) << section << " " << line;
+        }
+        if (!writes) continue;
+        write("sightline.toml", section + "\n" + key + " = \"written\"\n");
+        const Outcome outcome = run("cull city:1:50 --frames 1 --size 64x36 --quiet");
+        EXPECT_EQ(outcome.exit_code, 3) << key;
+        EXPECT_NE(outcome.err.find("sightline.toml:2: \"" + key + "\" names what is written"), std::string::npos);
+        EXPECT_FALSE(std::filesystem::exists(path("written")));
+        ++refused;
+    }
+    EXPECT_GE(refused, 8u) << all.out;
+    write("sightline.toml", "[cull]\njson = \"written\"\n");
+    EXPECT_EQ(run("cull city:1:50 --frames 1 --size 64x36 --config sightline.toml").exit_code, 0);
+    EXPECT_TRUE(std::filesystem::exists(path("written")));
+}
+
+TEST_F(Config, WhatIsPrintedCanBeReadAgain) {
+    write("c.toml", "size = \"64x36\"\nuse = [\"frustum\", 'occlusion']  # both\nrepeat = 2\n[cull]\nverify = true\n");
+    const Outcome first = run("config cull --config c.toml");
+    ASSERT_EQ(first.exit_code, 0) << first.err;
+    for (const char* line : {"size = \"64x36\"", "use = [\"frustum\", \"occlusion\"]", "repeat = 2", "verify = true"})
+        EXPECT_NE(first.out.find(line), std::string::npos) << line << " in\n" << first.out;
+    write("d.toml", first.out);
+    EXPECT_EQ(run("cull city:1:50 --frames 1 --config d.toml").exit_code, 0);
+    write("pattern.toml", run("config --template").out);
+    EXPECT_EQ(run("cull city:1:50 --frames 1 --size 64x36 --config pattern.toml").exit_code, 0);
+}
+
+TEST(ConfigFileText, IsReadAsTomlHasIt) {
+    const Result<ConfigFile> file = parseConfig(
+        "\xef\xbb\xbf# a comment\r\na = 'C:\\x' # after\r\n\"b c\"=\"\\u00e9\\t\\\"\"\n[ s ]\nn = -1_000.5e3\nl = [ 1, "
+        "# one\n 2, ]\n",
+        "t");
+    ASSERT_TRUE(file.ok()) << file.error().message;
+    ASSERT_EQ(file->entries.size(), 4u);
+    EXPECT_EQ(file->entries[0].words[0], "C:\\x");
+    EXPECT_EQ(file->entries[1].key, "b c");
+    EXPECT_EQ(file->entries[1].words[0], "\xc3\xa9\t\"");
+    EXPECT_EQ(file->entries[2].section, "s");
+    EXPECT_EQ(file->entries[2].words[0], "-1000.5e3");
+    EXPECT_EQ(file->entries[3].words, (std::vector<std::string>{"1", "2"}));
+    EXPECT_EQ(file->entries[3].line, 6u);
+    for (const std::string text : {"a = \"tab\\t \\\\ \\\" end\"", "b = \"\"", "c = \"\xc3\xa9\""}) {
+        const std::string word = parseConfig(text, "t")->entries[0].words[0];
+        EXPECT_EQ(parseConfig("k = " + tomlText(word), "t")->entries[0].words[0], word);
+    }
+}
+
+TEST(ConfigFileText, WhatItIsNotIsRefusedInOneLine) {
+    for (const char* text : {"a",
+                             "a =",
+                             "= 1",
+                             "a.b = 1",
+                             "[[a]]",
+                             "[a.b]",
+                             "[a",
+                             "a = {b = 1}",
+                             "a = 2020-01-01",
+                             "a = \"\"\"x\"\"\"",
+                             "a = 01",
+                             "a = 1__0",
+                             "a = [1 2]",
+                             "a = [1",
+                             "a = [[1]]",
+                             "a = \"\\q\"",
+                             "a = \"\\ud800\"",
+                             "a = 1 2",
+                             "a = \"\x01\"",
+                             "[a]\n[a]"}) {
+        const Result<ConfigFile> file = parseConfig(text, "t");
+        ASSERT_FALSE(file.ok()) << text;
+        EXPECT_EQ(file.error().message.find("t:"), 0u);
+        EXPECT_EQ(file.error().message.find('\n'), std::string::npos);
+    }
+}
+
+TEST(ConfigFileText, AnyBytesAreReadOrRefused) {
+    std::mt19937 random(7);
+    const std::string good = "a = 'x'\n[s]\nb = [1, \"\\u00e9\"] # c\nd = true\n";
+    for (int i = 0; i < 20000; ++i) {
+        std::string text = good;
+        for (uint32_t k = random() % 4 + 1; k > 0; --k) {
+            const size_t at = random() % text.size();
+            if (random() % 2) text[at] = static_cast<char>(random());
+            else text.erase(at, random() % 5);
+            if (text.empty()) text = "\n";
+        }
+        const Result<ConfigFile> file = parseConfig(text, "t");
+        if (!file) EXPECT_EQ(file.error().message.find("t:"), 0u) << text;
+    }
+}
+
+}  // namespace
+}  // namespace sightline::cli
