@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include <cerrno>
 #include <charconv>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -58,7 +57,7 @@ public:
     explicit Output(int file) : file_(file) {}
 
     void write(const void* bytes, size_t size) {
-        if (size >= sizeof block_) {
+        if (size == 0 || size >= sizeof block_) {
             flush();
             writeOut(static_cast<const char*>(bytes), size);
             return;
@@ -66,11 +65,6 @@ public:
         if (size > sizeof block_ - used_) flush();
         std::memcpy(block_ + used_, bytes, size);
         used_ += size;
-        // Progress is of no use later.
-        if (const auto now = Clock::now(); now - flushed_ > std::chrono::milliseconds(100)) {
-            flush();
-            flushed_ = now;
-        }
     }
 
     void flush() {
@@ -79,8 +73,6 @@ public:
     }
 
 private:
-    using Clock = std::chrono::steady_clock;
-
     void writeOut(const char* bytes, size_t size) {
         while (size > 0) {
             const ssize_t done = ::write(file_, bytes, size);
@@ -92,7 +84,6 @@ private:
     }
 
     int file_;
-    Clock::time_point flushed_ = Clock::now();
     size_t used_ = 0;
     char block_[1 << 16];
 };

@@ -61,6 +61,7 @@ void SceneStreamWriter::progress(uint64_t done, uint64_t total) {
     head(kProgress, 16);
     put(done);
     put(total);
+    sink_(kMagic, 0);
 }
 
 void SceneStreamWriter::note(const std::string& text) {

@@ -19,7 +19,8 @@ namespace sightline {
 /// With this exit code sightline-import says that its memory did not suffice.
 constexpr int kImportOutOfMemory = 12;
 
-/// Writes records to a sink, which takes every byte that it is given. Allocates nothing.
+/// Writes records to a sink, which takes every byte that it is given; a call with none asks it to let go of all that it
+/// holds back, so that progress is seen in time. Allocates nothing.
 class SceneStreamWriter {
 public:
     using Sink = std::function<void(const void* bytes, size_t size)>;

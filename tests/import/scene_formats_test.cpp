@@ -56,7 +56,7 @@ size_t corners(const Scene& scene) {
     return out;
 }
 
-double area(const Scene& scene) {
+[[maybe_unused]] double area(const Scene& scene) {
     double out = 0;
     for (const Corners& t : worldTriangles(scene)) {
         const auto at = [&](int c) { return glm::dvec3(t[c][0], t[c][1], t[c][2]) * 1e-6; };
