@@ -3,17 +3,19 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include <CLI/CLI.hpp>
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "apps/cli/common.h"
 #include "apps/cli/cull_path.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/render_options.h"
+#include "apps/cli/session.h"
 #include "apps/cli/verbs.h"
 #include "sightline/hidden/zbuffer_method.h"
 #include "sightline/report/cull_run.h"
@@ -51,10 +53,10 @@ void noteComparison(const RenderList& scene, const View& view, const RenderOptio
         *depth.comparison == DepthComparison::kGreater || *depth.comparison == DepthComparison::kGreaterEqual;
     const bool nearer_is_greater = depthCodecFor(scene.list(), view, depth.format).convention.greaterIsNearer();
     if (!(nearer_is_greater ? less : greater)) return;
-    fmt::print(stderr,
-               "note: --depth-comparison {}: in {} nearer depths are {}, so that only what is farther than the empty "
-               "buffer passes; the picture will be empty\n",
-               options.depth_comparison, options.depth_format, nearer_is_greater ? "greater" : "less");
+    note(
+        fmt::format("--depth-comparison {}: in {} nearer depths are {}, so that only what is farther than the empty "
+                    "buffer passes; the picture will be empty",
+                    options.depth_comparison, options.depth_format, nearer_is_greater ? "greater" : "less"));
 }
 
 /// Of the methods whose heat maps are written.
@@ -68,8 +70,8 @@ void noteHeat(const RenderOptions& options, const RenderRun& run) {
         names += fmt::format("{}{}", names.empty() ? "" : ", ", result.name());
     }
     if (!names.empty())
-        fmt::print(stderr, "note: --heat {}: no fragment was {} by {}; heat maps of that are black\n", options.heat,
-                   options.heat, names);
+        note(fmt::format("--heat {}: no fragment was {} by {}; heat maps of that are black", options.heat, options.heat,
+                         names));
 }
 
 std::vector<HiddenMethod> methodsOf(const RenderOptions& options, RenderRun& run) {
@@ -99,9 +101,11 @@ void drawMethods(const RenderList& scene, const View& view, const RenderOptions&
 }
 
 void printRun(std::FILE* out, const RenderRun& run) {
-    fmt::print(out, "{}: {} objects, {} triangles; frame {} of {}, {}x{}: {} objects, {} polygons in view\n", run.scene,
-               grouped(run.objects), grouped(run.triangles), run.frame, run.frames, run.width, run.height,
-               grouped(run.objects_in_view), grouped(run.polygons_in_view));
+    std::string text;
+    fmt::format_to(std::back_inserter(text),
+                   "{}: {} objects, {} triangles; frame {} of {}, {}x{}: {} objects, {} polygons in view\n", run.scene,
+                   grouped(run.objects), grouped(run.triangles), run.frame, run.frames, run.width, run.height,
+                   grouped(run.objects_in_view), grouped(run.polygons_in_view));
     for (const MethodResult& result : run.methods) {
         const Agreement& agreement = result.agreement;
         std::string verdict = "as the plain z-buffer";
@@ -112,12 +116,15 @@ void printRun(std::FILE* out, const RenderRun& run) {
         std::string prepare;
         if (result.prepare_milliseconds > 0)
             prepare = fmt::format(" + {:.2f} ms to prepare", result.prepare_milliseconds);
-        fmt::print(out, "{:<18} {:>9.2f} ms{}  {:>12} fragments generated, {:>12} shaded  {}\n", result.name(),
-                   result.milliseconds, prepare, grouped(result.image.counters.generated),
-                   grouped(result.image.counters.shaded), verdict);
+        fmt::format_to(std::back_inserter(text),
+                       "{:<18} {:>9.2f} ms{}  {:>12} fragments generated, {:>12} shaded  {}\n", result.name(),
+                       result.milliseconds, prepare, grouped(result.image.counters.generated),
+                       grouped(result.image.counters.shaded), verdict);
     }
     for (const LeftOut& left : run.left_out)
-        fmt::print(out, "{:<18} left out: {}\n", kHiddenMethodNames[static_cast<int>(left.method)], left.why);
+        fmt::format_to(std::back_inserter(text), "{:<18} left out: {}\n",
+                       kHiddenMethodNames[static_cast<int>(left.method)], left.why);
+    tell(out, text);
 }
 
 Status writeOutputs(const RenderList& scene, const View& view, const RenderRun& run, const PictureSettings& pictures,
