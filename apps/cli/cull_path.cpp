@@ -13,7 +13,7 @@
 #include <set>
 #include <thread>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "apps/cli/progress.h"
 #include "apps/cli/session.h"
@@ -258,6 +258,11 @@ int exitCodeOf(const CullRun& run, size_t frames, bool verify) {
 
 Status explainFalseCulls(const Scene& scene, const RunOptions& options, const CullRun& run) {
     constexpr size_t kMostLines = 20;  // a frame
+    const auto say = [](auto format, const auto&... values) {
+        const std::string line = fmt::format(fmt::runtime(format), values...);
+        (void)std::fwrite(line.data(), 1, line.size(), stderr);
+        logLine(line);
+    };
     for (size_t i = 0; i < run.frames.size(); ++i) {
         const FrameResult& frame = run.frames[i];
         if (!frame.verification || frame.verification->rows.empty()) continue;
@@ -267,11 +272,10 @@ Status explainFalseCulls(const Scene& scene, const RunOptions& options, const Cu
         if (Status written = writeFileAside(file, cameraPathJson(path)); !written) return written;
         const auto& rows = frame.verification->rows;
         for (size_t k = 0; k < std::min(rows.size(), kMostLines); ++k)
-            fmt::print(stderr, "false cull: frame {}: object {} \"{}\" is seen at pixel ({:.3f}, {:.3f}) by {}\n", i,
-                       rows[k].key, scene.objects[rows[k].object].name, rows[k].x, rows[k].y, rows[k].witness);
-        if (rows.size() > kMostLines)
-            fmt::print(stderr, "false cull: frame {}: and {} more\n", i, rows.size() - kMostLines);
-        fmt::print(stderr, "replay: {}\n", replayCommand(options, run, file));
+            say("false cull: frame {}: object {} \"{}\" is seen at pixel ({:.3f}, {:.3f}) by {}\n", i, rows[k].key,
+                scene.objects[rows[k].object].name, rows[k].x, rows[k].y, rows[k].witness);
+        if (rows.size() > kMostLines) say("false cull: frame {}: and {} more\n", i, rows.size() - kMostLines);
+        say("replay: {}\n", replayCommand(options, run, file));
     }
     return success();
 }
