@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <map>
 
@@ -301,6 +302,40 @@ TEST(GltfDraco, UnpacksWhatIsPackedTight) {
     const std::string bytes = b.glb();
     EXPECT_LT(bytes.size(), 100'000u);
     EXPECT_EQ(load(bytes).meshes.at(0).triangles(), source.indices.size() / 3);
+}
+
+double surfaceOf(const Mesh& mesh) {
+    double area = 0;
+    for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+        const glm::dvec3 a = mesh.positions[mesh.indices[i]], b = mesh.positions[mesh.indices[i + 1]],
+                         c = mesh.positions[mesh.indices[i + 2]];
+        area += glm::length(glm::cross(b - a, c - a)) / 2;
+    }
+    return area;
+}
+
+// Draco leaves out triangles without an area, so surfaces are compared.
+TEST(GltfDraco, KeepsTheSurfacesOfARealScene) {
+    const std::filesystem::path file = std::filesystem::path(SIGHTLINE_SHARED_DIR) / "scenes" / "sauer-pandora.glb";
+    if (!std::filesystem::is_regular_file(file)) GTEST_SKIP() << "no scenes in ../shared";
+    const Result<Scene> plain = loadGltf(file.string());
+    ASSERT_TRUE(plain.ok()) << plain.error().message;
+    GltfBuilder b;
+    for (const Mesh& mesh : plain->meshes) {
+        PackedSource source;
+        for (const glm::vec3& p : mesh.positions) source.positions.insert(source.positions.end(), {p.x, p.y, p.z});
+        source.indices = mesh.indices;
+        b.node({{"mesh", addDracoMesh(b, source, {.quantization = 20})}});
+    }
+    const Scene packed = load(b.glb());
+    ASSERT_EQ(packed.meshes.size(), plain->meshes.size());
+    for (size_t i = 0; i < packed.meshes.size(); ++i) {
+        const Box3d &was = plain->meshes[i].bounds, &is = packed.meshes[i].bounds;
+        const double size = glm::length(was.max - was.min);
+        EXPECT_LE(glm::length(is.min - was.min) + glm::length(is.max - was.max), 1e-5 * size) << "mesh " << i;
+        const double area = surfaceOf(plain->meshes[i]);
+        EXPECT_NEAR(surfaceOf(packed.meshes[i]), area, 1e-3 * area + 1e-5 * size * size) << "mesh " << i;
+    }
 }
 
 // Some dozen bytes that claim a billion triangles, and indices that agree: refused before the library allocates.
