@@ -122,8 +122,9 @@ std::string player(const RunComparison& c, const Pictures& pictures) {
     std::string body = fmt::format(
         R"html(<div class="player"><button type="button" id="play" aria-pressed="false">Play</button>
 <button type="button" id="back" aria-label="One frame back">‹</button>
+<button type="button" id="forth" aria-label="One frame on">›</button>
 <input type="range" id="frame" aria-label="Frame" min="0" max="{}" value="0" step="1">
-<button type="button" id="forth" aria-label="One frame on">›</button><output id="at" for="frame"></output></div>)html",
+<output id="at" for="frame"></output></div>)html",
         c.pairs.size() - 1);
     const auto figures = [&](const char* id, const char* what) {
         const auto has = [&](const Film& film) {

@@ -86,10 +86,11 @@ i.in-view { background: var(--in-view); } i.ink { background: var(--ink); }
 .objects td:nth-child(1), .objects .path, .objects #paths { text-align: left; white-space: normal; overflow-wrap: anywhere; }
 .objects td:nth-child(1) { min-width: 9em; } .objects td:last-child { text-align: left; } .objects th:last-child { text-align: left; }
 .sort { background: none; border: 0; padding: 0; min-width: 0; color: inherit; text-decoration: underline dotted; }
-.wide tbody th { white-space: normal; overflow-wrap: anywhere; min-width: 12em; }
+.wide tbody th { white-space: normal; overflow-wrap: anywhere; min-width: 9em; } .wide thead th { white-space: normal; vertical-align: bottom; }
+thead td { border-bottom: 0; } .go { margin-top: 12px; }
 i.swatch { display: inline-block; width: .8em; height: .8em; border-radius: 2px; margin-right: .45em; }
 .sides td { white-space: normal; overflow-wrap: anywhere; } .path { white-space: normal; overflow-wrap: anywhere; min-width: 10em; }
-.mini { display: inline-block; width: 70px; height: 9px; margin-right: 10px; border-radius: 3px; background: var(--line); overflow: hidden; }
+.mini { float: left; margin-top: .5em; width: 56px; height: 9px; margin-right: 10px; border-radius: 3px; background: var(--line); overflow: hidden; }
 .mini i { display: block; height: 100%; background: var(--stage-2); }
 figure { margin: 0; }
 figure img { display: block; width: 100%; height: auto; border-radius: 6px; background: #0006; }

@@ -21,6 +21,9 @@ std::string labelOf(const Scene& scene, uint32_t object) {
     return fmt::format("object {}", it.key);
 }
 
+/// A count that several may share.
+std::string shared(double value) { return value < 1000 ? fmt::format("{:.1f}", value) : readable(std::round(value)); }
+
 std::string table(const std::string& head, const std::string& rows, const char* label) {
     return fmt::format(
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table class=\"counts "
@@ -47,8 +50,8 @@ std::string hidesMost(const Scene& scene, const std::vector<OccluderRow>& rows) 
         lines += fmt::format(
             "<tr><th scope=\"row\">{}</th><td><span class=\"mini\"><i style=\"width:{:.1f}%\"></i></span>{}</td>"
             "<td>{}</td><td>{}</td><td>{}</td></tr>",
-            labelOf(scene, row.object), 100 * row.hidden / most, readable(row.hidden), readable(row.hidden_triangles),
-            readable(static_cast<double>(row.triangles)), row.frames);
+            labelOf(scene, row.object), 100 * row.hidden / most, shared(row.hidden),
+            readable(std::round(row.hidden_triangles)), readable(static_cast<double>(row.triangles)), row.frames);
     }
     return card("hides", "Who hides most",
                 table(columns({"occluder", "objects hidden", "their triangles", "own triangles", "frames"}), lines,
@@ -79,7 +82,7 @@ std::string whichPay(const Scene& scene, std::vector<OccluderRow> rows) {
         lines +=
             fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td></tr>",
                         labelOf(scene, rows[i].object), readable(static_cast<double>(rows[i].triangles)),
-                        readable(rows[i].hidden), rows[i].hidden > 0 ? readable(price(rows[i])) : "nothing hidden");
+                        shared(rows[i].hidden), rows[i].hidden >= 0.05 ? readable(std::round(price(rows[i]))) : "–");
     return card(
         "pays", "Which occluders pay",
         fmt::format("<p>{} of {} rasterized occluders hid nothing on this path; they had {} of the {} triangles "

@@ -119,8 +119,9 @@ std::string filmSection(const CullRun& run, const Film& film) {
     std::string body = fmt::format(
         R"html(<div class="player"><button type="button" id="play" aria-pressed="false">Play</button>
 <button type="button" id="back" aria-label="One frame back">‹</button>
+<button type="button" id="forth" aria-label="One frame on">›</button>
 <input type="range" id="frame" aria-label="Frame" min="0" max="{}" value="0" step="1">
-<button type="button" id="forth" aria-label="One frame on">›</button><output id="at" for="frame"></output></div>)html",
+<output id="at" for="frame"></output></div>)html",
         run.frames.size() - 1);
     if (film.shots.empty()) return card("film", "Frame by frame", body + facts(run));
     const auto has = [&](const char* id) {
