@@ -140,6 +140,11 @@ void decodeMesh(Bytes stream, const DracoCounts& counts, Loan& loan, draco::Mesh
     else fail(place, "its Draco data is encoded by unknown method {}", method);
 }
 
+// The library also has 64-bit types, and a bool that it reads from any byte. glTF has none of them.
+bool isComponent(draco::DataType type) {
+    return (type >= draco::DT_INT8 && type <= draco::DT_UINT32) || type == draco::DT_FLOAT32;
+}
+
 template <class To>
 bool convert(const draco::PointAttribute& attribute, uint32_t vertices, uint32_t components, unsigned char* out) {
     To element[16];
@@ -177,6 +182,8 @@ std::vector<unsigned char> readAttribute(const draco::Mesh& mesh, const DracoAtt
     if (attribute->num_components() != wanted.components)
         fail(loan.place(), "its Draco data has {} components a {}, its accessor {}", int(attribute->num_components()),
              wanted.name, wanted.components);
+    if (!isComponent(attribute->data_type()))
+        fail(loan.place(), "its Draco data has a {} of a type that glTF has not", wanted.name);
     const uint64_t stride = uint64_t(wanted.components) * componentSize(wanted.component);
     loan.charge(mesh.num_points(), stride);
     std::vector<unsigned char> out(mesh.num_points() * stride);
