@@ -14,7 +14,7 @@ namespace sightline {
 /// The ground is cut into chunks of 64 x 64 squares (the last ones smaller), each an object in the world's own
 /// coordinates; chunks share the positions along their borders bit for bit. Lakes are sheets of opaque water over the
 /// chunks that reach below their level. Trees, rocks, houses and fences are instances that stand on the
-/// ground: about 4 for each 1000 square metres, and at most 200,000 of them. Crowns of spruces are closed and
+/// ground: about 3 for each 1000 square metres, and at most 200,000 of them. Crowns of spruces are closed and
 /// opaque; those of leafy trees are masked.
 ///
 /// Memory grows with the samples: 36 bytes each.
