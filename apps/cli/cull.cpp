@@ -1,7 +1,10 @@
 // The verb `cull`: the visible set along a camera path, measured, proved and reported as asked for.
 // SPDX-License-Identifier: MIT
 #include <cstdio>
+#include <filesystem>
+#include <functional>
 #include <memory>
+#include <mutex>
 
 #include <CLI/CLI.hpp>
 
@@ -30,8 +33,41 @@ Status checkOutputs(const CullOptions& options) {
     if (!options.trace.empty())
         if (Status writable = canWriteFile(options.trace); !writable) return writable;
     if (options.report.empty()) return success();
-    if (Status made = makeDirectory(options.report); !made) return made;
+    if (Status made = makeDirectory(options.report + "/frames"); !made) return made;
     return canWriteFile(options.report + "/index.html");
+}
+
+/// Pictures of an earlier report of the same directory would pass for this one's.
+void removePictures(const std::string& directory) {
+    std::error_code ignored;
+    std::vector<std::filesystem::path> old;
+    for (const auto& entry : std::filesystem::directory_iterator(directory, ignored)) {
+        const std::string name = entry.path().filename().string();
+        for (const char* what : {"frame-", "culled-", "plan-", "section-", "heat-all-", "heat-kept-"})
+            if (name.rfind(what, 0) == 0 && entry.path().extension() == ".png") old.push_back(entry.path());
+    }
+    for (const auto& file : old) std::filesystem::remove(file, ignored);
+}
+
+/// The page and the pictures beside it.
+Status writePage(const Scene& scene, const CullRun& run, const CullOptions& options) {
+    removePictures(options.report + "/frames");
+    Progress progress("drawing", "pictures", 0);
+    std::mutex mutex;
+    Status all = success();
+    PageSettings settings;
+    settings.for_each = [&](size_t count, const std::function<void(size_t)>& work) {
+        forEach(count, options.threads, work);
+    };
+    settings.progress = [&](size_t done, size_t total) { progress.set(done, total); };
+    settings.save = [&](const std::string& name, const std::string& bytes) {
+        Status written = writeFileAside(options.report + "/" + name, bytes);
+        const std::lock_guard lock(mutex);
+        if (!written && all) all = written;
+    };
+    const std::string page = reportPage(scene, run, settings);
+    if (!all) return all;
+    return writeFileAside(options.report + "/index.html", page);
 }
 
 Status writeOutputs(const Scene& scene, const CullRun& run, const CullOptions& options) {
@@ -43,13 +79,7 @@ Status writeOutputs(const Scene& scene, const CullRun& run, const CullOptions& o
     if (options.report.empty()) return success();
     if (Status written = writeFileAside(options.report + "/cull.json", json); !written) return written;
     if (Status written = writeFileAside(options.report + "/trace.json", traceJson(run)); !written) return written;
-    Progress progress("drawing", "pictures", 0);
-    PageSettings settings;
-    settings.for_each = [&](size_t count, const std::function<void(size_t)>& work) {
-        forEach(count, options.threads, work);
-    };
-    settings.progress = [&](size_t done, size_t total) { progress.set(done, total); };
-    return writeFileAside(options.report + "/index.html", reportPage(scene, run, settings));
+    return writePage(scene, run, options);
 }
 
 /// The whole verb. Returns the exit code.
@@ -83,7 +113,8 @@ void addCull(CLI::App& tool, int& exit_code) {
     verb->add_flag("--verify", options->verify,
                    "let rays and an id-buffer judge every frame; exit code 1 if "
                    "anything visible was culled");
-    verb->add_option("--report", options->report, "write DIR/index.html, one page with pictures, and DIR/cull.json")
+    verb->add_option("--report", options->report,
+                     "write DIR/index.html, one page with pictures, and its numbers and pictures beside it")
         ->type_name("DIR");
     verb->add_option("--trace", options->trace, "write a timeline for chrome://tracing and Perfetto")
         ->type_name("FILE");

@@ -155,7 +155,8 @@ function fillTable() {
   put('found', grouped(found.length) + ' found');
   put('table-frame', frame);
   at('more').hidden = found.length <= shown;
-  const paths = !!at('paths'), lines = document.createDocumentFragment(), triangles = !!document.querySelector('.sort[data-by="3"]');
+  const paths = !!at('paths'), lines = document.createDocumentFragment();
+  const triangles = !!document.querySelector('.sort[data-by="3"]');
   for (const i of found.slice(0, shown)) {
     const [key, name, path, count, frames] = data.rows[i], line = document.createElement('tr');
     cell(line, name || 'object ' + key);

@@ -212,8 +212,8 @@ std::string tableSection(const ObjectTable& table) {
             number(table.rows.size()), number(table.rows.size() + table.left_out));
     return card("objects", "Objects",
                 fmt::format(R"html({}<div class="player"><label for="search">Name, path or key</label>
-<input type="search" id="search" autocomplete="off" spellcheck="false"><label class="tick-box"><input type="checkbox" id="only-kept">
-kept in this frame</label><output id="found" for="search"></output></div>
+<input type="search" id="search" autocomplete="off" spellcheck="false"><label class="tick-box">
+<input type="checkbox" id="only-kept">kept in this frame</label><output id="found" for="search"></output></div>
 <div class="scroll" tabindex="0" role="region" aria-label="Objects"><table class="objects"><thead><tr>
 <th scope="col">object</th>{}<th scope="col"><button type="button" class="sort" data-by="0">key</button></th>
 {}<th scope="col"><button type="button" class="sort" data-by="4">frames kept</button></th>
