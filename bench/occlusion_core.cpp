@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 
 #include <fmt/format.h>
 
 #include "bench/occlusion_frame.h"
 #include "bench/occlusion_truth.h"
+#include "bench/stopwatch.h"
 
 namespace sightline::bench {
 namespace {
@@ -46,10 +46,10 @@ double median(std::vector<double>& times) {
 }
 
 template <class Job>
-void clock(std::vector<double>& times, Job job) {
-    const auto start = std::chrono::steady_clock::now();
+void clockJob(std::vector<double>& times, Job job) {
+    const double start = threadTime();
     job();
-    times.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
+    times.push_back(threadTime() - start);
 }
 
 /// Seam pixels that are open until something asks for them.
@@ -78,17 +78,17 @@ public:
         for (int round = -1; round < repeat; ++round) {
             if (round == 0)
                 for (auto* times : {&draw, &draw_all, &flat, &grouped}) times->clear();  // the first was to warm up
-            clock(draw_all, [&] { frame_.rasterize(tiles_, OcclusionFrame::SelfTest::kNo); });
-            clock(draw, [&] { frame_.rasterize(tiles_); });
-            clock(flat, [&] { frame_.testFlat(tiles_, flat_); });
+            clockJob(draw_all, [&] { frame_.rasterize(tiles_, OcclusionFrame::SelfTest::kNo); });
+            clockJob(draw, [&] { frame_.rasterize(tiles_); });
+            clockJob(flat, [&] { frame_.testFlat(tiles_, flat_); });
             figures_.offered = static_cast<double>(frame_.rasterize(tiles_));
             figures_.aside = openSeams(tiles_);
-            clock(grouped, [&] { frame_.testGrouped(tiles_, grouped_); });
+            clockJob(grouped, [&] { frame_.testGrouped(tiles_, grouped_); });
             figures_.resolved = static_cast<double>(tiles_.seam_pixels);
             if (round < 0 || round % kBaselineEvery) continue;
             ZBufferImage image;
-            clock(draw_plain, [&] { image = drawBatches(scene_, frame_.batches(), view_); });
-            clock(plain, [&] { testPlainly(image); });
+            clockJob(draw_plain, [&] { image = drawBatches(scene_, frame_.batches(), view_); });
+            clockJob(plain, [&] { testPlainly(image); });
         }
         figures_.draw = median(draw);
         figures_.draw_all = median(draw_all);

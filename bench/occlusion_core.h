@@ -7,8 +7,8 @@
 
 namespace sightline::bench {
 
-/// Measures all of occlusionSceneNames() at 1280x720 and 1920x1080 on one thread and adds their rows: times, each the
-/// median of Options::repeat in a view (24 if it is 0), and counts, both as means over the views.
+/// Measures all of occlusionSceneNames() at 1280x720 and 1920x1080 on one thread and adds their rows: the thread's own
+/// times, each the median of Options::repeat in a view (24 if it is 0), and counts, both as means over the views.
 void measureOcclusionCore(const Options& options, Table& table);
 
 }  // namespace sightline::bench

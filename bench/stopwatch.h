@@ -4,10 +4,19 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <functional>
 #include <vector>
 
 namespace sightline::bench {
+
+/// The time that this thread has been computing [microseconds]. For work of one thread: other programs' turns on the
+/// processor do not count, though their use of its caches does.
+inline double threadTime() {
+    timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) * 1e6 + static_cast<double>(now.tv_nsec) * 1e-3;
+}
 
 /// Runs each job once to warm up and then all of them `repeat` times, one after the other each time.
 /// @returns each job's median time [microseconds]
