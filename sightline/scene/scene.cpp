@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/scene/scene.h"
 
+#include <string_view>
+
+#include "sightline/scene/one_line.h"
+
 namespace sightline {
 
 uint64_t drawnTriangles(const Scene& scene) {
@@ -18,13 +22,22 @@ Box3d worldBounds(const Scene& scene) {
 }
 
 std::string objectPath(const Scene& scene, const SceneObject& object) {
+    if (object.name.size() > kLongestPath) return shortened(object.name, kLongestPath);
+    constexpr std::string_view kMore = ".../";
     std::vector<const std::string*> names;
     if (!object.name.empty()) names.push_back(&object.name);
+    size_t length = object.name.size();
+    std::string path;
     for (uint32_t node = object.node; node != SceneNode::kNone; node = scene.nodes[node].parent) {
         const std::string& name = scene.nodes[node].name;
-        if (!name.empty() && (node != object.node || name != object.name)) names.push_back(&name);
+        if (name.empty() || (node == object.node && name == object.name)) continue;
+        if (length + 1 + name.size() + kMore.size() > kLongestPath) {
+            path = kMore.substr(0, kMore.size() - 1);
+            break;
+        }
+        length += 1 + name.size();
+        names.push_back(&name);
     }
-    std::string path;
     for (auto name = names.rbegin(); name != names.rend(); ++name) {
         if (!path.empty()) path += '/';
         path += **name;

@@ -106,8 +106,11 @@ struct Scene {
     std::vector<SceneFile> files;      ///< empty: procedural
 };
 
+constexpr size_t kLongestPath = 4096;  // [bytes]: in a deep tree the paths of all would not fit into any memory
+
 /// Names of the nodes above an object and its own, from the root: "Level 1/Kitchen/Door". Nodes without a name are
-/// left out, and so is a node that only repeats the object's name.
+/// left out, and so is a node that only repeats the object's name. Of a path longer than kLongestPath the end is left,
+/// behind ".../".
 std::string objectPath(const Scene& scene, const SceneObject& object);
 
 /// Triangles that would be drawn: each object's mesh counted once per object.
