@@ -31,7 +31,7 @@ struct View {
     double jitter = 0.5;                     ///< largest shift of the image that the frame may use  [pixels, 0 to 1e6]
     uint32_t layers = ~0u;                   ///< objects outside these layers are neither reported nor hide
     uint32_t stages = kAllStages;            ///< bits of Stage: which stages may cull
-    uint32_t occluder_triangles = 1u << 20;  ///< work budget: triangles that may be rasterized  [limit]
+    uint32_t occluder_triangles = 1u << 17;  ///< work budget: triangles that may be rasterized, nearest first  [limit]
     uint32_t occlusion_size = 640;           ///< longer side of the occlusion buffer; a viewport that is smaller
                                              ///< gets its own size  [pixels, limit: 1 to 8192]
     bool time_stages = false;                ///< fill StageStats::nanoseconds (costs some time itself)

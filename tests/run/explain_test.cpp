@@ -225,7 +225,7 @@ TEST(Explain, NamesEachDoubt) {
     EXPECT_EQ(query.explain(now, view, behind).verdict, Verdict::kOccluded);
     view.occluder_triangles = 1;
     EXPECT_EQ(because(behind), KeptBecause::kBudgetSpent);
-    view.occluder_triangles = 1u << 20;
+    view.occluder_triangles = View().occluder_triangles;
     view.stages = stageBit(Stage::kFrustum);
     EXPECT_EQ(because(behind), KeptBecause::kStageOff);
     EXPECT_EQ(query.explain(now, view, behind).visible.stage, Stage::kOcclusion);
