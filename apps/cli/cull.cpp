@@ -1,13 +1,17 @@
 // The verb `cull`: the visible set along a camera path, measured, proved and reported as asked for.
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 
+#include "apps/cli/apart.h"
 #include "apps/cli/common.h"
 #include "apps/cli/cull_path.h"
 #include "apps/cli/frame_notes.h"
@@ -26,6 +30,21 @@ struct CullOptions : RunOptions {
     std::string trace;  ///< file, or empty
 };
 
+/// That nothing is written over what is read, or over another output.
+Status checkApart(const CullOptions& options) {
+    ApartFiles files;
+    for (const std::string& name : options.scene.names) files.read("SCENE", name);
+    files.read("--cameras", options.cameras);
+    files.write("--json", options.json);
+    files.write("--trace", options.trace);
+    if (options.report.empty()) return files.status();
+    const std::filesystem::path report = options.report;
+    files.write("--report", report / "index.html");
+    files.writeAgain("--report", report / "cull.json", options.json);
+    files.writeAgain("--report", report / "trace.json", options.trace);
+    return files.status();
+}
+
 /// Finds out before the work whether its result can be written.
 Status checkOutputs(const CullOptions& options) {
     if (!options.json.empty() && options.json != "-")
@@ -37,6 +56,14 @@ Status checkOutputs(const CullOptions& options) {
     return canWriteFile(options.report + "/index.html");
 }
 
+/// "culled-0012.png" of "culled-"; of a file that the user put there, no.
+bool isPictureOf(const std::string& what, const std::string& name) {
+    constexpr std::string_view kSuffix = ".png";
+    if (name.size() <= what.size() + kSuffix.size() || name.rfind(what, 0) != 0 || !name.ends_with(kSuffix)) return false;
+    const auto digits = std::string_view(name).substr(what.size(), name.size() - what.size() - kSuffix.size());
+    return std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
 /// Pictures of an earlier report of the same directory would pass for this one's.
 void removePictures(const std::string& directory) {
     std::error_code ignored;
@@ -44,7 +71,7 @@ void removePictures(const std::string& directory) {
     for (const auto& entry : std::filesystem::directory_iterator(directory, ignored)) {
         const std::string name = entry.path().filename().string();
         for (const char* what : {"frame-", "culled-", "plan-", "section-", "heat-all-", "heat-kept-"})
-            if (name.rfind(what, 0) == 0 && entry.path().extension() == ".png") old.push_back(entry.path());
+            if (isPictureOf(what, name)) old.push_back(entry.path());
     }
     for (const auto& file : old) std::filesystem::remove(file, ignored);
 }
@@ -85,6 +112,7 @@ Status writeOutputs(const Scene& scene, const CullRun& run, const CullOptions& o
 /// The whole verb. Returns the exit code.
 Result<int> runCull(const CLI::App& verb, CullOptions& options) {
     if (Status good = finish(verb, options); !good) return good.error();
+    if (Status apart = checkApart(options); !apart) return apart.error();
     const Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
     const Result<CameraPath> path = loadPath(*scene, options);
@@ -92,11 +120,13 @@ Result<int> runCull(const CLI::App& verb, CullOptions& options) {
     if (Status writable = checkOutputs(options); !writable) return writable.error();
 
     options.credits = !options.report.empty();
-    CullRun run = cullPath(*scene, *path, options);
+    // Whoever explains the frames asks the world that was culled; without need of that its memory is given back.
+    std::optional<LoadedWorld> world;
+    CullRun run = cullPath(*scene, *path, options, options.verify && !options.report.empty() ? &world : nullptr);
     if (run.frames.empty()) return exitCodeOf(run, path->frames.size(), options.verify);
     run.command = replayOfRun(options, options.verify);
     if (options.verify) verifyPath(*scene, options, run);
-    if (!options.report.empty()) noteFrames(*scene, options, run);
+    if (!options.report.empty()) noteFrames(*scene, options, std::move(world), run);
 
     printSummary(options.json == "-" ? stderr : stdout, run);
     if (Status explained = explainFalseCulls(*scene, options, run); !explained) return explained.error();

@@ -19,21 +19,14 @@
 #include "apps/cli/session.h"
 #include "apps/cli/verbs.h"
 #include "sightline/hidden/threads.h"
-#include "sightline/load/load_world.h"
 #include "sightline/report/output_file.h"
 #include "sightline/run/credits.h"
 #include "sightline/run/query.h"
+#include "sightline/scene/one_line.h"
 #include "sightline/truth/verify.h"
 
 namespace sightline::cli {
 namespace {
-
-double median(std::vector<double>& values) {
-    const size_t middle = values.size() / 2;
-    std::nth_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(middle), values.end());
-    if (values.size() % 2) return values[middle];
-    return 0.5 * (values[middle] + *std::max_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(middle)));
-}
 
 View viewOf(const CameraFrame& camera, const CullRun& run) {
     View view = makeView(camera, run.width, run.height);
@@ -48,7 +41,7 @@ void cullFrame(const Snapshot& now, const CullRun& run, Query& query, FrameResul
     std::vector<double> times;
     for (int i = 0; i < run.repeat; ++i)
         times.push_back(1e-3 * static_cast<double>(query.visible(now, view).stats.nanoseconds));
-    frame.query_microseconds = median(times);
+    frame.query_microseconds = medianOf(std::move(times));
     view.time_stages = true;
     const QueryStats stats = query.visible(now, view).stats;
     for (int stage = 0; stage < kStageCount; ++stage) {
@@ -170,7 +163,8 @@ void forEach(size_t count, uint32_t threads, const std::function<void(size_t)>& 
     shareOut(count, threads, nullptr, [&](uint32_t) { return work; });
 }
 
-CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options) {
+CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options,
+                 std::optional<LoadedWorld>* world) {
     CullRun run;
     const std::vector<uint32_t> key_order = orderByKey(scene);
     run.scene = options.scene.title();
@@ -220,6 +214,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.frames_wanted = path.frames.size();
     run.interrupted = done < path.frames.size();
     run.frames.resize(done);
+    if (world) world->emplace(std::move(loaded));
     return run;
 }
 
@@ -273,7 +268,7 @@ Status explainFalseCulls(const Scene& scene, const RunOptions& options, const Cu
         const auto& rows = frame.verification->rows;
         for (size_t k = 0; k < std::min(rows.size(), kMostLines); ++k)
             say("false cull: frame {}: object {} \"{}\" is seen at pixel ({:.3f}, {:.3f}) by {}\n", i, rows[k].key,
-                scene.objects[rows[k].object].name, rows[k].x, rows[k].y, rows[k].witness);
+                oneLine(scene.objects[rows[k].object].name, 200), rows[k].x, rows[k].y, rows[k].witness);
         if (rows.size() > kMostLines) say("false cull: frame {}: and {} more\n", i, rows.size() - kMostLines);
         say("replay: {}\n", replayCommand(options, run, file));
     }

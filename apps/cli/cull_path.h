@@ -3,9 +3,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "apps/cli/common.h"
+#include "sightline/load/load_world.h"
 #include "sightline/report/cull_run.h"
 
 namespace sightline::cli {
@@ -13,7 +15,9 @@ namespace sightline::cli {
 /// The visible set of each frame, with times and counts; one Query a thread. The same for any number of threads,
 /// but for the times. Interrupted, it hands out no more frames and finishes those begun, so that the run holds the first
 /// frames of the path; CullRun::interrupted says so, and there may be none.
-CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options);
+/// @param world  takes the world that was asked, for those who have more to ask of it; null: it is dropped
+CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options,
+                 std::optional<LoadedWorld>* world = nullptr);
 
 /// Judges every frame of a run. Fills FrameResult::verification; interrupted, of the first frames only.
 void verifyPath(const Scene& scene, const RunOptions& options, CullRun& run);

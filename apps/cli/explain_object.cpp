@@ -9,6 +9,7 @@
 
 #include "apps/cli/progress.h"
 #include "sightline/report/explain_text.h"
+#include "sightline/scene/one_line.h"
 #include "sightline/truth/verify.h"
 
 namespace sightline::cli {
@@ -90,6 +91,10 @@ AskedScene::AskedScene(const Scene& from) : scene(from) {
     now = loaded.world.commit();
 }
 
+AskedScene::AskedScene(const Scene& from, LoadedWorld world) : scene(from), loaded(std::move(world)) {
+    now = loaded.world.commit();
+}
+
 View viewOfFrame(const CameraFrame& camera, const RunOptions& options) {
     View view = makeView(camera, options.width, options.height);
     view.jitter = options.jitter;
@@ -132,8 +137,7 @@ std::string answerLine(const AskedScene& asked, const ObjectAnswer& answer) {
         if (line.empty() || line.size() > kColumns)
             line = fmt::format("frame {:>4}  {:<10} {}", answer.frame, stage.empty() ? "kept" : stage,
                                explanationClause(answer.why, name, most));
-    if (line.size() > kColumns) line = line.substr(0, kColumns - 3) + "...";
-    return line + "\n";
+    return shortened(line, kColumns) + "\n";
 }
 
 Json answerJson(const AskedScene& asked, const ObjectAnswer& answer) {

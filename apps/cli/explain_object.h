@@ -49,6 +49,8 @@ struct AskedScene {
     Snapshot now;
 
     explicit AskedScene(const Scene& scene);
+    /// @param loaded  of this scene
+    AskedScene(const Scene& scene, LoadedWorld loaded);
     /// Scene::objects' index of an object of the world.
     static uint32_t objectOf(ObjectId id) { return id.index - 1; }
     std::string nameOf(ObjectId id) const { return callOf(scene, objectOf(id)); }

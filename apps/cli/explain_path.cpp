@@ -8,60 +8,45 @@
 
 #include "apps/cli/explain_object.h"
 #include "sightline/report/insight.h"
+#include "sightline/scene/one_line.h"
 
 namespace sightline::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kNothing = 0.005;  // object-frames: what rounding leaves of none
-
 /// A name that fits: of a long one the end, which tells most.
 std::string fitted(const Scene& scene, uint32_t object, size_t width) {
-    std::string name = callOf(scene, object);
-    if (name.size() > width) name = "..." + name.substr(name.size() - (width - 3));
-    return name;
+    return oneLine(callOf(scene, object), width);
 }
 
 uint64_t trianglesOf(const Scene& scene, uint32_t object) {
     return scene.meshes[scene.objects[object].mesh].triangles();
 }
 
-/// Hidden triangles for each one that was rasterized.
-double worth(const OccluderRow& row) { return row.triangles ? row.hidden_triangles / double(row.triangles) : 0.0; }
-
 std::string occluderTable(const Scene& scene, const std::vector<OccluderRow>& rows, size_t top) {
     std::string text = fmt::format("{:>9} {:>9} {:>12} {:>14} {:>8}  {}\n", "hidden", "frames", "rasterized", "hidden",
-                                   "hidden/", "occluder");
-    text += fmt::format("{:>9} {:>9} {:>12} {:>14} {:>8}\n", "objects", "", "triangles", "triangles", "rasteri.");
+                                   "hidden", "occluder");
+    text += fmt::format("{:>9} {:>9} {:>12} {:>14} {:>8}\n", "objects", "", "triangles", "triangles", "for one");
     for (size_t i = 0; i < std::min(rows.size(), top); ++i) {
         const OccluderRow& row = rows[i];
         text += fmt::format("{:>9.1f} {:>9} {:>12} {:>14} {:>8.1f}  {}\n", row.hidden, row.frames,
                             grouped(row.triangles), grouped(static_cast<uint64_t>(row.hidden_triangles + 0.5)),
-                            worth(row), fitted(scene, row.object, 42));
+                            worthOf(row), fitted(scene, row.object, 42));
     }
     return text;
 }
 
-std::vector<OccluderRow> idleOf(const std::vector<OccluderRow>& rows) {
-    std::vector<OccluderRow> idle;
-    std::copy_if(rows.begin(), rows.end(), std::back_inserter(idle),
-                 [](const OccluderRow& row) { return row.hidden < kNothing; });
-    std::stable_sort(idle.begin(), idle.end(),
-                     [](const OccluderRow& a, const OccluderRow& b) { return a.triangles > b.triangles; });
-    return idle;
-}
-
 std::string idleText(const Scene& scene, const std::vector<OccluderRow>& rows, size_t top) {
-    const std::vector<OccluderRow> idle = idleOf(rows);
+    const std::vector<OccluderRow> idle = idleRows(rows);
     uint64_t spent = 0, all = 0;
     for (const OccluderRow& row : rows) all += row.triangles;
     for (const OccluderRow& row : idle) spent += row.triangles;
     std::string text = fmt::format("Occluders that hid nothing: {} of {}; they were {} of {} rasterized triangles.\n",
                                    grouped(idle.size()), grouped(rows.size()), grouped(spent), grouped(all));
     for (size_t i = 0; i < std::min(idle.size(), top); ++i)
-        text += fmt::format("{:>12} triangles in {:>4} frames  {}\n", grouped(idle[i].triangles), idle[i].frames,
-                            fitted(scene, idle[i].object, 62));
+        text += fmt::format("{:>12} triangles in {:>4} {}  {}\n", grouped(idle[i].triangles), idle[i].frames,
+                            idle[i].frames == 1 ? "frame " : "frames", fitted(scene, idle[i].object, 62));
     return text;
 }
 
@@ -85,8 +70,9 @@ std::string togetherText(const Scene& scene, const std::vector<TogetherGroup>& g
                     grouped(objects), grouped(groups.size()));
     for (size_t i = 0; i < std::min(groups.size(), top); ++i) {
         const TogetherGroup& group = groups[i];
-        text += fmt::format("{:>6} objects, {:>8} triangles, {:>4} frames  {} ...\n", group.objects.size(),
-                            grouped(group.triangles), group.frames, fitted(scene, group.objects.front(), 50));
+        text += fmt::format("{:>6} objects, {:>8} triangles, {:>4} {}  {} ...\n", group.objects.size(),
+                            grouped(group.triangles), group.frames, group.frames == 1 ? "frame " : "frames",
+                            fitted(scene, group.objects.front(), 50));
     }
     return text;
 }
@@ -110,13 +96,11 @@ std::string pathText(const Scene& scene, const CullRun& run, uint32_t top) {
     for (const OccluderRow& row : rows) hidden += row.hidden;
     std::string text = fmt::format(
         "{}: {} objects, {} triangles; {} frames\nOcclusion hid {} objects, {:.1f} a frame.\n\nWho hides most\n",
-        run.scene, grouped(run.instances), grouped(run.triangles), run.frames.size(),
+        oneLine(run.scene), grouped(run.instances), grouped(run.triangles), run.frames.size(),
         grouped(static_cast<uint64_t>(hidden + 0.5)), hidden / static_cast<double>(run.frames.size()));
     text += occluderTable(scene, rows, top);
-    std::vector<OccluderRow> paying = rows;
-    std::stable_sort(paying.begin(), paying.end(),
-                     [](const OccluderRow& a, const OccluderRow& b) { return worth(a) > worth(b); });
-    text += "\nWhich pay best: triangles hidden for each one rasterized\n" + occluderTable(scene, paying, top);
+    text +=
+        "\nWhich pay best: triangles hidden for each one rasterized\n" + occluderTable(scene, payingRows(rows), top);
     text += "\n" + idleText(scene, rows, top);
     text += "\n" + neverText(scene, neverKept(run, scene), top);
     return text + "\n" + togetherText(scene, keptTogether(run, scene), top);

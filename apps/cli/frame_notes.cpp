@@ -14,12 +14,6 @@
 namespace sightline::cli {
 namespace {
 
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 /// One of the kinds of work that a query does.
 struct Work {
     const char* name;
@@ -36,14 +30,14 @@ constexpr Work kWork[] = {
 std::string slowNote(const CullRun& run, const FrameResult& frame) {
     std::vector<double> times;
     for (const FrameResult& other : run.frames) times.push_back(other.query_microseconds);
-    const double usual = median(times);
+    const double usual = medianOf(times);
     std::vector<std::pair<double, std::string>> parts;  // by how many times as much
     for (const Work& work : kWork) {
         std::vector<double> values;
         for (const FrameResult& other : run.frames) values.push_back(work.of(other));
-        const double middle = median(values), here = work.of(frame);
+        const double middle = medianOf(values), here = work.of(frame);
         if (here == 0 && middle == 0) continue;
-        const double ratio = here / std::max(middle, 1.0);
+        const double ratio = here / (middle > 0 ? middle : 1);
         parts.emplace_back(ratio,
                            fmt::format("{} {} ({:.1f} times)", grouped(static_cast<uint64_t>(here)), work.name, ratio));
     }
@@ -83,15 +77,15 @@ std::string groupOf(const Explanation& why) {
 }
 
 /// Why the frame keeps what no witness saw.
-std::vector<std::string> looseNotes(const Scene& scene, const RunOptions& options, const CullRun& run,
-                                    const FrameResult& frame) {
+std::vector<std::string> looseNotes(const Scene& scene, const RunOptions& options, std::optional<LoadedWorld> world,
+                                    const CullRun& run, const FrameResult& frame) {
     constexpr size_t kMost = 300;  // explained: of more, every so-manyth
     const std::vector<uint32_t>& unseen = frame.verification->kept_unseen;
     std::vector<std::string> notes;
     notes.push_back(fmt::format("{} of {} kept objects were seen by no witness.", grouped(unseen.size()),
                                 grouped(frame.objects_visible)));
     if (unseen.empty()) return notes;
-    const AskedScene asked(scene);
+    const AskedScene asked = world ? AskedScene(scene, std::move(*world)) : AskedScene(scene);
     View view = viewOfFrame(frame.camera, options);
     view.width = run.width;
     view.height = run.height;
@@ -122,7 +116,7 @@ double overEstimateOf(const FrameResult& frame) {
 
 }  // namespace
 
-void noteFrames(const Scene& scene, const RunOptions& options, CullRun& run) {
+void noteFrames(const Scene& scene, const RunOptions& options, std::optional<LoadedWorld> world, CullRun& run) {
     FrameResult *slowest = nullptr, *loosest = nullptr;
     for (FrameResult& frame : run.frames) {
         if (!slowest || frame.query_microseconds > slowest->query_microseconds) slowest = &frame;
@@ -131,7 +125,7 @@ void noteFrames(const Scene& scene, const RunOptions& options, CullRun& run) {
     }
     if (slowest && run.frames.size() > 1) slowest->notes.push_back("Slowest: " + slowNote(run, *slowest));
     if (!loosest) return;
-    const std::vector<std::string> notes = looseNotes(scene, options, run, *loosest);
+    const std::vector<std::string> notes = looseNotes(scene, options, std::move(world), run, *loosest);
     for (size_t i = 0; i < notes.size(); ++i) loosest->notes.push_back((i ? "" : "Loosest: ") + notes[i]);
 }
 

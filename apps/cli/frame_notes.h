@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+
 #include "apps/cli/common.h"
+#include "sightline/load/load_world.h"
 #include "sightline/report/cull_run.h"
 
 namespace sightline::cli {
 
 /// Fills FrameResult::notes of the slowest frame, and of a verified run's frame with the largest over-estimate. Explains
 /// up to some hundreds of objects, each at the cost of a query.
-void noteFrames(const Scene& scene, const RunOptions& options, CullRun& run);
+/// @param world  that gave the run; without one it is loaded again if something is to be asked of it
+void noteFrames(const Scene& scene, const RunOptions& options, std::optional<LoadedWorld> world, CullRun& run);
 
 }  // namespace sightline::cli

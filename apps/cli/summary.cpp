@@ -11,6 +11,7 @@
 
 #include "apps/cli/cull_path.h"
 #include "apps/cli/session.h"
+#include "sightline/scene/one_line.h"
 
 namespace sightline::cli {
 namespace {
@@ -28,8 +29,7 @@ std::string rounded(double number) {
 double medianQuery(const CullRun& run) {
     std::vector<double> times;
     for (const FrameResult& frame : run.frames) times.push_back(frame.query_microseconds);
-    std::nth_element(times.begin(), times.begin() + static_cast<ptrdiff_t>(times.size() / 2), times.end());
-    return times[times.size() / 2];
+    return medianOf(std::move(times));
 }
 
 void addSums(std::string& text, const Verification& sum, const CullRun& run) {
@@ -64,7 +64,7 @@ void printSummary(std::FILE* out, const CullRun& run) {
     }
     std::string text;
     fmt::format_to(std::back_inserter(text),
-                   "{}: {} objects, {} triangles; {} frames of {}x{}, means over the frames\n", run.scene,
+                   "{}: {} objects, {} triangles; {} frames of {}x{}, means over the frames\n", oneLine(run.scene),
                    grouped(run.objects), grouped(run.triangles), run.frames.size(), run.width, run.height);
     fmt::format_to(std::back_inserter(text), "visible      {:>10} objects  {:7.3f} %\n", rounded(visible / frames),
                    share(visible / frames, static_cast<double>(run.objects)));

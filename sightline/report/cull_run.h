@@ -96,6 +96,9 @@ struct Verification {
 };
 std::optional<Verification> sumVerification(const CullRun& run);
 
+/// The median, of an even number the mean of the two in the middle; 0 of none. All that tells of a run uses this one.
+double medianOf(std::vector<double> values);
+
 /// Visible keys and culled keys by stage from the objects' reasons. Writes FrameResult::visible, objects_visible,
 /// triangles, and tested and culled of the stages in use.
 /// @param key_order  indices of the objects sorted by key  [size: Scene::objects]

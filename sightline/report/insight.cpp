@@ -3,6 +3,7 @@
 #include "sightline/report/insight.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <unordered_map>
 
@@ -12,6 +13,7 @@ namespace sightline {
 namespace {
 
 constexpr uint64_t kFewTriangles = 2000;  // of one object that is worth merging
+constexpr double kNothing = 0.005;        // object-frames: what rounding leaves of none
 constexpr double kSmallGroup = 0.05;      // its box, of the scene's diagonal: what is merged is culled as one
 
 uint64_t trianglesOf(const Scene& scene, uint32_t object) {
@@ -106,6 +108,28 @@ std::vector<OccluderRow> occluderRows(const CullRun& run) {
         return a.hidden != b.hidden ? a.hidden > b.hidden : a.object < b.object;
     });
     return rows;
+}
+
+double worthOf(const OccluderRow& row) {
+    return row.triangles ? row.hidden_triangles / static_cast<double>(row.triangles) : 0.0;
+}
+
+std::vector<OccluderRow> payingRows(const std::vector<OccluderRow>& rows) {
+    std::vector<OccluderRow> out;
+    std::copy_if(rows.begin(), rows.end(), std::back_inserter(out),
+                 [](const OccluderRow& row) { return row.hidden >= kNothing; });
+    std::stable_sort(out.begin(), out.end(),
+                     [](const OccluderRow& a, const OccluderRow& b) { return worthOf(a) > worthOf(b); });
+    return out;
+}
+
+std::vector<OccluderRow> idleRows(const std::vector<OccluderRow>& rows) {
+    std::vector<OccluderRow> out;
+    std::copy_if(rows.begin(), rows.end(), std::back_inserter(out),
+                 [](const OccluderRow& row) { return row.hidden < kNothing; });
+    std::stable_sort(out.begin(), out.end(),
+                     [](const OccluderRow& a, const OccluderRow& b) { return a.triangles > b.triangles; });
+    return out;
 }
 
 std::vector<uint32_t> neverKept(const CullRun& run, const Scene& scene) {

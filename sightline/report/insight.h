@@ -22,6 +22,13 @@ struct OccluderRow {
 /// All objects that were rasterized as occluders, those that hide most first.
 std::vector<OccluderRow> occluderRows(const CullRun& run);
 
+/// Triangles hidden for each one that was rasterized for it.
+double worthOf(const OccluderRow& row);
+/// Those that hide anything, but for rounding, those with the most worth first.
+std::vector<OccluderRow> payingRows(const std::vector<OccluderRow>& rows);
+/// Those that hid nothing, those with the most triangles first.
+std::vector<OccluderRow> idleRows(const std::vector<OccluderRow>& rows);
+
 /// Objects that no frame kept, those with most triangles first: candidates for removal, as far as the path goes.
 std::vector<uint32_t> neverKept(const CullRun& run, const Scene& scene);
 

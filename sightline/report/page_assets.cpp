@@ -101,9 +101,12 @@ g.stage-1 polygon { fill: var(--stage-1); } g.stage-2 polygon { fill: var(--stag
   overflow-wrap: anywhere; }
 .objects td:nth-child(1) { min-width: 9em; } .objects td:last-child { text-align: left; }
 .objects th:last-child { text-align: left; }
+.objects thead tr:first-child th { text-align: right; padding-bottom: 7px; border-bottom: 1px solid var(--line); }
+.objects thead tr:first-child th:first-child, .objects thead tr:first-child #paths,
+  .objects thead tr:first-child th:last-child { text-align: left; }
 .sort { background: none; border: 0; padding: 0; min-width: 0; color: inherit; text-decoration: underline dotted; }
 .wide tbody th { white-space: normal; overflow-wrap: anywhere; min-width: 9em; }
-.wide thead th { white-space: normal; vertical-align: bottom; }
+.wide thead th { white-space: normal; vertical-align: bottom; } .wide thead th:first-child { width: 46%; }
 thead td { border-bottom: 0; } .go { margin-top: 12px; }
 i.swatch { display: inline-block; width: .8em; height: .8em; border-radius: 2px; margin-right: .45em; }
 .sides td { white-space: normal; overflow-wrap: anywhere; }
@@ -169,6 +172,7 @@ footer { padding-bottom: 30px; color: var(--soft); font-size: .92rem; }
   .tiles { grid-template-columns: 1fr 1fr; }
   .tile { padding: 10px 14px; } .tile b { font-size: 1.35rem; } th, td { padding: 6px 8px; }
   .methods tbody th { min-width: 7.8em; overflow-wrap: break-word; }
+  .mini { float: none; display: block; margin: 0 0 4px auto; }
   .costs { grid-template-columns: 1fr max-content; grid-auto-flow: dense; gap: 2px 14px; }
   .costs .share, .costs .scale { grid-column: 1 / -1; margin-bottom: 8px; }
   dl { grid-template-columns: 1fr; gap: 0; } dd { margin-bottom: 8px; } dl.facts { gap: 4px 22px; }

@@ -61,35 +61,34 @@ std::string hidesMost(const Scene& scene, const std::vector<OccluderRow>& rows) 
                     "them.</p>");
 }
 
-/// An occluder pays when what it hides would cost more than rasterizing it.
-std::string whichPay(const Scene& scene, std::vector<OccluderRow> rows) {
-    if (rows.empty()) return "";
-    uint64_t all = 0, idle = 0, idle_triangles = 0;
-    for (const OccluderRow& row : rows) {
-        all += row.triangles;
-        if (row.hidden > 0) continue;
-        ++idle;
-        idle_triangles += row.triangles;
-    }
-    const auto price = [](const OccluderRow& row) {
-        return static_cast<double>(row.triangles) / std::max(row.hidden, 1e-3);
-    };
-    std::sort(rows.begin(), rows.end(), [&](const OccluderRow& a, const OccluderRow& b) {
-        return price(a) != price(b) ? price(a) > price(b) : a.object < b.object;
-    });
+std::string payRows(const Scene& scene, const std::vector<OccluderRow>& rows, size_t most) {
     std::string lines;
-    for (size_t i = 0; i < std::min(rows.size(), kMostRows); ++i)
-        lines +=
-            fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td></tr>",
-                        labelOf(scene, rows[i].object), readable(static_cast<double>(rows[i].triangles)),
-                        shared(rows[i].hidden), rows[i].hidden >= 0.05 ? readable(std::round(price(rows[i]))) : "–");
-    return card(
-        "pays", "Which occluders pay",
-        fmt::format("<p>{} of {} rasterized occluders hid nothing on this path; they had {} of the {} triangles "
-                    "rasterized. The dearest:</p>",
-                    number(idle), number(rows.size()), number(idle_triangles), number(all)) +
-            table(columns({"occluder", "triangles rasterized", "objects hidden", "triangles an object"}), lines,
-                  "Which occluders pay"));
+    for (size_t i = 0; i < std::min(rows.size(), most); ++i)
+        lines += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td></tr>",
+                             labelOf(scene, rows[i].object), readable(static_cast<double>(rows[i].triangles)),
+                             readable(std::round(rows[i].hidden_triangles)), shared(worthOf(rows[i])));
+    return lines;
+}
+
+/// An occluder pays when what it hides would cost more than rasterizing it.
+std::string whichPay(const Scene& scene, const std::vector<OccluderRow>& rows) {
+    if (rows.empty()) return "";
+    const std::vector<OccluderRow> paying = payingRows(rows), idle = idleRows(rows);
+    uint64_t all = 0, idle_triangles = 0;
+    for (const OccluderRow& row : rows) all += row.triangles;
+    for (const OccluderRow& row : idle) idle_triangles += row.triangles;
+    const auto head = columns({"occluder", "triangles rasterized", "triangles hidden", "hidden for one"});
+    std::string body;
+    if (!paying.empty())
+        body += "<p>They hide the most triangles for each one that is rasterized:</p>" +
+                table(head, payRows(scene, paying, kMostRows / 2), "Which occluders pay best");
+    body += fmt::format(
+        "<p>{} of {} rasterized occluders hid nothing on this path, with {} of the {} triangles "
+        "rasterized.{}</p>",
+        number(idle.size()), number(rows.size()), number(idle_triangles), number(all),
+        idle.empty() ? "" : " The largest:");
+    if (!idle.empty()) body += table(head, payRows(scene, idle, kMostRows / 2), "Which occluders hid nothing");
+    return card("pays", "Which occluders pay", body);
 }
 
 std::string never(const Scene& scene, const std::vector<uint32_t>& objects, size_t frames) {

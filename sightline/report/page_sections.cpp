@@ -50,12 +50,6 @@ constexpr const char* kSwitch = R"html(<fieldset class="switch"><legend class="u
 
 }  // namespace
 
-double medianOf(std::vector<double> values) {
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    return 0.5 * (values[values.size() / 2] + values[(values.size() - 1) / 2]);
-}
-
 RunMeans meansOf(const CullRun& run) {
     RunMeans means;
     std::vector<double> times;
@@ -91,8 +85,8 @@ std::string verdictBox(const CullRun& run) {
     return fmt::format(
         "<div class=\"verdict {}\" role=\"status\"><strong>{} of {} culled objects {} visible</strong>"
         "<span>proof by {} rays and {} id-buffer samples over {} frames</span></div>",
-        sound ? "good" : "bad", number(sum->false_culls), number(sum->culled),
-        sum->false_culls == 1 || sound ? "was" : "were", number(sum->rays), number(sum->id_samples), run.frames.size());
+        sound ? "good" : "bad", number(sum->false_culls), number(sum->culled), sum->false_culls == 1 ? "was" : "were",
+        number(sum->rays), number(sum->id_samples), run.frames.size());
 }
 
 std::string interruptedBox(const CullRun& run) {

@@ -21,7 +21,6 @@ struct RunMeans {
 RunMeans meansOf(const CullRun& run);
 
 /// Middle value; of an even number, the mean of the two in the middle. 0 of none.
-double medianOf(std::vector<double> values);
 
 /// A card with a heading; empty if the body is.
 std::string card(const std::string& id, const std::string& heading, const std::string& body);

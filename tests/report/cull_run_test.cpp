@@ -179,6 +179,12 @@ TEST(CullRun, JsonTellsTheFilesOfAScene) {
     EXPECT_EQ(out["scene"]["files"][1], json::parse(R"({"file": "b.glb", "first_key": 100})"));
 }
 
+TEST(CullRun, MedianOfAnEvenNumberLiesBetweenTheTwoInTheMiddle) {
+    EXPECT_DOUBLE_EQ(medianOf({}), 0);
+    EXPECT_DOUBLE_EQ(medianOf({9, 1, 5}), 5);
+    EXPECT_DOUBLE_EQ(medianOf({9, 1, 5, 2}), 3.5);
+}
+
 TEST(CullRun, OverEstimateOfNothingIsOne) {
     EXPECT_EQ(Verification().overEstimate(), 1.0);
     Verification sum;

@@ -33,6 +33,22 @@ TEST(Insight, AddsAnOccludersCreditsUpAndPutsWhoHidesMostFirst) {
     EXPECT_TRUE(occluderRows(CullRun()).empty());
 }
 
+TEST(Insight, TellsWhoPaysFromWhoHidNothing) {
+    CullRun run;
+    run.frames.resize(1);
+    run.frames[0].credits = {{1, 100, 2.0, 50}, {2, 4, 1.0, 40}, {3, 6, 0.0, 0}, {4, 9, 1e-9, 1e-7}, {5, 0, 1.0, 3}};
+    const std::vector<OccluderRow> rows = occluderRows(run);
+    const auto objects = [](const std::vector<OccluderRow>& of) {
+        std::vector<uint32_t> out;
+        for (const OccluderRow& row : of) out.push_back(row.object);
+        return out;
+    };
+    EXPECT_EQ(objects(payingRows(rows)), (std::vector<uint32_t>{2, 1, 5}));
+    EXPECT_EQ(objects(idleRows(rows)), (std::vector<uint32_t>{4, 3}));  // rounding is nothing
+    EXPECT_DOUBLE_EQ(worthOf(payingRows(rows)[0]), 10);
+    EXPECT_DOUBLE_EQ(worthOf(payingRows(rows)[2]), 0);
+}
+
 /// Objects of a few meshes in two groups of the tree, with random answers of which many are the same.
 struct RandomPath {
     Scene scene;

@@ -29,7 +29,7 @@ TEST(Page, NeedsNoNetwork) {
 TEST(Page, TellsTheVerdict) {
     const Scene scene = madeScene();
     CullRun run = madeRun(scene);
-    EXPECT_TRUE(contains(reportPage(scene, run), "0 of 2 culled objects was visible"));
+    EXPECT_TRUE(contains(reportPage(scene, run), "0 of 2 culled objects were visible"));
     run.frames[1].verification->false_culls = 1;
     run.frames[1].verification->rows.push_back({1, 3, 1, 2, "rays"});
     EXPECT_TRUE(contains(reportPage(scene, run), "verdict bad"));
