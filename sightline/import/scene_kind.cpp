@@ -222,6 +222,19 @@ SceneKind xmlKind(const std::string& head) {
     return {};
 }
 
+/// The version stands behind the magic: "BLENDER-v279", of late "BLENDER17-01v0500".
+SceneKind blendKind(std::string_view head) {
+    const std::string_view after = head.substr(7, 10);
+    const size_t v = after.find_first_of("vV");
+    if (v == std::string_view::npos) return read("blend");
+    unsigned version = 0;
+    for (size_t i = v + 1; i < after.size() && std::isdigit(static_cast<unsigned char>(after[i])); ++i)
+        version = 10 * version + static_cast<unsigned>(after[i] - '0');
+    if (version < 280) return read("blend");
+    return refuse(
+        fmt::format("is of Blender {}.{}, which is not read: export it as glTF", version / 100, version % 100));
+}
+
 bool isText(std::string_view head) { return head.find('\0') == std::string_view::npos; }
 
 /// False if a file can certainly not be what its suffix says.
@@ -271,6 +284,7 @@ SceneKind sceneKind(const std::string& file, std::string_view head, uint64_t siz
         if (head.size() >= magic.at && head.substr(magic.at).starts_with(magic.bytes)) {
             if (magic.suffix == "lwo" && !listed("lwo lxo", suffix)) continue;  // other formats are IFF, too
             if (zipped && head.starts_with("\x1f\x8b")) break;
+            if (magic.suffix == "blend") return blendKind(head);
             return magic.suffix.empty() ? refuse(magic.words) : read(magic.suffix);
         }
 
