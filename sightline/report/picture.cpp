@@ -37,7 +37,8 @@ PictureMaker::PictureMaker(const Scene& scene) : scene_(scene) {
     zeros_.assign(most, 0);
     for (const SceneObject& object : scene.objects)
         bounds_.push_back(transformBox(scene.meshes[object.mesh].bounds, object.transform));
-    diagonal_ = diagonalOf(finiteBounds(scene));
+    world_ = finiteBounds(scene);
+    diagonal_ = diagonalOf(world_);
 }
 
 PictureMaker::Drawing PictureMaker::render(const View& view, const std::vector<uint32_t>& objects,
@@ -77,6 +78,9 @@ void PictureMaker::shade(const View& view, const Drawing& drawing, Frame& frame)
     const Unprojection unprojection(view, w, h);
     const glm::dmat3 to_world = glm::transpose(glm::dmat3(view.view));
     const glm::dvec3 sun = defaultSun();
+    const glm::dvec3 eye = eyePosition(view);
+    // The air is clear up to the world: a model that is looked at from outside keeps its colours.
+    const double clear = world_.empty() ? 0 : glm::length(glm::clamp(eye, world_.min, world_.max) - eye);
     std::vector<glm::dvec3> colours, hashed;
     for (const Part& part : drawing.parts) {
         const SceneObject& object = scene_.objects[part.object];
@@ -101,7 +105,7 @@ void PictureMaker::shade(const View& view, const Drawing& drawing, Frame& frame)
         const glm::dvec3 eye_normal = glm::cross(slope(x + 1, y, x - 1, y), slope(x, y + 1, x, y - 1));
         const double length = glm::length(eye_normal);
         const double light = length > 0 ? lightOn(to_world * (eye_normal / length), sun) : 0.7;
-        const double distance = glm::length(point) / diagonal_;
+        const double distance = std::max(0.0, glm::length(point) - clear) / diagonal_;
         return {throughHaze(colours[id] * light, sky, distance), throughHaze(hashed[id] * light, sky, distance)};
     };
 

@@ -50,6 +50,7 @@ private:
     const Scene& scene_;
     std::vector<Box3d> bounds_;
     std::vector<uint8_t> ones_, zeros_;  ///< flags for the triangles of any mesh
+    Box3d world_;                        // around all finite bounds
     double diagonal_ = 1;
 };
 
