@@ -19,6 +19,7 @@
 #include "sightline/report/chart.h"
 #include "sightline/report/output_file.h"
 #include "sightline/scene/city.h"
+#include "sightline/scene/one_line.h"
 
 namespace sightline::cli {
 namespace {
@@ -147,10 +148,7 @@ Result<CameraPath> loadPath(const Scene& scene, const RunOptions& options) {
 }
 
 int report(const Error& error) {
-    std::string line = error.message;
-    for (char& c : line)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    line = "sightline: " + line + "\n";
+    const std::string line = "sightline: " + oneLine(error.message) + "\n";
     (void)std::fwrite(line.data(), 1, line.size(), stderr);
     logLine(line);
     switch (error.kind) {

@@ -11,9 +11,12 @@
 
 #include "sightline/hidden/zbuffer.h"
 #include "sightline/report/render_list.h"
+#include "sightline/scene/one_line.h"
 
 namespace sightline::cli {
 namespace {
+
+constexpr size_t kLongestCall = 200;  // of a path, in sentences  [bytes]
 
 std::string lower(std::string text) {
     for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -41,7 +44,8 @@ Error ambiguous(const Scene& scene, const std::string& word, const std::set<uint
     for (uint32_t i = 0; i < scene.objects.size() && listed.size() < kMost; ++i) {
         const uint64_t key = scene.objects[i].key;
         if (!keys.count(key) || !listed.insert(key).second) continue;
-        list += fmt::format("{}{} '{}'", list.empty() ? "" : ", ", key, objectPath(scene, scene.objects[i]));
+        list += fmt::format("{}{} '{}'", list.empty() ? "" : ", ", key,
+                            oneLine(objectPath(scene, scene.objects[i]), kLongestCall));
     }
     if (keys.size() > kMost) list += ", ...";
     return {Error::Kind::kUsage, fmt::format("--object {}: {} objects are called so: {}", word, keys.size(), list)};
@@ -111,13 +115,13 @@ std::vector<Layer> layersAt(const Scene& scene, const View& view, uint32_t x, ui
 }
 
 std::string titleOf(const Scene& scene, uint32_t object) {
-    const std::string path = objectPath(scene, scene.objects[object]);
+    const std::string path = oneLine(objectPath(scene, scene.objects[object]), kLongestCall);
     const std::string key = fmt::format("object {}", scene.objects[object].key);
     return path.empty() ? key : fmt::format("{} '{}'", key, path);
 }
 
 std::string callOf(const Scene& scene, uint32_t object) {
-    const std::string path = objectPath(scene, scene.objects[object]);
+    const std::string path = oneLine(objectPath(scene, scene.objects[object]), kLongestCall);
     return path.empty() ? fmt::format("object {}", scene.objects[object].key) : fmt::format("'{}'", path);
 }
 

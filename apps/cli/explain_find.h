@@ -27,7 +27,7 @@ struct Layer {
 /// @param x,y  whole pixels from the left and the top, inside the viewport
 std::vector<Layer> layersAt(const Scene& scene, const View& view, uint32_t x, uint32_t y, size_t most);
 
-/// "object 4711 'Floor 3/Desk'", or "object 4711".
+/// "object 4711 'Floor 3/Desk'", or "object 4711"; the path as a terminal may show it, of a very long one the end.
 std::string titleOf(const Scene& scene, uint32_t object);
 /// "'Floor 3/Desk'", or "object 4711".
 std::string callOf(const Scene& scene, uint32_t object);

@@ -130,13 +130,19 @@ std::string answerText(const AskedScene& asked, const ObjectAnswer& answer) {
 }
 
 std::string answerLine(const AskedScene& asked, const ObjectAnswer& answer) {
-    const auto name = [&](ObjectId id) { return asked.nameOf(id); };
+    // Where there is no room, one occluder is named; and of a long path its end, which tells most.
+    constexpr std::pair<size_t, size_t> kRooms[] = {{6, kColumns}, {1, kColumns}, {1, 48}};
     const std::string stage = stageOf(answer.why);
     std::string line;
-    for (const size_t most : {size_t{6}, size_t{1}})
-        if (line.empty() || line.size() > kColumns)
-            line = fmt::format("frame {:>4}  {:<10} {}", answer.frame, stage.empty() ? "kept" : stage,
-                               explanationClause(answer.why, name, most));
+    for (const auto& [occluders, width] : kRooms) {
+        if (!line.empty() && line.size() <= kColumns) break;
+        const auto name = [&, most = width](ObjectId id) {
+            std::string call = asked.nameOf(id);
+            return call.size() > most && call.front() == '\'' ? "'" + oneLine(call.substr(1), most - 1) : call;
+        };
+        line = fmt::format("frame {:>4}  {:<10} {}", answer.frame, stage.empty() ? "kept" : stage,
+                           explanationClause(answer.why, name, occluders));
+    }
     return shortened(line, kColumns) + "\n";
 }
 

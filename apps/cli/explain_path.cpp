@@ -16,9 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// A name that fits: of a long one the end, which tells most.
-std::string fitted(const Scene& scene, uint32_t object, size_t width) {
-    return oneLine(callOf(scene, object), width);
-}
+std::string fitted(const Scene& scene, uint32_t object, size_t width) { return oneLine(callOf(scene, object), width); }
 
 uint64_t trianglesOf(const Scene& scene, uint32_t object) {
     return scene.meshes[scene.objects[object].mesh].triangles();

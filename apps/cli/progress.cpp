@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "apps/cli/session.h"
+#include "sightline/scene/one_line.h"
 
 namespace sightline::cli {
 namespace {
@@ -31,7 +32,7 @@ void print(const std::string& text) {
 }  // namespace
 
 Progress::Progress(std::string what, std::string unit, size_t total)
-    : what_(std::move(what)),
+    : what_(oneLine(what)),
       unit_(std::move(unit)),
       total_(total),
       quiet_(quiet()),

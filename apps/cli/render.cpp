@@ -24,6 +24,7 @@
 #include "sightline/report/render_page.h"
 #include "sightline/report/render_pictures.h"
 #include "sightline/report/render_run.h"
+#include "sightline/scene/one_line.h"
 
 namespace sightline::cli {
 namespace {
@@ -103,9 +104,9 @@ void drawMethods(const RenderList& scene, const View& view, const RenderOptions&
 void printRun(std::FILE* out, const RenderRun& run) {
     std::string text;
     fmt::format_to(std::back_inserter(text),
-                   "{}: {} objects, {} triangles; frame {} of {}, {}x{}: {} objects, {} polygons in view\n", run.scene,
-                   grouped(run.objects), grouped(run.triangles), run.frame, run.frames, run.width, run.height,
-                   grouped(run.objects_in_view), grouped(run.polygons_in_view));
+                   "{}: {} objects, {} triangles; frame {} of {}, {}x{}: {} objects, {} polygons in view\n",
+                   oneLine(run.scene), grouped(run.objects), grouped(run.triangles), run.frame, run.frames, run.width,
+                   run.height, grouped(run.objects_in_view), grouped(run.polygons_in_view));
     for (const MethodResult& result : run.methods) {
         const Agreement& agreement = result.agreement;
         std::string verdict = "as the plain z-buffer";

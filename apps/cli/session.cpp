@@ -13,6 +13,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
+#include <poll.h>
 #include <fmt/format.h>
 #include <malloc.h>
 #include <sys/resource.h>
@@ -20,11 +21,14 @@
 
 #include "apps/cli/common.h"
 #include "apps/cli/verbs.h"
+#include "sightline/scene/one_line.h"
 
 namespace sightline::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr const char *kGreen = "\033[32m", *kRed = "\033[31m", *kNormal = "\033[0m";
 
 struct Session {
     bool quiet = false;
@@ -89,18 +93,18 @@ std::string timeStamp() {
                        utc.tm_hour, utc.tm_min, utc.tm_sec, millis);
 }
 
-/// Without the colours, and with other control characters as spaces: a name in a file cannot forge a line.
+/// True if standard output is a pipe that nobody reads any more, as behind `| head`: no fault that is worth a line.
+bool readerHasLeft() {
+    pollfd out{STDOUT_FILENO, POLLOUT, 0};
+    return ::poll(&out, 1, 0) == 1 && (out.revents & POLLERR);
+}
+
+/// Without our colours, and in one line: a name in a file cannot forge another.
 std::string plain(std::string_view text) {
-    std::string out;
-    for (size_t i = 0; i < text.size(); ++i) {
-        const auto c = static_cast<unsigned char>(text[i]);
-        if (c == 0x1b && i + 1 < text.size() && text[i + 1] == '[') {
-            while (i < text.size() && text[i] != 'm') ++i;
-            continue;
-        }
-        out += c < 0x20 || c == 0x7f ? ' ' : static_cast<char>(c);
-    }
-    return out;
+    std::string out(text);
+    for (const char* colour : {kGreen, kRed, kNormal})
+        for (size_t at = 0; (at = out.find(colour, at)) != std::string::npos;) out.erase(at, std::strlen(colour));
+    return oneLine(out);
 }
 
 void writeTo(std::FILE* out, std::string_view text) { (void)std::fwrite(text.data(), 1, text.size(), out); }
@@ -108,7 +112,10 @@ void writeTo(std::FILE* out, std::string_view text) { (void)std::fwrite(text.dat
 }  // namespace
 
 void addSessionOptions(CLI::App& app, SessionOptions& options) {
-    app.add_flag("-q,--quiet", options.quiet, "no progress and no summary: only errors, and what - asks for")
+    app.add_flag("-q,--quiet", options.quiet,
+                 "no progress, notes or summaries of runs; answers to a question (info, explain, bench), what - asks "
+                 "for, and "
+                 "errors stay")
         ->group("General");
     app.add_option("--log", options.log, "append what happens, with the time, to this file")
         ->type_name("FILE")
@@ -156,7 +163,8 @@ Status beginSession(const SessionOptions& options, const std::string& version, c
 int endSession(int exit_code) {
     const bool flushed = std::fflush(stdout) == 0;
     if ((!flushed || std::ferror(stdout)) && exit_code != kOutputUnwritable)
-        exit_code = report({Error::Kind::kOutput, "standard output: cannot be written"});
+        exit_code =
+            readerHasLeft() ? kOutputUnwritable : report({Error::Kind::kOutput, "standard output: cannot be written"});
     const double seconds = std::chrono::duration<double>(Clock::now() - session().begin).count();
     logLine(fmt::format("end: exit code {} after {:.3f} s", exit_code, seconds));
     return exit_code;
@@ -214,7 +222,7 @@ bool isColoured(std::FILE* out) {
 
 std::string paint(std::FILE* out, Tone tone, std::string_view text) {
     if (!isColoured(out)) return std::string(text);
-    return fmt::format("\033[{}m{}\033[0m", tone == Tone::kGood ? 32 : 31, text);
+    return fmt::format("{}{}{}", tone == Tone::kGood ? kGreen : kRed, text, kNormal);
 }
 
 }  // namespace sightline::cli

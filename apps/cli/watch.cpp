@@ -25,6 +25,7 @@
 #include "apps/cli/scene_inputs.h"
 #include "apps/cli/session.h"
 #include "apps/cli/verbs.h"
+#include "sightline/scene/one_line.h"
 #include "sightline/scene/procedural.h"
 
 namespace sightline::cli {
@@ -213,7 +214,9 @@ std::optional<int> watchRuns(CLI::App& verb, const SessionOptions& options) {
         const int ended = awaitRun(run, Directories(inputs), signals);
         if (ended < 0) report({Error::Kind::kInput, fmt::format("the run was ended by signal {}", -ended)});
         if (interrupted()) return ended < 0 || ended == kInterrupted ? kInterrupted : kDone;
-        if (say) tell(stderr, fmt::format("watching {} for changes; Ctrl-C ends\n", fmt::join(words, ", ")));
+        if (say)
+            tell(stderr, fmt::format("watching {} for changes; Ctrl-C ends\n",
+                                     oneLine(fmt::format("{}", fmt::join(words, ", ")))));
         if (!awaitChange(inputs, state, signals)) return kDone;
     }
 }

@@ -157,7 +157,7 @@ std::string dataOf(const RunComparison& c, const Pictures& pictures, const std::
     data["labels"] = Json::array();
     for (const FramePair& pair : c.pairs)
         data["labels"].push_back(
-            fmt::format("frame {} of A, {} of B: B takes {:.2f} times as long", pair.a, pair.b, pair.ratio));
+            fmt::format("frame {} of A, {} of B: B takes {:.3g} times as long", pair.a, pair.b, pair.ratio));
     data["charts"] = Json::object();
     for (const Chart& chart : charts)
         for (const ChartSeries& series : chart.series)
@@ -176,9 +176,7 @@ std::string dataOf(const RunComparison& c, const Pictures& pictures, const std::
         take(pictures.b, c.pairs[i].b, "-b");
         data["pictures"].push_back({{"frame", i}, {"images", std::move(images)}});
     }
-    std::string json = data.dump(-1, ' ', true, Json::error_handler_t::replace);
-    for (size_t at = json.find("</"); at != std::string::npos; at = json.find("</", at)) json.replace(at, 2, "<\\/");
-    return json;
+    return embedded(data.dump(-1, ' ', true, Json::error_handler_t::replace));
 }
 
 }  // namespace
@@ -193,10 +191,10 @@ std::string comparePage(const RunComparison& c, const RunFile& a, const RunFile&
         "<header class=\"page\"><h1>Two runs of {}</h1><p class=\"soft\"><b>A</b> {}, <b>B</b> {}; {} frames have the "
         "same camera in both</p><div class=\"verdict {}\" role=\"status\"><strong>{}</strong>{}</div></header><main>",
         sceneTitle(a.run.scene), escapeHtml(a.file), escapeHtml(b.file), c.pairs.size(), c.ok ? "good" : "bad",
-        c.ok ? "B is no worse than A, as far as was asked" : "B fails", verdict);
+        c.ok ? "B passes: no new false culls" : "B fails", verdict);
     page += "<div class=\"tiles\">" +
-            tile(fmt::format("{:.2f}×", c.ratio),
-                 fmt::format("time of B over A, median; {:.2f} to {:.2f} in the middle eight tenths", c.ratio_low,
+            tile(fmt::format("{:.3g}×", c.ratio),
+                 fmt::format("time of B over A, median; {:.3g} to {:.3g} in the middle eight tenths", c.ratio_low,
                              c.ratio_high)) +
             tile(number(c.only_a), "times an object only A kept") +
             tile(number(c.only_b), "times an object only B kept") +

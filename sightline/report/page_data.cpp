@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sightline/report/page_parts.h"
 #include "sightline/report/plan.h"
 #include "sightline/report/png.h"
 
@@ -87,9 +88,7 @@ std::string pageData(const CullRun& run, const Film& film, const std::vector<Cha
         data["rows"].push_back(Json::array({row.key, row.name, row.path, row.triangles, row.kept}));
     data["row_stages"] = table.stages;
     data["pictures"] = picturesJson(film);
-    std::string json = data.dump(-1, ' ', true, Json::error_handler_t::replace);
-    for (size_t at = json.find("</"); at != std::string::npos; at = json.find("</", at)) json.replace(at, 2, "<\\/");
-    return json;
+    return embedded(data.dump(-1, ' ', true, Json::error_handler_t::replace));
 }
 
 }  // namespace sightline

@@ -33,6 +33,13 @@ std::string sceneTitle(const std::string& scene) {
     return escapeHtml(slash == std::string::npos ? scene : scene.substr(slash + 1));
 }
 
+std::string embedded(std::string_view json) {
+    std::string out;
+    out.reserve(json.size());
+    for (const char c : json) out += c == '<' ? std::string_view("\\u003c") : std::string_view(&c, 1);
+    return out;
+}
+
 std::string tile(const std::string& value, const std::string& text) {
     return fmt::format("<div class=\"tile\"><b>{}</b><span class=\"soft\">{}</span></div>", value, text);
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace sightline {
 
@@ -19,6 +20,9 @@ std::string pageHead(const std::string& title);
 
 /// The name of a scene without its directories, escaped.
 std::string sceneTitle(const std::string& scene);
+
+/// JSON as a <script> takes it: no text in it ends the element, or begins a comment that would swallow its end.
+std::string embedded(std::string_view json);
 
 /// A large value and what it is.
 std::string tile(const std::string& value, const std::string& text);
