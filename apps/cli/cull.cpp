@@ -59,7 +59,8 @@ Status checkOutputs(const CullOptions& options) {
 /// "culled-0012.png" of "culled-"; of a file that the user put there, no.
 bool isPictureOf(const std::string& what, const std::string& name) {
     constexpr std::string_view kSuffix = ".png";
-    if (name.size() <= what.size() + kSuffix.size() || name.rfind(what, 0) != 0 || !name.ends_with(kSuffix)) return false;
+    if (name.size() <= what.size() + kSuffix.size() || name.rfind(what, 0) != 0 || !name.ends_with(kSuffix))
+        return false;
     const auto digits = std::string_view(name).substr(what.size(), name.size() - what.size() - kSuffix.size());
     return std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/cli/apart.h"
 #include "apps/cli/common.h"
 #include "apps/cli/cull_path.h"
 #include "apps/cli/explain_object.h"
@@ -16,6 +17,7 @@
 #include "sightline/report/explain_picture.h"
 #include "sightline/report/explain_text.h"
 #include "sightline/report/output_file.h"
+#include "sightline/scene/one_line.h"
 
 namespace sightline::cli {
 namespace {
@@ -59,6 +61,12 @@ Status checkFrame(const ExplainOptions& options, const CameraPath& path) {
 }
 
 Status checkOutputs(const ExplainOptions& options) {
+    ApartFiles files;
+    for (const std::string& name : options.scene.names) files.read("SCENE", name);
+    files.read("--cameras", options.cameras);
+    files.write("--json", options.json);
+    files.write("-o", options.picture);
+    if (!files.status()) return files.status();
     if (!options.json.empty() && options.json != "-")
         if (Status writable = canWriteFile(options.json); !writable) return writable;
     return options.picture.empty() ? success() : canWriteFile(options.picture);
@@ -158,7 +166,7 @@ Status explainPixel(const ExplainOptions& options, const AskedScene& asked, cons
             fmt::format("{:>10.4g} units  {:<10} {}", layers[i].depth,
                         answer.why.verdict == Verdict::kVisible ? "kept" : verdictName(answer.why.verdict),
                         titleOf(asked.scene, object));
-        fmt::print(out, "{}\n", line.size() > 100 ? line.substr(0, 97) + "..." : line);
+        fmt::print(out, "{}\n", shortened(line, 100));
         body["answers"].push_back(answerJson(asked, answer));
     }
     return success();

@@ -11,11 +11,13 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/cli/apart.h"
 #include "apps/cli/common.h"
 #include "apps/cli/verbs.h"
 #include "sightline/import/foreign.h"
 #include "sightline/import/scene_kind.h"
 #include "sightline/report/cull_run.h"
+#include "sightline/scene/one_line.h"
 
 namespace sightline::cli {
 namespace {
@@ -173,20 +175,13 @@ Json infoJson(const SceneReport& report) {
     return out;
 }
 
-/// Text of a file, fit for one field of one line.
-std::string field(std::string text) {
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    return text;
-}
-
 void printFiles(std::FILE* out, const SceneReport& report) {
     if (report.files.size() == 1)
         fmt::print(out, "  format              {} (read by {})\n", report.files[0].format, report.files[0].reader);
     if (report.files.size() < 2) return;
     fmt::print(out, "  files                   first key\n");
     for (const FileFacts& file : report.files)
-        fmt::print(out, "  {:>32}  {}: {}, read by {}\n", grouped(file.first_key), field(file.name), file.format,
+        fmt::print(out, "  {:>32}  {}: {}, read by {}\n", grouped(file.first_key), oneLine(file.name), file.format,
                    file.reader);
 }
 
@@ -196,7 +191,7 @@ void printInfo(std::FILE* out, const SceneReport& report) {
     const auto row = [&](const char* name, uint64_t count, const std::string& more = "") {
         fmt::print(out, "  {:<20}{:>14}{}{}\n", name, grouped(count), more.empty() ? "" : "  ", more);
     };
-    fmt::print(out, "{}\n", report.title);
+    fmt::print(out, "{}\n", oneLine(report.title));
     printFiles(out, report);
     row("objects", facts.keys, facts.keys == facts.objects ? "" : grouped(facts.objects) + " instances");
     row("  deforming", facts.deforming_objects);
@@ -222,7 +217,7 @@ void printInfo(std::FILE* out, const SceneReport& report) {
     if (largest.size() < 2) return;
     fmt::print(out, "  largest meshes\n");
     for (const Mesh* mesh : largest)
-        fmt::print(out, "  {:>34}  {}\n", grouped(mesh->triangles()), mesh->name.empty() ? "-" : field(mesh->name));
+        fmt::print(out, "  {:>34}  {}\n", grouped(mesh->triangles()), mesh->name.empty() ? "-" : oneLine(mesh->name));
 }
 
 /// A line each: key, triangles, path; separated by tabs, in the order of keys.
@@ -230,7 +225,7 @@ void printObjects(std::FILE* out, const Scene& scene) {
     for (const uint32_t i : orderByKey(scene)) {
         const SceneObject& object = scene.objects[i];
         fmt::print(out, "{}\t{}\t{}\n", object.key, scene.meshes[object.mesh].triangles(),
-                   field(objectPath(scene, object)));
+                   oneLine(objectPath(scene, object)));
     }
 }
 
@@ -258,6 +253,10 @@ Status runInfo(const CLI::App& verb, const InfoOptions& options) {
         return Error{Error::Kind::kUsage, "--json: the name is empty"};
     if (options.formats) return printFormats(options.json);
     if (options.scene.names.empty()) return Error{Error::Kind::kUsage, "SCENE is required (see sightline info --help)"};
+    ApartFiles files;
+    for (const std::string& name : options.scene.names) files.read("SCENE", name);
+    files.write("--json", options.json);
+    if (!files.status()) return files.status();
     const Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
     const SceneReport report{

@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "apps/cli/apart.h"
 #include "sightline/report/output_file.h"
 
 namespace sightline::cli {
@@ -91,47 +92,22 @@ void addDepth(CLI::App& verb, RenderOptions& options) {
 
 Error usage(const std::string& message) { return {Error::Kind::kUsage, message}; }
 
-/// Where a name leads to, as far as that exists.
-std::filesystem::path placeOf(const std::filesystem::path& name) {
-    std::error_code error;
-    const std::filesystem::path place = weakly_canonical(std::filesystem::absolute(name, error), error);
-    return error ? name : place;
-}
-
-/// Of two outputs in one file the later one would be left, and an output in an input's place would be the end of that.
-/// Devices take any number.
+/// Of files only; a directory's are those that the report has.
 Status checkApart(const RenderOptions& options) {
-    struct Named {
-        std::string option;
-        std::filesystem::path place;
-    };
-    std::vector<Named> taken;
-    const auto take = [&](const char* option, const std::filesystem::path& name, bool written) -> Status {
-        if (name.empty() || name == "-") return success();
-        std::error_code ignored;
-        if (exists(name, ignored) && !is_regular_file(name, ignored)) return success();
-        const std::filesystem::path place = placeOf(name);
-        for (const Named& other : taken)
-            if (written && other.place == place)
-                return usage(fmt::format("{}: {} is taken by {}", option, name.string(), other.option));
-        taken.push_back({option, place});
-        return success();
-    };
-    for (const std::string& name : options.scene.names)
-        if (Status good = take("SCENE", name, false); !good) return good;
-    if (Status good = take("--cameras", options.cameras, false); !good) return good;
-    if (Status good = take("-o", options.image, true); !good) return good;
-    if (Status good = take("--ids", options.ids, true); !good) return good;
-    if (Status good = take("--heat-map", options.heat_map, true); !good) return good;
-    if (Status good = take("--json", options.json, true); !good || options.report.empty()) return good;
+    ApartFiles files;
+    for (const std::string& name : options.scene.names) files.read("SCENE", name);
+    files.read("--cameras", options.cameras);
+    files.write("-o", options.image);
+    files.write("--ids", options.ids);
+    files.write("--heat-map", options.heat_map);
+    files.write("--json", options.json);
+    if (options.report.empty()) return files.status();
     const std::filesystem::path report = options.report;
-    if (Status good = take("--report", report / "index.html", true); !good) return good;
+    files.write("--report", report / "index.html");
     for (const std::string_view method : kHiddenMethodNames)
-        if (options.all() || options.method == method)
-            if (Status good = take("--report", report / (std::string(method) + ".png"), true); !good) return good;
-    // The same JSON twice does no harm.
-    if (placeOf(options.json) == placeOf(report / "render.json")) return success();
-    return take("--report", report / "render.json", true);
+        if (options.all() || options.method == method) files.write("--report", report / (std::string(method) + ".png"));
+    files.writeAgain("--report", report / "render.json", options.json);
+    return files.status();
 }
 
 }  // namespace

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "apps/cli/apart.h"
 #include "apps/cli/common.h"
 #include "apps/cli/session.h"
 #include "apps/cli/summary.h"
@@ -17,6 +19,7 @@
 #include "sightline/report/output_file.h"
 #include "sightline/report/page.h"
 #include "sightline/report/trace_json.h"
+#include "sightline/scene/one_line.h"
 
 namespace sightline::cli {
 namespace {
@@ -33,8 +36,8 @@ struct ReportOptions {
 };
 
 void printComparison(std::FILE* out, const RunComparison& c, const RunFile& a, const RunFile& b) {
-    fmt::print(out, "A {}: {}, {} frames\nB {}: {}, {} frames\n", a.file, a.run.scene, a.run.frames.size(), b.file,
-               b.run.scene, b.run.frames.size());
+    fmt::print(out, "A {}: {}, {} frames\nB {}: {}, {} frames\n", oneLine(a.file), oneLine(a.run.scene),
+               a.run.frames.size(), oneLine(b.file), oneLine(b.run.scene), b.run.frames.size());
     fmt::print(out, "paired       {} frames; without a partner {} of A, {} of B\n", c.pairs.size(), c.unpaired_a,
                c.unpaired_b);
     fmt::print(out, "query        {:.1f} us in A, {:.1f} us in B, medians; B / A {:.3f} ({:.3f} to {:.3f})\n",
@@ -48,10 +51,10 @@ void printComparison(std::FILE* out, const RunComparison& c, const RunFile& a, c
     for (size_t i = 0; i < std::min(c.differences.size(), kMostLines); ++i) {
         const RunComparison::Difference& row = c.differences[i];
         fmt::print(out, "  object {} \"{}\": {} frames only in A, {} only in B\n", row.id & ~(uint64_t{1} << 63),
-                   row.path.empty() ? row.name : row.path, row.only_a, row.only_b);
+                   oneLine(row.path.empty() ? row.name : row.path, 200), row.only_a, row.only_b);
     }
     if (c.differences.size() > kMostLines) fmt::print(out, "  and {} more\n", c.differences.size() - kMostLines);
-    for (const std::string& sentence : c.verdict) fmt::print(out, "{}\n", sentence);
+    for (const std::string& sentence : c.verdict) fmt::print(out, "{}\n", oneLine(sentence));
 }
 
 Status writeInto(const std::string& directory, const std::string& page) {
@@ -79,8 +82,8 @@ Result<int> show(const ReportOptions& options, const std::vector<RunFile>& files
     bool sound = true;
     for (const RunFile& file : files) {
         if (!quiet()) {
-            if (files.size() > 1) fmt::print("{}:\n", file.file);
-            if (file.run.frames.empty()) fmt::print("{}: no frames\n", file.run.scene);
+            if (files.size() > 1) fmt::print("{}:\n", oneLine(file.file));
+            if (file.run.frames.empty()) fmt::print("{}: no frames\n", oneLine(file.run.scene));
             else printSummary(stdout, file.run);
         }
         const auto sum = sumVerification(file.run);
@@ -105,7 +108,17 @@ Status check(const CLI::App& verb, const ReportOptions& options) {
     if (!options.compare && !options.json.empty()) return usage("--json goes with --compare");
     if (!options.compare && !options.directory.empty() && options.runs.size() != 1)
         return usage("-o takes one run, or two with --compare");
-    return success();
+    ApartFiles files;
+    for (const std::string& name : options.runs) {
+        files.read("RUN", name);
+        files.read("RUN", std::filesystem::path(name) / "cull.json");
+    }
+    files.write("--json", options.json);
+    if (options.directory.empty()) return files.status();
+    const std::filesystem::path directory = options.directory;
+    files.write("-o", directory / "index.html");
+    if (options.compare) files.writeAgain("-o", directory / "compare.json", options.json);
+    return files.status();
 }
 
 Result<int> runReport(const CLI::App& verb, const ReportOptions& options) {

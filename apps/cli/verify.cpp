@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/cli/apart.h"
 #include "apps/cli/common.h"
 #include "apps/cli/cull_path.h"
 #include "apps/cli/summary.h"
@@ -17,6 +18,11 @@ namespace {
 /// The whole verb. Returns the exit code.
 Result<int> runVerify(const CLI::App& verb, RunOptions& options) {
     if (Status good = finish(verb, options); !good) return good.error();
+    ApartFiles files;
+    for (const std::string& name : options.scene.names) files.read("SCENE", name);
+    files.read("--cameras", options.cameras);
+    files.write("--json", options.json);
+    if (!files.status()) return files.status().error();
     const Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
     const Result<CameraPath> path = loadPath(*scene, options);
