@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -117,9 +118,8 @@ private:
         if (peek() == '.') return fail("sections in sections are not read");
         if (peek() != ']') return fail("the ] of the section is missing");
         ++at_;
-        for (const ConfigEntry& other : file_.sections)
-            if (other.section == section)
-                return fail(fmt::format("[{}] is there already, in line {}", section, other.line));
+        if (const auto [other, fresh] = lines_.try_emplace({section, ""}, line_); !fresh)
+            return fail(fmt::format("[{}] is there already, in line {}", section, other->second));
         ConfigEntry entry;
         entry.section = section;
         entry.line = line_;
@@ -139,9 +139,8 @@ private:
         skipBlank(false);
         readValue(entry);
         if (fault_) return;
-        for (const ConfigEntry& other : file_.entries)
-            if (other.section == section && other.key == entry.key)
-                return fail(fmt::format("\"{}\" is there already, in line {}", entry.key, other.line));
+        if (const auto [other, fresh] = lines_.try_emplace({section, "=" + entry.key}, entry.line); !fresh)
+            return fail(fmt::format("\"{}\" is there already, in line {}", entry.key, other->second));
         file_.entries.push_back(std::move(entry));
     }
 
@@ -222,6 +221,7 @@ private:
     size_t at_ = 0;
     uint32_t line_ = 1;
     ConfigFile file_;
+    std::map<std::pair<std::string, std::string>, uint32_t> lines_;  // of sections, and of keys with = before them
     std::optional<Error> fault_;
 };
 

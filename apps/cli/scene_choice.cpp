@@ -125,7 +125,8 @@ std::string SceneChoice::title() const { return fmt::format("{}", fmt::join(name
 
 std::string SceneChoice::words() const {
     std::string words;
-    for (const std::string& name : names) words += (words.empty() ? "" : " ") + quoted(name);
+    for (const std::string& name : names)  // a name that looks like an option needs its directory
+        words += (words.empty() ? "" : " ") + quoted(name.starts_with('-') ? "./" + name : name);
     for (const auto& [name, value] : optionsOf(*this)) words += " " + name + " " + quoted(value);
     return words;
 }
@@ -135,10 +136,9 @@ std::string SceneChoice::procedural() const {
 }
 
 void addSceneChoice(CLI::App& verb, SceneChoice& choice) {
-    verb.add_option(
-            "SCENE", choice.names,
-            "files (sightline info --formats lists what can be read) or procedural scenes, as city:SEED:OBJECTS or "
-            "made:NAME; several are joined")
+    verb.add_option("SCENE", choice.names,
+                    "files (sightline info --formats lists what can be read) or procedural scenes, as city:1:100000, "
+                    "building:1:3, terrain:1:256 or made:cycle; several are joined")
         ->required()
         ->expected(1, 1000);
     addImportOptions(verb, choice);

@@ -111,7 +111,10 @@ std::vector<std::string> filesOfScene(const std::string& name) {
     const fs::path directory = file.parent_path();
     const std::string suffix = suffixOf(file);
     std::optional<std::vector<std::string>> others;
-    if (suffix == ".gltf" || suffix == ".glb") others = gltfBuffers(file);
+    std::error_code absent;
+    if (fs::exists(file, absent) && !fs::is_regular_file(file, absent))
+        others.emplace();  // a pipe would have us wait, a device never end
+    else if (suffix == ".gltf" || suffix == ".glb") others = gltfBuffers(file);
     else if (suffix == ".obj") others = objLibraries(file);
     std::vector<std::string> files = {name};
     if (others) {

@@ -86,12 +86,15 @@ struct At {
     }
 };
 
+/// Keys from here on are none of ours: a comparison marks what only B has by the highest bit.
+constexpr uint64_t kMostKey = (1ull << 63) - 1;
+
 std::vector<uint64_t> keysOf(const At& list) {
     std::vector<uint64_t> keys;
     keys.reserve(list.size());
     for (size_t i = 0; i < list.size(); ++i) {
         const At entry = list.element(i);
-        keys.push_back(entry.whole());
+        keys.push_back(entry.whole(0, kMostKey));
         if (i > 0 && keys[i] <= keys[i - 1]) entry.fail("keys do not ascend");
     }
     return keys;
@@ -151,7 +154,7 @@ VerificationRow verificationOf(const At& at, std::vector<uint64_t>& unseen) {
         for (size_t i = 0; i < list->size(); ++i) {
             const At entry = list->element(i);
             FalseCullRow cull;
-            cull.key = entry.member("key").whole();
+            cull.key = entry.member("key").whole(0, kMostKey);
             double pixel[2];
             entry.member("pixel").numbers(pixel, 2);
             cull.x = pixel[0];
@@ -192,7 +195,7 @@ std::vector<KeyName> namesOf(const At& head, const CullRun& run, const std::vect
     if (const auto list = head.maybe("objects"))
         for (size_t i = 0; i < list->size(); ++i) {
             const At at = list->element(i);
-            names.push_back({at.member("key").whole(), at.member("name").text(), at.member("path").text()});
+            names.push_back({at.member("key").whole(0, kMostKey), at.member("name").text(), at.member("path").text()});
             if (i > 0 && names[i].key <= names[i - 1].key) at.member("key").fail("keys do not ascend");
         }
     std::vector<uint64_t> keys;
