@@ -34,11 +34,9 @@ if [ -n "$full" ]; then
     step "clang without warnings"
     build clang
 
-    step "fuzzer, one minute"
+    step "fuzzers, half a minute each"
     build fuzz
-    mkdir -p build/fuzz/found
-    build/fuzz/tests/fuzz/sightline_fuzz_gltf -max_total_time=60 -max_len=4096 -dict=tests/fuzz/gltf.dict \
-        -artifact_prefix=build/fuzz/ build/fuzz/found tests/fuzz/corpus/gltf
+    tests/fuzz/run 30
 fi
 
 step "release"
