@@ -29,8 +29,8 @@ struct SessionOptions {
 /// Adds all but --watch to the tool or to a verb: they may stand before the verb or after it.
 void addSessionOptions(CLI::App& app, SessionOptions& options);
 
-/// Makes sure that standard input, output and error are open, that a reader who has left is an error and not the end,
-/// and that Ctrl-C and a request to end are heard. Before anything else, once.
+/// Makes sure that standard input, output and error are open, that a reader who has left, or a file that may not
+/// grow, is an error and not the end, and that Ctrl-C and a request to end are heard. Before anything else, once.
 void openSession();
 /// Sets what holds from here on, and begins the log with the command. Errors (kOutput): the log cannot be written.
 Status beginSession(const SessionOptions& options, const std::string& version, const std::string& command);

@@ -1,5 +1,6 @@
 // Names and files that nobody means well with: the terminal obeys none, nothing is lost, nothing waits for ever.
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>
 
@@ -127,6 +128,17 @@ TEST_F(StrangeInput, OnlyPicturesOfItsOwnLeaveAReport) {
     EXPECT_FALSE(std::filesystem::exists(path("r/frames/plan-0099.png")));
 }
 
+TEST_F(StrangeInput, AFileThatMayNotGrowIsToldAndLeavesNothing) {
+    write("old.json", "old");
+    const std::string limited = "cull city:1:2000 --frames 4 --size 64x64 --json old.json";
+    const Outcome outcome = Tool::run("--version; ulimit -f 1; '" SIGHTLINE_TOOL "' " + limited);
+    EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
+    EXPECT_NE(outcome.err.find("old.json: cannot be written"), std::string::npos) << outcome.err;
+    EXPECT_EQ(read(path("old.json")), "old");
+    const std::filesystem::directory_iterator files(directory_);
+    EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "no half file is left beside it";
+}
+
 TEST_F(StrangeInput, AWatchWaitsForNoPipe) {
     ASSERT_EQ(::mkfifo(path("a.obj").c_str(), 0600), 0);
     ASSERT_EQ(::mkfifo(path("a.gltf").c_str(), 0600), 0);
@@ -137,7 +149,7 @@ TEST_F(StrangeInput, AWatchWaitsForNoPipe) {
 
 TEST_F(StrangeInput, AConfigurationOfManyKeysIsReadOnce) {
     std::string text;
-    for (int i = 0; text.size() < 1000000; ++i) text += "k" + std::to_string(i) + "=1\n";
+    for (int i = 0; text.size() < 1000000; ++i) text += fmt::format("k{}=1\n", i);
     const Result<cli::ConfigFile> file = cli::parseConfig(text, "many");
     ASSERT_TRUE(file) << file.error().message;
     EXPECT_GT(file->entries.size(), 100000u);
