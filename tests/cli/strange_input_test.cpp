@@ -166,7 +166,9 @@ TEST_F(StrangeInput, SeedsOfTheConfigurationsFuzzerAreReadOrRefused) {
     for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
         ++seeds;
         const Result<cli::ConfigFile> file = cli::parseConfig(read(entry.path().string()), "t");
-        if (!file) EXPECT_EQ(file.error().message.rfind("t:", 0), 0u) << file.error().message;
+        if (!file) {
+            EXPECT_EQ(file.error().message.rfind("t:", 0), 0u) << file.error().message;
+        }
     }
     EXPECT_GE(seeds, 3);
 }
