@@ -59,13 +59,35 @@ void addCamera(Scene& scene, std::string name, const glm::dvec3& eye, const glm:
     camera.z_near = 0.05;
 }
 
-/// From the room's corner that is farthest from its door, over what stands in the middle.
+/// How far it is from an eye to the next piece of furniture at its height, ahead of it [at most `reach`].
+double clearanceAhead(const Scene& scene, const glm::dvec3& eye, const glm::dvec3& target, double reach) {
+    const glm::dvec3 ahead = glm::normalize(target - eye);
+    double clear = reach;
+    for (const SceneObject& object : scene.objects) {
+        const glm::dvec3 away = glm::dvec3(object.transform[3]) - eye;
+        // What is built stands at the origin of the world; nothing in a room reaches two metres from its place.
+        if (object.transform == glm::dmat4(1.0) || std::max(std::abs(away.x), std::abs(away.z)) > reach + 2) continue;
+        const Box3d box = transformBox(scene.meshes[object.mesh].bounds, object.transform);
+        if (box.max.y < eye.y - 0.25 || box.min.y > eye.y + 0.5) continue;
+        const glm::dvec3 nearest = glm::clamp(eye, box.min, box.max) - eye;
+        const double distance = glm::length(nearest);
+        if (glm::dot(nearest, ahead) >= 0.7 * distance) clear = std::min(clear, distance);
+    }
+    return clear;
+}
+
+/// From a corner by the window, over what stands in the middle: from the other one where a cupboard would be all that
+/// is seen.
 void addRoomCamera(Scene& scene, const Room& room) {
+    constexpr double kClear = 1.5;
     const glm::dvec3 &low = room.box.min, &high = room.box.max;
     const double y = low.y + kEyeHeight;
     const bool north = low.z < 0;
     const double z = north ? low.z + 0.375 : high.z - 0.375, far = north ? high.z : low.z;
-    addCamera(scene, room.name, {low.x + 0.375, y, z}, {high.x - 0.5, y - 0.375, far});
+    const glm::dvec3 west(low.x + 0.375, y, z), from_west(high.x - 0.5, y - 0.375, far);
+    const glm::dvec3 east(high.x - 0.375, y, z), from_east(low.x + 0.5, y - 0.375, far);
+    const bool turn = clearanceAhead(scene, east, from_east, kClear) > clearanceAhead(scene, west, from_west, kClear);
+    addCamera(scene, room.name, turn ? east : west, turn ? from_east : from_west);
 }
 
 /// A walk through one floor: the corridor, each kind of room, and a doorway.
