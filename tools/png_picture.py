@@ -1,4 +1,4 @@
-# Pictures in memory and their PNG form, with the standard library alone: what tools/gallery makes its small pictures by.
+# Pictures in memory and their PNG form, by the standard library alone: the small pictures of tools/gallery.
 # SPDX-License-Identifier: MIT
 """PNG of 8 bits a channel, without interlacing: what `sightline cull --report` writes."""
 import struct
@@ -152,7 +152,7 @@ def plain(width, height, colour):
 
 
 def shares(source, target):
-    """For each of `target` places the (index, part) of the `source` places that it covers; parts of a place sum to 1."""
+    """For each of `target` places the (index, part) of the `source` places under it; parts of a place sum to 1."""
     out, scale = [], source / target
     for place in range(target):
         begin, end, parts = place * scale, (place + 1) * scale, []
