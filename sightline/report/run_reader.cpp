@@ -18,6 +18,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kMostExact = 9007199254740992.0;  // whole numbers up to here are exact in JSON of any origin
+constexpr double kMostMeasured = 1e15;             // [us, pixels]: 31 years; sums of a path stay finite
 constexpr uint64_t kMostSide = 1u << 20;           // [pixels]
 constexpr uint64_t kMostSupersampling = 1024;
 
@@ -59,6 +60,7 @@ struct At {
     double positive() const {
         const double out = number();
         if (out < 0) fail("negative");
+        if (out > kMostMeasured) fail("too large");
         return out;
     }
     uint64_t whole() const {
@@ -260,8 +262,8 @@ RunFile readHead(const At& head) {
 
 /// The place within nlohmann's message, without its name and number.
 std::string parseFault(const std::string& what) {
-    const size_t at = what.find("parse error");
-    return at == std::string::npos ? what : what.substr(at);
+    const size_t end = what.find("] ");
+    return end == std::string::npos ? what : what.substr(end + 2);
 }
 
 }  // namespace

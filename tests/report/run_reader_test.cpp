@@ -86,6 +86,11 @@ TEST(RunReader, NamesThePlaceOfAFault) {
     EXPECT_EQ(faultOf([](json&) {}), "");
     EXPECT_EQ(faultOf([](json& run) { run["schema"] = "other/1"; }), "run.json: schema: not sightline.cull/1");
     EXPECT_EQ(faultOf([](json& run) { run.erase("frames"); }), "run.json: frames: missing");
+    EXPECT_EQ(faultOf([](json& run) { run["frames"][1]["query_microseconds"] = 1e308; }),
+              "run.json: frames[1].query_microseconds: too large");
+    EXPECT_EQ(faultOf([](json& run) { run["frames"][0]["visible"] = {uint64_t{1} << 63}; }),
+              "run.json: frames[0].visible[0]: not between 0 and 9223372036854775807");
+    EXPECT_EQ(parseRun("1e999", "run.json").error().message, "run.json: not JSON: number overflow parsing '1e999'");
     EXPECT_EQ(faultOf([](json& run) { run["frames"][1]["visible"][0] = -1; }),
               "run.json: frames[1].visible[0]: not a whole number");
     EXPECT_EQ(faultOf([](json& run) {
