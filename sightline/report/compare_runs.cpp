@@ -181,10 +181,10 @@ std::string sentenceOfSets(const RunComparison& out) {
 
 std::string sentenceOfTimes(const RunComparison& out) {
     const std::string range =
-        fmt::format("{:.2f} to {:.2f} in the middle eight tenths of the frames", out.ratio_low, out.ratio_high);
+        fmt::format("{:.3g} to {:.3g} in the middle eight tenths of the frames", out.ratio_low, out.ratio_high);
     if (out.ratio_low <= 1 && out.ratio_high >= 1)
-        return fmt::format("Times do not tell them apart: B takes {:.2f} times as long as A, {}.", out.ratio, range);
-    return fmt::format("B is {}: it takes {:.2f} times as long as A, {}.", out.ratio < 1 ? "faster" : "slower",
+        return fmt::format("Times do not tell them apart: B takes {:.3g} times as long as A, {}.", out.ratio, range);
+    return fmt::format("B is {}: it takes {:.3g} times as long as A, {}.", out.ratio < 1 ? "faster" : "slower",
                        out.ratio, range);
 }
 

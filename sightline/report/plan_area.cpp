@@ -24,6 +24,14 @@ glm::dvec2 rangeOf(std::vector<double>& values) {
     return {values[cut], values[values.size() - 1 - cut]};
 }
 
+/// Where a stretch of `side` around `middle` begins: moved so that it shows no more emptiness beyond [low, high] than
+/// a rim, while it leaves out what lies at the other end.
+double placed(double middle, double side, double low, double high) {
+    const double rim = 0.04 * side;
+    if (side >= high - low + 2 * rim) return 0.5 * (low + high - side);
+    return std::clamp(middle - 0.5 * side, low - rim, high + rim - side);
+}
+
 /// The next whole number of the kind 1, 2, 3, 4, 5, 8, 10 that is not above.
 double roundFactor(double value) {
     double best = 1;
@@ -56,8 +64,8 @@ PlanArea planArea(std::span<const Box3d> bounds, std::span<const std::span<const
     double side = std::clamp(1.5 * std::max(x.y - x.x, z.y - z.x), 0.05 * whole, 1.1 * whole);
     if (!(side > 0)) side = 1;
     area.width = area.height = side;
-    area.left = 0.5 * (x.x + x.y) - 0.5 * side;
-    area.top = 0.5 * (z.x + z.y) - 0.5 * side;
+    area.left = placed(0.5 * (x.x + x.y), side, std::min(world.min.x, x.x), std::max(world.max.x, x.y));
+    area.top = placed(0.5 * (z.x + z.y), side, std::min(world.min.z, z.x), std::max(world.max.z, z.y));
     return area;
 }
 

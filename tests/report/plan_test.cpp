@@ -71,6 +71,21 @@ TEST(Plan, AreaHoldsWhatWasVisible) {
     EXPECT_LE(area.width, 300);
 }
 
+TEST(Plan, AreaShowsTheWorldRatherThanEmptinessBesideIt) {
+    std::vector<Box3d> bounds;
+    std::vector<uint8_t> reasons;
+    for (int i = 0; i < 100; ++i) {
+        bounds.push_back(boxAt(i * 10, 0, 1));
+        reasons.push_back(i < 60 ? 0 : 1);  // the middle of what is seen lies left of the world's
+    }
+    View view;
+    view.view = lookAt({5, 1, 0}, {5, 1, -9}, {0, 1, 0});
+    const std::span<const uint8_t> frame = reasons;
+    const PlanArea area = planArea(bounds, std::span(&frame, 1), std::span(&view, 1));
+    EXPECT_GE(area.left, -1 - 0.05 * area.width);
+    EXPECT_GE(area.left + area.width, 590);
+}
+
 /// Slabs at 0, 3 and 6, and a desk on each floor.
 std::vector<Box3d> twoFloors() {
     std::vector<Box3d> bounds;
