@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/report/picture.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "sightline/report/plan.h"
@@ -48,6 +50,20 @@ TEST(Picture, ShadesSurfacesApartFromTheSky) {
     const CullRun run = madeRun(scene);
     const PictureMaker::Frame frame = PictureMaker(scene).draw(madeView(run), run.frames[0].reasons);
     EXPECT_NE(frame.shaded.at(run.width / 2, run.height / 2), frame.shaded.at(0, run.height / 2));
+}
+
+TEST(Picture, KeepsColoursHoweverFarTheEyeStandsOutside) {
+    const Scene scene = madeScene();
+    const CullRun run = madeRun(scene);
+    const auto middle = [&](double distance) {
+        CameraFrame camera = run.frames[0].camera;
+        camera.eye = camera.target + distance * glm::normalize(camera.eye - camera.target);
+        camera.fov_y_degrees = glm::degrees(2 * std::atan(1 / distance));
+        const View view = makeView(camera, run.width, run.height);
+        return PictureMaker(scene).draw(view, run.frames[0].reasons).shaded.at(run.width / 2, run.height / 2);
+    };
+    const Rgb near = middle(20), far = middle(400);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(near[c], far[c], 2) << c;
 }
 
 TEST(Picture, HeatIsBrightestAtItsFullValue) {
