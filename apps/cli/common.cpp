@@ -113,6 +113,11 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
         ->type_name("PX")
         ->capture_default_str()
         ->group("Culling");
+    verb.add_option("--occluder-triangles", options.occluder_triangles,
+                    "that a query draws at most, the nearest first; further objects hide nothing")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Culling");
     verb.add_option("--rays", options.rays, "that the first witness casts for a frame")
         ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
         ->type_name("N")

@@ -8,6 +8,7 @@
 
 #include "apps/cli/scene_choice.h"
 #include "sightline/base/result.h"
+#include "sightline/geom/view.h"
 #include "sightline/scene/camera_path.h"
 #include "sightline/scene/scene.h"
 
@@ -31,6 +32,7 @@ struct RunOptions {
     std::vector<std::string> use, skip;
     uint32_t stages = 0;  ///< from `use` and `skip`
     double jitter = 0.5;
+    uint32_t occluder_triangles = View().occluder_triangles;
     uint64_t rays = 1000000;
     std::string json;      ///< file, `-`, or empty
     std::string report;    ///< directory, or empty

@@ -10,12 +10,14 @@
 #include <string_view>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "apps/cli/apart.h"
 #include "apps/cli/common.h"
 #include "apps/cli/cull_path.h"
 #include "apps/cli/frame_notes.h"
 #include "apps/cli/progress.h"
+#include "apps/cli/session.h"
 #include "apps/cli/summary.h"
 #include "apps/cli/verbs.h"
 #include "sightline/report/output_file.h"
@@ -132,6 +134,8 @@ Result<int> runCull(const CLI::App& verb, CullOptions& options) {
     printSummary(options.json == "-" ? stderr : stdout, run);
     if (Status explained = explainFalseCulls(*scene, options, run); !explained) return explained.error();
     if (Status written = writeOutputs(*scene, run, options); !written) return written.error();
+    if (!options.report.empty())
+        tell(options.json == "-" ? stderr : stdout, fmt::format("report       {}/index.html\n", options.report));
     return exitCodeOf(run, path->frames.size(), options.verify);
 }
 

@@ -32,6 +32,7 @@ View viewOf(const CameraFrame& camera, const CullRun& run) {
     View view = makeView(camera, run.width, run.height);
     view.jitter = run.jitter;
     view.stages = run.stages;
+    view.occluder_triangles = run.occluder_triangles;
     return view;
 }
 
@@ -150,6 +151,8 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     std::string command = fmt::format("sightline verify {} --cameras {} --size {}x{} --rays {}", options.scene.words(),
                                       quoted(camera_file), run.width, run.height, options.rays);
     if (run.jitter != View().jitter) command += fmt::format(" --jitter {}", run.jitter);
+    if (run.occluder_triangles != View().occluder_triangles)
+        command += fmt::format(" --occluder-triangles {}", run.occluder_triangles);
     std::string names;
     for (int stage = 0; stage < kStageCount; ++stage)
         if (!(run.stages >> stage & 1)) names += (names.empty() ? "" : ",") + std::string(kStageNames[stage]);
@@ -175,6 +178,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.height = options.height;
     run.jitter = options.jitter;
     run.stages = options.stages;
+    run.occluder_triangles = options.occluder_triangles;
     run.repeat = options.repeat;
     run.frames.resize(path.frames.size());
 

@@ -99,6 +99,7 @@ View viewOfFrame(const CameraFrame& camera, const RunOptions& options) {
     View view = makeView(camera, options.width, options.height);
     view.jitter = options.jitter;
     view.stages = options.stages;
+    view.occluder_triangles = options.occluder_triangles;
     return view;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/cli/session.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -9,7 +10,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
+#include <fstream>
 #include <iterator>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
@@ -109,6 +113,16 @@ std::string plain(std::string_view text) {
 
 void writeTo(std::FILE* out, std::string_view text) { (void)std::fwrite(text.data(), 1, text.size(), out); }
 
+/// A log begins with the time. What does not, as a scene that was named by mistake, is not appended to.
+bool isLogOrNew(const std::string& name) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(name, ignored)) return true;
+    char begin[5] = {};
+    std::ifstream(name, std::ios::binary).read(begin, sizeof begin);
+    const bool empty = std::filesystem::file_size(name, ignored) == 0;
+    return empty || (std::all_of(begin, begin + 4, [](char c) { return c >= '0' && c <= '9'; }) && begin[4] == '-');
+}
+
 }  // namespace
 
 void addSessionOptions(CLI::App& app, SessionOptions& options) {
@@ -151,6 +165,9 @@ Status beginSession(const SessionOptions& options, const std::string& version, c
     now.quiet = options.quiet;
     now.colour = options.colour;
     if (options.log.empty()) return success();
+    if (!isLogOrNew(options.log))
+        return Error{Error::Kind::kOutput,
+                     fmt::format("--log: {} holds something else, and is left as it is", options.log)};
     const int log = ::open(options.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (log < 0)
         return Error{Error::Kind::kOutput, fmt::format("{}: cannot be written: {}", options.log, std::strerror(errno))};

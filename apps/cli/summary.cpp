@@ -64,8 +64,9 @@ void printSummary(std::FILE* out, const CullRun& run) {
     }
     std::string text;
     fmt::format_to(std::back_inserter(text),
-                   "{}: {} objects, {} triangles; {} frames of {}x{}, means over the frames\n", oneLine(run.scene),
-                   grouped(run.objects), grouped(run.triangles), run.frames.size(), run.width, run.height);
+                   "{}: {} object{}, {} triangles; {} frame{} of {}x{}, means over the frames\n", oneLine(run.scene),
+                   grouped(run.objects), run.objects == 1 ? "" : "s", grouped(run.triangles), run.frames.size(),
+                   run.frames.size() == 1 ? "" : "s", run.width, run.height);
     fmt::format_to(std::back_inserter(text), "visible      {:>10} objects  {:7.3f} %\n", rounded(visible / frames),
                    share(visible / frames, static_cast<double>(run.objects)));
     for (int stage = 0; stage < kStageCount; ++stage) {
@@ -116,6 +117,8 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     list("--use", options.use);
     list("--skip", options.skip);
     if (options.jitter != View().jitter) command += fmt::format(" --jitter {}", options.jitter);
+    if (options.occluder_triangles != View().occluder_triangles)
+        command += fmt::format(" --occluder-triangles {}", options.occluder_triangles);
     if (verify) command += fmt::format(" --verify --rays {}", options.rays);
     return command;
 }

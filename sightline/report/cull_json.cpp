@@ -74,6 +74,7 @@ Json headJson(const CullRun& run, const Scene& scene) {
     head["width"] = run.width;
     head["height"] = run.height;
     head["jitter"] = run.jitter;
+    head["occluder_triangles_limit"] = run.occluder_triangles;
     head["repeat"] = run.repeat;
     if (run.interrupted) {
         head["interrupted"] = true;

@@ -77,8 +77,9 @@ struct CullRun {
     uint64_t instances = 0;  ///< drawn objects; more than `objects` where several share a key
     uint64_t triangles = 0;  ///< drawn if nothing were culled
     uint32_t width = 0, height = 0;
-    double jitter = 0;             ///< [pixels]
-    uint32_t stages = kAllStages;  ///< bits of Stage in use
+    double jitter = 0;                                        ///< [pixels]
+    uint32_t occluder_triangles = View().occluder_triangles;  ///< that a query drew at most
+    uint32_t stages = kAllStages;                             ///< bits of Stage in use
     int repeat = 1;
     bool interrupted = false;    ///< the frames after the last one here were not begun, or not finished
     uint64_t frames_wanted = 0;  ///< of the path; 0: as many as there are here

@@ -238,6 +238,8 @@ RunFile readHead(const At& head) {
     run.width = static_cast<uint32_t>(head.member("width").whole(1, kMostSide));
     run.height = static_cast<uint32_t>(head.member("height").whole(1, kMostSide));
     if (const auto jitter = head.maybe("jitter")) run.jitter = jitter->positive();
+    if (const auto limit = head.maybe("occluder_triangles_limit"))
+        run.occluder_triangles = static_cast<uint32_t>(limit->whole(0, ~uint32_t{0}));
     if (const auto repeat = head.maybe("repeat")) run.repeat = static_cast<int>(repeat->whole(1, 1000000));
     if (const auto interrupted = head.maybe("interrupted")) run.interrupted = interrupted->flag();
     if (const auto wanted = head.maybe("frames_wanted")) run.frames_wanted = wanted->whole();

@@ -150,6 +150,21 @@ TEST_F(Cli, VerifyTellsTheOverEstimate) {
     EXPECT_EQ(out["frames"][0]["verification"]["false_culls"], 0);
 }
 
+TEST_F(Cli, OccluderTrianglesAreABudget) {
+    const std::string common = "cull city:1:500 --frames 2 --size 160x90 --repeat 1 --json - -q --occluder-triangles ";
+    const Outcome none = run(common + "0"), all = run(common + "1000000");
+    ASSERT_EQ(none.exit_code, 0) << none.err;
+    const auto little = nlohmann::json::parse(none.out), much = nlohmann::json::parse(all.out);
+    EXPECT_EQ(little["occluder_triangles_limit"], 0);
+    for (size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(little["frames"][i]["occluder_triangles"], 0);
+        EXPECT_TRUE(little["frames"][i]["budget_spent"].get<bool>());
+        EXPECT_FALSE(much["frames"][i]["budget_spent"].get<bool>());
+        EXPECT_GT(little["frames"][i]["visible"].size(), much["frames"][i]["visible"].size());
+    }
+    expectError("cull city:1:50 --occluder-triangles -1", 2, "occluder-triangles");
+}
+
 TEST_F(Cli, InfoCounts) {
     const Outcome outcome = run("info city:1:100 --json -");
     ASSERT_EQ(outcome.exit_code, 0);

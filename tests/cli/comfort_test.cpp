@@ -54,6 +54,9 @@ TEST_F(Comfort, LogHasTheCommandTheSummaryAndTheEnd) {
     std::istringstream lines(log);
     for (std::string line; std::getline(lines, line);) EXPECT_EQ(line.substr(0, 2) + line.substr(10, 1), "20T") << line;
     expectError("cull city:1:50 --log no/such/log", 4, "no/such/log");
+    write("model.obj", "v 0 0 0\n");
+    expectError("cull city:1:50 --log model.obj", 4, "model.obj");
+    EXPECT_EQ(read(path("model.obj")), "v 0 0 0\n");
 }
 
 TEST_F(Comfort, ColoursAreForTerminalsAlone) {
