@@ -1,6 +1,5 @@
 // What stands in the stores, the lobby and the corridors of a procedural building, and on its walls and ceilings.
 // SPDX-License-Identifier: MIT
-#include "sightline/base/assert.h"
 #include "sightline/scene/building_library.h"
 #include "sightline/scene/building_plan.h"
 
@@ -276,25 +275,21 @@ MeshBuilder column() {
 }  // namespace
 
 void addEquipment(Shelf& meshes) {
-    const auto add = [&](Item item, const char* name, const MeshBuilder& mesh) {
-        SIGHTLINE_ASSERT(meshes.size() == item);
-        meshes.push_back(mesh.finish(name));
-    };
-    add(kMetalShelf, "Metal shelf", metalShelf());
-    add(kBoxes, "Boxes", boxes());
-    add(kLadder, "Ladder", ladder());
-    add(kTrolley, "Trolley", trolley());
-    add(kReception, "Reception", reception());
-    add(kSofa, "Sofa", sofa());
-    add(kLowTable, "Low table", lowTable());
-    add(kCopier, "Copier", copier());
-    add(kBench, "Bench", bench());
-    add(kExtinguisher, "Fire extinguisher", extinguisher());
-    add(kExitSign, "Exit sign", exitSign());
-    add(kCeilingLight, "Ceiling light", ceilingLight());
-    add(kRadiator, "Radiator", radiator());
-    add(kSwitch, "Light switch", wallSwitch());
-    add(kColumn, "Column", column());
+    shelve(meshes, kMetalShelf, "Metal shelf", metalShelf());
+    shelve(meshes, kBoxes, "Boxes", boxes());
+    shelve(meshes, kLadder, "Ladder", ladder());
+    shelve(meshes, kTrolley, "Trolley", trolley());
+    shelve(meshes, kReception, "Reception", reception());
+    shelve(meshes, kSofa, "Sofa", sofa());
+    shelve(meshes, kLowTable, "Low table", lowTable());
+    shelve(meshes, kCopier, "Copier", copier());
+    shelve(meshes, kBench, "Bench", bench());
+    shelve(meshes, kExtinguisher, "Fire extinguisher", extinguisher());
+    shelve(meshes, kExitSign, "Exit sign", exitSign());
+    shelve(meshes, kCeilingLight, "Ceiling light", ceilingLight());
+    shelve(meshes, kRadiator, "Radiator", radiator());
+    shelve(meshes, kSwitch, "Light switch", wallSwitch());
+    shelve(meshes, kColumn, "Column", column());
 }
 
 }  // namespace sightline::building

@@ -1,6 +1,5 @@
 // What is built into a procedural building: door leaves, windows, stairs, the lift.
 // SPDX-License-Identifier: MIT
-#include "sightline/base/assert.h"
 #include "sightline/scene/building_library.h"
 #include "sightline/scene/building_plan.h"
 
@@ -178,29 +177,25 @@ MeshBuilder liftRail() {
 }  // namespace
 
 void addFittings(Shelf& meshes) {
-    const auto add = [&](Item item, const char* name, const MeshBuilder& mesh) {
-        SIGHTLINE_ASSERT(meshes.size() == item);
-        meshes.push_back(mesh.finish(name));
-    };
-    add(kDoorLeaf, "Door", leaf(kDoorWidth, kDoorHeight, kDoorWood));
-    add(kFireLeaf, "Fire door", leaf(kFireDoorWidth, kDoorHeight, kSteel));
-    add(kGlassLeaf, "Glass door", glassLeaf());
-    add(kLiftLeaf, "Lift door", liftLeaf());
-    add(kDoorFrame, "Door frame", doorFrame(kDoorWidth, kCorridorWall));
-    add(kThinDoorFrame, "Door frame", doorFrame(kDoorWidth, kInnerWall));
-    add(kFireFrame, "Door frame", doorFrame(kFireDoorWidth, kInnerWall));
-    add(kWindow, "Window", window(kWindowSize, true));
-    add(kSmallWindow, "Window", window(kSmallWindowSize, false));
-    add(kStairWindow, "Window", window(kStairWindowSize, true));
-    add(kFlight, "Flight", flight());
-    add(kFlightRail, "Railing", flightRail());
+    shelve(meshes, kDoorLeaf, "Door", leaf(kDoorWidth, kDoorHeight, kDoorWood));
+    shelve(meshes, kFireLeaf, "Fire door", leaf(kFireDoorWidth, kDoorHeight, kSteel));
+    shelve(meshes, kGlassLeaf, "Glass door", glassLeaf());
+    shelve(meshes, kLiftLeaf, "Lift door", liftLeaf());
+    shelve(meshes, kDoorFrame, "Door frame", doorFrame(kDoorWidth, kCorridorWall));
+    shelve(meshes, kThinDoorFrame, "Door frame", doorFrame(kDoorWidth, kInnerWall));
+    shelve(meshes, kFireFrame, "Door frame", doorFrame(kFireDoorWidth, kInnerWall));
+    shelve(meshes, kWindow, "Window", window(kWindowSize, true));
+    shelve(meshes, kSmallWindow, "Window", window(kSmallWindowSize, false));
+    shelve(meshes, kStairWindow, "Window", window(kStairWindowSize, true));
+    shelve(meshes, kFlight, "Flight", flight());
+    shelve(meshes, kFlightRail, "Railing", flightRail());
     MeshBuilder landing, half;
     addBox(landing, kTerrazzo, {0, -kSlab, -kLandingDepth}, {kStairWidth, 0, 0});
-    add(kLanding, "Landing", landing);
+    shelve(meshes, kLanding, "Landing", landing);
     addBox(half, kTerrazzo, {0, -kSlab, 0}, {kStairWidth, 0, kCoreDepth - kLandingDepth - kFlightRun});
-    add(kHalfLanding, "Half-landing", half);
-    add(kLandingRail, "Railing", landingRail());
-    add(kLiftCab, "Cab", liftCab());
+    shelve(meshes, kHalfLanding, "Half-landing", half);
+    shelve(meshes, kLandingRail, "Railing", landingRail());
+    shelve(meshes, kLiftCab, "Cab", liftCab());
     MeshBuilder weight;
     for (int block = 0; block < 8; ++block)
         addBox(weight, kConcrete, {-0.46875, 0.1875 * block, -0.0859375},
@@ -208,15 +203,11 @@ void addFittings(Shelf& meshes) {
     for (const double x : {-0.484375, 0.453125})
         addBox(weight, kSteel, {x, 0, -0.09375}, {x + 0.03125, 1.5625, 0.09375});
     addBox(weight, kSteel, {-0.484375, 1.5, -0.0898437500}, {0.484375, 1.578125, 0.08984375});
-    add(kCounterweight, "Counterweight", weight);
-    add(kLiftRail, "Lift rail", liftRail());
+    shelve(meshes, kCounterweight, "Counterweight", weight);
+    shelve(meshes, kLiftRail, "Lift rail", liftRail());
 }
 
 void addOutdoorItems(Shelf& meshes) {
-    const auto add = [&](Item item, const char* name, const MeshBuilder& mesh) {
-        SIGHTLINE_ASSERT(meshes.size() == item);
-        meshes.push_back(mesh.finish(name));
-    };
     MeshBuilder cooler;
     addBox(cooler, kSteel, {-0.96875, 0.15625, -0.625}, {0.96875, 1.21875, 0.625});
     for (const double x : {-0.8125, 0.6875}) addBox(cooler, kConcrete, {x, 0, -0.6875}, {x + 0.125, 0.171875, 0.6875});
@@ -237,7 +228,7 @@ void addOutdoorItems(Shelf& meshes) {
                   {0.65625, 0.25 + 0.15625 * slat},
                   {0.6171875, 0.328125 + 0.15625 * slat}},
                  -0.90625, 0.90625);
-    add(kCooler, "Cooler", cooler);
+    shelve(meshes, kCooler, "Cooler", cooler);
     MeshBuilder vent;
     addTurned(vent, kSteel, {0, 0, 0}, 16,
               {{0.25, 0},
@@ -247,7 +238,7 @@ void addOutdoorItems(Shelf& meshes) {
                {0.28125, 0.640625},
                {0.28125, 0.6875},
                {0.078125, 0.8125}});
-    add(kVent, "Vent", vent);
+    shelve(meshes, kVent, "Vent", vent);
     MeshBuilder solar;
     addPrism(solar, kSteel, kAcross,
              {{-0.515625, 0.65625}, {0.515625, 0.15625}, {0.515625, 0.1875}, {-0.515625, 0.6875}}, -0.8125, 0.8125);
@@ -260,7 +251,7 @@ void addOutdoorItems(Shelf& meshes) {
         addBox(solar, kSteel, {x, 0, 0.4375}, {x + 0.03125, 0.203125, 0.46875});
         addBox(solar, kSteel, {x, 0, -0.46875}, {x + 0.03125, 0.640625, -0.4375});
     }
-    add(kSolarPanel, "Solar panel", solar);
+    shelve(meshes, kSolarPanel, "Solar panel", solar);
     MeshBuilder tree;
     addTurned(tree, kBark, {0, 0, 0}, 8, {{0.21875, 0}, {0.15625, 0.5}, {0.109375, 3.5}, {0, 5}});
     for (int fifth = 0; fifth < 5; ++fifth)
@@ -269,16 +260,16 @@ void addOutdoorItems(Shelf& meshes) {
     addTurned(tree, kLeaf, {0, 0, 0}, 16,
               {{0, 2.25}, {1.25, 2.5}, {2, 3.5}, {2.0625, 4.25}, {1.5, 5.5}, {0.75, 6.25}, {0, 6.5}});
     addTurned(tree, kLeaf, {0, 0, 0}, 12, {{0, 2.75}, {1.25, 3.25}, {1.375, 4.25}, {0.75, 5.5}, {0, 5.75}});
-    add(kTree, "Tree", tree);
+    shelve(meshes, kTree, "Tree", tree);
     MeshBuilder hedge;
     addPrism(hedge, kGrass, kAcross,
              {{-0.375, 0}, {0.375, 0}, {0.40625, 0.75}, {0.28125, 1}, {-0.28125, 1}, {-0.40625, 0.75}}, -1.25, 1.25);
-    add(kHedge, "Hedge", hedge);
+    shelve(meshes, kHedge, "Hedge", hedge);
     MeshBuilder lamp;
     addTurned(lamp, kFrameGrey, {0, 0, 0}, 12, {{0.125, 0}, {0.125, 0.0625}, {0.0625, 0.125}, {0.046875, 3.25}});
     addTurned(lamp, kLampShade, {0, 0, 0}, 12, {{0.0625, 3.25}, {0.1875, 3.375}, {0.203125, 3.5}, {0.171875, 3.625}});
     addTurned(lamp, kFrameGrey, {0, 0, 0}, 12, {{0.25, 3.609375}, {0.25, 3.640625}, {0, 3.75}});
-    add(kLampPost, "Lamp post", lamp);
+    shelve(meshes, kLampPost, "Lamp post", lamp);
 }
 
 }  // namespace sightline::building

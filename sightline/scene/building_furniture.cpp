@@ -1,6 +1,5 @@
 // What stands in offices and meeting rooms: desks, chairs, shelves, plants.
 // SPDX-License-Identifier: MIT
-#include "sightline/base/assert.h"
 #include "sightline/base/random.h"
 #include "sightline/scene/building_library.h"
 
@@ -257,29 +256,25 @@ MeshBuilder visitorChair() {
 }  // namespace
 
 void addFurniture(Shelf& meshes) {
-    const auto add = [&](Item item, const char* name, const MeshBuilder& mesh) {
-        SIGHTLINE_ASSERT(meshes.size() == item);
-        meshes.push_back(mesh.finish(name));
-    };
-    add(kDesk, "Desk", desk());
-    add(kOfficeChair, "Chair", officeChair(kFabricBlue));
-    add(kMonitor, "Monitor", monitor());
-    add(kKeyboard, "Keyboard", keyboard());
-    add(kDeskLamp, "Desk lamp", deskLamp());
-    add(kDrawers, "Drawers", drawers());
-    add(kPaperBin, "Bin", paperBin());
-    add(kPapers, "Papers", papers());
-    add(kPhone, "Telephone", phone());
-    add(kBookShelf, "Shelf", bookShelf(0.5, 2.0625, 6, 11));
-    add(kLowShelf, "Low shelf", bookShelf(0.625, 0.859375, 3, 12));
-    add(kPottedPlant, "Pot plant", plant(0.0703125, 0.421875, 0.171875, 15));
-    add(kTallPlant, "Plant", plant(0.171875, 1.625, 0.46875, 40));
-    add(kWhiteboard, "Whiteboard", whiteboard());
-    add(kWallScreen, "Screen", panel(0.6875, 0.796875, 0.0546875, kBlackPlastic, kScreenBlack));
-    add(kPicture, "Picture", panel(0.34375, 0.515625, 0.0234375, kBlackPlastic, kBookYellow));
-    add(kCoatStand, "Coat stand", coatStand());
-    add(kMeetingTable, "Meeting table", meetingTable());
-    add(kVisitorChair, "Visitor's chair", visitorChair());
+    shelve(meshes, kDesk, "Desk", desk());
+    shelve(meshes, kOfficeChair, "Chair", officeChair(kFabricBlue));
+    shelve(meshes, kMonitor, "Monitor", monitor());
+    shelve(meshes, kKeyboard, "Keyboard", keyboard());
+    shelve(meshes, kDeskLamp, "Desk lamp", deskLamp());
+    shelve(meshes, kDrawers, "Drawers", drawers());
+    shelve(meshes, kPaperBin, "Bin", paperBin());
+    shelve(meshes, kPapers, "Papers", papers());
+    shelve(meshes, kPhone, "Telephone", phone());
+    shelve(meshes, kBookShelf, "Shelf", bookShelf(0.5, 2.0625, 6, 11));
+    shelve(meshes, kLowShelf, "Low shelf", bookShelf(0.625, 0.859375, 3, 12));
+    shelve(meshes, kPottedPlant, "Pot plant", plant(0.0703125, 0.421875, 0.171875, 15));
+    shelve(meshes, kTallPlant, "Plant", plant(0.171875, 1.625, 0.46875, 40));
+    shelve(meshes, kWhiteboard, "Whiteboard", whiteboard());
+    shelve(meshes, kWallScreen, "Screen", panel(0.6875, 0.796875, 0.0546875, kBlackPlastic, kScreenBlack));
+    shelve(meshes, kPicture, "Picture", panel(0.34375, 0.515625, 0.0234375, kBlackPlastic, kBookYellow));
+    shelve(meshes, kCoatStand, "Coat stand", coatStand());
+    shelve(meshes, kMeetingTable, "Meeting table", meetingTable());
+    shelve(meshes, kVisitorChair, "Visitor's chair", visitorChair());
 }
 
 }  // namespace sightline::building

@@ -103,4 +103,9 @@ void addPlant(city::MeshBuilder& mesh, double pot, double height, double spread,
     }
 }
 
+void shelve(Shelf& meshes, Item item, const char* name, const city::MeshBuilder& mesh) {
+    SIGHTLINE_ASSERT(meshes.size() == item);
+    meshes.push_back(mesh.finish(name));
+}
+
 }  // namespace sightline::building

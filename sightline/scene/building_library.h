@@ -147,6 +147,8 @@ Library makeLibrary();
 /// The parts of makeLibrary, in the order of the items.
 std::vector<Material> makeMaterials();
 using Shelf = std::vector<Mesh>;
+/// Puts an item's mesh at its place, which is the next one.
+void shelve(Shelf& meshes, Item item, const char* name, const city::MeshBuilder& mesh);
 void addFurniture(Shelf& meshes);     ///< kDesk to kVisitorChair
 void addWetRooms(Shelf& meshes);      ///< kCounter to kHandDryer
 void addEquipment(Shelf& meshes);     ///< kMetalShelf to kColumn

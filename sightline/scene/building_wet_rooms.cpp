@@ -1,6 +1,5 @@
 // What stands in the kitchens and bathrooms of a procedural building.
 // SPDX-License-Identifier: MIT
-#include "sightline/base/assert.h"
 #include "sightline/scene/building_library.h"
 
 namespace sightline::building {
@@ -202,25 +201,21 @@ MeshBuilder handDryer() {
 }  // namespace
 
 void addWetRooms(Shelf& meshes) {
-    const auto add = [&](Item item, const char* name, const MeshBuilder& mesh) {
-        SIGHTLINE_ASSERT(meshes.size() == item);
-        meshes.push_back(mesh.finish(name));
-    };
-    add(kCounter, "Counter", counter());
-    add(kSinkCounter, "Sink", sinkCounter());
-    add(kStove, "Stove", stove());
-    add(kWallCupboard, "Cupboard", wallCupboard());
-    add(kFridge, "Fridge", fridge());
-    add(kRoundTable, "Table", roundTable());
-    add(kCoffeeMachine, "Coffee machine", coffeeMachine());
-    add(kMug, "Mug", mug());
-    add(kToilet, "Toilet", toilet());
-    add(kWashbasin, "Washbasin", washbasin());
+    shelve(meshes, kCounter, "Counter", counter());
+    shelve(meshes, kSinkCounter, "Sink", sinkCounter());
+    shelve(meshes, kStove, "Stove", stove());
+    shelve(meshes, kWallCupboard, "Cupboard", wallCupboard());
+    shelve(meshes, kFridge, "Fridge", fridge());
+    shelve(meshes, kRoundTable, "Table", roundTable());
+    shelve(meshes, kCoffeeMachine, "Coffee machine", coffeeMachine());
+    shelve(meshes, kMug, "Mug", mug());
+    shelve(meshes, kToilet, "Toilet", toilet());
+    shelve(meshes, kWashbasin, "Washbasin", washbasin());
     MeshBuilder mirror;
     addBox(mirror, kMirror, {-0.3125, 0, 0}, {0.3125, 0.875, 0.015625});
-    add(kMirrorPane, "Mirror", mirror);
-    add(kCubicle, "Cubicle", cubicle());
-    add(kHandDryer, "Hand dryer", handDryer());
+    shelve(meshes, kMirrorPane, "Mirror", mirror);
+    shelve(meshes, kCubicle, "Cubicle", cubicle());
+    shelve(meshes, kHandDryer, "Hand dryer", handDryer());
 }
 
 }  // namespace sightline::building
