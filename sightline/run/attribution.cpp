@@ -81,8 +81,11 @@ void Attribution::run(const Walk& walk, const WalkRecord& record, const PixelRec
     order.clear();
     for (uint32_t at = 0; at < record.draws.size(); ++at)
         if (record.draws[at].box.doubt || overlaps(record.draws[at].box.rect, within)) order.push_back(at);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](uint32_t a, uint32_t b) { return record.draws[a].instance < record.draws[b].instance; });
+    std::sort(order.begin(), order.end(),
+              [&](uint32_t a, uint32_t b) {  // std::stable_sort would pass the memory hook by
+                  const uint32_t one = record.draws[a].instance, other = record.draws[b].instance;
+                  return one != other ? one < other : a < b;
+              });
     for (size_t first = 0, last = 0; first < order.size(); first = last) {
         const uint32_t instance = record.draws[order[first]].instance;
         while (last < order.size() && record.draws[order[last]].instance == instance) ++last;

@@ -53,9 +53,10 @@ void HiderSearch::collect(const SnapshotState& state, const Trial& decided, cons
         }
     candidates.clear();
     for (uint32_t i = 0; i < record.owners.size(); ++i)
-        if (over[i]) candidates.push_back({state.itemOf(state.bvh.order[record.owners[i]]), pixels[i]});
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.pixels > b.pixels; });
+        if (over[i]) candidates.push_back({state.itemOf(state.bvh.order[record.owners[i]]), pixels[i], i});
+    std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+        return a.pixels != b.pixels ? a.pixels > b.pixels : a.instance < b.instance;
+    });
 }
 
 /// Whether a world of the object and some others occludes it.

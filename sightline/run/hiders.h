@@ -18,7 +18,8 @@ struct HiderSearch {
     /// An occluder that was drawn before the object was decided, over its rectangle.
     struct Candidate {
         uint32_t item = 0;
-        uint64_t pixels = 0;  ///< of the rectangle that it owns
+        uint64_t pixels = 0;    ///< of the rectangle that it owns
+        uint32_t instance = 0;  ///< its place among those that were drawn
     };
 
     Memory* const memory;

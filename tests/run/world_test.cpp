@@ -12,6 +12,8 @@
 
 #include "sightline/base/random.h"
 #include "sightline/prepare/occluder.h"
+#include "sightline/run/credits.h"
+#include "sightline/run/explain.h"
 #include "sightline/run/query.h"
 
 namespace {
@@ -28,7 +30,12 @@ void* allocateGlobally(size_t size, size_t alignment) {
 // Replaced for the whole test binary, to count what does not go through the hook.
 void* operator new(size_t size) { return allocateGlobally(size, alignof(std::max_align_t)); }
 void* operator new(size_t size, std::align_val_t align) { return allocateGlobally(size, static_cast<size_t>(align)); }
+void* operator new(size_t size, const std::nothrow_t&) noexcept {
+    ++global_allocations;
+    return std::malloc(size);
+}
 void operator delete(void* place) noexcept { std::free(place); }
+void operator delete(void* place, const std::nothrow_t&) noexcept { std::free(place); }
 void operator delete(void* place, size_t) noexcept { std::free(place); }
 void operator delete(void* place, std::align_val_t) noexcept { std::free(place); }
 void operator delete(void* place, size_t, std::align_val_t) noexcept { std::free(place); }
@@ -134,6 +141,13 @@ TEST(World, AllMemoryComesThroughTheHookAndGoesBack) {
         query.visible(now, viewFrom({0, 1, 0}, {10, 1, 3}));
         query.changes();
         query.depthImage();
+        const View view = viewFrom({0, 1, 0}, {10, 1, 3});
+        EXPECT_FALSE(CreditBook(now, {}, &memory).credits(view).empty());
+        Explainer explainer(now, view, &memory);
+        uint32_t hidden = 0;
+        for (uint32_t index = last.index; index > last.index - 100; --index)
+            hidden += explainer.explain({index, 1}).occlusion.hiders.empty() ? 0 : 1;
+        EXPECT_GT(hidden, 0u);
         EXPECT_EQ(global_allocations, before);
         EXPECT_GT(memory.bytes, 0u);
     }
