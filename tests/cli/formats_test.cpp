@@ -110,7 +110,8 @@ TEST_F(Formats, ForeignFilesAreSeenAsGltfIs) {
             run("cull " + file + " --cameras path.json --size 160x120 --verify --rays 10000 --json -");
         EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
         std::vector<json> out;
-        for (const json& frame : json::parse(outcome.out)["frames"]) out.push_back(frame["visible"]);
+        const json result = json::parse(outcome.out);
+        for (const json& frame : result["frames"]) out.push_back(frame["visible"]);
         return out;
     };
     const std::vector<json> expected = visible("arch.glb");
