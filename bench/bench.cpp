@@ -16,16 +16,11 @@ struct Case {
 };
 
 constexpr Case kCases[] = {
-    {"bsp", benchBsp},
-    {"clipping", benchClipping},
-    {"depth", benchDepth},
-    {"frustum", benchFrustum},
+    {"bsp", benchBsp},       {"clipping", benchClipping},   {"depth", benchDepth}, {"frustum", benchFrustum},
 #ifdef SIGHTLINE_GL
     {"gl", benchGl},
 #endif
-    {"hidden", benchHidden},
-    {"occlusion", benchOcclusion},
-    {"order", benchOrder},
+    {"hidden", benchHidden}, {"occlusion", benchOcclusion}, {"order", benchOrder},
 };
 
 }  // namespace
