@@ -18,15 +18,25 @@ struct OccluderPolygon {
     int corners() const { return vertex[3] == kNone ? 3 : 4; }
 };
 
+/// A side of a polygon, or the side that two polygons of a cluster share.
+struct OccluderEdge {
+    static constexpr uint8_t kNone = 255;
+    uint8_t from = 0, to = 0;  ///< counted from the cluster's first vertex
+    uint8_t left = kNone;      ///< the polygon of the cluster that runs from -> to, counter-clockwise; or kNone
+    uint8_t right = kNone;     ///< the one that runs to -> from; or kNone
+};
+
 /// A run of polygons that lie close together; drawn, skipped and counted as one.
 struct OccluderCluster {
     static constexpr uint32_t kMaxVertices = 240;
     static constexpr uint32_t kMaxPolygons = 60;
 
-    Box3f bounds;                                   ///< of its vertices
+    Box3f bounds;                                   ///< of its own polygons' vertices
     uint32_t first_vertex = 0, vertex_count = 0;    ///< [limit: <= kMaxVertices]; first is a multiple of 8
-    uint32_t first_polygon = 0, polygon_count = 0;  ///< [limit: <= kMaxPolygons]
-    uint32_t triangle_count = 0;
+    uint32_t first_polygon = 0, polygon_count = 0;  ///< its own polygons [limit: <= kMaxPolygons]
+    uint32_t ring_count = 0;  ///< polygons after its own that belong to neighbours: they close the seam to them
+    uint32_t first_edge = 0, edge_count = 0;  ///< of all its polygons; none in a cluster of loose polygons
+    uint32_t triangle_count = 0;              ///< of its own polygons
 };
 
 /// Occluding triangles of one mesh in clusters, in object space. Plain data; prepare/occluder.h makes it.
@@ -37,11 +47,12 @@ struct OccluderCluster {
 struct Occluder {
     Array<float> x, y, z;  ///< vertices, cluster by cluster, each cluster padded to 8 with its last one
     Array<OccluderPolygon> polygons;
+    Array<OccluderEdge> edges;
     Array<OccluderCluster> clusters;
     Box3f bounds;  ///< of all vertices
 
     explicit Occluder(Memory* memory = defaultMemory())
-        : x(memory), y(memory), z(memory), polygons(memory), clusters(memory) {}
+        : x(memory), y(memory), z(memory), polygons(memory), edges(memory), clusters(memory) {}
 
     uint32_t triangleCount() const {
         uint32_t count = 0;

@@ -20,7 +20,7 @@ namespace sightline {
 namespace HWY_NAMESPACE {
 
 /// What a tile leaves open of a rectangle: pixels that are not surely nearer than the rectangle.
-uint64_t openPixels(DepthTiles& tiles, uint32_t tile, const PixelRect& rect, int32_t column, int32_t row) {
+uint64_t openInTile(DepthTiles& tiles, uint32_t tile, const PixelRect& rect, int32_t column, int32_t row) {
     if (tiles.farthest[tile] > rect.nearness) return 0;
     const uint64_t window = windowBits(rect.x0, rect.y0, rect.x1, rect.y1, 8 * column, 8 * row);
     if (tiles.form[tile] == DepthTiles::Form::kEmpty) return window;
@@ -137,21 +137,44 @@ bool isHiddenKernel(DepthTiles& tiles, const PixelRect& rect, Seams seams) {
     // First the cheap answer: one pixel that stays open makes the rectangle visible.
     bool undecided = false;
     const bool closed = forOpenTiles(tiles, rect, [&](uint32_t tile, int32_t column, int32_t row) HWY_ATTR {
-        const uint64_t open = openPixels(tiles, tile, rect, column, row);
+        const uint64_t open = openInTile(tiles, tile, rect, column, row);
         undecided |= open != 0;
         if (seams == Seams::kLeave) return !open;
         return !(open & (~tiles.seam_mask[tile] | tiles.tried[tile]));
     });
     if (!closed || !undecided) return closed;
     return forOpenTiles(tiles, rect, [&](uint32_t tile, int32_t column, int32_t row) HWY_ATTR {
-        pairSeamsKernel(tiles, tile, openPixels(tiles, tile, rect, column, row));
-        for (uint64_t open = openPixels(tiles, tile, rect, column, row); open; open &= open - 1) {
+        pairSeamsKernel(tiles, tile, openInTile(tiles, tile, rect, column, row));
+        for (uint64_t open = openInTile(tiles, tile, rect, column, row); open; open &= open - 1) {
             const int bit = std::countr_zero(open);
             if (!resolveSeam(tiles, tile, bit, rect.nearness)) return false;
             if (!(tiles.depth[64 * size_t{tile} + static_cast<size_t>(bit)] > rect.nearness)) return false;
         }
         return true;
     });
+}
+
+uint64_t openAgainst(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64]) {
+    if (tiles.form[tile] == DepthTiles::Form::kEmpty) return window;
+    toPixels(tiles, tile);
+    const F16 d;
+    const float* depth = tiles.depth.data() + 64 * size_t{tile};
+    uint64_t nearer = 0;
+    for (size_t i = 0; i < 64; i += hn::Lanes(d))
+        nearer |= bitsFromMask(d, hn::Gt(hn::LoadU(d, depth + i), hn::LoadU(d, nearest + i))) << i;
+    return window & ~nearer;
+}
+
+uint64_t openPixelsKernel(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64], Seams seams) {
+    uint64_t open = openAgainst(tiles, tile, window, nearest);
+    const uint64_t undecided = open & tiles.seam_mask[tile];
+    if (seams == Seams::kLeave || !undecided) return open;
+    pairSeamsKernel(tiles, tile, undecided);
+    for (uint64_t set = openAgainst(tiles, tile, undecided, nearest); set; set &= set - 1) {
+        const int bit = std::countr_zero(set);
+        resolveSeam(tiles, tile, bit, nearest[bit]);
+    }
+    return openAgainst(tiles, tile, window, nearest);
 }
 
 void writeOutKernel(DepthTiles& tiles, uint32_t tile) { toPixels(tiles, tile); }
@@ -164,11 +187,16 @@ HWY_AFTER_NAMESPACE();
 namespace sightline {
 
 HWY_EXPORT(isHiddenKernel);
+HWY_EXPORT(openPixelsKernel);
 HWY_EXPORT(pairSeamsKernel);
 HWY_EXPORT(writeOutKernel);
 
 bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams) {
     return HWY_DYNAMIC_DISPATCH(isHiddenKernel)(tiles, rect, seams);
+}
+
+uint64_t openPixels(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64], Seams seams) {
+    return HWY_DYNAMIC_DISPATCH(openPixelsKernel)(tiles, tile, window, nearest, seams);
 }
 
 void pairSeams(DepthTiles& tiles, uint32_t tile, uint64_t pixels) {

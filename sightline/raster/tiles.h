@@ -139,6 +139,12 @@ enum class Seams : uint8_t {
 /// Whether the buffer surely hides everything in the rectangle.
 bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams = Seams::kResolve);
 
+/// Which pixels of a tile do not surely hide what lies at the given nearnesses.
+/// @param window   the pixels that matter, bit 8 * row + column; other bits of the answer are 0
+/// @param nearest  per pixel: no point of what is asked about is nearer there; read where the window has a bit
+uint64_t openPixels(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64],
+                    Seams seams = Seams::kResolve);
+
 /// Makes a tile's pixels valid in the depth array.
 void writeOut(DepthTiles& tiles, uint32_t tile);
 
