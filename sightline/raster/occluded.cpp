@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/raster/tile_log.h"
 #include "sightline/raster/tiles.h"
 
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
@@ -192,11 +193,15 @@ HWY_EXPORT(pairSeamsKernel);
 HWY_EXPORT(writeOutKernel);
 
 bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams) {
-    return HWY_DYNAMIC_DISPATCH(isHiddenKernel)(tiles, rect, seams);
+    const bool hidden = HWY_DYNAMIC_DISPATCH(isHiddenKernel)(tiles, rect, seams);
+    if (tiles.log) tiles.log->note(rect, seams, hidden);
+    return hidden;
 }
 
 uint64_t openPixels(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64], Seams seams) {
-    return HWY_DYNAMIC_DISPATCH(openPixelsKernel)(tiles, tile, window, nearest, seams);
+    const uint64_t open = HWY_DYNAMIC_DISPATCH(openPixelsKernel)(tiles, tile, window, nearest, seams);
+    if (tiles.log) tiles.log->note(tile, window, nearest, seams, open);
+    return open;
 }
 
 void pairSeams(DepthTiles& tiles, uint32_t tile, uint64_t pixels) {

@@ -65,6 +65,8 @@ struct SeamEntry {
     uint32_t next = ~0u;   ///< the next entry of the tile
 };
 
+struct TileLog;
+
 /// The buffer. A pixel is covered when every ray through any of its points meets an occluder no farther
 /// than the depth stored there. Nearness as in Screen: larger is nearer.
 struct DepthTiles {
@@ -118,6 +120,7 @@ struct DepthTiles {
     Array<SeamEntry> entries{memory};
 
     uint64_t seam_pixels = 0;  ///< resolved since the clear
+    TileLog* log = nullptr;    ///< raster/tile_log.h: takes down what is asked and answered, if there is one
 
     /// Makes the buffer empty. Allocates only when it grows.
     void clear(uint32_t width, uint32_t height);

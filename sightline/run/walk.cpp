@@ -52,10 +52,12 @@ void WalkRecord::clear() {
     culls.clear();
     owners.clear();
     stopped = false;
+    if (log) log->clear();
 }
 
 void Walk::noteDraw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box, uint32_t triangles) {
     record->draws.push_back({static_cast<uint32_t>(&instance - instances.data()), cluster, triangles, box});
+    if (record->log) record->log->noteDraw();
 }
 
 void Walk::noteCull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect) {
@@ -86,6 +88,7 @@ void Walk::begin(const SnapshotState* now, const View& new_view) {
     culled.clear();
     tiles.clear(0, 0);
     if (record) record->clear();
+    tiles.log = record ? record->log : nullptr;
     if (!snapshot) return;
     every_layer = (state().common_layers & view.layers) != 0 || state().count == 0;
     stats.objects = state().count;

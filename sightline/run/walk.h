@@ -8,6 +8,7 @@
 
 #include "sightline/cull/frustum.h"
 #include "sightline/cull/occlusion.h"
+#include "sightline/raster/tile_log.h"
 #include "sightline/run/query.h"
 #include "sightline/run/world_state.h"
 
@@ -72,6 +73,7 @@ struct WalkRecord {
     uint32_t stop_at = kNowhere;  ///< the walk ends once the occlusion stage has decided on this place
     bool stopped = false;         ///< it did, and the depth tiles are as they were then
     Kept kept;
+    TileLog* log = nullptr;  ///< takes down each call of the depth tiles in its order, if there is one
 
     explicit WalkRecord(Memory* memory) : draws(memory), culls(memory), owners(memory) {}
 
