@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "sightline/raster/depth_image.h"
 #include "sightline/run/explain.h"
 #include "sightline/run/walk.h"
 
@@ -18,6 +19,7 @@ struct Query::Impl {
     detail::Walk walk{memory};
     Array<Visible> before{memory};  ///< the answer before the last
     Array<float> depth_image{memory};
+    Array<uint8_t> depth_covered{memory};
     Array<Visible> appeared{memory}, disappeared{memory};
     Array<uint32_t> mark{memory};  ///< per ObjectId::index: 1 + place in `before`, while changes() runs; else 0
 };
@@ -69,19 +71,14 @@ Explanation Query::explain(const Snapshot& now, const View& view, ObjectId id) c
     return Explainer(now, view, impl_->memory).explain(id);
 }
 
-Query::DepthImage Query::depthImage() {
+Query::DepthImage Query::depthImage(bool resolve_seams) {
     Impl& impl = *impl_;
     DepthTiles& tiles = impl.walk.tiles;
-    for (uint32_t tile = 0; tile < tiles.form.size(); ++tile) writeOut(tiles, tile);
-    impl.depth_image.assign(size_t{tiles.width} * tiles.height, 0.0f);
-    for (uint32_t y = 0; y < tiles.height; ++y)
-        for (uint32_t x = 0; x < tiles.width; ++x) {
-            const size_t tile = size_t{y / 8} * tiles.stride + x / 8;
-            const uint32_t pixel = y % 8 * 8 + x % 8;
-            if (tiles.coveredBits(static_cast<uint32_t>(tile)) >> pixel & 1)
-                impl.depth_image[size_t{y} * tiles.width + x] = tiles.depth[64 * tile + pixel];
-        }
-    return {tiles.width, tiles.height, impl.depth_image};
+    const size_t pixels = size_t{tiles.width} * tiles.height;
+    impl.depth_image.resize(pixels);
+    impl.depth_covered.resize(pixels);
+    readDepthImage(tiles, resolve_seams ? Seams::kResolve : Seams::kLeave, impl.depth_image, impl.depth_covered, 0.0f);
+    return {tiles.width, tiles.height, impl.walk.screen.perspective, impl.depth_image, impl.depth_covered};
 }
 
 }  // namespace sightline

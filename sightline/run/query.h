@@ -81,9 +81,12 @@ public:
     /// where nothing is known to cover the whole pixel. Occluders that came after the last object are not in it.
     struct DepthImage {
         uint32_t width = 0, height = 0;
-        std::span<const float> nearness;
+        bool perspective = true;           ///< nearness is 1/w; else minus the depth in eye space, and 0 is a depth too
+        std::span<const float> nearness;   ///< valid until the query's next call
+        std::span<const uint8_t> covered;  ///< 1 where there is a depth
     };
-    DepthImage depthImage();
+    /// @param resolve_seams  look first at all pixels that polygons share, not only at those that the answer needed
+    DepthImage depthImage(bool resolve_seams = false);
 
 private:
     struct Impl;
