@@ -9,7 +9,7 @@
 
 namespace sightline {
 
-/// A triangle, or two triangles 0 1 2 and 0 2 3 that make a convex and nearly flat quadrangle.
+/// A triangle, or two triangles 0 1 2 and 0 2 3 that make a convex and nearly flat quadrangle. Counter-clockwise is front.
 struct OccluderPolygon {
     static constexpr uint8_t kNone = 255;
     uint8_t vertex[4] = {0, 0, 0, kNone};  ///< counted from the cluster's first; the last is kNone in a triangle
@@ -18,24 +18,29 @@ struct OccluderPolygon {
     int corners() const { return vertex[3] == kNone ? 3 : 4; }
 };
 
-/// A side of a polygon, or the side that two polygons of a cluster share.
+/// A side of a polygon or a part of it, or one that two polygons of a cluster share. Where more than two polygons meet,
+/// or two that run the same way, there are several records, and each side of each polygon is in one of them.
 struct OccluderEdge {
     static constexpr uint8_t kNone = 255;
     uint8_t from = 0, to = 0;  ///< counted from the cluster's first vertex
-    uint8_t left = kNone;      ///< the polygon of the cluster that runs from -> to, counter-clockwise; or kNone
+    uint8_t left = kNone;      ///< the polygon of the cluster that runs from -> to, counter-clockwise
     uint8_t right = kNone;     ///< the one that runs to -> from; or kNone
 };
 
-/// A run of polygons that lie close together; drawn, skipped and counted as one.
+/// A run of polygons that lie close together; drawn, skipped and counted as one. Either it is joined (its own polygons
+/// hang together in the mesh) and has its edges, or it is loose and has none.
 struct OccluderCluster {
     static constexpr uint32_t kMaxVertices = 240;
-    static constexpr uint32_t kMaxPolygons = 60;
+    static constexpr uint32_t kMaxOwn = 128;       ///< polygons of its own
+    static constexpr uint32_t kMaxPolygons = 250;  ///< with those of its ring
+    static constexpr uint32_t kMaxLoose = 60;      ///< polygons of a loose cluster
 
     Box3f bounds;                                   ///< of its own polygons' vertices
     uint32_t first_vertex = 0, vertex_count = 0;    ///< [limit: <= kMaxVertices]; first is a multiple of 8
-    uint32_t first_polygon = 0, polygon_count = 0;  ///< its own polygons [limit: <= kMaxPolygons]
-    uint32_t ring_count = 0;  ///< polygons after its own that belong to neighbours: they close the seam to them
-    uint32_t first_edge = 0, edge_count = 0;  ///< of all its polygons; none in a cluster of loose polygons
+    uint32_t first_polygon = 0, polygon_count = 0;  ///< its own polygons [limit: <= kMaxOwn]
+    uint32_t ring_count = 0;                        ///< polygons after its own that are neighbours' own: they close the
+        ///< seam to them  [limit: polygon_count + ring_count <= kMaxPolygons]
+    uint32_t first_edge = 0, edge_count = 0;  ///< of all its polygons; none in a loose cluster
     uint32_t triangle_count = 0;              ///< of its own polygons
 };
 
@@ -49,7 +54,7 @@ struct Occluder {
     Array<OccluderPolygon> polygons;
     Array<OccluderEdge> edges;
     Array<OccluderCluster> clusters;
-    Box3f bounds;  ///< of all vertices
+    Box3f bounds;  ///< of all clusters
 
     explicit Occluder(Memory* memory = defaultMemory())
         : x(memory), y(memory), z(memory), polygons(memory), edges(memory), clusters(memory) {}

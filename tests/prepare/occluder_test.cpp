@@ -4,22 +4,14 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <limits>
-#include <map>
 
-#include "sightline/base/random.h"
+#include "tests/prepare/patch_laws.h"
 
 namespace sightline {
 namespace {
 
-using Triangle = std::array<std::array<float, 3>, 3>;
-
-std::array<float, 3> vertexOf(const Occluder& o, const OccluderCluster& c, uint8_t v) {
-    const size_t at = size_t{c.first_vertex} + v;
-    return {o.x[at], o.y[at], o.z[at]};
-}
+using Triangle = std::array<Point, 3>;
 
 /// The same triangle whatever corner it starts at.
 Triangle turned(Triangle t) {
@@ -33,15 +25,10 @@ std::map<Triangle, int> trianglesOf(const Occluder& o) {
         for (uint32_t p = c.first_polygon; p < c.first_polygon + c.polygon_count; ++p) {
             const uint8_t* v = o.polygons[p].vertex;
             for (int k = 2; k < o.polygons[p].corners(); ++k)
-                ++found[turned({vertexOf(o, c, v[0]), vertexOf(o, c, v[k - 1]), vertexOf(o, c, v[k])})];
+                ++found[turned({pointOf(o, c, v[0]), pointOf(o, c, v[k - 1]), pointOf(o, c, v[k])})];
         }
     return found;
 }
-
-struct Soup {
-    std::vector<glm::vec3> positions;
-    std::vector<uint32_t> indices;
-};
 
 /// A grid of quads with a few bumps, so that some pairs are flat and some are not.
 Soup makeGrid(uint64_t seed, uint32_t n) {
@@ -86,7 +73,7 @@ TEST(Occluder, PairsOnlyWhatIsConvexAndFlat) {
             if (o.polygons[p].corners() != 4) continue;
             glm::dvec3 v[4];
             for (int k = 0; k < 4; ++k) {
-                const auto q = vertexOf(o, c, o.polygons[p].vertex[k]);
+                const auto q = pointOf(o, c, o.polygons[p].vertex[k]);
                 v[k] = {q[0], q[1], q[2]};
             }
             const glm::dvec3 n = glm::cross(v[1] - v[0], v[2] - v[0]);
@@ -100,15 +87,7 @@ TEST(Occluder, ClustersStayWithinTheirLimitsAndBounds) {
     const Soup soup = makeGrid(3, 100);
     const Occluder o = prepareOccluder({soup.positions, soup.indices});
     EXPECT_GT(o.clusters.size(), 50u);
-    for (const OccluderCluster& c : o.clusters) {
-        EXPECT_LE(c.vertex_count, OccluderCluster::kMaxVertices);
-        EXPECT_LE(c.polygon_count, OccluderCluster::kMaxPolygons);
-        EXPECT_EQ(c.first_vertex % 8, 0u);
-        for (uint32_t v = c.first_vertex; v < c.first_vertex + (c.vertex_count + 7) / 8 * 8; ++v) {
-            const glm::vec3 p(o.x[v], o.y[v], o.z[v]);
-            EXPECT_TRUE(glm::all(glm::lessThanEqual(c.bounds.min, p)) && glm::all(glm::lessThanEqual(p, c.bounds.max)));
-        }
-    }
+    expectWithinLimits(o);
 }
 
 TEST(Occluder, LeavesOutWhatDoesNotHideAndWhatIsBroken) {

@@ -262,7 +262,7 @@ TEST(Query, ASpentBudgetKeepsMoreAndSaysSo) {
     EXPECT_FALSE(rich.budget_spent);
     EXPECT_TRUE(poor.budget_spent);
     EXPECT_GT(poor.visible, rich.visible);
-    EXPECT_LE(poor.occluder_triangles, 40u + 2 * OccluderCluster::kMaxPolygons);
+    EXPECT_LE(poor.occluder_triangles, 40u + 2 * OccluderCluster::kMaxOwn);
 }
 
 TEST(Query, TakesViewportsOfAnyShape) {

@@ -1,0 +1,60 @@
+// The hiding triangles of one or several meshes on common vertices, and the sides by which they hang together.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/geom/mesh_view.h"
+
+namespace sightline {
+
+/// A mesh of which some triangles hide.
+struct OccluderSource {
+    MeshView mesh;                          ///< object space
+    std::span<const uint8_t> hides;         ///< per triangle: whether it may hide  [size: triangles, or empty for all]
+    std::span<const uint8_t> double_sided;  ///< per triangle                       [size: triangles, or empty for none]
+};
+
+/// A triangle, or two triangles 0 1 2 and 0 2 3, by vertices of the patchwork.
+struct PatchPolygon {
+    uint32_t vertex[4];
+    uint32_t mesh;  ///< which of the sources
+    uint8_t corners;
+    bool double_sided;
+};
+
+/// Polygons, mesh by mesh, whose vertices are the same exactly if their positions are.
+struct Patchwork {
+    std::vector<glm::vec3> positions;
+    std::vector<PatchPolygon> polygons;
+};
+
+/// Takes the hiding triangles together, mesh by mesh. Leaves out those that name a vertex twice or one that is not
+/// there, and those whose positions are not finite. A negative zero becomes zero; nothing is welded by tolerance. O(n).
+Patchwork weld(std::span<const OccluderSource> sources);
+
+/// A polygon's side from its corner to the next one.
+struct PatchSide {
+    uint32_t low, high;  ///< the vertices it joins, low < high
+    uint32_t polygon;
+    uint8_t corner;
+    bool forward;  ///< the polygon runs from low to high
+
+    bool joins(const PatchSide& other) const { return low == other.low && high == other.high; }
+};
+
+/// All sides, sorted by (low, high, polygon, corner): those that join the same vertices stand together.
+std::vector<PatchSide> sortedSides(const Patchwork& patchwork);
+
+/// Calls `each` with every run of sides that join the same vertices.
+template <class Each>
+void forSharedSides(std::span<const PatchSide> sides, Each each) {
+    for (size_t i = 0, end = 0; i < sides.size(); i = end) {
+        while (end < sides.size() && sides[end].joins(sides[i])) ++end;
+        each(sides.subspan(i, end - i));
+    }
+}
+
+}  // namespace sightline

@@ -1,0 +1,166 @@
+// Sorts polygons into runs that become clusters: compact pieces of what hangs together, and gatherings of what does not.
+// SPDX-License-Identifier: MIT
+#include "sightline/prepare/runs.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "sightline/geom/occluder.h"
+#include "sightline/math/box.h"
+#include "sightline/prepare/side_pairs.h"
+
+namespace sightline {
+namespace {
+
+constexpr uint32_t kLeastJoined = 3;  // a single panel shares no side worth a record
+
+/// Cosine below which polygons lie back to back: no eye sees the fronts of both. Where more than two meet, these are
+/// the faces between boxes that touch; kept apart they do not break the wall that the boxes make.
+constexpr double kFolded = -0.999;
+
+/// Sets of numbers that grow together. The root of a set is its least member.
+class Sets {
+public:
+    explicit Sets(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
+
+    uint32_t root(uint32_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+
+    void join(uint32_t a, uint32_t b) {
+        a = root(a);
+        b = root(b);
+        parent_[std::max(a, b)] = std::min(a, b);
+    }
+
+    std::vector<uint32_t> roots() {
+        std::vector<uint32_t> out(parent_.size());
+        for (uint32_t i = 0; i < out.size(); ++i) out[i] = root(i);
+        return out;
+    }
+
+private:
+    std::vector<uint32_t> parent_;
+};
+
+class Splitter {
+public:
+    explicit Splitter(const Patchwork& patchwork) : patchwork_(patchwork), seen_(patchwork.positions.size(), 0) {}
+
+    /// Splits at a median of the longest axis until the pieces are small enough, so that each is compact. Iterative:
+    /// meshes of millions of triangles must not exhaust the stack.
+    void split(Runs& out, uint32_t first, uint32_t last, bool joined, uint32_t most) {
+        sorted_.clear();
+        for (uint32_t i = first; i < last; ++i) sorted_.push_back({centerOf(out.order[i]), out.order[i]});
+        stack_.assign(1, {0, last - first});
+        while (!stack_.empty()) {
+            const Range range = stack_.back();
+            stack_.pop_back();
+            const uint32_t count = range.last - range.first;
+            if (count <= most && fits(range)) {
+                std::sort(sorted_.begin() + range.first, sorted_.begin() + range.last,
+                          [](const Sorted& a, const Sorted& b) { return a.polygon < b.polygon; });
+                out.runs.push_back({first + range.first, first + range.last, joined});
+                continue;
+            }
+            const uint32_t pieces = std::max(2u, (count + most - 1) / most);
+            const uint32_t middle = range.first + static_cast<uint32_t>(uint64_t{count} * ((pieces + 1) / 2) / pieces);
+            halve(range, middle);
+            stack_.push_back({middle, range.last});
+            stack_.push_back({range.first, middle});
+        }
+        for (uint32_t i = first; i < last; ++i) out.order[i] = sorted_[i - first].polygon;
+    }
+
+private:
+    struct Sorted {
+        glm::vec3 center;
+        uint32_t polygon;
+    };
+    struct Range {
+        uint32_t first, last;
+    };
+
+    glm::vec3 centerOf(uint32_t polygon) const {
+        const PatchPolygon& p = patchwork_.polygons[polygon];
+        glm::vec3 sum(0.0f);
+        for (int k = 0; k < p.corners; ++k) sum += patchwork_.positions[p.vertex[k]];
+        return sum / static_cast<float>(p.corners);
+    }
+
+    bool fits(const Range& range) {
+        ++mark_;
+        uint32_t vertices = 0;
+        for (uint32_t i = range.first; i < range.last; ++i) {
+            const PatchPolygon& p = patchwork_.polygons[sorted_[i].polygon];
+            for (int k = 0; k < p.corners; ++k) {
+                vertices += seen_[p.vertex[k]] != mark_;
+                seen_[p.vertex[k]] = mark_;
+            }
+        }
+        return vertices <= OccluderCluster::kMaxVertices;
+    }
+
+    void halve(const Range& range, uint32_t middle) {
+        Box3f box;
+        for (uint32_t i = range.first; i < range.last; ++i) box.grow(sorted_[i].center);
+        const glm::vec3 size = box.size();
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        std::nth_element(sorted_.begin() + range.first, sorted_.begin() + middle, sorted_.begin() + range.last,
+                         [axis](const Sorted& a, const Sorted& b) {
+                             return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis]
+                                                                     : a.polygon < b.polygon;
+                         });
+    }
+
+    const Patchwork& patchwork_;
+    std::vector<uint32_t> seen_;  ///< per vertex: the range that met it last
+    uint32_t mark_ = 0;
+    std::vector<Sorted> sorted_;
+    std::vector<Range> stack_;
+};
+
+}  // namespace
+
+Runs sortIntoRuns(const Patchwork& patchwork, bool by_mesh, uint32_t most_joined) {
+    const std::vector<PatchPolygon>& polygons = patchwork.polygons;
+    Sets within(polygons.size()), across(polygons.size());
+    const std::vector<PatchSide> sides = sortedSides(patchwork);
+    std::vector<SidePair> pairs;
+    forSharedSides(std::span(sides), [&](std::span<const PatchSide> shared) {
+        pairSides(patchwork, shared, pairs);
+        for (const SidePair& pair : pairs) {
+            if (pair.forward == SidePair::kNone || pair.backward == SidePair::kNone) break;
+            const PatchSide &f = shared[pair.forward], &b = shared[pair.backward];
+            if (shared.size() > 2 && smoothness(patchwork, f, b) < kFolded) continue;
+            across.join(f.polygon, b.polygon);
+            if (!by_mesh || polygons[f.polygon].mesh == polygons[b.polygon].mesh) within.join(f.polygon, b.polygon);
+        }
+    });
+    Runs out;
+    out.whole = across.roots();
+    const std::vector<uint32_t> part = within.roots();
+    std::vector<uint32_t> size(polygons.size(), 0);
+    for (uint32_t root : part) ++size[root];
+    out.order.resize(polygons.size());
+    std::iota(out.order.begin(), out.order.end(), 0u);
+    const auto meshOf = [&](uint32_t i) { return by_mesh ? polygons[i].mesh : 0; };
+    const auto loose = [&](uint32_t i) { return size[part[i]] < kLeastJoined; };
+    std::sort(out.order.begin(), out.order.end(), [&](uint32_t a, uint32_t b) {
+        if (meshOf(a) != meshOf(b)) return meshOf(a) < meshOf(b);
+        if (loose(a) != loose(b)) return loose(b);
+        return !loose(a) && part[a] != part[b] ? part[a] < part[b] : a < b;
+    });
+    Splitter splitter(patchwork);
+    for (uint32_t first = 0, last = 0; first < out.order.size(); first = last) {
+        const uint32_t one = out.order[first];
+        while (last < out.order.size() && meshOf(out.order[last]) == meshOf(one) &&
+               loose(out.order[last]) == loose(one) && (loose(one) || part[out.order[last]] == part[one]))
+            ++last;
+        splitter.split(out, first, last, !loose(one), loose(one) ? OccluderCluster::kMaxLoose : most_joined);
+    }
+    return out;
+}
+
+}  // namespace sightline

@@ -1,0 +1,100 @@
+// What the tests of occluder preparation share: seeded meshes, and the laws of a cluster's records by brute force.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <tuple>
+#include <vector>
+
+#include "sightline/base/random.h"
+#include "sightline/geom/occluder.h"
+
+namespace sightline {
+
+struct Soup {
+    std::vector<glm::vec3> positions;
+    std::vector<uint32_t> indices;
+
+    MeshView view() const { return {positions, indices}; }
+    void add(const std::vector<glm::vec3>& corners) {
+        const uint32_t first = static_cast<uint32_t>(positions.size());
+        positions.insert(positions.end(), corners.begin(), corners.end());
+        for (uint32_t k = 2; k < corners.size(); ++k) indices.insert(indices.end(), {first, first + k - 1, first + k});
+    }
+    /// A box with its faces outward.
+    void addBox(glm::vec3 a, glm::vec3 b) {
+        const auto at = [&](int i) { return glm::vec3(i & 1 ? b.x : a.x, i & 2 ? b.y : a.y, i & 4 ? b.z : a.z); };
+        for (const std::array<int, 4>& f :
+             {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
+            add({at(f[0]), at(f[1]), at(f[2]), at(f[3])});
+    }
+};
+
+/// A closed surface of 8 * n * n triangles: an octahedron, each face divided n by n, blown up to a bumpy sphere.
+inline Soup makeBall(uint64_t seed, uint32_t n) {
+    Soup soup;
+    const auto place = [&](int sx, int sy, int sz, uint32_t i, uint32_t j) {
+        const int k = int(n - i - j);
+        glm::dvec3 p(sx * int(i), sy * int(j), sz * k);
+        const uint64_t at = uint64_t(p.x + n) << 40 | uint64_t(p.y + n) << 20 | uint64_t(p.z + n);
+        Random random(mixSeed(seed, at));
+        return glm::vec3(glm::normalize(p) * (1.0 + 0.05 * random.uniform()));
+    };
+    for (int octant = 0; octant < 8; ++octant) {
+        const int sx = octant & 1 ? -1 : 1, sy = octant & 2 ? -1 : 1, sz = octant & 4 ? -1 : 1;
+        const auto addTriangle = [&](glm::vec3 a, glm::vec3 b, glm::vec3 c) {
+            soup.add(sx * sy * sz > 0 ? std::vector{a, b, c} : std::vector{a, c, b});
+        };
+        for (uint32_t i = 0; i < n; ++i)
+            for (uint32_t j = 0; i + j < n; ++j) {
+                addTriangle(place(sx, sy, sz, i, j), place(sx, sy, sz, i + 1, j), place(sx, sy, sz, i, j + 1));
+                if (i + j + 1 < n)
+                    addTriangle(place(sx, sy, sz, i + 1, j), place(sx, sy, sz, i + 1, j + 1),
+                                place(sx, sy, sz, i, j + 1));
+            }
+    }
+    return soup;
+}
+
+inline glm::vec3 positionOf(const Occluder& o, const OccluderCluster& c, uint32_t v) {
+    const size_t at = size_t{c.first_vertex} + v;
+    return {o.x[at], o.y[at], o.z[at]};
+}
+
+using Point = std::array<float, 3>;
+inline Point pointOf(const Occluder& o, const OccluderCluster& c, uint32_t v) {
+    const glm::vec3 p = positionOf(o, c, v);
+    return {p.x, p.y, p.z};
+}
+
+/// Limits, padding, bounds: what holds for every cluster.
+inline void expectWithinLimits(const Occluder& o) {
+    for (const OccluderCluster& c : o.clusters) {
+        EXPECT_LE(c.vertex_count, OccluderCluster::kMaxVertices);
+        EXPECT_GT(c.polygon_count, 0u);
+        EXPECT_LE(c.polygon_count, c.edge_count ? OccluderCluster::kMaxOwn : OccluderCluster::kMaxLoose);
+        EXPECT_LE(c.polygon_count + c.ring_count, OccluderCluster::kMaxPolygons);
+        EXPECT_EQ(c.first_vertex % 8, 0u);
+        Box3f own;
+        uint32_t triangles = 0;
+        for (uint32_t p = 0; p < c.polygon_count + c.ring_count; ++p) {
+            const OccluderPolygon& polygon = o.polygons[c.first_polygon + p];
+            for (int k = 0; k < polygon.corners(); ++k) {
+                EXPECT_LT(polygon.vertex[k], c.vertex_count);
+                if (p < c.polygon_count) own.grow(positionOf(o, c, polygon.vertex[k]));
+            }
+            if (p < c.polygon_count) triangles += uint32_t(polygon.corners()) - 2;
+        }
+        EXPECT_EQ(own.min, c.bounds.min);
+        EXPECT_EQ(own.max, c.bounds.max);
+        EXPECT_EQ(triangles, c.triangle_count);
+        for (uint32_t v = c.vertex_count; v % 8; ++v) EXPECT_EQ(pointOf(o, c, v), pointOf(o, c, c.vertex_count - 1));
+    }
+}
+
+}  // namespace sightline
