@@ -1,0 +1,42 @@
+// Whatever the bytes are, the reader of recordings answers with one that can be replayed and written again, or with a line.
+// SPDX-License-Identifier: MIT
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "sightline/base/bytes.h"
+#include "sightline/run/occlusion_replay.h"
+
+namespace {
+
+void look(const sightline::Array<char>& bytes) {
+    using namespace sightline;
+    const Result<OcclusionRecording> read = parseRecording(bytes, "frame.rec");
+    if (!read.ok()) {
+        const std::string& line = read.error().message;
+        if (line.rfind("frame.rec: ", 0) == 0 && line.find('\n') == std::string::npos) return;
+        std::fprintf(stderr, "not one line that begins with the file: %s\n", line.c_str());
+        std::abort();
+    }
+    if (recordingBytes(*read) != bytes) std::abort();
+    if (read->view.occlusion_size > 512) return;  // sound, and slow
+    OcclusionReplay replay(*read);
+    const ReplayAnswer answer = replay.run();
+    if (!answer.same() && describeTest(*read, answer.different).empty()) std::abort();
+    replay.draw();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    using namespace sightline;
+    Array<char> bytes(data, data + size);
+    look(bytes);
+    if (size < recording_file::kHashedAt) return 0;
+    const uint64_t hash = contentHash(std::span<const char>(bytes).subspan(recording_file::kHashedAt));
+    for (size_t i = 0; i < 8; ++i) bytes[recording_file::kHashAt + i] = static_cast<char>(hash >> 8 * i);
+    look(bytes);
+    return 0;
+}
