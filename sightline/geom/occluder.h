@@ -54,7 +54,7 @@ struct Occluder {
     Array<OccluderPolygon> polygons;
     Array<OccluderEdge> edges;
     Array<OccluderCluster> clusters;
-    Box3f bounds;  ///< of all clusters
+    Box3f bounds;  ///< of all vertices, those of rings too
 
     explicit Occluder(Memory* memory = defaultMemory())
         : x(memory), y(memory), z(memory), polygons(memory), edges(memory), clusters(memory) {}

@@ -8,15 +8,52 @@
 #include "sightline/prepare/quads.h"
 
 namespace sightline {
+namespace {
+
+constexpr uint32_t kRoomForRing = 40;  // vertices
+
+/// The sources' polygons, and the clusters that they become.
+struct Prepared {
+    Patchwork patchwork;
+    Runs runs;
+};
+
+Prepared prepare(std::span<const OccluderSource> sources, const OccluderSettings& settings, bool by_mesh) {
+    Prepared out;
+    out.patchwork = weld(sources);
+    pairTriangles(out.patchwork);
+    RunLimits limits;
+    limits.by_mesh = by_mesh;
+    limits.reach_across = settings.rings;
+    limits.most_joined = std::clamp(settings.own_polygons, 3u, OccluderCluster::kMaxOwn);
+    limits.most_loose = OccluderCluster::kMaxLoose;
+    limits.most_vertices = OccluderCluster::kMaxVertices - (settings.rings ? kRoomForRing : 0);
+    out.runs = sortIntoRuns(out.patchwork, limits);
+    return out;
+}
+
+}  // namespace
 
 Occluder prepareOccluder(const MeshView& mesh, std::span<const uint8_t> hides, std::span<const uint8_t> double_sided,
                          const OccluderSettings& settings) {
     const OccluderSource source{mesh, hides, double_sided};
-    Patchwork patchwork = weld({&source, 1});
-    pairTriangles(patchwork);
-    const Runs runs = sortIntoRuns(patchwork, true, std::clamp(settings.own_polygons, 3u, OccluderCluster::kMaxOwn));
+    return prepareJoined({&source, 1}, settings);
+}
+
+std::vector<Occluder> prepareOccluders(std::span<const OccluderSource> sources, const OccluderSettings& settings) {
+    const Prepared prepared = prepare(sources, settings, true);
+    std::vector<Occluder> out(sources.size());
+    ClusterWriter writer(prepared.patchwork, prepared.runs, settings.rings);
+    for (const Runs::Run& run : prepared.runs.runs)
+        writer.add(out[prepared.patchwork.polygons[prepared.runs.order[run.first]].mesh], run);
+    return out;
+}
+
+Occluder prepareJoined(std::span<const OccluderSource> sources, const OccluderSettings& settings) {
+    const Prepared prepared = prepare(sources, settings, false);
     Occluder out;
-    addClusters(out, patchwork, runs, 0, runs.runs.size());
+    ClusterWriter writer(prepared.patchwork, prepared.runs, settings.rings);
+    for (const Runs::Run& run : prepared.runs.runs) writer.add(out, run);
     return out;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "sightline/geom/mesh_view.h"
 #include "sightline/geom/occluder.h"
@@ -12,6 +13,14 @@ namespace sightline {
 /// How occluders are cut into clusters.
 struct OccluderSettings {
     uint32_t own_polygons = OccluderCluster::kMaxOwn;  ///< of a joined cluster  [limit: 3 to kMaxOwn]
+    bool rings = false;  ///< give joined clusters their neighbours' polygons around them, so that no seam stays open
+};
+
+/// A mesh of which some triangles hide.
+struct OccluderSource {
+    MeshView mesh;                          ///< object space
+    std::span<const uint8_t> hides;         ///< per triangle: whether it may hide  [size: triangles, or empty for all]
+    std::span<const uint8_t> double_sided;  ///< per triangle                       [size: triangles, or empty for none]
 };
 
 /// Prepares the given triangles as an occluder.
@@ -21,10 +30,16 @@ struct OccluderSettings {
 /// Triangles that share an edge and make a convex, nearly flat quadrangle are paired. Three polygons or more that hang
 /// together by shared edges make joined clusters of their own; all others are gathered in loose ones. O(n log n).
 ///
-/// @param mesh          object space
-/// @param hides         per triangle: whether it may hide  [size: triangles, or empty for all]
-/// @param double_sided  per triangle                       [size: triangles, or empty for none]
+/// @param hides, double_sided  as in OccluderSource
 Occluder prepareOccluder(const MeshView& mesh, std::span<const uint8_t> hides = {},
                          std::span<const uint8_t> double_sided = {}, const OccluderSettings& settings = {});
+
+/// The same for meshes that are always drawn together, in one object space: parts of one thing that never moves against
+/// itself. Polygons hang together across meshes; with OccluderSettings::rings, no seam stays open between two meshes
+/// that have the same edge. One occluder per mesh.
+std::vector<Occluder> prepareOccluders(std::span<const OccluderSource> sources, const OccluderSettings& settings = {});
+
+/// The same as one occluder, whose clusters take polygons of any of the meshes: for walls of many small panels.
+Occluder prepareJoined(std::span<const OccluderSource> sources, const OccluderSettings& settings = {});
 
 }  // namespace sightline

@@ -6,16 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "sightline/geom/mesh_view.h"
+#include "sightline/prepare/occluder.h"
 
 namespace sightline {
-
-/// A mesh of which some triangles hide.
-struct OccluderSource {
-    MeshView mesh;                          ///< object space
-    std::span<const uint8_t> hides;         ///< per triangle: whether it may hide  [size: triangles, or empty for all]
-    std::span<const uint8_t> double_sided;  ///< per triangle                       [size: triangles, or empty for none]
-};
 
 /// A triangle, or two triangles 0 1 2 and 0 2 3, by vertices of the patchwork.
 struct PatchPolygon {

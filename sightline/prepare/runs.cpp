@@ -46,14 +46,17 @@ private:
 
 class Splitter {
 public:
-    explicit Splitter(const Patchwork& patchwork) : patchwork_(patchwork), seen_(patchwork.positions.size(), 0) {}
+    Splitter(const Patchwork& patchwork, uint32_t most_vertices)
+        : patchwork_(patchwork), most_vertices_(most_vertices), seen_(patchwork.positions.size(), 0) {}
 
     /// Splits at a median of the longest axis until the pieces are small enough, so that each is compact. Iterative:
     /// meshes of millions of triangles must not exhaust the stack.
-    void split(Runs& out, uint32_t first, uint32_t last, bool joined, uint32_t most) {
+    void split(Runs& out, std::span<const uint32_t> polygons, bool joined, uint32_t most) {
+        if (polygons.empty()) return;
+        const uint32_t first = static_cast<uint32_t>(out.order.size());
         sorted_.clear();
-        for (uint32_t i = first; i < last; ++i) sorted_.push_back({centerOf(out.order[i]), out.order[i]});
-        stack_.assign(1, {0, last - first});
+        for (uint32_t polygon : polygons) sorted_.push_back({centerOf(polygon), polygon});
+        stack_.assign(1, {0, static_cast<uint32_t>(polygons.size())});
         while (!stack_.empty()) {
             const Range range = stack_.back();
             stack_.pop_back();
@@ -70,7 +73,7 @@ public:
             stack_.push_back({middle, range.last});
             stack_.push_back({range.first, middle});
         }
-        for (uint32_t i = first; i < last; ++i) out.order[i] = sorted_[i - first].polygon;
+        for (const Sorted& sorted : sorted_) out.order.push_back(sorted.polygon);
     }
 
 private:
@@ -99,7 +102,7 @@ private:
                 seen_[p.vertex[k]] = mark_;
             }
         }
-        return vertices <= OccluderCluster::kMaxVertices;
+        return vertices <= most_vertices_;
     }
 
     void halve(const Range& range, uint32_t middle) {
@@ -115,17 +118,16 @@ private:
     }
 
     const Patchwork& patchwork_;
+    uint32_t most_vertices_;
     std::vector<uint32_t> seen_;  ///< per vertex: the range that met it last
     uint32_t mark_ = 0;
     std::vector<Sorted> sorted_;
     std::vector<Range> stack_;
 };
 
-}  // namespace
-
-Runs sortIntoRuns(const Patchwork& patchwork, bool by_mesh, uint32_t most_joined) {
-    const std::vector<PatchPolygon>& polygons = patchwork.polygons;
-    Sets within(polygons.size()), across(polygons.size());
+/// For each polygon, a number that those have in common that hang together by the sides that pairSides() joins.
+std::vector<uint32_t> findWholes(const Patchwork& patchwork) {
+    Sets sets(patchwork.polygons.size());
     const std::vector<PatchSide> sides = sortedSides(patchwork);
     std::vector<SidePair> pairs;
     forSharedSides(std::span(sides), [&](std::span<const PatchSide> shared) {
@@ -133,33 +135,46 @@ Runs sortIntoRuns(const Patchwork& patchwork, bool by_mesh, uint32_t most_joined
         for (const SidePair& pair : pairs) {
             if (pair.forward == SidePair::kNone || pair.backward == SidePair::kNone) break;
             const PatchSide &f = shared[pair.forward], &b = shared[pair.backward];
-            if (shared.size() > 2 && smoothness(patchwork, f, b) < kFolded) continue;
-            across.join(f.polygon, b.polygon);
-            if (!by_mesh || polygons[f.polygon].mesh == polygons[b.polygon].mesh) within.join(f.polygon, b.polygon);
+            if (shared.size() == 2 || smoothness(patchwork, f, b) > kFolded) sets.join(f.polygon, b.polygon);
         }
     });
+    return sets.roots();
+}
+
+}  // namespace
+
+Runs sortIntoRuns(const Patchwork& patchwork, const RunLimits& limits) {
+    const std::vector<PatchPolygon>& polygons = patchwork.polygons;
+    const size_t count = polygons.size();
     Runs out;
-    out.whole = across.roots();
-    const std::vector<uint32_t> part = within.roots();
-    std::vector<uint32_t> size(polygons.size(), 0);
-    for (uint32_t root : part) ++size[root];
-    out.order.resize(polygons.size());
+    out.whole = findWholes(patchwork);
+    const auto partOf = [&](uint32_t i) { return std::pair(limits.by_mesh ? polygons[i].mesh : 0u, out.whole[i]); };
+    out.order.resize(count);
     std::iota(out.order.begin(), out.order.end(), 0u);
-    const auto meshOf = [&](uint32_t i) { return by_mesh ? polygons[i].mesh : 0; };
-    const auto loose = [&](uint32_t i) { return size[part[i]] < kLeastJoined; };
     std::sort(out.order.begin(), out.order.end(), [&](uint32_t a, uint32_t b) {
-        if (meshOf(a) != meshOf(b)) return meshOf(a) < meshOf(b);
-        if (loose(a) != loose(b)) return loose(b);
-        return !loose(a) && part[a] != part[b] ? part[a] < part[b] : a < b;
+        const auto part_a = partOf(a), part_b = partOf(b);
+        return part_a != part_b ? part_a < part_b : a < b;
     });
-    Splitter splitter(patchwork);
-    for (uint32_t first = 0, last = 0; first < out.order.size(); first = last) {
-        const uint32_t one = out.order[first];
-        while (last < out.order.size() && meshOf(out.order[last]) == meshOf(one) &&
-               loose(out.order[last]) == loose(one) && (loose(one) || part[out.order[last]] == part[one]))
-            ++last;
-        splitter.split(out, first, last, !loose(one), loose(one) ? OccluderCluster::kMaxLoose : most_joined);
+    std::vector<uint32_t> whole_size(count, 0);
+    for (uint32_t whole : out.whole) ++whole_size[whole];
+
+    Splitter splitter(patchwork, limits.most_vertices);
+    std::vector<uint32_t> loose, joined;
+    std::vector<uint32_t> order = std::move(out.order);
+    const auto endMesh = [&] {
+        std::sort(loose.begin(), loose.end());
+        splitter.split(out, loose, false, limits.most_loose);
+        loose.clear();
+    };
+    for (size_t first = 0, last = 0; first < count; first = last) {
+        while (last < count && partOf(order[last]) == partOf(order[first])) ++last;
+        if (first > 0 && partOf(order[first]).first != partOf(order[first - 1]).first) endMesh();
+        const size_t size = limits.reach_across ? whole_size[out.whole[order[first]]] : last - first;
+        joined.assign(order.begin() + static_cast<ptrdiff_t>(first), order.begin() + static_cast<ptrdiff_t>(last));
+        if (size < kLeastJoined) loose.insert(loose.end(), joined.begin(), joined.end());
+        else splitter.split(out, joined, true, limits.most_joined);
     }
+    endMesh();
     return out;
 }
 

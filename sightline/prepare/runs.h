@@ -6,23 +6,27 @@
 
 namespace sightline {
 
-/// Polygons in runs. Those of a joined run hang together in their mesh: not always within the run.
+/// Polygons in runs. Those of a joined run hang together: not always within the run.
 struct Runs {
     struct Run {
         uint32_t first = 0, last = 0;  ///< of `order`
         bool joined = false;
     };
     std::vector<uint32_t> order;  ///< every polygon once
-    std::vector<Run> runs;        ///< mesh by mesh; of each mesh, the loose ones last
+    std::vector<Run> runs;        ///< mesh by mesh if they are kept apart; the loose ones last
     std::vector<uint32_t> whole;  ///< per polygon: a number that those have in common that hang together, across meshes
+};
+
+struct RunLimits {
+    bool by_mesh = true;         ///< keep meshes apart
+    bool reach_across = false;   ///< what hangs together across meshes counts as one, though its runs are kept apart
+    uint32_t most_joined = 0;    ///< polygons of a joined run
+    uint32_t most_loose = 0;     ///< polygons of a loose run
+    uint32_t most_vertices = 0;  ///< of any run  [limit: >= 4]
 };
 
 /// What hangs together by shared sides and has three polygons or more is split where it is longest, until the pieces
 /// fit; the rest is gathered. O(n log n), deterministic.
-///
-/// @param by_mesh      keep meshes apart
-/// @param most_joined  polygons of a joined run; of a loose one there are at most OccluderCluster::kMaxLoose.
-///                     Any run has at most OccluderCluster::kMaxVertices vertices
-Runs sortIntoRuns(const Patchwork& patchwork, bool by_mesh, uint32_t most_joined);
+Runs sortIntoRuns(const Patchwork& patchwork, const RunLimits& limits);
 
 }  // namespace sightline

@@ -9,28 +9,6 @@
 namespace sightline {
 namespace {
 
-/// Each side of each polygon is in one record, on the right hand; and no two open records could have been joined.
-void expectRightEdges(const Occluder& o) {
-    for (const OccluderCluster& c : o.clusters) {
-        if (!c.edge_count) continue;
-        std::map<std::tuple<int, int, int>, int> sides;  // polygon, from, to
-        for (uint32_t p = 0; p < c.polygon_count + c.ring_count; ++p) {
-            const OccluderPolygon& polygon = o.polygons[c.first_polygon + p];
-            for (int k = 0; k < polygon.corners(); ++k)
-                ++sides[{int(p), polygon.vertex[k], polygon.vertex[(k + 1) % polygon.corners()]}];
-        }
-        std::map<std::pair<int, int>, int> open;
-        for (uint32_t e = c.first_edge; e < c.first_edge + c.edge_count; ++e) {
-            const OccluderEdge& edge = o.edges[e];
-            --sides[{edge.left, edge.from, edge.to}];
-            if (edge.right != OccluderEdge::kNone) --sides[{edge.right, edge.to, edge.from}];
-            else ++open[{edge.from, edge.to}];
-        }
-        for (const auto& [side, count] : sides) EXPECT_EQ(count, 0);
-        for (const auto& [edge, count] : open) EXPECT_FALSE(open.contains({edge.second, edge.first}));
-    }
-}
-
 uint32_t openEdges(const Occluder& o) {
     uint32_t count = 0;
     for (const OccluderEdge& edge : o.edges) count += edge.right == OccluderEdge::kNone;

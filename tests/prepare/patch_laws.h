@@ -72,8 +72,23 @@ inline Point pointOf(const Occluder& o, const OccluderCluster& c, uint32_t v) {
     return {p.x, p.y, p.z};
 }
 
+/// A polygon by its corners, whichever comes first.
+using Corners = std::vector<Point>;
+inline Corners cornersOf(const Occluder& o, const OccluderCluster& c, uint32_t polygon) {
+    Corners corners;
+    const OccluderPolygon& p = o.polygons[c.first_polygon + polygon];
+    for (int k = 0; k < p.corners(); ++k) corners.push_back(pointOf(o, c, p.vertex[k]));
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    return corners;
+}
+
 /// Limits, padding, bounds: what holds for every cluster.
 inline void expectWithinLimits(const Occluder& o) {
+    for (size_t v = 0; v < o.x.size(); ++v)
+        for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_GE((axis == 0 ? o.x : axis == 1 ? o.y : o.z)[v], o.bounds.min[axis]);
+            EXPECT_LE((axis == 0 ? o.x : axis == 1 ? o.y : o.z)[v], o.bounds.max[axis]);
+        }
     for (const OccluderCluster& c : o.clusters) {
         EXPECT_LE(c.vertex_count, OccluderCluster::kMaxVertices);
         EXPECT_GT(c.polygon_count, 0u);
@@ -94,6 +109,28 @@ inline void expectWithinLimits(const Occluder& o) {
         EXPECT_EQ(own.max, c.bounds.max);
         EXPECT_EQ(triangles, c.triangle_count);
         for (uint32_t v = c.vertex_count; v % 8; ++v) EXPECT_EQ(pointOf(o, c, v), pointOf(o, c, c.vertex_count - 1));
+    }
+}
+
+/// Each side of each polygon is in one record, on the right hand; and no two open records could have been joined.
+inline void expectRightEdges(const Occluder& o) {
+    for (const OccluderCluster& c : o.clusters) {
+        if (!c.edge_count) continue;
+        std::map<std::tuple<int, int, int>, int> sides;  // polygon, from, to
+        for (uint32_t p = 0; p < c.polygon_count + c.ring_count; ++p) {
+            const OccluderPolygon& polygon = o.polygons[c.first_polygon + p];
+            for (int k = 0; k < polygon.corners(); ++k)
+                ++sides[{int(p), polygon.vertex[k], polygon.vertex[(k + 1) % polygon.corners()]}];
+        }
+        std::map<std::pair<int, int>, int> open;
+        for (uint32_t e = c.first_edge; e < c.first_edge + c.edge_count; ++e) {
+            const OccluderEdge& edge = o.edges[e];
+            --sides[{edge.left, edge.from, edge.to}];
+            if (edge.right != OccluderEdge::kNone) --sides[{edge.right, edge.to, edge.from}];
+            else ++open[{edge.from, edge.to}];
+        }
+        for (const auto& [side, count] : sides) EXPECT_EQ(count, 0);
+        for (const auto& [edge, count] : open) EXPECT_FALSE(open.contains({edge.second, edge.first}));
     }
 }
 
