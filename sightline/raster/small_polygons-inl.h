@@ -1,0 +1,568 @@
+// Classifies many small polygons at once: a lane for each, spans per row of pixels, masks per tile.
+// SPDX-License-Identifier: MIT
+//
+// Jon Hasselgren, Magnus Andersson, Tomas Akenine-Moller. Masked Software Occlusion Culling. 2016.
+#if defined(SIGHTLINE_RASTER_SMALL_POLYGONS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIGHTLINE_RASTER_SMALL_POLYGONS_INL_H
+#undef SIGHTLINE_RASTER_SMALL_POLYGONS_INL_H
+#else
+#define SIGHTLINE_RASTER_SMALL_POLYGONS_INL_H
+#endif
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include <hwy/highway.h>
+
+#include "sightline/raster/small_polygons.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline {
+namespace HWY_NAMESPACE {
+namespace small_polygons {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F = hn::CappedTag<float, 16>;
+using I = hn::RebindToSigned<F>;
+using U = hn::RebindToUnsigned<F>;
+using VF = hn::Vec<F>;
+using VI = hn::Vec<I>;
+using VU = hn::Vec<U>;
+using MF = hn::Mask<F>;
+using MI = hn::Mask<I>;
+
+// Sixteen polygons make a batch on every machine, however many of them a vector holds: what is decided for a batch,
+// and the records' order, must not depend on the instruction set.
+constexpr uint32_t kBatch = 16;
+
+// The slope that stands for a level edge. Over 32 pixels it errs by 2^-12; and sixteen rows of it stay below 2^22,
+// where a float still has its halves.
+constexpr float kLevel = 0x1p17f;
+
+// Snapping moves a corner by up to 2^-9. Sixteen sums of slopes are wrong by less than 2^-15 (1 + slope), a level edge
+// by 2^-12.
+constexpr float kRounding = 0x1p-9f + 0x1p-11f;
+
+/// A batch on its way. The masks are in the order in which the transpose leaves them: of the polygons 4 b + k those
+/// with the least k first.
+struct Batch {
+    alignas(64) uint32_t corners[kBatch];                        ///< four indices of vertices
+    alignas(64) uint32_t both[kBatch];                           ///< 1: double-sided
+    alignas(64) uint32_t rows[2][SmallPolygons::kRows][kBatch];  ///< spans: of inner and of outer pixels
+    alignas(64) uint64_t half[2][2][2][kBatch][2];  ///< inner or outer; rows from 0, from 8; columns from 0, from 2
+    alignas(64) uint64_t shift[kBatch][2];          ///< bits from a tile's lowest row to the polygon's
+    alignas(64) uint64_t place[kBatch][2];          ///< of the lowest tiles of the first two columns
+    alignas(64) int32_t tile_x[kBatch], low[kBatch];
+
+    uint32_t count = 0;   ///< polygons
+    uint32_t large = 0;   ///< bit per polygon
+    uint32_t cut = 0;     ///< bit per polygon whose window is not wholly inside the buffer
+    uint32_t height = 0;  ///< rows that any needs
+    bool wide = false;    ///< some need the last two columns
+    bool quads = false;   ///< some have four corners
+};
+
+template <class D, class Mask>
+HWY_INLINE uint32_t bitsOf(D d, Mask mask) {
+    uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    return bytes[0] | static_cast<uint32_t>(bytes[1]) << 8;
+}
+
+/// The corners of a vector of polygons in pixels from their windows' corners; lanes that draw nothing are all zero.
+struct Corners {
+    VF x[4], y[4];
+};
+
+HWY_INLINE VI crossOf(VI ax, VI ay, VI bx, VI by) { return hn::Sub(hn::Mul(ax, by), hn::Mul(bx, ay)); }
+
+HWY_INLINE void exchange(MF swap, VF& a, VF& b) {
+    const VF old = a;
+    a = hn::IfThenElse(swap, b, a);
+    b = hn::IfThenElse(swap, old, b);
+}
+
+/// Change of x from one row to the next along an edge.
+HWY_INLINE VF slopeOf(VF dx, VF dy) {
+    const F d;
+    const MF level = hn::Eq(dy, hn::Zero(d));
+    const VF slope = hn::Div(dx, hn::IfThenElse(level, hn::Set(d, 1.0f), dy));
+    return hn::IfThenElse(level, hn::CopySign(hn::Set(d, kLevel), dx), slope);
+}
+
+/// Pixels from the one that a bound lies in or touches: those from round(bound) on.
+HWY_INLINE VU pixelsFrom(VF bound) {
+    const F d;
+    const U u;
+    // Adding this leaves the nearest whole number in the lowest bits.
+    const VF magic = hn::Set(d, 0x1.8p23f);
+    const VU from = hn::Sub(hn::BitCast(u, hn::Add(hn::Max(bound, hn::Zero(d)), magic)), hn::BitCast(u, magic));
+    const VU ones = hn::Set(u, ~0u);
+#if HWY_TARGET <= HWY_AVX2 && HWY_ARCH_X86
+    return hn::Shl(ones, from);  // no bit is left where 32 or more are asked for
+#else
+    const VU most = hn::Set(u, 31);
+    return hn::IfThenElseZero(hn::Lt(from, hn::Set(u, 32)), hn::Shl(ones, hn::Min(from, most)));
+#endif
+}
+
+/// Pixels that the rows of the bounding box hold, as far as there are such.
+struct BoxRows {
+    VU columns, height;
+    HWY_INLINE VU at(uint32_t row) const {
+        const U u;
+        return hn::IfThenElseZero(hn::Gt(height, hn::Set(u, row)), columns);
+    }
+};
+
+/// The spans of triangles. Between their lowest and their highest corner each has one edge on one side and two on
+/// the other; `mirrored` turns the sign of x where the two are on the right, so that they are on the left everywhere.
+template <bool kOuter>
+HWY_INLINE void triangleSpans(Corners& c, float reach, const BoxRows& box, Batch& batch, size_t h) {
+    const F d;
+    const U u;
+    VF *x = c.x, *y = c.y;
+    for (const int i : {0, 1, 0}) {
+        const MF swap = hn::Lt(y[i + 1], y[i]);
+        exchange(swap, x[i], x[i + 1]);
+        exchange(swap, y[i], y[i + 1]);
+    }
+    // In 1/256 pixel all of this is exact.
+    const I i;
+    const VF fine = hn::Set(d, 256.0f);
+    const auto side = [&](VF from, VF to) HWY_ATTR { return hn::ConvertTo(i, hn::Mul(hn::Sub(to, from), fine)); };
+    const VI cross = crossOf(side(x[0], x[1]), side(y[0], y[1]), side(x[0], x[2]), side(y[0], y[2]));
+    const VU mirrored = hn::BitCast(u, hn::VecFromMask(i, hn::Gt(cross, hn::Zero(i))));
+    const VF sign = hn::BitCast(d, hn::And(mirrored, hn::Set(u, 0x80000000u)));
+
+    const VF dx_a = hn::Sub(x[2], x[0]), dx_b = hn::Sub(x[1], x[0]), dx_c = hn::Sub(x[2], x[1]);
+    const VF dy_a = hn::Sub(y[2], y[0]), dy_b = hn::Sub(y[1], y[0]), dy_c = hn::Sub(y[2], y[1]);
+    const VF slope_a = slopeOf(dx_a, dy_a);
+    VF slope_b = slopeOf(dx_b, dy_b), slope_c = slopeOf(dx_c, dy_c);
+    const VF half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), wide = hn::Set(d, reach);
+    const auto start = [&](VF px, VF py, VF slope) HWY_ATTR { return hn::Add(px, hn::Mul(slope, hn::Sub(half, py))); };
+    const auto reachOf = [&](VF slope) HWY_ATTR { return hn::Mul(wide, hn::Add(one, hn::Abs(slope))); };
+    const VF reach_b = reachOf(slope_b), reach_c = reachOf(slope_c);
+    const VF reach_a = hn::Xor(reachOf(slope_a), sign);
+    const VF at_a = start(x[0], y[0], slope_a);
+    VF at_b = hn::Xor(start(x[0], y[0], slope_b), sign), at_c = hn::Xor(start(x[1], y[1], slope_c), sign);
+    slope_b = hn::Xor(slope_b, sign);
+    slope_c = hn::Xor(slope_c, sign);
+    VF in_a = hn::Sub(at_a, reach_a), in_b = hn::Add(at_b, reach_b), in_c = hn::Add(at_c, reach_c);
+    VF out_a = hn::Add(at_a, reach_a), out_b = hn::Sub(at_b, reach_b), out_c = hn::Sub(at_c, reach_c);
+    if constexpr (kOuter) {
+        // Two corners in one place make no edge.
+        const VF free = hn::Set(d, -0x1p22f);
+        const auto point = [&](VF dx, VF dy)
+                               HWY_ATTR { return hn::Eq(hn::Add(hn::Abs(dx), hn::Abs(dy)), hn::Zero(d)); };
+        out_b = hn::IfThenElse(point(dx_b, dy_b), free, out_b);
+        out_c = hn::IfThenElse(point(dx_c, dy_c), free, out_c);
+        out_a = hn::IfThenElse(point(dx_a, dy_a), hn::Neg(hn::Xor(free, sign)), out_a);
+    }
+    const auto span = [&](VF a, VF b, VF cc) HWY_ATTR {
+        const VU far = hn::Xor(pixelsFrom(a), mirrored);
+        return hn::AndNot(far, hn::Xor(pixelsFrom(hn::Xor(hn::Max(b, cc), sign)), mirrored));
+    };
+    for (uint32_t row = 0; row < batch.height; ++row) {
+        hn::Store(span(in_a, in_b, in_c), u, batch.rows[0][row] + h);
+        in_a = hn::Add(in_a, slope_a);
+        in_b = hn::Add(in_b, slope_b);
+        in_c = hn::Add(in_c, slope_c);
+        if constexpr (!kOuter) continue;
+        hn::Store(hn::And(span(out_a, out_b, out_c), box.at(row)), u, batch.rows[1][row] + h);
+        out_a = hn::Add(out_a, slope_a);
+        out_b = hn::Add(out_b, slope_b);
+        out_c = hn::Add(out_c, slope_c);
+    }
+}
+
+/// The spans of convex polygons, counter-clockwise. Every edge is taken for a left one and for a right one, of which
+/// one bounds nothing.
+template <bool kOuter>
+HWY_INLINE void quadSpans(const Corners& c, float reach, const BoxRows& box, Batch& batch, size_t h) {
+    const F d;
+    const U u;
+    const VF half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), zero = hn::Zero(d), wide = hn::Set(d, reach);
+    const VF free = hn::Set(d, -0x1p22f), most = hn::Set(d, 64.0f);
+    VF left[2][4], right[2][4], slope[4];
+    MF extended = hn::MaskFromVec(zero);  // has a side, and so no pixel inside where it has no area
+    for (int e = 0; e < 4; ++e) {
+        const int f = (e + 1) & 3;
+        const VF dx = hn::Sub(c.x[f], c.x[e]), dy = hn::Sub(c.y[f], c.y[e]);
+        // Down on the left, up on the right; a level edge is a left one, that falls by next to nothing.
+        const MF up = hn::Gt(dy, zero), level = hn::Eq(dy, zero);
+        const MF point = hn::And(level, hn::Eq(dx, zero));
+        extended = hn::Or(extended, hn::Not(point));
+        slope[e] = slopeOf(hn::IfThenElse(level, hn::Neg(dx), dx), dy);
+        const VF at = hn::Add(c.x[e], hn::Mul(slope[e], hn::Sub(half, c.y[e])));
+        const VF r = hn::Mul(wide, hn::Add(one, hn::Abs(slope[e])));
+        const MF no_left = hn::Or(up, point), no_right = hn::Not(up);
+        left[0][e] = hn::IfThenElse(no_left, free, hn::Add(at, r));
+        left[1][e] = hn::IfThenElse(no_left, free, hn::Sub(at, r));
+        right[0][e] = hn::IfThenElse(no_right, hn::Neg(free), hn::Sub(at, r));
+        right[1][e] = hn::IfThenElse(no_right, hn::Neg(free), hn::Add(at, r));
+    }
+    const VU has_inner = hn::BitCast(u, hn::VecFromMask(d, extended));
+    for (uint32_t row = 0; row < batch.height; ++row)
+        for (int o = 0; o < (kOuter ? 2 : 1); ++o) {
+            VF low = zero, high = most;
+            for (int e = 0; e < 4; ++e) {
+                low = hn::Max(low, left[o][e]);
+                high = hn::Min(high, right[o][e]);
+                left[o][e] = hn::Add(left[o][e], slope[e]);
+                right[o][e] = hn::Add(right[o][e], slope[e]);
+            }
+            const VU span = hn::AndNot(pixelsFrom(high), pixelsFrom(low));
+            const VU bits = hn::And(span, box.at(row));
+            hn::Store(o ? bits : hn::And(bits, has_inner), u, batch.rows[o][row] + h);
+        }
+}
+
+/// What is known of the shape of a vector of polygons: which way round they are, and whether that is sure.
+struct Shape {
+    MI backward, drawn, large;
+};
+
+/// @param perimeter  sum of all sides' extents, which for a convex polygon is twice its box's
+HWY_INLINE Shape shapeOf(const VI* x, const VI* y, VI perimeter, MI triangle, MI both, bool quads, bool outer,
+                         bool reverse, int32_t slack) {
+    const I i;
+    // A triangle's doubled area is wrong by no more than this where its corners are by the slack.
+    const VI most = hn::Mul(hn::Set(i, slack), hn::Add(perimeter, hn::Set(i, 6 * slack)));
+    const VI least = hn::Neg(most), zero = hn::Zero(i);
+    const auto area = [&](int a, int b, int c) HWY_ATTR {
+        return crossOf(hn::Sub(x[b], x[a]), hn::Sub(y[b], y[a]), hn::Sub(x[c], x[a]), hn::Sub(y[c], y[a]));
+    };
+    const VI first = area(0, 1, 2);
+    const MI front = reverse ? hn::Lt(first, least) : hn::Gt(first, most);
+    const MI back = reverse ? hn::Gt(first, most) : hn::Lt(first, least);
+    Shape shape;
+    shape.backward = hn::Lt(first, zero);
+    // Where nothing is sure, nothing is covered; but the polygon may still touch.
+    shape.drawn = outer ? hn::Or(both, hn::Not(back)) : hn::Or(front, hn::And(both, back));
+    shape.large = hn::MaskFromVec(zero);
+    if (!quads) return shape;
+    const VI second = area(0, 2, 3), third = area(0, 1, 3), fourth = area(1, 2, 3);
+    const auto all = [&](VI lowest, VI others) HWY_ATTR {
+        return hn::And(hn::And(hn::Gt(first, lowest), hn::Gt(second, lowest)),
+                       hn::And(hn::Gt(third, others), hn::Gt(fourth, others)));
+    };
+    const auto none = [&](VI highest, VI others) HWY_ATTR {
+        return hn::And(hn::And(hn::Lt(first, highest), hn::Lt(second, highest)),
+                       hn::And(hn::Lt(third, others), hn::Lt(fourth, others)));
+    };
+    const VI one = hn::Set(i, 1);
+    const MI forward = all(most, hn::Neg(one)), backward = none(least, one);
+    const MI faces = hn::Or(both, reverse ? backward : forward);
+    const MI sure = hn::Or(forward, backward);
+    // Both halves away from the eye: nothing is drawn even if the quadrangle is not convex.
+    const MI away = reverse ? hn::And(hn::Gt(first, most), hn::Gt(second, most))
+                            : hn::And(hn::Lt(first, least), hn::Lt(second, least));
+    shape.drawn = hn::Or(hn::And(triangle, shape.drawn), hn::AndNot(triangle, hn::And(sure, faces)));
+    shape.large = hn::AndNot(triangle, hn::AndNot(sure, hn::Or(both, hn::Not(away))));
+    return shape;
+}
+
+#if HWY_TARGET == HWY_SCALAR
+
+/// Where the records go, in the transpose's order.
+inline void notePlaces(VU polygon, VU tile, VU shift, Batch& batch, size_t h) {
+    const size_t at = 4 * (h & 3) + h / 4;
+    const uint64_t place = hn::GetLane(polygon) | uint64_t{hn::GetLane(tile)} << 32;
+    batch.place[at][0] = place;
+    batch.place[at][1] = place + (uint64_t{1} << 32);
+    batch.shift[at][0] = batch.shift[at][1] = hn::GetLane(shift);
+}
+
+/// Turns eight rows of pixels of each polygon into columns of tiles: bytes of a row into 64-bit words.
+inline void transposeRows(const uint32_t (*rows)[kBatch], size_t h, uint64_t (*out)[kBatch][2]) {
+    for (int column = 0; column < 4; ++column) {
+        uint64_t word = 0;
+        for (int row = 0; row < 8; ++row) word |= uint64_t{rows[row][h] >> 8 * column & 255} << 8 * row;
+        out[column / 2][4 * (h & 3) + h / 4][column & 1] = word;
+    }
+}
+
+#else
+
+/// Where the records go, in the transpose's order.
+HWY_INLINE void notePlaces(VU polygon, VU tile, VU shift, Batch& batch, size_t h) {
+    const U u;
+    const hn::Repartition<uint64_t, U> l;
+    alignas(64) constexpr uint64_t kNext[8] = {0, uint64_t{1} << 32, 0, uint64_t{1} << 32,
+                                               0, uint64_t{1} << 32, 0, uint64_t{1} << 32};
+    const auto next = hn::Load(l, kNext);
+    const auto put = [&](auto pairs, size_t k, uint64_t(*to)[2], auto add) HWY_ATTR {
+        hn::Store(hn::Add(hn::InterleaveLower(l, pairs, pairs), add), l, to[4 * k + h / 4]);
+        hn::Store(hn::Add(hn::InterleaveUpper(l, pairs, pairs), add), l, to[4 * k + 4 + h / 4]);
+    };
+    put(hn::BitCast(l, hn::InterleaveLower(u, polygon, tile)), 0, batch.place, next);
+    put(hn::BitCast(l, hn::InterleaveUpper(u, polygon, tile)), 2, batch.place, next);
+    put(hn::BitCast(l, hn::InterleaveLower(u, shift, hn::Zero(u))), 0, batch.shift, hn::Zero(l));
+    put(hn::BitCast(l, hn::InterleaveUpper(u, shift, hn::Zero(u))), 2, batch.shift, hn::Zero(l));
+}
+
+/// Turns eight rows of pixels of each polygon into columns of tiles: bytes of a row into 64-bit words.
+HWY_INLINE void transposeRows(const uint32_t (*rows)[kBatch], size_t h, uint64_t (*out)[kBatch][2]) {
+    const U u;
+    const hn::Repartition<uint8_t, U> b;
+    const hn::Repartition<uint16_t, U> w;
+    const hn::Repartition<uint64_t, U> l;
+    VU four[2][4];  // per polygon k of each four: a byte per row, four rows of one column in a lane
+    for (int part = 0; part < 2; ++part) {
+        const auto row = [&](int r) HWY_ATTR { return hn::BitCast(b, hn::Load(u, rows[4 * part + r] + h)); };
+        const auto r0 = row(0), r1 = row(1), r2 = row(2), r3 = row(3);
+        const auto low01 = hn::BitCast(w, hn::InterleaveLower(b, r0, r1));
+        const auto low23 = hn::BitCast(w, hn::InterleaveLower(b, r2, r3));
+        const auto high01 = hn::BitCast(w, hn::InterleaveUpper(b, r0, r1));
+        const auto high23 = hn::BitCast(w, hn::InterleaveUpper(b, r2, r3));
+        four[part][0] = hn::BitCast(u, hn::InterleaveLower(w, low01, low23));
+        four[part][1] = hn::BitCast(u, hn::InterleaveUpper(w, low01, low23));
+        four[part][2] = hn::BitCast(u, hn::InterleaveLower(w, high01, high23));
+        four[part][3] = hn::BitCast(u, hn::InterleaveUpper(w, high01, high23));
+    }
+    for (size_t k = 0; k < 4; ++k) {
+        hn::Store(hn::BitCast(l, hn::InterleaveLower(u, four[0][k], four[1][k])), l, out[0][4 * k + h / 4]);
+        hn::Store(hn::BitCast(l, hn::InterleaveUpper(u, four[0][k], four[1][k])), l, out[1][4 * k + h / 4]);
+    }
+}
+
+#endif  // HWY_SCALAR
+
+/// Sets up and scans one vector of a batch's polygons, and notes their depths.
+template <bool kOuter, bool kQuads>
+HWY_INLINE void scanPolygons(const SmallPolygonsTask& task, uint32_t first, Batch& batch, size_t h,
+                             SmallPolygons& out) {
+    const F d;
+    const I i;
+    const U u;
+    constexpr int kCorners = kQuads ? 4 : 3;
+    const SnappedVertices& vertices = *task.vertices;
+    const VU word = hn::Load(u, batch.corners + h), byte = hn::Set(u, 255);
+    VI index[4] = {hn::BitCast(i, hn::And(word, byte)), hn::BitCast(i, hn::And(hn::ShiftRight<8>(word), byte)),
+                   hn::BitCast(i, hn::And(hn::ShiftRight<16>(word), byte)), hn::BitCast(i, hn::ShiftRight<24>(word))};
+    const MI triangle = hn::Eq(index[3], hn::Set(i, OccluderPolygon::kNone));
+    index[3] = hn::IfThenElse(triangle, index[2], index[3]);
+    VI x[4], y[4];
+    VF nearness[4];
+    for (int k = 0; k < kCorners; ++k) {
+        x[k] = hn::GatherIndex(i, vertices.x, index[k]);
+        y[k] = hn::GatherIndex(i, vertices.y, index[k]);
+        nearness[k] = hn::GatherIndex(d, vertices.d, index[k]);
+    }
+    VI x0 = x[0], x1 = x[0], y0 = y[0], y1 = y[0];
+    VF d0 = nearness[0], d1 = nearness[0];
+    for (int k = 1; k < kCorners; ++k) {
+        x0 = hn::Min(x0, x[k]), x1 = hn::Max(x1, x[k]);
+        y0 = hn::Min(y0, y[k]), y1 = hn::Max(y1, y[k]);
+        d0 = hn::Min(d0, nearness[k]), d1 = hn::Max(d1, nearness[k]);
+    }
+    // Snapping has moved the corners by half a step, and the slack is rounded up.
+    const int32_t steps = static_cast<int32_t>(std::ceil(task.slack * 256.0f)) + 1;
+    const VI slack = hn::Set(i, steps), zero = hn::Zero(i), one = hn::Set(i, 1);
+    const MI near = hn::Eq(x0, hn::Set(i, SnappedVertices::kNone));
+    const VI left = hn::ShiftRight<8>(hn::Sub(x0, slack)), right = hn::ShiftRight<8>(hn::Add(x1, slack));
+    const VI low = hn::ShiftRight<8>(hn::Sub(y0, slack)), high = hn::ShiftRight<8>(hn::Add(y1, slack));
+    const VI tile_x = hn::ShiftRight<3>(left), tile_y = hn::ShiftRight<3>(low);
+    const VI last_column = hn::Set(i, static_cast<int32_t>(task.columns) - 1);
+    const VI last_row = hn::Set(i, static_cast<int32_t>(task.rows) - 1);
+    const MI there = hn::Lt(hn::Iota(i, static_cast<int32_t>(h)), hn::Set(i, static_cast<int32_t>(batch.count)));
+    const MI beside =
+        hn::Or(hn::Lt(hn::Min(right, high), zero), hn::Or(hn::Gt(tile_x, last_column), hn::Gt(tile_y, last_row)));
+    const VI last_x = hn::ShiftRight<3>(right);
+    const VI height = hn::Add(hn::Sub(high, low), one);
+    const MI fits = hn::And(hn::Lt(hn::Sub(last_x, tile_x), hn::Set(i, SmallPolygons::kColumns)),
+                            hn::Lt(height, hn::Set(i, SmallPolygons::kRows + 1)));
+    const VI perimeter = hn::Add(hn::Sub(x1, x0), hn::Sub(y1, y0));
+    const MI both = hn::Eq(hn::BitCast(i, hn::Load(u, batch.both + h)), one);
+    const Shape shape =
+        shapeOf(x, y, hn::Add(perimeter, perimeter), triangle, both, kQuads, kOuter, task.reverse, steps);
+    const MI seen = hn::AndNot(near, hn::AndNot(beside, there));
+    const MI small = hn::And(seen, fits), drawn = hn::AndNot(shape.large, hn::And(small, shape.drawn));
+    const MI large = hn::Or(hn::And(there, near), hn::Or(hn::AndNot(fits, seen),
+                                                         kQuads ? hn::And(small, shape.large) : hn::MaskFromVec(zero)));
+    batch.large |= bitsOf(i, large) << h;
+
+    // A window that reaches past the buffer.
+    const VI last_y = hn::ShiftRight<3>(high);
+    const MI cut =
+        hn::Or(hn::Lt(hn::Min(tile_x, tile_y), zero), hn::Or(hn::Gt(last_x, last_column), hn::Gt(last_y, last_row)));
+    batch.cut |= bitsOf(i, hn::And(drawn, cut)) << h;
+    hn::Store(tile_x, i, batch.tile_x + h);
+    hn::Store(low, i, batch.low + h);
+
+    const VF error = hn::Set(d, task.depth_error * (1.0f + 0x1p-20f) + 0x1p-120f), tiny = hn::Set(d, 0x1p-22f);
+    hn::StoreU(hn::Sub(hn::Sub(d0, hn::Mul(hn::Abs(d0), tiny)), error), d, out.farthest + first + h);
+    hn::StoreU(hn::Add(hn::Add(d1, hn::Mul(hn::Abs(d1), tiny)), error), d, out.nearest + first + h);
+
+    // Small places are exact in float.
+    const VI from_x = hn::ShiftLeft<11>(tile_x), from_y = hn::ShiftLeft<8>(low);
+    const VF step = hn::Set(d, 0x1p-8f);
+    Corners c;
+    for (int k = 0; k < kCorners; ++k) {
+        c.x[k] = hn::Mul(hn::ConvertTo(d, hn::IfThenElseZero(drawn, hn::Sub(x[k], from_x))), step);
+        c.y[k] = hn::Mul(hn::ConvertTo(d, hn::IfThenElseZero(drawn, hn::Sub(y[k], from_y))), step);
+    }
+    const VI rows_drawn = hn::IfThenElseZero(drawn, height);
+    batch.height = std::max(batch.height, static_cast<uint32_t>(hn::GetLane(hn::MaxOfLanes(i, rows_drawn))));
+    batch.wide |= !hn::AllFalse(i, hn::And(drawn, hn::Gt(hn::Sub(last_x, tile_x), one)));
+    const auto bits = [&](VI from) HWY_ATTR {  // from column `from`, 0 to 31, on
+        return hn::Shl(hn::Set(u, ~0u), hn::And(hn::BitCast(u, from), hn::Set(u, 31)));
+    };
+    const VI x_first = hn::Sub(left, hn::ShiftLeft<3>(tile_x)), x_last = hn::Sub(right, hn::ShiftLeft<3>(tile_x));
+    const BoxRows box{hn::AndNot(hn::Add(bits(x_last), bits(x_last)), bits(x_first)), hn::BitCast(u, rows_drawn)};
+    const float reach = 0.5f + task.slack + kRounding;
+    if constexpr (kQuads) {
+        const MF turn = hn::RebindMask(d, shape.backward);
+        exchange(turn, c.x[1], c.x[3]);
+        exchange(turn, c.y[1], c.y[3]);
+        quadSpans<kOuter>(c, reach, box, batch, h);
+    } else {
+        triangleSpans<kOuter>(c, reach, box, batch, h);
+    }
+
+    notePlaces(hn::Add(hn::Iota(u, static_cast<uint32_t>(h)), hn::Set(u, first)),
+               hn::BitCast(u, hn::Add(hn::Mul(tile_y, hn::Set(i, static_cast<int32_t>(task.stride))), tile_x)),
+               hn::ShiftLeft<3>(hn::BitCast(u, hn::And(low, hn::Set(i, 7)))), batch, h);
+}
+
+/// Takes away the pixels outside the buffer.
+template <bool kOuter>
+void cutWindows(const SmallPolygonsTask& task, Batch& batch) {
+    const int32_t height = static_cast<int32_t>(8 * task.rows), columns = static_cast<int32_t>(task.columns);
+    for (uint32_t left = batch.cut; left; left &= left - 1) {
+        const int lane = std::countr_zero(left), at = 4 * (lane & 3) + lane / 4;
+        for (int column = 0; column < SmallPolygons::kColumns; ++column)
+            for (int part = 0; part < 2; ++part) {
+                const int32_t x = batch.tile_x[lane] + column, y = batch.low[lane] + 8 * part;
+                uint64_t keep = x < 0 || x >= columns || y <= -8 || y >= height ? 0 : ~uint64_t{0};
+                if (keep && y < 0) keep <<= -8 * y;
+                if (keep && y + 8 > height) keep &= ~uint64_t{0} >> 8 * (y + 8 - height);
+                for (int o = 0; o < (kOuter ? 2 : 1); ++o) batch.half[o][part][column / 2][at][column & 1] &= keep;
+            }
+    }
+}
+
+/// Moves the masks of a batch to the tiles' own rows, and writes out those that have a pixel.
+template <bool kOuter>
+HWY_INLINE void writeRecords(const SmallPolygonsTask& task, const Batch& batch, SmallPolygons& out) {
+    const hn::CappedTag<uint64_t, 8> l;
+    using V = hn::Vec<decltype(l)>;
+    uint32_t count = out.count;
+    const V most = hn::Set(l, 56), zero = hn::Zero(l);
+    const bool tall = batch.height > 8;
+    for (size_t pair = 0; pair < (batch.wide ? 2 : 1); ++pair)
+        for (size_t up = 0; up < (batch.height > 9 ? 3 : batch.height > 1 ? 2 : 1); ++up) {
+            const uint64_t go = (uint64_t{task.stride} * up + 2 * pair) << 32;
+            for (size_t at = 0; at < 2 * kBatch; at += hn::Lanes(l)) {
+                const V shift = hn::Load(l, batch.shift[0] + at);
+                const auto word = [&](int o) HWY_ATTR {
+                    const uint64_t *low = batch.half[o][0][pair][0] + at, *high = batch.half[o][1][pair][0] + at;
+                    const auto below = [&](const uint64_t* from) HWY_ATTR {  // in two steps: the second may be 56
+                        return hn::Shr(hn::ShiftRight<8>(hn::Load(l, from)), hn::Sub(most, shift));
+                    };
+                    if (up == 0) return hn::Shl(hn::Load(l, low), shift);
+                    if (up == 2) return below(high);
+                    return tall ? hn::Or(hn::Shl(hn::Load(l, high), shift), below(low)) : below(low);
+                };
+                const V inner = word(0), outer = kOuter ? word(1) : inner;
+                const auto some = hn::Ne(outer, zero);
+                const size_t found = hn::CountTrue(l, some);
+                if (!found) continue;
+                const V place = hn::Add(hn::Load(l, batch.place[0] + at), hn::Set(l, go));
+                hn::StoreU(hn::Compress(inner, some), l, out.inner + count);
+                if (kOuter) hn::StoreU(hn::Compress(outer, some), l, out.outer + count);
+                hn::StoreU(hn::Compress(place, some), l, out.place + count);
+                count += static_cast<uint32_t>(found);
+            }
+        }
+    out.count = count;
+}
+
+template <bool kOuter>
+HWY_INLINE void scanBatch(const SmallPolygonsTask& task, uint32_t first, Batch& batch, SmallPolygons& out) {
+    const size_t lanes = hn::Lanes(F());
+    for (size_t h = 0; h < kBatch; h += lanes) {
+        const uint32_t before = batch.height;
+        batch.height = 0;
+        if (batch.quads) scanPolygons<kOuter, true>(task, first, batch, h, out);
+        else scanPolygons<kOuter, false>(task, first, batch, h, out);
+        const uint32_t height = batch.height;
+        const U u;
+        for (int o = 0; o < (kOuter ? 2 : 1); ++o) {
+            for (uint32_t row = height; row < (height + 7) / 8 * 8; ++row)
+                hn::Store(hn::Zero(u), u, batch.rows[o][row] + h);
+            for (uint32_t part = 0; part < 2; ++part) {
+                if (8 * part < height) {
+                    transposeRows(batch.rows[o] + 8 * part, h, batch.half[o][part]);
+                    continue;
+                }
+                static constexpr uint32_t kEmpty[8][kBatch] = {};
+                transposeRows(kEmpty, h, batch.half[o][part]);
+            }
+        }
+        batch.height = std::max(before, height);
+    }
+}
+
+}  // namespace small_polygons
+
+/// Classifies the polygons of a task; see SmallPolygons.
+/// @tparam kOuter  also records that only touch, and the outer masks; without them it takes two thirds of the time
+template <bool kOuter>
+HWY_INLINE void classifySmallPolygons(const SmallPolygonsTask& task, SmallPolygons& out) {
+    namespace sp = small_polygons;
+    out.count = out.large_count = 0;
+    sp::Batch batch;
+    for (uint32_t first = 0; first < task.count; first += sp::kBatch) {
+        batch.count = std::min(sp::kBatch, task.count - first);
+        batch.large = batch.cut = batch.height = 0;
+        batch.wide = false;
+        uint32_t fourth = ~0u;
+        for (uint32_t p = 0; p < sp::kBatch; ++p) {
+            const OccluderPolygon& polygon = task.polygons[first + std::min(p, batch.count - 1)];
+            std::memcpy(batch.corners + p, polygon.vertex, 4);
+            batch.both[p] = polygon.double_sided;
+            fourth &= batch.corners[p];
+        }
+        batch.quads = fourth >> 24 != OccluderPolygon::kNone;
+        sp::scanBatch<kOuter>(task, first, batch, out);
+        if (batch.cut) sp::cutWindows<kOuter>(task, batch);
+        if (batch.height) sp::writeRecords<kOuter>(task, batch, out);
+        for (uint32_t left = batch.large; left; left &= left - 1)
+            out.large[out.large_count++] = static_cast<uint8_t>(first + static_cast<uint32_t>(std::countr_zero(left)));
+    }
+}
+
+/// Snaps projected vertices.
+/// @param x,y,d  [size: count, rounded up to 8]; x is NaN before the near plane
+HWY_INLINE void snapVertices(const double* x, const double* y, const double* nearness, uint32_t count,
+                             SnappedVertices& out) {
+    namespace hn = hwy::HWY_NAMESPACE;
+    const hn::CappedTag<double, 8> d;
+    const hn::Rebind<float, decltype(d)> f;
+    const hn::Rebind<int32_t, decltype(d)> i;
+    const auto most = hn::Set(d, double{SnappedVertices::kFarthest}), least = hn::Neg(most);
+    const auto fine = hn::Set(d, 256.0), whole = hn::Set(d, 0x1.8p52);
+    const auto snap = [&](auto v) HWY_ATTR {
+        const auto near = hn::Min(hn::Max(hn::Mul(v, fine), least), most);
+        return hn::Sub(hn::Add(near, whole), whole);
+    };
+    for (size_t v = 0; v < count; v += hn::Lanes(d)) {
+        const auto px = hn::LoadU(d, x + v), py = hn::LoadU(d, y + v);
+        const auto none = hn::Or(hn::IsNaN(px), hn::IsNaN(py));
+        const auto sx = hn::IfThenElse(none, hn::Set(d, double{SnappedVertices::kNone}), snap(px));
+        const auto sy = hn::IfThenElse(none, hn::Zero(d), snap(py));
+        hn::Store(hn::DemoteTo(i, sx), i, out.x + v);
+        hn::Store(hn::DemoteTo(i, sy), i, out.y + v);
+        hn::Store(hn::DemoteTo(f, hn::LoadU(d, nearness + v)), f, out.d + v);
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sightline
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard
