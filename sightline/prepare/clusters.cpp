@@ -16,16 +16,17 @@ ClusterWriter::ClusterWriter(const Patchwork& patchwork, const Runs& runs, bool 
     : patchwork_(patchwork), runs_(runs), met_(patchwork.positions.size(), 0), local_(patchwork.positions.size(), 0) {
     if (!rings) return;
     met_polygon_.assign(patchwork.polygons.size(), 0);
-    const auto forCorners = [&](auto each) {
+    touched_.assign(patchwork.positions.size(), 0);
+    const auto forVertices = [&](auto each) {
         for (uint32_t i = 0; i < patchwork.polygons.size(); ++i)
-            for (int k = 0; k < patchwork.polygons[i].corners; ++k) each(patchwork.polygons[i].vertex[k], i);
+            patchwork.forLoop(i, [&](uint32_t vertex) { each(vertex, i); });
     };
     first_around_.assign(patchwork.positions.size() + 1, 0);
-    forCorners([&](uint32_t vertex, uint32_t) { ++first_around_[vertex + 1]; });
+    forVertices([&](uint32_t vertex, uint32_t) { ++first_around_[vertex + 1]; });
     for (size_t v = 1; v < first_around_.size(); ++v) first_around_[v] += first_around_[v - 1];
     around_.resize(first_around_.back());
     std::vector<uint32_t> next(first_around_.begin(), first_around_.end() - 1);
-    forCorners([&](uint32_t vertex, uint32_t polygon) { around_[next[vertex]++] = polygon; });
+    forVertices([&](uint32_t vertex, uint32_t polygon) { around_[next[vertex]++] = polygon; });
 }
 
 void ClusterWriter::add(Occluder& out, const Runs::Run& run) {
@@ -62,26 +63,32 @@ uint8_t ClusterWriter::localOf(uint32_t vertex) {
     return local_[vertex];
 }
 
-/// Takes in the polygons that hang together with the cluster's own and touch one of their vertices: those with a whole
-/// side in common first, as far as the limits allow. One that is left out only leaves its sides open.
+/// Takes in the polygons that hang together with the cluster's own and touch them at a vertex: those with a side or part
+/// of one in common first, as far as the limits allow. One that is left out only leaves its sides open.
 void ClusterWriter::addRing() {
     struct Neighbour {
         uint32_t touches;  ///< vertices of the cluster's own
         uint32_t polygon;
     };
+    touching_.clear();
+    for (uint32_t id : members_) {
+        met_polygon_[id] = mark_;
+        patchwork_.forLoop(id, [&](uint32_t vertex) {
+            if (touched_[vertex] != mark_) touching_.push_back(vertex);
+            touched_[vertex] = mark_;
+        });
+    }
     const uint32_t whole = runs_.whole[members_[0]];
-    for (uint32_t id : members_) met_polygon_[id] = mark_;
     std::vector<Neighbour> neighbours;
-    for (uint32_t vertex : vertices_) {
+    for (uint32_t vertex : touching_) {
         const uint32_t first = first_around_[vertex], last = first_around_[vertex + 1];
         if (last - first > kMostAround) continue;
         for (uint32_t i = first; i < last; ++i) {
             const uint32_t id = around_[i];
             if (met_polygon_[id] == mark_ || runs_.whole[id] != whole) continue;
             met_polygon_[id] = mark_;
-            const PatchPolygon& polygon = patchwork_.polygons[id];
             uint32_t touches = 0;
-            for (int k = 0; k < polygon.corners; ++k) touches += met_[polygon.vertex[k]] == mark_;
+            patchwork_.forLoop(id, [&](uint32_t v) { touches += touched_[v] == mark_; });
             neighbours.push_back({touches, id});
         }
     }
@@ -113,9 +120,16 @@ void ClusterWriter::addEdges(Occluder& out) {
     for (uint32_t i = 0; i < members_.size(); ++i) {
         const PatchPolygon& polygon = patchwork_.polygons[members_[i]];
         for (uint8_t k = 0; k < polygon.corners; ++k) {
-            const uint8_t from = local_[polygon.vertex[k]], to = local_[polygon.vertex[(k + 1) % polygon.corners]];
-            sides_.push_back(
-                {{std::min(from, to), std::max(from, to), members_[i], k, from < to}, static_cast<uint8_t>(i)});
+            uint8_t from = local_[polygon.vertex[k]];
+            const auto go = [&](uint32_t vertex) {
+                if (met_[vertex] != mark_) return;  // nobody's corner in this cluster
+                const uint8_t to = local_[vertex];
+                sides_.push_back(
+                    {{std::min(from, to), std::max(from, to), members_[i], k, from < to}, static_cast<uint8_t>(i)});
+                from = to;
+            };
+            for (uint32_t vertex : patchwork_.chain(members_[i], k)) go(vertex);
+            go(polygon.vertex[(k + 1) % polygon.corners]);
         }
     }
     std::sort(sides_.begin(), sides_.end(), [](const LocalSide& a, const LocalSide& b) {

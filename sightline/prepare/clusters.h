@@ -35,6 +35,8 @@ private:
     std::vector<uint32_t> met_;                    ///< per vertex: the cluster that met it last
     std::vector<uint8_t> local_;                   ///< per vertex: its number there
     std::vector<uint32_t> met_polygon_;            ///< per polygon: the cluster that met it last
+    std::vector<uint32_t> touched_;                ///< per vertex: the cluster whose own polygons have it
+    std::vector<uint32_t> touching_;               ///< those vertices
     uint32_t mark_ = 0;
     std::vector<uint32_t> vertices_;  ///< of the cluster
     std::vector<uint32_t> members_;   ///< its polygons, its own first

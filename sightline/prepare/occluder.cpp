@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "sightline/prepare/clusters.h"
+#include "sightline/prepare/junctions.h"
 #include "sightline/prepare/quads.h"
 
 namespace sightline {
@@ -22,6 +23,7 @@ Prepared prepare(std::span<const OccluderSource> sources, const OccluderSettings
     Prepared out;
     out.patchwork = weld(sources);
     pairTriangles(out.patchwork);
+    if (settings.junctions) findJunctions(out.patchwork);
     RunLimits limits;
     limits.by_mesh = by_mesh;
     limits.reach_across = settings.rings;

@@ -13,7 +13,8 @@ namespace sightline {
 /// How occluders are cut into clusters.
 struct OccluderSettings {
     uint32_t own_polygons = OccluderCluster::kMaxOwn;  ///< of a joined cluster  [limit: 3 to kMaxOwn]
-    bool rings = false;  ///< give joined clusters their neighbours' polygons around them, so that no seam stays open
+    bool rings = false;     ///< give joined clusters their neighbours' polygons around them, so that no seam stays open
+    bool junctions = true;  ///< polygons hang together also where a vertex lies, exactly, on another's side
 };
 
 /// A mesh of which some triangles hide.
@@ -25,7 +26,7 @@ struct OccluderSource {
 
 /// Prepares the given triangles as an occluder.
 ///
-/// Keeps every triangle except those that name a vertex twice or whose positions are not finite.
+/// Keeps every triangle except those whose corners lie on a line or whose positions are not finite.
 /// Positions are kept bit for bit (a negative zero becomes zero); nothing is welded by tolerance.
 /// Triangles that share an edge and make a convex, nearly flat quadrangle are paired. Three polygons or more that hang
 /// together by shared edges make joined clusters of their own; all others are gathered in loose ones. O(n log n).

@@ -6,6 +6,8 @@
 #include <bit>
 #include <cmath>
 
+#include "sightline/prepare/exact.h"
+
 namespace sightline {
 namespace {
 
@@ -73,8 +75,8 @@ Patchwork weld(std::span<const OccluderSource> sources) {
                 if (number[index[k]] == kUnknown) number[index[k]] = welder.number(mesh.positions[index[k]]);
                 polygon.vertex[k] = number[index[k]];
             }
-            const uint32_t* v = polygon.vertex;
-            if (v[0] != v[1] && v[1] != v[2] && v[2] != v[0]) out.polygons.push_back(polygon);
+            const auto at = [&](int k) { return out.positions[polygon.vertex[k]]; };
+            if (!areCollinear(at(0), at(1), at(2))) out.polygons.push_back(polygon);
         }
     }
     return out;
@@ -85,8 +87,13 @@ std::vector<PatchSide> sortedSides(const Patchwork& patchwork) {
         for (uint32_t i = 0; i < patchwork.polygons.size(); ++i) {
             const PatchPolygon& polygon = patchwork.polygons[i];
             for (uint8_t k = 0; k < polygon.corners; ++k) {
-                const uint32_t from = polygon.vertex[k], to = polygon.vertex[k + 1 == polygon.corners ? 0 : k + 1];
-                each(PatchSide{std::min(from, to), std::max(from, to), i, k, from < to});
+                uint32_t from = polygon.vertex[k];
+                const auto go = [&](uint32_t to) {
+                    each(PatchSide{std::min(from, to), std::max(from, to), i, k, from < to});
+                    from = to;
+                };
+                for (uint32_t vertex : patchwork.chain(i, k)) go(vertex);
+                go(polygon.vertex[k + 1 == polygon.corners ? 0 : k + 1]);
             }
         }
     };

@@ -13,6 +13,7 @@
 
 #include "sightline/base/random.h"
 #include "sightline/geom/occluder.h"
+#include "sightline/prepare/exact.h"
 
 namespace sightline {
 
@@ -112,24 +113,35 @@ inline void expectWithinLimits(const Occluder& o) {
     }
 }
 
-/// Each side of each polygon is in one record, on the right hand; and no two open records could have been joined.
+/// The records of each polygon run once around it, through its corners and through vertices that lie, exactly, on its
+/// sides; and no two open records could have been joined.
 inline void expectRightEdges(const Occluder& o) {
     for (const OccluderCluster& c : o.clusters) {
         if (!c.edge_count) continue;
-        std::map<std::tuple<int, int, int>, int> sides;  // polygon, from, to
-        for (uint32_t p = 0; p < c.polygon_count + c.ring_count; ++p) {
-            const OccluderPolygon& polygon = o.polygons[c.first_polygon + p];
-            for (int k = 0; k < polygon.corners(); ++k)
-                ++sides[{int(p), polygon.vertex[k], polygon.vertex[(k + 1) % polygon.corners()]}];
-        }
+        std::map<std::pair<int, int>, std::vector<int>> next;  // polygon, from: to
         std::map<std::pair<int, int>, int> open;
+        size_t records = 0;
         for (uint32_t e = c.first_edge; e < c.first_edge + c.edge_count; ++e) {
             const OccluderEdge& edge = o.edges[e];
-            --sides[{edge.left, edge.from, edge.to}];
-            if (edge.right != OccluderEdge::kNone) --sides[{edge.right, edge.to, edge.from}];
+            next[{edge.left, edge.from}].push_back(edge.to);
+            if (edge.right != OccluderEdge::kNone) next[{edge.right, edge.to}].push_back(edge.from);
             else ++open[{edge.from, edge.to}];
+            records += edge.right != OccluderEdge::kNone ? 2 : 1;
         }
-        for (const auto& [side, count] : sides) EXPECT_EQ(count, 0);
+        for (uint32_t p = 0; p < c.polygon_count + c.ring_count; ++p) {
+            const OccluderPolygon& polygon = o.polygons[c.first_polygon + p];
+            for (int k = 0; k < polygon.corners(); ++k) {
+                const int from = polygon.vertex[k], to = polygon.vertex[(k + 1) % polygon.corners()];
+                for (int at = from; at != to; --records) {
+                    const auto& tos = next[{int(p), at}];
+                    ASSERT_EQ(tos.size(), 1u);
+                    at = tos[0];
+                    if (at == to) continue;
+                    EXPECT_TRUE(liesBetween(positionOf(o, c, at), positionOf(o, c, from), positionOf(o, c, to)));
+                }
+            }
+        }
+        EXPECT_EQ(records, 0u);
         for (const auto& [edge, count] : open) EXPECT_FALSE(open.contains({edge.second, edge.first}));
     }
 }
