@@ -45,6 +45,28 @@ constexpr float kLevel = 0x1p17f;
 // by 2^-12.
 constexpr float kRounding = 0x1p-9f + 0x1p-11f;
 
+/// A task's polygons, taken apart ahead of time: a vector read waits long for narrow writes that it spans.
+struct Parts {
+    alignas(64) uint32_t corners[64];  ///< four indices of vertices
+    alignas(64) uint32_t both[64];     ///< 1: double-sided
+    uint32_t quads = 0;                ///< bit per batch that has some with four corners
+
+    explicit Parts(const SmallPolygonsTask& task) {
+        for (uint32_t first = 0; first < task.count; first += kBatch) {
+            uint32_t fourth = ~0u;
+            for (uint32_t p = first; p < first + kBatch; ++p) {
+                const OccluderPolygon& polygon = task.polygons[std::min(p, task.count - 1)];
+                uint32_t word;
+                std::memcpy(&word, polygon.vertex, 4);
+                fourth &= word;
+                corners[p] = word;
+                both[p] = polygon.double_sided;
+            }
+            if (fourth >> 24 != OccluderPolygon::kNone) quads |= 1u << first / kBatch;
+        }
+    }
+};
+
 /// A batch on its way. The masks are in the order in which the transpose leaves them: of the polygons 4 b + k those
 /// with the least k first.
 struct Batch {
@@ -61,7 +83,6 @@ struct Batch {
     uint32_t cut = 0;     ///< bit per polygon whose window is not wholly inside the buffer
     uint32_t height = 0;  ///< rows that any needs
     bool wide = false;    ///< some need the last two columns
-    bool quads = false;   ///< some have four corners
 };
 
 template <class D, class Mask>
@@ -304,43 +325,53 @@ HWY_INLINE void notePlaces(VU polygon, VU tile, VU shift, Batch& batch, size_t h
     put(hn::BitCast(l, hn::InterleaveUpper(u, shift, hn::Zero(u))), 2, batch.shift, hn::Zero(l));
 }
 
-/// Turns eight rows of pixels of each polygon into columns of tiles: bytes of a row into 64-bit words.
-HWY_INLINE void transposeRows(const uint32_t (*rows)[kBatch], size_t h, uint64_t (*out)[kBatch][2]) {
+/// Four rows of pixels: of the polygons k, 4 + k ... a byte per row, the four of a column in a lane. References, since
+/// some compilers copy arrays of vectors through memory.
+HWY_INLINE void transposeFour(const uint32_t (*rows)[kBatch], size_t h, VU& p0, VU& p1, VU& p2, VU& p3) {
     const U u;
     const hn::Repartition<uint8_t, U> b;
     const hn::Repartition<uint16_t, U> w;
+    const auto r0 = hn::BitCast(b, hn::Load(u, rows[0] + h)), r1 = hn::BitCast(b, hn::Load(u, rows[1] + h));
+    const auto r2 = hn::BitCast(b, hn::Load(u, rows[2] + h)), r3 = hn::BitCast(b, hn::Load(u, rows[3] + h));
+    const auto low01 = hn::BitCast(w, hn::InterleaveLower(b, r0, r1));
+    const auto low23 = hn::BitCast(w, hn::InterleaveLower(b, r2, r3));
+    const auto high01 = hn::BitCast(w, hn::InterleaveUpper(b, r0, r1));
+    const auto high23 = hn::BitCast(w, hn::InterleaveUpper(b, r2, r3));
+    p0 = hn::BitCast(u, hn::InterleaveLower(w, low01, low23));
+    p1 = hn::BitCast(u, hn::InterleaveUpper(w, low01, low23));
+    p2 = hn::BitCast(u, hn::InterleaveLower(w, high01, high23));
+    p3 = hn::BitCast(u, hn::InterleaveUpper(w, high01, high23));
+}
+
+/// Turns eight rows of pixels of each polygon into columns of tiles: bytes of a row into 64-bit words.
+HWY_INLINE void transposeRows(const uint32_t (*rows)[kBatch], size_t h, uint64_t (*out)[kBatch][2]) {
+    const U u;
     const hn::Repartition<uint64_t, U> l;
-    VU four[2][4];  // per polygon k of each four: a byte per row, four rows of one column in a lane
-    for (int part = 0; part < 2; ++part) {
-        const auto row = [&](int r) HWY_ATTR { return hn::BitCast(b, hn::Load(u, rows[4 * part + r] + h)); };
-        const auto r0 = row(0), r1 = row(1), r2 = row(2), r3 = row(3);
-        const auto low01 = hn::BitCast(w, hn::InterleaveLower(b, r0, r1));
-        const auto low23 = hn::BitCast(w, hn::InterleaveLower(b, r2, r3));
-        const auto high01 = hn::BitCast(w, hn::InterleaveUpper(b, r0, r1));
-        const auto high23 = hn::BitCast(w, hn::InterleaveUpper(b, r2, r3));
-        four[part][0] = hn::BitCast(u, hn::InterleaveLower(w, low01, low23));
-        four[part][1] = hn::BitCast(u, hn::InterleaveUpper(w, low01, low23));
-        four[part][2] = hn::BitCast(u, hn::InterleaveLower(w, high01, high23));
-        four[part][3] = hn::BitCast(u, hn::InterleaveUpper(w, high01, high23));
-    }
-    for (size_t k = 0; k < 4; ++k) {
-        hn::Store(hn::BitCast(l, hn::InterleaveLower(u, four[0][k], four[1][k])), l, out[0][4 * k + h / 4]);
-        hn::Store(hn::BitCast(l, hn::InterleaveUpper(u, four[0][k], four[1][k])), l, out[1][4 * k + h / 4]);
-    }
+    VU a0, a1, a2, a3, b0, b1, b2, b3;
+    transposeFour(rows, h, a0, a1, a2, a3);
+    transposeFour(rows + 4, h, b0, b1, b2, b3);
+    const auto put = [&](VU a, VU b, size_t k) HWY_ATTR {
+        hn::Store(hn::BitCast(l, hn::InterleaveLower(u, a, b)), l, out[0][4 * k + h / 4]);
+        hn::Store(hn::BitCast(l, hn::InterleaveUpper(u, a, b)), l, out[1][4 * k + h / 4]);
+    };
+    put(a0, b0, 0);
+    put(a1, b1, 1);
+    put(a2, b2, 2);
+    put(a3, b3, 3);
 }
 
 #endif  // HWY_SCALAR
 
 /// Sets up and scans one vector of a batch's polygons, and notes their depths.
 template <bool kOuter, bool kQuads>
-HWY_INLINE void scanPolygons(const SmallPolygonsTask& task, uint32_t first, Batch& batch, size_t h,
+HWY_INLINE void scanPolygons(const SmallPolygonsTask& task, const Parts& parts, uint32_t first, Batch& batch, size_t h,
                              SmallPolygons& out) {
     const F d;
     const I i;
     const U u;
     constexpr int kCorners = kQuads ? 4 : 3;
     const SnappedVertices& vertices = *task.vertices;
-    const VU word = hn::Load(u, batch.corners + h), byte = hn::Set(u, 255);
+    const VU word = hn::Load(u, parts.corners + first + h), byte = hn::Set(u, 255);
     VI index[4] = {hn::BitCast(i, hn::And(word, byte)), hn::BitCast(i, hn::And(hn::ShiftRight<8>(word), byte)),
                    hn::BitCast(i, hn::And(hn::ShiftRight<16>(word), byte)), hn::BitCast(i, hn::ShiftRight<24>(word))};
     const MI triangle = hn::Eq(index[3], hn::Set(i, OccluderPolygon::kNone));
@@ -376,7 +407,7 @@ HWY_INLINE void scanPolygons(const SmallPolygonsTask& task, uint32_t first, Batc
     const MI fits = hn::And(hn::Lt(hn::Sub(last_x, tile_x), hn::Set(i, SmallPolygons::kColumns)),
                             hn::Lt(height, hn::Set(i, SmallPolygons::kRows + 1)));
     const VI perimeter = hn::Add(hn::Sub(x1, x0), hn::Sub(y1, y0));
-    const MI both = hn::Eq(hn::BitCast(i, hn::Load(u, batch.both + h)), one);
+    const MI both = hn::Eq(hn::BitCast(i, hn::Load(u, parts.both + first + h)), one);
     const Shape shape =
         shapeOf(x, y, hn::Add(perimeter, perimeter), triangle, both, kQuads, kOuter, task.reverse, steps);
     const MI seen = hn::AndNot(near, hn::AndNot(beside, there));
@@ -445,6 +476,42 @@ void cutWindows(const SmallPolygonsTask& task, Batch& batch) {
     }
 }
 
+/// For each set of eight lanes its members and then the others: three bits of each at every eighth bit.
+struct CompressTable {
+    uint64_t order[256];
+    constexpr CompressTable() : order() {
+        for (uint64_t set = 0; set < 256; ++set) {
+            int at = 0;
+            for (uint64_t members : {set, ~set & 255})
+                for (uint64_t lane = 0; lane < 8; ++lane)
+                    if (members >> lane & 1) order[set] |= lane << 8 * at++;
+        }
+    }
+};
+alignas(64) inline constexpr CompressTable kCompress;
+
+/// Writes the chosen lanes of several vectors side by side. Vectors of eight have their own way here, for some compilers
+/// copy Highway's table every time.
+struct Compressor {
+    using L = hn::CappedTag<uint64_t, 8>;
+    using V = hn::Vec<L>;
+    hn::Mask<L> chosen;
+    V order;
+
+    HWY_INLINE explicit Compressor(hn::Mask<L> mask) : chosen(mask) {
+        const L l;
+        if constexpr (hn::MaxLanes(L()) == 8) {
+            const V bytes = hn::Set(l, kCompress.order[bitsOf(l, mask)]);
+            order = hn::And(hn::Shr(bytes, hn::ShiftLeft<3>(hn::Iota(l, 0))), hn::Set(l, 7));
+        }
+    }
+    HWY_INLINE void write(V v, uint64_t* to) const {
+        const L l;
+        if constexpr (hn::MaxLanes(L()) == 8) hn::StoreU(hn::TableLookupLanes(v, hn::IndicesFromVec(l, order)), l, to);
+        else hn::StoreU(hn::Compress(v, chosen), l, to);
+    }
+};
+
 /// Moves the masks of a batch to the tiles' own rows, and writes out those that have a pixel.
 template <bool kOuter>
 HWY_INLINE void writeRecords(const SmallPolygonsTask& task, const Batch& batch, SmallPolygons& out) {
@@ -472,9 +539,10 @@ HWY_INLINE void writeRecords(const SmallPolygonsTask& task, const Batch& batch, 
                 const size_t found = hn::CountTrue(l, some);
                 if (!found) continue;
                 const V place = hn::Add(hn::Load(l, batch.place[0] + at), hn::Set(l, go));
-                hn::StoreU(hn::Compress(inner, some), l, out.inner + count);
-                if (kOuter) hn::StoreU(hn::Compress(outer, some), l, out.outer + count);
-                hn::StoreU(hn::Compress(place, some), l, out.place + count);
+                const Compressor to(some);
+                to.write(inner, out.inner + count);
+                if (kOuter) to.write(outer, out.outer + count);
+                to.write(place, out.place + count);
                 count += static_cast<uint32_t>(found);
             }
         }
@@ -482,13 +550,14 @@ HWY_INLINE void writeRecords(const SmallPolygonsTask& task, const Batch& batch, 
 }
 
 template <bool kOuter>
-HWY_INLINE void scanBatch(const SmallPolygonsTask& task, uint32_t first, Batch& batch, SmallPolygons& out) {
+HWY_INLINE void scanBatch(const SmallPolygonsTask& task, const Parts& parts, uint32_t first, Batch& batch,
+                          SmallPolygons& out) {
     const size_t lanes = hn::Lanes(F());
     for (size_t h = 0; h < kBatch; h += lanes) {
         const uint32_t before = batch.height;
         batch.height = 0;
-        if (batch.quads) scanPolygons<kOuter, true>(task, first, batch, h, out);
-        else scanPolygons<kOuter, false>(task, first, batch, h, out);
+        if (parts.quads >> first / kBatch & 1) scanPolygons<kOuter, true>(task, parts, first, batch, h, out);
+        else scanPolygons<kOuter, false>(task, parts, first, batch, h, out);
         const uint32_t height = batch.height;
         const U u;
         for (int o = 0; o < (kOuter ? 2 : 1); ++o) {
@@ -515,20 +584,13 @@ template <bool kOuter>
 HWY_INLINE void classifySmallPolygons(const SmallPolygonsTask& task, SmallPolygons& out) {
     namespace sp = small_polygons;
     out.count = out.large_count = 0;
+    const sp::Parts parts(task);
     sp::Batch batch;
     for (uint32_t first = 0; first < task.count; first += sp::kBatch) {
         batch.count = std::min(sp::kBatch, task.count - first);
         batch.large = batch.cut = batch.height = 0;
         batch.wide = false;
-        uint32_t fourth = ~0u;
-        for (uint32_t p = 0; p < sp::kBatch; ++p) {
-            const OccluderPolygon& polygon = task.polygons[first + std::min(p, batch.count - 1)];
-            std::memcpy(batch.corners + p, polygon.vertex, 4);
-            batch.both[p] = polygon.double_sided;
-            fourth &= batch.corners[p];
-        }
-        batch.quads = fourth >> 24 != OccluderPolygon::kNone;
-        sp::scanBatch<kOuter>(task, first, batch, out);
+        sp::scanBatch<kOuter>(task, parts, first, batch, out);
         if (batch.cut) sp::cutWindows<kOuter>(task, batch);
         if (batch.height) sp::writeRecords<kOuter>(task, batch, out);
         for (uint32_t left = batch.large; left; left &= left - 1)
