@@ -55,8 +55,8 @@ void clockJob(std::vector<double>& times, Job job) {
 /// Seam pixels that are open until something asks for them.
 double openSeams(const DepthTiles& tiles) {
     double count = 0;
-    for (uint32_t tile = 0; tile < tiles.seam_mask.size(); ++tile)
-        count += std::popcount(tiles.seam_mask[tile] & ~tiles.coveredBits(tile));
+    for (uint32_t tile = 0; tile < tiles.seams.size(); ++tile)
+        count += std::popcount(tiles.seamBits(tile) & ~tiles.coveredBits(tile));
     return count;
 }
 

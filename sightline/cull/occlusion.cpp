@@ -217,7 +217,7 @@ uint32_t drawOccluder(DepthTiles& tiles, const OccluderInstance& instance, uint3
     drawn.depth_error = screen.perspective ? instance.depth_error / (w * w) : instance.depth_error;
     drawn.clips = instance.clips;
     if (!(drawn.position_error < kWorstPosition)) return 0;
-    drawCluster(tiles, screen, instance.flips, drawn);
+    drawCluster(tiles, drawn, screen, instance.flips);
     return instance.occluder->clusters[cluster].triangle_count;
 }
 

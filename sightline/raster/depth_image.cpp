@@ -9,18 +9,6 @@
 #include "sightline/raster/tile_log.h"
 
 namespace sightline {
-namespace {
-
-/// What the pixels of a tile claim; -infinity where they claim nothing.
-void claimsOf(DepthTiles& tiles, uint32_t tile, float (&claims)[64]) {
-    const uint64_t covered = tiles.coveredBits(tile);
-    if (covered) writeOut(tiles, tile);
-    for (uint32_t i = 0; i < 64; ++i)
-        claims[i] = covered >> i & 1 ? tiles.depth[64 * size_t{tile} + i] : -std::numeric_limits<float>::infinity();
-}
-
-}  // namespace
-
 void readDepthImage(DepthTiles& tiles, Seams seams, std::span<float> nearness, std::span<uint8_t> covered, float open) {
     const size_t pixels = size_t{tiles.width} * tiles.height;
     SIGHTLINE_ASSERT(nearness.size() >= pixels && (covered.empty() || covered.size() >= pixels));
@@ -31,7 +19,7 @@ void readDepthImage(DepthTiles& tiles, Seams seams, std::span<float> nearness, s
         for (uint32_t column = 0; column < tiles.columns; ++column) {
             const uint32_t tile = row * tiles.stride + column;
             if (seams == Seams::kResolve) openPixels(tiles, tile, ~uint64_t{0}, nothing_is_nearer, seams);
-            claimsOf(tiles, tile, claims);
+            readClaims(tiles, tile, claims);
             for (uint32_t i = 0; i < 64; ++i) {
                 const size_t at = size_t{8 * row + i / 8} * tiles.width + 8 * column + i % 8;
                 const bool claimed = claims[i] > -std::numeric_limits<float>::infinity();

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "sightline/raster/tile_log.h"
-#include "sightline/raster/tiles.h"
+#include "sightline/raster/seam.h"
 
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
@@ -21,12 +21,17 @@ namespace sightline {
 namespace HWY_NAMESPACE {
 
 /// What a tile leaves open of a rectangle: pixels that are not surely nearer than the rectangle.
-uint64_t openInTile(DepthTiles& tiles, uint32_t tile, const PixelRect& rect, int32_t column, int32_t row) {
-    if (tiles.farthest[tile] > rect.nearness) return 0;
+HWY_INLINE uint64_t openInTile(const DepthTiles& tiles, uint32_t tile, const PixelRect& rect, int32_t column,
+                               int32_t row) {
+    if (tiles.base[tile] > rect.nearness) return 0;
     const uint64_t window = windowBits(rect.x0, rect.y0, rect.x1, rect.y1, 8 * column, 8 * row);
-    if (tiles.form[tile] == DepthTiles::Form::kEmpty) return window;
-    toPixels(tiles, tile);
-    return window & pixelsNotNearer(tiles.depth.data() + 64 * size_t{tile}, rect.nearness);
+    return openTilePixels(tiles, tile, static_cast<uint32_t>(column), static_cast<uint32_t>(row), window,
+                          rect.nearness);
+}
+
+/// Pixels that seams have not decided yet.
+HWY_INLINE uint64_t undecidedPixels(const DepthTiles& tiles, uint32_t tile) {
+    return tiles.seams[tile] == DepthTiles::kNone ? 0 : tiles.seam_mask[tile] & ~tiles.tried[tile];
 }
 
 /// Covers the pixels that two polygons with a shared side cover between them. A point of a pixel lies on one side or
@@ -59,12 +64,11 @@ void coverPair(DepthTiles& tiles, uint32_t tile, const SeamPolygon& a, int side_
         planes[i] = {static_cast<float>(z - 0.5 * tilt - error), static_cast<float>(p.dx), static_cast<float>(p.dy),
                      p.farthest};
     }
-    toPixels(tiles, tile);
-    float* depth = tiles.depth.data() + 64 * size_t{tile};
+    alignas(64) float depth[64];
     const F8 half;
     const auto limit = hn::Set(half, 0.5f + std::max(a.raster.slack, b.raster.slack));
     const auto offset = hn::Iota(half, -3.5f);
-    auto least_depth = hn::Set(half, std::numeric_limits<float>::infinity());
+    uint64_t covered = 0;
     for (int row = 0; row < 8; ++row) {
         const float dy = static_cast<float>(row) - 3.5f;
         for (size_t h = 0; h < 8; h += hn::Lanes(half)) {
@@ -73,42 +77,49 @@ void coverPair(DepthTiles& tiles, uint32_t tile, const SeamPolygon& a, int side_
             for (int l = 0; l < count; ++l)
                 least = hn::Min(least, hn::Add(hn::Set(half, lines[l].c + lines[l].b * dy),
                                                hn::Mul(hn::Set(half, lines[l].a), dx)));
-            const auto mask = hn::Ge(least, limit);
-            float* place = depth + 8 * row + h;
-            const auto old = hn::LoadU(half, place);
             const auto z = hn::Min(planeDepth(half, planes[0], row, dx), planeDepth(half, planes[1], row, dx));
-            const auto raised = hn::IfThenElse(mask, hn::Max(old, z), old);
-            hn::StoreU(raised, half, place);
-            least_depth = hn::Min(least_depth, raised);
-            tiles.covered[tile] |= bitsFromMask(half, mask) << (8 * row + static_cast<int>(h));
+            hn::Store(z, half, depth + 8 * row + h);
+            covered |= bitsFromMask(half, hn::Ge(least, limit)) << (8 * row + static_cast<int>(h));
         }
     }
-    if (tiles.covered[tile] == ~uint64_t{0}) tiles.farthest[tile] = hn::GetLane(hn::MinOfLanes(half, least_depth));
+    if (covered) raiseClaims(tiles, tile, covered, depth);
 }
 
 void pairSeamsKernel(DepthTiles& tiles, uint32_t tile, uint64_t pixels) {
     constexpr int kMaxEntries = 24;  // work cap: of more, the last drawn are paired
+    if (tiles.seams[tile] == DepthTiles::kNone) return;
     if (tiles.paired[tile] != tiles.seams[tile]) tiles.paired_mask[tile] = 0;
     pixels &= tiles.seam_mask[tile] & ~tiles.paired_mask[tile];
     if (!pixels) return;
     tiles.paired[tile] = tiles.seams[tile];
     tiles.paired_mask[tile] |= pixels;
-    const SeamPolygon* found[kMaxEntries];
+    uint32_t found[kMaxEntries];
     uint64_t masks[kMaxEntries];
     int count = 0;
-    for (uint32_t at = tiles.seams[tile]; at != DepthTiles::kNone && count < kMaxEntries; at = tiles.entries[at].next) {
-        const uint64_t mask = tiles.entries[at].mask & pixels;
-        SeamPolygon& polygon = tiles.polygons[tiles.entries[at].polygon];
-        if (!mask || !polygon.raster.complete) continue;
-        setSideKeys(tiles, polygon);
-        masks[count] = mask;
-        found[count++] = &polygon;
+    const int32_t x0 = 8 * static_cast<int32_t>(tile % tiles.stride),
+                  y0 = 8 * static_cast<int32_t>(tile / tiles.stride);
+    for (uint32_t at = tiles.seams[tile]; at != DepthTiles::kNone && count < kMaxEntries;) {
+        const SeamEntry entry = tiles.entries[at];
+        at = entry.next;
+        if (!(entry.mask & pixels)) continue;
+        uint32_t first, polygons;
+        seamPolygons(tiles, entry, first, polygons);
+        for (uint32_t i = first; i < first + polygons && count < kMaxEntries; ++i) {
+            SeamPolygon& polygon = tiles.polygons[i];
+            const RasterPolygon& raster = polygon.raster;
+            if (!raster.complete || raster.x1 < x0 || raster.x0 > x0 + 7 || raster.y1 < y0 || raster.y0 > y0 + 7)
+                continue;
+            setSideKeys(tiles, polygon);
+            masks[count] = entry.mask & pixels;
+            found[count++] = i;
+        }
     }
     for (int i = 0; i < count; ++i)
         for (int j = i + 1; j < count; ++j) {
             int side_i, side_j;
-            if (masks[i] & masks[j] && findSharedSide(tiles, *found[i], *found[j], side_i, side_j))
-                coverPair(tiles, tile, *found[i], side_i, *found[j], side_j);
+            const SeamPolygon &a = tiles.polygons[found[i]], &b = tiles.polygons[found[j]];
+            if (masks[i] & masks[j] && findSharedSide(tiles, a, b, side_i, side_j))
+                coverPair(tiles, tile, a, side_i, b, side_j);
         }
 }
 
@@ -119,11 +130,11 @@ HWY_INLINE bool forOpenTiles(DepthTiles& tiles, const PixelRect& rect, Look look
     const auto limit = hn::Set(d, rect.nearness);
     const int32_t first = rect.x0 >> 3, last = rect.x1 >> 3;
     for (int32_t row = rect.y0 >> 3; row <= rect.y1 >> 3; ++row) {
-        const float* farthest = tiles.farthest.data() + static_cast<size_t>(row) * tiles.stride;
+        const float* base = tiles.base.data() + static_cast<size_t>(row) * tiles.stride;
         for (int32_t chunk = first & ~7; chunk <= last; chunk += 8) {
             uint32_t open = 0xffu << std::max(0, first - chunk) & 0xffu >> std::max(0, chunk + 7 - last);
             for (size_t h = 0; h < 8; h += hn::Lanes(d))
-                open &= ~static_cast<uint32_t>(bitsFromMask(d, hn::Gt(hn::LoadU(d, farthest + chunk + h), limit)) << h);
+                open &= ~static_cast<uint32_t>(bitsFromMask(d, hn::Gt(hn::LoadU(d, base + chunk + h), limit)) << h);
             for (; open; open &= open - 1) {
                 const int32_t column = chunk + std::countr_zero(open);
                 if (!look(static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(column), column, row))
@@ -141,34 +152,33 @@ bool isHiddenKernel(DepthTiles& tiles, const PixelRect& rect, Seams seams) {
         const uint64_t open = openInTile(tiles, tile, rect, column, row);
         undecided |= open != 0;
         if (seams == Seams::kLeave) return !open;
-        return !(open & (~tiles.seam_mask[tile] | tiles.tried[tile]));
+        return !(open & ~undecidedPixels(tiles, tile));
     });
     if (!closed || !undecided) return closed;
     return forOpenTiles(tiles, rect, [&](uint32_t tile, int32_t column, int32_t row) HWY_ATTR {
         pairSeamsKernel(tiles, tile, openInTile(tiles, tile, rect, column, row));
         for (uint64_t open = openInTile(tiles, tile, rect, column, row); open; open &= open - 1) {
             const int bit = std::countr_zero(open);
-            if (!resolveSeam(tiles, tile, bit, rect.nearness)) return false;
-            if (!(tiles.depth[64 * size_t{tile} + static_cast<size_t>(bit)] > rect.nearness)) return false;
+            resolveSeam(tiles, tile, bit, rect.nearness);
+            if (openInTile(tiles, tile, rect, column, row) & uint64_t{1} << bit) return false;
         }
         return true;
     });
 }
 
-uint64_t openAgainst(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64]) {
-    if (tiles.form[tile] == DepthTiles::Form::kEmpty) return window;
-    toPixels(tiles, tile);
+HWY_INLINE uint64_t openAgainst(const DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64]) {
     const F16 d;
-    const float* depth = tiles.depth.data() + 64 * size_t{tile};
+    alignas(64) float claims[64];
+    claimsOfTile(tiles, tile, claims);
     uint64_t nearer = 0;
     for (size_t i = 0; i < 64; i += hn::Lanes(d))
-        nearer |= bitsFromMask(d, hn::Gt(hn::LoadU(d, depth + i), hn::LoadU(d, nearest + i))) << i;
+        nearer |= bitsFromMask(d, hn::Gt(hn::Load(d, claims + i), hn::LoadU(d, nearest + i))) << i;
     return window & ~nearer;
 }
 
 uint64_t openPixelsKernel(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64], Seams seams) {
-    uint64_t open = openAgainst(tiles, tile, window, nearest);
-    const uint64_t undecided = open & tiles.seam_mask[tile];
+    const uint64_t open = openAgainst(tiles, tile, window, nearest);
+    const uint64_t undecided = open & undecidedPixels(tiles, tile);
     if (seams == Seams::kLeave || !undecided) return open;
     pairSeamsKernel(tiles, tile, undecided);
     for (uint64_t set = openAgainst(tiles, tile, undecided, nearest); set; set &= set - 1) {
@@ -178,7 +188,24 @@ uint64_t openPixelsKernel(DepthTiles& tiles, uint32_t tile, uint64_t window, con
     return openAgainst(tiles, tile, window, nearest);
 }
 
-void writeOutKernel(DepthTiles& tiles, uint32_t tile) { toPixels(tiles, tile); }
+void readClaimsKernel(const DepthTiles& tiles, uint32_t tile, float (&claims)[64]) {
+    claimsOfTile(tiles, tile, claims);
+}
+
+void raiseClaimsKernel(DepthTiles& tiles, uint32_t tile, uint64_t mask, const float (&depths)[64]) {
+    const F16 d;
+    float* block = layerBlock(tiles, tile);
+    auto greatest = hn::Set(d, DepthTiles::kOpen);
+    for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
+        const auto old = hn::LoadU(d, block + i);
+        const auto raised = hn::IfThenElse(maskFromBits(d, mask >> i), hn::Max(old, hn::LoadU(d, depths + i)), old);
+        hn::StoreU(raised, d, block + i);
+        greatest = hn::Max(greatest, raised);
+    }
+    tiles.layer_mask[tile] |= mask;
+    tiles.layer[tile] = hn::GetLane(hn::MaxOfLanes(d, greatest));
+    if (tiles.layer_mask[tile] == ~uint64_t{0}) settleBlock(tiles, tile, block);
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace sightline
@@ -190,7 +217,8 @@ namespace sightline {
 HWY_EXPORT(isHiddenKernel);
 HWY_EXPORT(openPixelsKernel);
 HWY_EXPORT(pairSeamsKernel);
-HWY_EXPORT(writeOutKernel);
+HWY_EXPORT(readClaimsKernel);
+HWY_EXPORT(raiseClaimsKernel);
 
 bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams) {
     const bool hidden = HWY_DYNAMIC_DISPATCH(isHiddenKernel)(tiles, rect, seams);
@@ -208,7 +236,13 @@ void pairSeams(DepthTiles& tiles, uint32_t tile, uint64_t pixels) {
     HWY_DYNAMIC_DISPATCH(pairSeamsKernel)(tiles, tile, pixels);
 }
 
-void writeOut(DepthTiles& tiles, uint32_t tile) { HWY_DYNAMIC_DISPATCH(writeOutKernel)(tiles, tile); }
+void readClaims(const DepthTiles& tiles, uint32_t tile, float (&claims)[64]) {
+    HWY_DYNAMIC_DISPATCH(readClaimsKernel)(tiles, tile, claims);
+}
+
+void raiseClaims(DepthTiles& tiles, uint32_t tile, uint64_t mask, const float (&depths)[64]) {
+    HWY_DYNAMIC_DISPATCH(raiseClaimsKernel)(tiles, tile, mask, depths);
+}
 
 }  // namespace sightline
 #endif  // HWY_ONCE

@@ -13,7 +13,7 @@
 #include <cstring>
 #include <limits>
 
-#include "sightline/raster/tiles.h"
+#include "sightline/raster/seam.h"
 #include "sightline/raster/union.h"
 
 namespace sightline {
@@ -288,6 +288,15 @@ float roundFarther(double nearness) {
     return f > nearness ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
 }
 
+/// False only if the polygon surely misses the pixel whose centre is given.
+bool mayTouch(const RasterPolygon& polygon, double x, double y) {
+    if (x + 0.5 < polygon.x0 || x - 0.5 > polygon.x1 + 1.0 || y + 0.5 < polygon.y0 || y - 0.5 > polygon.y1 + 1.0)
+        return false;
+    for (int e = 0; e < polygon.edges; ++e)
+        if (polygon.edge[e].at(x, y) < -0.5 - static_cast<double>(polygon.slack)) return false;
+    return true;
+}
+
 }  // namespace
 
 void setSideKeys(const DepthTiles& tiles, SeamPolygon& polygon) {
@@ -326,30 +335,35 @@ bool findSharedSide(const DepthTiles& tiles, const SeamPolygon& a, const SeamPol
 
 bool resolveSeam(DepthTiles& tiles, uint32_t tile, int bit, float wanted) {
     const uint64_t pixel = uint64_t{1} << bit;
-    const bool before = (tiles.coveredBits(tile) & pixel) != 0;
-    if (tiles.tried[tile] & pixel) return before;
+    float claims[64];
+    readClaims(tiles, tile, claims);
+    const float before = claims[bit];
+    const bool covered = before > DepthTiles::kOpen;
+    if (tiles.seams[tile] == DepthTiles::kNone || !(tiles.seam_mask[tile] & ~tiles.tried[tile] & pixel)) return covered;
     tiles.tried[tile] |= pixel;
     ++tiles.seam_pixels;
-    Resolver resolver;
-    for (uint32_t at = tiles.seams[tile]; at != DepthTiles::kNone; at = tiles.entries[at].next) {
-        if (!(tiles.entries[at].mask & pixel)) continue;
-        if (before && tiles.polygons[tiles.entries[at].polygon].raster.nearest <= tiles.depthAt(tile, bit)) continue;
-        if (resolver.piece_count == kMaxTriangles) return before;
-        SeamPolygon& polygon = tiles.polygons[tiles.entries[at].polygon];
-        setSideKeys(tiles, polygon);
-        loadPiece(tiles, polygon, resolver.pieces[resolver.piece_count++]);
-    }
     const double x = 8.0 * (tile % tiles.stride) + (bit & 7) + 0.5;
     const double y = 8.0 * (tile / tiles.stride) + (bit >> 3) + 0.5;
-    if (resolver.piece_count < 2) return before;
+    Resolver resolver;
+    for (uint32_t at = tiles.seams[tile]; at != DepthTiles::kNone; at = tiles.entries[at].next) {
+        const SeamEntry entry = tiles.entries[at];
+        if (!(entry.mask & pixel)) continue;
+        uint32_t first, count;
+        seamPolygons(tiles, entry, first, count);
+        for (uint32_t i = first; i < first + count; ++i) {
+            SeamPolygon& polygon = tiles.polygons[i];
+            if (!mayTouch(polygon.raster, x, y) || polygon.raster.nearest <= before) continue;
+            if (resolver.piece_count == kMaxTriangles) return covered;
+            setSideKeys(tiles, polygon);
+            loadPiece(tiles, polygon, resolver.pieces[resolver.piece_count++]);
+        }
+    }
+    if (resolver.piece_count < 2) return covered;
     double nearness = resolver.resolve(tiles, x, y);
     if (!(nearness > wanted)) nearness = std::max(nearness, resolver.resolveByUnion(tiles, x, y));
-    if (!(nearness > -std::numeric_limits<double>::infinity())) return before;
-    writeOut(tiles, tile);
-    float* depth = tiles.depth.data() + 64 * size_t{tile};
-    tiles.covered[tile] |= pixel;
-    depth[bit] = std::max(depth[bit], roundFarther(nearness));
-    if (tiles.covered[tile] == ~uint64_t{0}) tiles.farthest[tile] = *std::min_element(depth, depth + 64);
+    if (!(nearness > before)) return covered;
+    claims[bit] = roundFarther(nearness);
+    raiseClaims(tiles, tile, pixel, claims);
     return true;
 }
 

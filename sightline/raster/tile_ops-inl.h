@@ -8,6 +8,7 @@
 #endif
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -45,10 +46,19 @@ HWY_INLINE hn::Mask<D> maskFromBits(D d, uint64_t bits) {
     return hn::LoadMaskBits(d, bytes);
 }
 
-/// A polygon's nearness over the pixels of a tile; see DepthTiles::plane_d.
+/// A polygon's nearness over the pixels of a tile: at pixel (x, y) no point of it is farther than
+/// max(floor, d + dx (x - 3.5) + dy (y - 3.5)).
 struct TilePlane {
     float d = 0, dx = 0, dy = 0, floor = 0;
 };
+
+HWY_INLINE TilePlane planeInTile(const BufferPlane& plane, uint32_t column, uint32_t row) {
+    const double x = 8.0 * column + 4.0, y = 8.0 * row + 4.0;
+    const double tilt = std::abs(plane.dx) + std::abs(plane.dy), z = plane.d0 + plane.dx * x + plane.dy * y;
+    const double error = plane.error + 0x1p-21 * (std::abs(z) + 8.0 * tilt);  // of float: here and at the pixels
+    return {static_cast<float>(z - 0.5 * tilt - error), static_cast<float>(plane.dx), static_cast<float>(plane.dy),
+            plane.floor};
+}
 
 /// A plane's depths at the pixels of one row whose offsets from the tile's centre are given.
 template <class D, class Vec>
@@ -57,34 +67,24 @@ HWY_INLINE Vec planeDepth(D d, const TilePlane& plane, int row, Vec x) {
     return hn::Max(hn::Add(base, hn::Mul(hn::Set(d, plane.dx), x)), hn::Set(d, plane.floor));
 }
 
-/// Writes a plane out, or -infinity for an empty tile, so that single pixels can change.
-inline void toPixels(DepthTiles& tiles, uint32_t tile) {
-    if (tiles.form[tile] == DepthTiles::Form::kPixels) return;
+/// Writes a plane's depths at all pixels of a tile.
+HWY_INLINE void planeDepths(const TilePlane& plane, float* depths) {
     const F8 d;
-    const bool planar = tiles.form[tile] == DepthTiles::Form::kPlane;
-    const auto open = hn::Set(d, -std::numeric_limits<float>::infinity());
     const auto offset = hn::Iota(d, -3.5f);
-    const TilePlane plane{tiles.plane_d[tile], tiles.plane_dx[tile], tiles.plane_dy[tile], tiles.plane_floor[tile]};
-    float* depth = tiles.depth.data() + 64 * size_t{tile};
     for (int row = 0; row < 8; ++row)
-        for (size_t h = 0; h < 8; h += hn::Lanes(d)) {
-            const auto z =
-                planar ? planeDepth(d, plane, row, hn::Add(offset, hn::Set(d, static_cast<float>(h)))) : open;
-            hn::StoreU(z, d, depth + 8 * row + h);
-        }
-    tiles.covered[tile] = planar ? ~uint64_t{0} : 0;
-    tiles.nearest[tile] = std::numeric_limits<float>::infinity();
-    tiles.form[tile] = DepthTiles::Form::kPixels;
+        for (size_t h = 0; h < 8; h += hn::Lanes(d))
+            hn::StoreU(planeDepth(d, plane, row, hn::Add(offset, hn::Set(d, static_cast<float>(h)))), d,
+                       depths + 8 * row + h);
 }
 
-/// Pixels of a tile in form kPixels whose depth does not surely lie in front of the given nearness.
-inline uint64_t pixelsNotNearer(const float* depth, float nearness) {
+/// Which of 64 depths are greater than a nearness.
+HWY_INLINE uint64_t pixelsNearer(const float* depths, float nearness) {
     const F16 d;
     const auto limit = hn::Set(d, nearness);
     uint64_t nearer = 0;
     for (size_t i = 0; i < 64; i += hn::Lanes(d))
-        nearer |= bitsFromMask(d, hn::Gt(hn::LoadU(d, depth + i), limit)) << i;
-    return ~nearer;
+        nearer |= bitsFromMask(d, hn::Gt(hn::LoadU(d, depths + i), limit)) << i;
+    return nearer;
 }
 
 /// Bits of the pixels of a tile that an inclusive pixel rectangle meets; it must meet the tile.
@@ -94,6 +94,133 @@ HWY_INLINE uint64_t windowBits(int32_t x0, int32_t y0, int32_t x1, int32_t y1, i
     const uint64_t columns = (0xffu >> (7 - right)) & (0xffu << left) & 0xffu;
     const uint64_t rows = ~uint64_t{0} << (8 * low) & ~uint64_t{0} >> (8 * (7 - high));
     return columns * 0x0101010101010101ull & rows;
+}
+
+/// Gives a tile a depth per pixel for its layer, if it has none yet.
+inline float* layerBlock(DepthTiles& tiles, uint32_t tile) {
+    const bool has_layer = tiles.layer[tile] > DepthTiles::kOpen;
+    if (has_layer && tiles.block[tile] != DepthTiles::kNone)
+        return tiles.blocks.data() + 64 * size_t{tiles.block[tile]};
+    const F16 d;
+    const uint32_t block = static_cast<uint32_t>(tiles.blocks.size() / 64);
+    tiles.blocks.resize(tiles.blocks.size() + 64);
+    float* depths = tiles.blocks.data() + 64 * size_t{block};
+    const uint64_t mask = has_layer ? tiles.layer_mask[tile] : 0;
+    const auto open = hn::Set(d, DepthTiles::kOpen), layer = hn::Set(d, tiles.layer[tile]);
+    for (size_t i = 0; i < 64; i += hn::Lanes(d))
+        hn::StoreU(hn::IfThenElse(maskFromBits(d, mask >> i), layer, open), d, depths + i);
+    tiles.block[tile] = block;
+    tiles.layer_mask[tile] = mask;
+    return depths;
+}
+
+/// Brings a tile's base up to its block, once all pixels of the block are covered.
+HWY_INLINE void settleBlock(DepthTiles& tiles, uint32_t tile, const float* depths) {
+    const F16 d;
+    auto least = hn::LoadU(d, depths);
+    for (size_t i = hn::Lanes(d); i < 64; i += hn::Lanes(d)) least = hn::Min(least, hn::LoadU(d, depths + i));
+    const float farthest = hn::GetLane(hn::MinOfLanes(d, least));
+    if (!(farthest > tiles.base[tile])) return;
+    tiles.base[tile] = farthest;
+    tiles.plane[tile] = DepthTiles::kNone;
+}
+
+/// Raises the pixels of a mask in a tile whose layer is a block.
+HWY_INLINE void raiseBlock(DepthTiles& tiles, uint32_t tile, uint64_t mask, float z) {
+    const F16 d;
+    float* depths = layerBlock(tiles, tile);
+    const auto depth = hn::Set(d, z);
+    for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
+        const auto old = hn::LoadU(d, depths + i);
+        hn::StoreU(hn::IfThenElse(maskFromBits(d, mask >> i), hn::Max(old, depth), old), d, depths + i);
+    }
+    tiles.layer_mask[tile] |= mask;
+    tiles.layer[tile] = std::max(tiles.layer[tile], z);
+    if (tiles.layer_mask[tile] == ~uint64_t{0}) settleBlock(tiles, tile, depths);
+}
+
+/// Covers a whole tile.
+HWY_INLINE void coverWhole(DepthTiles& tiles, uint32_t tile, float z, uint32_t plane) {
+    if (!(z > tiles.base[tile])) return;
+    tiles.base[tile] = z;
+    tiles.plane[tile] = plane;
+    if (tiles.layer[tile] <= z) tiles.layer[tile] = DepthTiles::kOpen;
+}
+
+/// Covers the pixels of a mask, which is not empty, at one depth; rounding has been taken into it.
+///
+/// What two layers claim together is what each of them claims, at the farther of their depths.
+inline void coverPixels(DepthTiles& tiles, uint32_t tile, uint64_t mask, float z) {
+    if (!(z > tiles.base[tile])) return;
+    const float layer = tiles.layer[tile];
+    if (layer == DepthTiles::kOpen) {
+        tiles.layer[tile] = z;
+        tiles.layer_mask[tile] = mask;
+        tiles.block[tile] = DepthTiles::kNone;
+        return;
+    }
+    if (tiles.block[tile] != DepthTiles::kNone) return raiseBlock(tiles, tile, mask, z);
+    const uint64_t old = tiles.layer_mask[tile], both = old | mask;
+    if (z <= layer) {
+        if (!(mask & ~old)) return;  // the old layer says it all
+        if (both == ~uint64_t{0}) {
+            tiles.base[tile] = z;
+            tiles.plane[tile] = DepthTiles::kNone;
+            if (z == layer) tiles.layer[tile] = DepthTiles::kOpen;
+            return;
+        }
+    } else {
+        if (!(old & ~mask) || both == ~uint64_t{0}) {
+            if (both == ~uint64_t{0}) {
+                tiles.base[tile] = layer;
+                tiles.plane[tile] = DepthTiles::kNone;
+            }
+            tiles.layer[tile] = z;
+            tiles.layer_mask[tile] = mask;
+            return;
+        }
+    }
+    if (tiles.detail == Detail::kFull) return raiseBlock(tiles, tile, mask, z);
+    tiles.layer[tile] = std::min(layer, z);
+    tiles.layer_mask[tile] = both;
+}
+
+/// The pixels of a tile, within the window, that it does not claim to be in front of a nearness; the base is known
+/// not to be.
+inline uint64_t openTilePixels(const DepthTiles& tiles, uint32_t tile, uint32_t column, uint32_t row, uint64_t window,
+                               float nearness) {
+    uint64_t open = window;
+    if (tiles.layer[tile] > nearness) {
+        if (tiles.block[tile] == DepthTiles::kNone) open &= ~tiles.layer_mask[tile];
+        else open &= ~pixelsNearer(tiles.blocks.data() + 64 * size_t{tiles.block[tile]}, nearness);
+    }
+    if (open && tiles.base[tile] > DepthTiles::kOpen && tiles.plane[tile] != DepthTiles::kNone) {
+        alignas(64) float depths[64];
+        planeDepths(planeInTile(tiles.planes[tiles.plane[tile]], column, row), depths);
+        open &= ~pixelsNearer(depths, nearness);
+    }
+    return open;
+}
+
+/// What a tile claims, pixel by pixel.
+HWY_INLINE void claimsOfTile(const DepthTiles& tiles, uint32_t tile, float* claims) {
+    const F16 d;
+    const float base = tiles.base[tile];
+    const bool planar = base > DepthTiles::kOpen && tiles.plane[tile] != DepthTiles::kNone;
+    if (planar)
+        planeDepths(planeInTile(tiles.planes[tiles.plane[tile]], tile % tiles.stride, tile / tiles.stride), claims);
+    for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
+        auto z = hn::Set(d, base);
+        if (planar) z = hn::Max(z, hn::LoadU(d, claims + i));
+        if (tiles.layer[tile] > DepthTiles::kOpen) {
+            if (tiles.block[tile] != DepthTiles::kNone)
+                z = hn::Max(z, hn::LoadU(d, tiles.blocks.data() + 64 * size_t{tiles.block[tile]} + i));
+            else
+                z = hn::IfThenElse(maskFromBits(d, tiles.layer_mask[tile] >> i),
+                                   hn::Max(z, hn::Set(d, tiles.layer[tile])), z);
+        }
+        hn::StoreU(z, d, claims + i);
+    }
 }
 
 }  // namespace HWY_NAMESPACE

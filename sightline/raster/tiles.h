@@ -1,4 +1,4 @@
-// The occlusion buffer: tiles of 8x8 pixels with a coverage mask, a depth per pixel, and seams kept aside.
+// The occlusion buffer: tiles of 8x8 pixels, each a depth for all of it and one nearer layer; seams are kept aside.
 // SPDX-License-Identifier: MIT
 //
 // Jon Hasselgren, Magnus Andersson, Tomas Akenine-Moller. Masked Software Occlusion Culling. 2016.
@@ -20,24 +20,29 @@ struct PixelRect {
     float nearness = 0;                        ///< no point of the bound is nearer
 };
 
-/// One drawn cluster: where its projected vertices lie, and what they came from.
+/// One drawn cluster, or those of its polygons that wind one way: where its projected vertices lie, and what they
+/// came from.
 struct DrawnCluster {
     const Occluder* occluder = nullptr;
     const glm::dmat4* transform = nullptr;  ///< must outlive the frame
     uint64_t transform_hash = 0;
+    bool clockwise = false;     ///< of its polygons, those that come out clockwise
     uint32_t first_vertex = 0;  ///< in DepthTiles::px, py, pd
+    uint32_t object = ~0u;      ///< in DepthTiles::objects, if vertices lie before the near plane
     uint32_t cluster = 0;
-    double position_error = 0;  ///< bound on the error of a projected vertex  [pixels]
-    double depth_error = 0;     ///< bound on the error of a vertex's nearness
-    bool clips = true;          ///< the near plane's place is known well enough to clip at it
+    uint32_t first_polygon = ~0u, polygon_count = 0;  ///< in DepthTiles::polygons, once a seam has asked for them
+    double position_error = 0;                        ///< bound on the error of a projected vertex  [pixels]
+    double depth_error = 0;                           ///< bound on the error of a vertex's nearness
+    bool clips = true;                                ///< the near plane's place is known well enough to clip at it
 };
 
-/// A triangle clipped at the near plane: up to four corners, and for each side the mesh vertices that its edge lies
-/// between (none for the side that the near plane made).
+/// A polygon clipped at the near plane: its corners, and for each side the mesh vertices that its edge lies between
+/// (none for the side that the near plane made).
 struct ClippedPolygon {
-    double x[4], y[4], d[4];
-    uint8_t from[4], to[4];  ///< cluster vertices that side i (corner i to i + 1) lies between
-    bool open[4];
+    static constexpr int kMaxCorners = 5;
+    double x[kMaxCorners], y[kMaxCorners], d[kMaxCorners];
+    uint8_t from[kMaxCorners], to[kMaxCorners];  ///< cluster vertices that side i (corner i to i + 1) lies between
+    bool open[kMaxCorners];
     int count = 0;
 };
 
@@ -52,86 +57,114 @@ struct SeamPolygon {
     bool keyed = false;
     uint32_t drawn = 0;         ///< index into DepthTiles::drawn
     uint32_t clipped = kWhole;  ///< index into DepthTiles::clipped, or kWhole
+    uint8_t source = 0;         ///< which polygon of the cluster it comes from
     uint8_t vertex[4] = {};     ///< cluster vertices, counter-clockwise; not used if clipped
     uint8_t corners = 3;
     uint8_t forward = 0;  ///< bit per side: which of the two directions
     uint8_t open = 0;     ///< bit per side that the near plane made
 };
 
-/// The pixels of one tile that a seam polygon touches.
+/// The pixels of one tile that the open edges of a drawn cluster touch.
 struct SeamEntry {
+    static constexpr uint32_t kAllPolygons = 255;
+
     uint64_t mask = 0;
-    uint32_t polygon = 0;  ///< index into DepthTiles::polygons
-    uint32_t next = ~0u;   ///< the next entry of the tile
+    uint32_t source = 0;  ///< 256 * index into DepthTiles::drawn + the polygon of the cluster, or kAllPolygons
+    uint32_t next = ~0u;  ///< the next entry of the tile
+    uint32_t drawn() const { return source >> 8; }
+    uint32_t polygon() const { return source & 255; }
+};
+
+/// The depth of a plane: nearness at buffer point (x, y) is no less than max(floor, d0 + dx x + dy y) - error.
+struct BufferPlane {
+    double d0 = 0, dx = 0, dy = 0;
+    float floor = 0;  ///< already rounded away from the eye
+    float error = 0;
+};
+
+/// How much a tile remembers.
+enum class Detail : uint8_t {
+    kMasked,  ///< where layers meet that do not fit, the farther depth is taken for both: small and fast
+    kFull,    ///< such a tile gets a depth per pixel
 };
 
 struct TileLog;
 
 /// The buffer. A pixel is covered when every ray through any of its points meets an occluder no farther
-/// than the depth stored there. Nearness as in Screen: larger is nearer.
+/// than the depth claimed there. Nearness as in Screen: larger is nearer.
+///
+/// What a tile claims at a pixel is the nearest of: its base (a constant, or a plane where one polygon covers it
+/// all), and its layer (one depth for the pixels of a mask; or a block of 64 depths).
 struct DepthTiles {
     static constexpr uint32_t kNone = ~0u;
+    static constexpr float kOpen = -std::numeric_limits<float>::infinity();
 
     explicit DepthTiles(Memory* from = defaultMemory()) : memory(from) {}
     DepthTiles(const DepthTiles&) = delete;
     DepthTiles& operator=(const DepthTiles&) = delete;
 
-    /// How a tile's depths are held.
-    enum class Form : uint8_t {
-        kEmpty,   ///< no pixel is covered
-        kPlane,   ///< all pixels are, by one polygon: the plane arrays; the depth array is not valid
-        kPixels,  ///< the depth array is valid
-    };
-
     Memory* const memory;            ///< of all arrays
     uint32_t width = 0, height = 0;  ///< [pixels], multiples of 8
     uint32_t columns = 0, rows = 0;  ///< [tiles]
-    uint32_t stride = 0;             ///< tiles from one row to the next: columns rounded up to 8
+    uint32_t stride = 0;             ///< tiles from one row to the next: columns rounded up to 16
+    Detail detail = Detail::kMasked;
 
-    // Per tile, side by side, so that eight tiles of a row are looked at together.
-    Array<float> farthest{memory};  ///< no more than the least nearness in the tile; -infinity unless all is covered
-    Array<float> nearest{memory};   ///< form kPlane: no less than the greatest; kEmpty: -infinity; kPixels: +infinity
-    /// Form kPlane: nearness at pixel (x, y) of the tile is max(floor, d + dx (x - 3.5) + dy (y - 3.5)).
-    Array<float> plane_d{memory}, plane_dx{memory}, plane_dy{memory}, plane_floor{memory};
-    Array<Form> form{memory};
-    Array<uint64_t> covered{memory};      ///< bit 8 * row + column; not kept up to date in form kPlane: all is covered
-    Array<uint64_t> tried{memory};        ///< seam pixels whose present entries have been resolved
+    // Per tile, side by side, so that sixteen tiles of a row are looked at together.
+    Array<float> base{memory};            ///< no pixel of the tile claims less; kOpen unless all is covered
+    Array<float> layer{memory};           ///< kOpen: there is no layer. Else its depth, or the greatest in the block
     Array<uint32_t> seams{memory};        ///< first SeamEntry, or kNone
-    Array<uint64_t> seam_mask{memory};    ///< pixels that some SeamEntry of the tile names
-    Array<uint32_t> paired{memory};       ///< the first SeamEntry when pairSeams() last looked
-    Array<uint64_t> paired_mask{memory};  ///< pixels that it has looked at since that was the first
-    Array<float> depth{memory};           ///< 64 per tile; -infinity where not covered; see Form
+    Array<uint32_t> plane{memory};        ///< where base > kOpen: index into planes, or kNone
+    Array<uint64_t> layer_mask{memory};   ///< with a layer: its pixels, bit 8 * row + column
+    Array<uint32_t> block{memory};        ///< with a layer: index into blocks, or kNone
+    Array<uint64_t> seam_mask{memory};    ///< with seams: pixels that some SeamEntry of the tile names
+    Array<uint64_t> tried{memory};        ///< with seams: pixels whose present entries have been resolved
+    Array<uint32_t> paired{memory};       ///< with seams: the first SeamEntry when pairSeams() last looked
+    Array<uint64_t> paired_mask{memory};  ///< with seams: pixels that it has looked at since that was the first
 
-    uint64_t coveredBits(uint32_t tile) const {
-        return form[tile] == Form::kPlane ? ~uint64_t{0} : form[tile] == Form::kEmpty ? 0 : covered[tile];
-    }
-
-    /// Of a pixel of a tile in form kPixels or kEmpty.
-    float depthAt(uint32_t tile, int bit) const {
-        return form[tile] == Form::kPixels ? depth[64 * size_t{tile} + static_cast<size_t>(bit)]
-                                           : -std::numeric_limits<float>::infinity();
-    }
-
+    Array<BufferPlane> planes{memory};
+    Array<float> blocks{memory};  ///< 64 each; kOpen where the layer claims nothing
     Array<double> px{memory}, py{memory},
-        pd{memory};  ///< the frame's projected vertices; px is NaN before the near plane
-    Array<DrawnCluster> drawn{memory};
+        pd{memory};                     ///< the frame's projected vertices; px is NaN before the near plane
+    Array<DrawnCluster> drawn{memory};  ///< those that left seams
+    Array<Screen> objects{memory};
     Array<ClippedPolygon> clipped{memory};
     Array<SeamPolygon> polygons{memory};
     Array<SeamEntry> entries{memory};
 
+    /// What drawing a cluster needs meanwhile: the tiles of its rectangle.
+    struct Scratch {
+        explicit Scratch(Memory* memory)
+            : z(memory), plane(memory), slot(memory), marked(memory), touched(memory), winding(memory) {}
+        Array<float> z;           ///< no polygon that touches the tile is farther in it; infinity: none does
+        Array<uint32_t> plane;    ///< the plane of the only one, or kNone
+        Array<uint32_t> slot;     ///< where `marked`
+        Array<uint64_t> marked;   ///< bit per tile that an open edge meets; rows begin at a new word
+        Array<uint64_t> touched;  ///< per slot: pixels that an open edge touches
+        Array<uint8_t> winding;   ///< per slot, 64: change of the winding number from the pixel to the left
+    } scratch{memory};
+
     uint64_t seam_pixels = 0;  ///< resolved since the clear
     TileLog* log = nullptr;    ///< raster/tile_log.h: takes down what is asked and answered, if there is one
 
+    /// Pixels of a tile that claim a depth.
+    uint64_t coveredBits(uint32_t tile) const {
+        return base[tile] > kOpen ? ~uint64_t{0} : layer[tile] > kOpen ? layer_mask[tile] : 0;
+    }
+
+    /// Pixels of a tile that open edges touch.
+    uint64_t seamBits(uint32_t tile) const { return seams[tile] == kNone ? 0 : seam_mask[tile]; }
+
     /// Makes the buffer empty. Allocates only when it grows.
-    void clear(uint32_t width, uint32_t height);
+    void clear(uint32_t width, uint32_t height, Detail detail = Detail::kMasked);
 };
 
-/// Draws one cluster of an occluder: covers the pixels that single triangles cover whole, and keeps aside
-/// those that they share. Back faces of single-sided triangles draw nothing.
+/// Draws one cluster of an occluder: covers the pixels that its polygons cover together, and keeps aside those that
+/// its open edges touch. Back faces of single-sided triangles draw nothing.
 ///
-/// @param object  objectScreen() of the object that the occluder belongs to
-/// @param flips   the object's transform mirrors: its counter-clockwise triangles are back faces
-void drawCluster(DepthTiles& tiles, const Screen& object, bool flips, const DrawnCluster& cluster);
+/// @param cluster  all but what drawing finds out: vertices, polygons, object, clockwise
+/// @param object   objectScreen() of the object that the occluder belongs to
+/// @param flips    the object's transform mirrors: its counter-clockwise triangles are back faces
+void drawCluster(DepthTiles& tiles, const DrawnCluster& cluster, const Screen& object, bool flips);
 
 /// What to do where only pixels that polygons share stand between an answer and a rectangle.
 enum class Seams : uint8_t {
@@ -148,14 +181,12 @@ bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams = Seams::kRe
 uint64_t openPixels(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64],
                     Seams seams = Seams::kResolve);
 
-/// Makes a tile's pixels valid in the depth array.
-void writeOut(DepthTiles& tiles, uint32_t tile);
+/// The depth that each pixel of a tile claims; DepthTiles::kOpen where it claims none.
+void readClaims(const DepthTiles& tiles, uint32_t tile, float (&claims)[64]);
 
-/// Fills in the keys of a seam polygon's sides.
-void setSideKeys(const DepthTiles& tiles, SeamPolygon& polygon);
-
-/// Finds a side that two polygons share: the same edge of the world, exactly, run through in opposite directions.
-bool findSharedSide(const DepthTiles& tiles, const SeamPolygon& a, const SeamPolygon& b, int& side_a, int& side_b);
+/// Raises what a tile claims at the pixels of a mask.
+/// @param depths  per pixel, read where the mask has a bit
+void raiseClaims(DepthTiles& tiles, uint32_t tile, uint64_t mask, const float (&depths)[64]);
 
 /// Covers the pixels of a tile that two polygons with a shared side cover between them, for all pairs at once.
 /// @param pixels  which pixels matter; others may be covered too

@@ -31,7 +31,7 @@ PixelRect drawAlone(const Walk& walk, const WalkRecord& record, std::span<const 
 /// Covers what can be covered of the pixels that polygons of the instance share.
 void resolveTile(DepthTiles& tiles, uint32_t tile, uint64_t window) {
     pairSeams(tiles, tile, window & ~tiles.coveredBits(tile));
-    for (uint64_t open = window & tiles.seam_mask[tile] & ~tiles.coveredBits(tile); open; open &= open - 1)
+    for (uint64_t open = window & tiles.seamBits(tile) & ~tiles.coveredBits(tile); open; open &= open - 1)
         resolveSeam(tiles, tile, std::countr_zero(open), kFarthest);
 }
 
@@ -50,11 +50,12 @@ uint64_t windowOf(const PixelRect& rect, int32_t column, int32_t row) {
 void ownTile(Attribution& owners, int32_t column, int32_t row, uint32_t instance, float nearest, uint64_t window) {
     DepthTiles& tiles = owners.tiles;
     const uint32_t tile = static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(column);
-    if (tiles.form[tile] == DepthTiles::Form::kEmpty && !tiles.seam_mask[tile]) return;
+    if (!tiles.coveredBits(tile) && !tiles.seamBits(tile)) return;
     resolveTile(tiles, tile, window);
     const uint64_t covered = tiles.coveredBits(tile);
-    if (covered) writeOut(tiles, tile);
-    for (uint64_t left = window & (covered | tiles.seam_mask[tile]); left; left &= left - 1) {
+    float claims[64];
+    readClaims(tiles, tile, claims);
+    for (uint64_t left = window & (covered | tiles.seamBits(tile)); left; left &= left - 1) {
         const int bit = std::countr_zero(left);
         PixelOwner& pixel = owners.pixels[static_cast<size_t>(8 * row + (bit >> 3)) * tiles.width +
                                           static_cast<size_t>(8 * column + (bit & 7))];
@@ -62,7 +63,7 @@ void ownTile(Attribution& owners, int32_t column, int32_t row, uint32_t instance
             if (pixel.toucher == PixelOwner::kNone) pixel.toucher = instance, pixel.touching = nearest;
             continue;
         }
-        const float nearness = tiles.depthAt(tile, bit);
+        const float nearness = claims[bit];
         if (pixel.owner != PixelOwner::kNone && pixel.nearness >= nearness) continue;
         pixel.owner = instance;
         pixel.nearness = nearness;

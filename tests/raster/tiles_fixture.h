@@ -41,24 +41,22 @@ struct Drawing {
         }
     }
 
-    bool resolve(uint32_t x, uint32_t y) {
-        const uint32_t tile = y / 8 * tiles.stride + x / 8, bit = y % 8 * 8 + x % 8;
-        if (tiles.coveredBits(tile) >> bit & 1) return true;
-        return resolveSeam(tiles, tile, static_cast<int>(bit), std::numeric_limits<float>::infinity());
+    void resolve(uint32_t x, uint32_t y) {
+        resolveSeam(tiles, y / 8 * tiles.stride + x / 8, static_cast<int>(y % 8 * 8 + x % 8),
+                    std::numeric_limits<float>::infinity());
     }
 
     void resolveAll() {
-        for (uint32_t t = 0; t < tiles.form.size(); ++t) pairSeams(tiles, t, ~uint64_t{0});
+        for (uint32_t t = 0; t < tiles.base.size(); ++t) pairSeams(tiles, t, ~uint64_t{0});
         for (uint32_t y = 0; y < tiles.height; ++y)
             for (uint32_t x = 0; x < tiles.width; ++x) resolve(x, y);
-        for (uint32_t t = 0; t < tiles.form.size(); ++t) writeOut(tiles, t);
     }
 
-    bool covered(uint32_t x, uint32_t y) const {
-        return tiles.coveredBits(y / 8 * tiles.stride + x / 8) >> (y % 8 * 8 + x % 8) & 1;
-    }
+    bool covered(uint32_t x, uint32_t y) const { return depth(x, y) > DepthTiles::kOpen; }
     float depth(uint32_t x, uint32_t y) const {
-        return tiles.depth[64 * size_t{y / 8 * tiles.stride + x / 8} + (y % 8 * 8 + x % 8)];
+        float claims[64];
+        readClaims(tiles, y / 8 * tiles.stride + x / 8, claims);
+        return claims[y % 8 * 8 + x % 8];
     }
     uint64_t coveredPixels() const {
         uint64_t n = 0;
