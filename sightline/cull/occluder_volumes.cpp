@@ -1,0 +1,77 @@
+// Hides boxes in the shadow volumes of a few large convex occluders, in object space: no pixels.
+// SPDX-License-Identifier: MIT
+#include "sightline/cull/occluder_volumes.h"
+
+#define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sightline/cull/occluder_volumes.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F8 = hn::CappedTag<float, 8>;
+
+void testVolumeKernel(const OccluderVolume& volume, const EyeBoxes& boxes, uint32_t active, VolumeAnswer& answer) {
+    const F8 d;
+    alignas(64) float reach[8];  // no point of a box is farther from the eye
+    for (size_t i = 0; i < 8; i += hn::Lanes(d)) {
+        auto sum = hn::Zero(d);
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto low = hn::Load(d, boxes.min[axis] + i), high = hn::Load(d, boxes.max[axis] + i);
+            sum = hn::Add(sum, hn::Max(hn::Abs(low), hn::Abs(high)));
+            // Max may lose a NaN; this keeps it, and makes one of what is infinite: no plane has such a box above.
+            sum = hn::Add(sum, hn::Mul(hn::Zero(d), hn::Add(low, high)));
+        }
+        hn::Store(sum, d, reach + i);
+    }
+    uint32_t outside = 0, above_all = 0xff;
+    for (uint32_t& planes : answer.planes) planes = 0;
+    for (uint32_t plane = 0; plane < volume.planes && outside != 0xff; ++plane) {
+        if (!(active >> plane & 1)) continue;
+        uint32_t above = 0;
+        for (size_t i = 0; i < 8; i += hn::Lanes(d)) {
+            auto highest = hn::Set(d, volume.distance[plane]), lowest = highest;
+            for (int axis = 0; axis < 3; ++axis) {
+                const auto n = hn::Set(d, volume.normal[plane][axis]);
+                const auto a = hn::Mul(n, hn::Load(d, boxes.min[axis] + i));
+                const auto b = hn::Mul(n, hn::Load(d, boxes.max[axis] + i));
+                highest = hn::Add(highest, hn::Max(a, b));
+                lowest = hn::Add(lowest, hn::Min(a, b));
+            }
+            const auto slack = hn::Add(hn::Set(d, volume.slack[plane][0]),
+                                       hn::Mul(hn::Set(d, volume.slack[plane][1]), hn::Load(d, reach + i)));
+            uint8_t bits[8] = {};
+            hn::StoreMaskBits(d, hn::Gt(lowest, slack), bits);
+            above |= uint32_t{bits[0]} << i;
+            hn::StoreMaskBits(d, hn::Gt(highest, hn::Zero(d)), bits);
+            outside |= (~uint32_t{bits[0]} & ((1u << hn::Lanes(d)) - 1)) << i;
+        }
+        for (int box = 0; box < 8; ++box)
+            if (!(above >> box & 1)) answer.planes[box] |= 1u << plane;
+        above_all &= above;
+    }
+    answer.outside = outside;
+    answer.hidden = above_all & ~outside;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sightline
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline {
+
+HWY_EXPORT(testVolumeKernel);
+
+VolumeAnswer testVolume(const OccluderVolume& volume, const EyeBoxes& boxes, uint32_t active) {
+    VolumeAnswer answer;
+    HWY_DYNAMIC_DISPATCH(testVolumeKernel)(volume, boxes, active, answer);
+    return answer;
+}
+
+}  // namespace sightline
+#endif  // HWY_ONCE

@@ -1,0 +1,12 @@
+// Joins an occluder's polygons to large flat, convex faces.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "sightline/cull/volume_parts.h"
+
+namespace sightline {
+
+/// Fills `corners`, `outline` and `faces`, by falling area; at most 256 faces. A part of findVolumeParts().
+void findVolumeFaces(const Occluder& occluder, Memory* memory, VolumeParts& out);
+
+}  // namespace sightline
