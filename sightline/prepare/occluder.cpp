@@ -6,6 +6,7 @@
 
 #include "sightline/prepare/clusters.h"
 #include "sightline/prepare/junctions.h"
+#include "sightline/prepare/merge.h"
 #include "sightline/prepare/quads.h"
 
 namespace sightline {
@@ -23,6 +24,7 @@ Prepared prepare(std::span<const OccluderSource> sources, const OccluderSettings
     Prepared out;
     out.patchwork = weld(sources);
     pairTriangles(out.patchwork);
+    if (settings.merge) mergeCoplanar(out.patchwork, by_mesh);
     if (settings.junctions) findJunctions(out.patchwork);
     RunLimits limits;
     limits.by_mesh = by_mesh;

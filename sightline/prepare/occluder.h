@@ -14,6 +14,7 @@ namespace sightline {
 struct OccluderSettings {
     uint32_t own_polygons = OccluderCluster::kMaxOwn;  ///< of a joined cluster  [limit: 3 to kMaxOwn]
     bool rings = false;     ///< give joined clusters their neighbours' polygons around them, so that no seam stays open
+    bool merge = false;     ///< make larger polygons of those that lie exactly in one plane
     bool junctions = true;  ///< polygons hang together also where a vertex lies, exactly, on another's side
 };
 

@@ -29,12 +29,9 @@ bool makesQuad(const Patchwork& patchwork, const Candidate& c) {
     const glm::dvec3 n = glm::cross(v[1] - v[0], v[2] - v[0]);
     const double area = glm::length(n);
     if (!(area > 0.0)) return false;
+    if (!isConvex(v, n / area)) return false;
     double longest = 0.0;
-    for (int k = 0; k < 4; ++k) {
-        const glm::dvec3 in = v[(k + 1) % 4] - v[k], out = v[(k + 2) % 4] - v[(k + 1) % 4];
-        longest = std::max(longest, glm::length(in));
-        if (glm::dot(glm::cross(in, out), n) <= kConvexity * glm::length(in) * glm::length(out) * area) return false;
-    }
+    for (int k = 0; k < 4; ++k) longest = std::max(longest, glm::length(v[(k + 1) % 4] - v[k]));
     return std::abs(glm::dot(n, v[3] - v[0])) <= kFlatness * longest * area;
 }
 
@@ -61,6 +58,14 @@ std::vector<Candidate> findCandidates(const Patchwork& patchwork) {
 }
 
 }  // namespace
+
+bool isConvex(const glm::dvec3 (&corners)[4], const glm::dvec3& normal) {
+    for (int k = 0; k < 4; ++k) {
+        const glm::dvec3 in = corners[(k + 1) % 4] - corners[k], out = corners[(k + 2) % 4] - corners[(k + 1) % 4];
+        if (glm::dot(glm::cross(in, out), normal) <= kConvexity * glm::length(in) * glm::length(out)) return false;
+    }
+    return true;
+}
 
 void pairTriangles(Patchwork& patchwork) {
     std::vector<uint8_t> taken(patchwork.polygons.size(), 0);

@@ -13,4 +13,8 @@ namespace sightline {
 /// @param patchwork  its polygons are triangles, mesh by mesh
 void pairTriangles(Patchwork& patchwork);
 
+/// Whether a quadrangle turns left at each corner, seen against the normal: by a thousandth at least, as a sine.
+/// @param normal  of length one
+bool isConvex(const glm::dvec3 (&corners)[4], const glm::dvec3& normal);
+
 }  // namespace sightline
