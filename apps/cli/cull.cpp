@@ -15,7 +15,9 @@
 #include "apps/cli/apart.h"
 #include "apps/cli/common.h"
 #include "apps/cli/cull_path.h"
+#include "apps/cli/explain_object.h"
 #include "apps/cli/frame_notes.h"
+#include "apps/cli/occlusion_files.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/session.h"
 #include "apps/cli/summary.h"
@@ -29,7 +31,10 @@ namespace {
 
 struct CullOptions : RunOptions {
     bool verify = false;
-    std::string trace;  ///< file, or empty
+    std::string trace;         ///< file, or empty
+    std::string recording;     ///< file, or empty
+    std::string depth_images;  ///< directory, or empty
+    uint32_t frame = 0;        ///< that is recorded
 };
 
 /// That nothing is written over what is read, or over another output.
@@ -39,6 +44,9 @@ Status checkApart(const CullOptions& options) {
     files.read("--cameras", options.cameras);
     files.write("--json", options.json);
     files.write("--trace", options.trace);
+    files.write("--record-occlusion", options.recording);
+    if (!options.depth_images.empty())
+        files.write("--depth-images", std::filesystem::path(options.depth_images) / "occlusion-0000.png");
     if (options.report.empty()) return files.status();
     const std::filesystem::path report = options.report;
     files.write("--report", report / "index.html");
@@ -53,6 +61,10 @@ Status checkOutputs(const CullOptions& options) {
         if (Status writable = canWriteFile(options.json); !writable) return writable;
     if (!options.trace.empty())
         if (Status writable = canWriteFile(options.trace); !writable) return writable;
+    if (!options.recording.empty())
+        if (Status writable = canWriteFile(options.recording); !writable) return writable;
+    if (!options.depth_images.empty())
+        if (Status made = makeDirectory(options.depth_images); !made) return made;
     if (options.report.empty()) return success();
     if (Status made = makeDirectory(options.report + "/frames"); !made) return made;
     return canWriteFile(options.report + "/index.html");
@@ -73,14 +85,14 @@ void removePictures(const std::string& directory) {
     std::vector<std::filesystem::path> old;
     for (const auto& entry : std::filesystem::directory_iterator(directory, ignored)) {
         const std::string name = entry.path().filename().string();
-        for (const char* what : {"frame-", "culled-", "plan-", "section-", "heat-all-", "heat-kept-"})
+        for (const char* what : {"frame-", "culled-", "plan-", "section-", "heat-all-", "heat-kept-", "buffer-"})
             if (isPictureOf(what, name)) old.push_back(entry.path());
     }
     for (const auto& file : old) std::filesystem::remove(file, ignored);
 }
 
 /// The page and the pictures beside it.
-Status writePage(const Scene& scene, const CullRun& run, const CullOptions& options) {
+Status writePage(const Scene& scene, const Snapshot& now, const CullRun& run, const CullOptions& options) {
     removePictures(options.report + "/frames");
     Progress progress("drawing", "pictures", 0);
     std::mutex mutex;
@@ -95,45 +107,72 @@ Status writePage(const Scene& scene, const CullRun& run, const CullOptions& opti
         const std::lock_guard lock(mutex);
         if (!written && all) all = written;
     };
+    if (run.stages & stageBit(Stage::kOcclusion))
+        settings.buffer = [&](size_t frame) {
+            return bufferPicture(now, viewOfFrame(run.frames[frame].camera, options));
+        };
     const std::string page = reportPage(scene, run, settings);
     if (!all) return all;
     return writeFileAside(options.report + "/index.html", page);
 }
 
-Status writeOutputs(const Scene& scene, const CullRun& run, const CullOptions& options) {
+Status writeOutputs(const Scene& scene, const Snapshot& now, const CullRun& run, const CullOptions& options) {
     const std::string json = cullJson(run, scene);
     if (!options.json.empty())
         if (Status written = writeText(options.json, json); !written) return written;
     if (!options.trace.empty())
         if (Status written = writeFileAside(options.trace, traceJson(run)); !written) return written;
+    if (!options.recording.empty() && options.frame < run.frames.size())  // else interrupted before
+        if (Status written =
+                writeRecordingOf(now, viewOfFrame(run.frames[options.frame].camera, options), options.recording);
+            !written)
+            return written;
+    if (!options.depth_images.empty())
+        if (Status written = writeDepthImages(now, run, options, options.depth_images); !written) return written;
     if (options.report.empty()) return success();
     if (Status written = writeFileAside(options.report + "/cull.json", json); !written) return written;
     if (Status written = writeFileAside(options.report + "/trace.json", traceJson(run)); !written) return written;
-    return writePage(scene, run, options);
+    return writePage(scene, now, run, options);
+}
+
+/// What --record-occlusion and --depth-images need of the other options.
+Status checkOcclusion(const CLI::App& verb, const CullOptions& options) {
+    const auto usage = [](const std::string& message) { return Error{Error::Kind::kUsage, message}; };
+    if (verb.count("--frame") > 0 && options.recording.empty()) return usage("--frame goes with --record-occlusion");
+    if (options.stages & stageBit(Stage::kOcclusion)) return success();
+    if (!options.recording.empty()) return usage("--record-occlusion needs the occlusion stage");
+    if (!options.depth_images.empty()) return usage("--depth-images needs the occlusion stage");
+    return success();
 }
 
 /// The whole verb. Returns the exit code.
 Result<int> runCull(const CLI::App& verb, CullOptions& options) {
     if (Status good = finish(verb, options); !good) return good.error();
+    if (Status good = checkOcclusion(verb, options); !good) return good.error();
     if (Status apart = checkApart(options); !apart) return apart.error();
     const Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
     const Result<CameraPath> path = loadPath(*scene, options);
     if (!path) return path.error();
+    if (options.frame >= path->frames.size())
+        return Error{Error::Kind::kUsage,
+                     fmt::format("--frame {}: the path has {} frames, from 0", options.frame, path->frames.size())};
     if (Status writable = checkOutputs(options); !writable) return writable.error();
 
     options.credits = !options.report.empty();
     // Whoever explains the frames asks the world that was culled; without need of that its memory is given back.
     std::optional<LoadedWorld> world;
-    CullRun run = cullPath(*scene, *path, options, options.verify && !options.report.empty() ? &world : nullptr);
+    const bool asked_again = !options.report.empty() || !options.recording.empty() || !options.depth_images.empty();
+    CullRun run = cullPath(*scene, *path, options, asked_again ? &world : nullptr);
     if (run.frames.empty()) return exitCodeOf(run, path->frames.size(), options.verify);
     run.command = replayOfRun(options, options.verify);
+    const Snapshot now = world ? world->world.commit() : Snapshot();
     if (options.verify) verifyPath(*scene, options, run);
     if (!options.report.empty()) noteFrames(*scene, options, std::move(world), run);
 
     printSummary(options.json == "-" ? stderr : stdout, run);
     if (Status explained = explainFalseCulls(*scene, options, run); !explained) return explained.error();
-    if (Status written = writeOutputs(*scene, run, options); !written) return written.error();
+    if (Status written = writeOutputs(*scene, now, run, options); !written) return written.error();
     if (!options.report.empty())
         tell(options.json == "-" ? stderr : stdout, fmt::format("report       {}/index.html\n", options.report));
     return exitCodeOf(run, path->frames.size(), options.verify);
@@ -153,6 +192,15 @@ void addCull(CLI::App& tool, int& exit_code) {
         ->type_name("DIR");
     verb->add_option("--trace", options->trace, "write a timeline for chrome://tracing and Perfetto")
         ->type_name("FILE");
+    verb->add_option("--record-occlusion", options->recording,
+                     "write what one frame asks of its occlusion buffer, for `sightline replay`")
+        ->type_name("FILE");
+    verb->add_option("--frame", options->frame, "of the path, from 0: the one that is recorded")
+        ->type_name("K")
+        ->capture_default_str();
+    verb->add_option("--depth-images", options->depth_images,
+                     "write a picture of each frame's occlusion buffer: light is near, blue is open")
+        ->type_name("DIR");
     verb->callback([verb, options, &exit_code] {
         const Result<int> done = runCull(*verb, *options);
         exit_code = done ? *done : report(done.error());

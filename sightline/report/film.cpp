@@ -80,6 +80,11 @@ Film drawFilm(const Scene& scene, const CullRun& run, const PageSettings& settin
                        {"culled", encodePalettePng(drawn.culled)},
                        {"plan", encodePalettePng(above)},
                        {"section", encodePalettePng(side)}};
+        if (settings.buffer) {
+            const Image<Rgb> buffer = settings.buffer(chosen[i]);
+            shot.images.push_back({"buffer", encodeJpeg(buffer, kJpegQuality)});
+            save("buffer", chosen[i], buffer);
+        }
         shot.plan_text = storey.whole() ? "From above." : "From above; what lies off the eye’s storey is pale.";
         shot.section_text = sectionText(section) + " What lies off the eye’s slice is pale.";
         shot.depth_all = mean(drawn.all);

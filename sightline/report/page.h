@@ -7,6 +7,7 @@
 #include <string>
 
 #include "sightline/report/cull_run.h"
+#include "sightline/report/png.h"
 #include "sightline/scene/scene.h"
 
 namespace sightline {
@@ -20,6 +21,8 @@ struct PageSettings {
     std::function<void(size_t done, size_t total)> progress;  ///< from any of these threads; may be empty
     /// Takes a PNG that is to lie beside the page, "frames/plan-0007.png", from any of these threads; may be empty.
     std::function<void(const std::string& name, const std::string& bytes)> save;
+    /// Draws the occlusion buffer of a frame (depthPicture()), on any of these threads; empty: the page has none.
+    std::function<Image<Rgb>(size_t frame)> buffer;
 };
 
 /// The frames that are drawn, ascending.

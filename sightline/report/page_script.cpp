@@ -43,7 +43,7 @@ function showPicture(f) {
   }
 }
 function showLook() {
-  const layers = {objects: look === 'objects', culled: look === 'culled'};
+  const layers = {objects: look === 'objects', culled: look === 'culled', buffer: look === 'buffer'};
   for (const [id, on] of Object.entries(layers)) if (at(id)) at(id).hidden = !on;
   const screen = document.querySelector('.screen');
   if (screen) screen.classList.toggle('through', look === 'culled');

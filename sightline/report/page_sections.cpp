@@ -43,10 +43,16 @@ std::string samplesPerPixel(const Verification& sum) {
     return fmt::format("{0}×{0} to {1}×{1} a pixel", sum.least_supersampling, sum.most_supersampling);
 }
 
-constexpr const char* kSwitch = R"html(<fieldset class="switch"><legend class="unseen">What the picture shows</legend>
+/// The looks of the picture; that of the occlusion buffer only where it was drawn.
+std::string looks(bool buffer) {
+    std::string text = R"html(<fieldset class="switch"><legend class="unseen">What the picture shows</legend>
 <label><input type="radio" name="look" value="shaded" checked><span>As seen</span></label>
 <label><input type="radio" name="look" value="culled"><span>Culled objects drawn through</span></label>
-<label><input type="radio" name="look" value="objects"><span>One colour an object</span></label></fieldset>)html";
+<label><input type="radio" name="look" value="objects"><span>One colour an object</span></label>)html";
+    if (buffer)
+        text += "\n<label><input type=\"radio\" name=\"look\" value=\"buffer\"><span>Occlusion buffer</span></label>";
+    return text + "</fieldset>";
+}
 
 }  // namespace
 
@@ -122,7 +128,7 @@ std::string filmSection(const CullRun& run, const Film& film) {
         return std::any_of(film.shots[0].images.begin(), film.shots[0].images.end(),
                            [&](const FilmImage& image) { return image.id == id; });
     };
-    std::string picture = has("culled") ? kSwitch : "";
+    std::string picture = has("culled") ? looks(has("buffer")) : "";
     picture += fmt::format(
         "<figure><div class=\"screen\" style=\"aspect-ratio:{}/{}\"><img id=\"shaded\" alt=\"The scene as the camera "
         "sees it\">",
@@ -131,6 +137,10 @@ std::string filmSection(const CullRun& run, const Film& film) {
         picture += "<img id=\"objects\" hidden alt=\"The same picture, each object in a colour of its own\">";
     if (has("culled"))
         picture += "<img id=\"culled\" hidden alt=\"What was culled within the view, drawn through what hides it\">";
+    if (has("buffer"))
+        picture +=
+            "<img id=\"buffer\" hidden alt=\"What the occlusion buffer claims: light is near, dark is far, blue is "
+            "open\">";
     picture += "<span id=\"stale\" hidden></span></div><figcaption><span id=\"same\"></span></figcaption></figure>";
     std::string plans;
     if (has("plan"))

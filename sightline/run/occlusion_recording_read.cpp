@@ -177,7 +177,8 @@ private:
             !within(c.first_vertex, (uint64_t{c.vertex_count} + 7) / 8 * 8, occluder.x.size()))
             return (void)wrong("a cluster with vertices that there are not", at);
         const uint64_t polygons = uint64_t{c.polygon_count} + c.ring_count;
-        if (c.polygon_count == 0 || polygons > OccluderCluster::kMaxPolygons ||
+        const uint64_t most = c.edge_count > 0 ? OccluderCluster::kMaxOwn : OccluderCluster::kMaxLoose;
+        if (c.polygon_count == 0 || c.polygon_count > most || polygons > OccluderCluster::kMaxPolygons ||
             !within(c.first_polygon, polygons, occluder.polygons.size()))
             return (void)wrong("a cluster with polygons that there are not", at);
         if (c.edge_count > 4 * OccluderCluster::kMaxVertices * OccluderCluster::kMaxPolygons ||

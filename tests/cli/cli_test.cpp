@@ -31,7 +31,7 @@ protected:
 TEST_F(Cli, HelpAndVersionSucceed) {
     EXPECT_EQ(run("--help").exit_code, 0);
     EXPECT_NE(run("--version").out.find("sightline 0."), std::string::npos);
-    for (const char* verb : {"cull", "verify", "render", "info", "bench"}) {
+    for (const char* verb : {"cull", "verify", "render", "replay", "info", "bench"}) {
         EXPECT_NE(run("--help").out.find(verb), std::string::npos) << verb;
         const Outcome help = run(std::string(verb) + " --help");
         EXPECT_EQ(help.exit_code, 0) << verb;
