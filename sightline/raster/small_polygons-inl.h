@@ -52,37 +52,37 @@ struct Parts {
     uint32_t quads = 0;                ///< bit per batch that has some with four corners
 
     explicit Parts(const SmallPolygonsTask& task) {
-        for (uint32_t first = 0; first < task.count; first += kBatch) {
-            uint32_t fourth = ~0u;
-            for (uint32_t p = first; p < first + kBatch; ++p) {
-                const OccluderPolygon& polygon = task.polygons[std::min(p, task.count - 1)];
-                uint32_t word;
-                std::memcpy(&word, polygon.vertex, 4);
-                fourth &= word;
-                corners[p] = word;
-                both[p] = polygon.double_sided;
-            }
-            if (fourth >> 24 != OccluderPolygon::kNone) quads |= 1u << first / kBatch;
+        const uint32_t count = task.count, padded = (count + kBatch - 1) / kBatch * kBatch;
+        for (uint32_t p = 0; p < count; ++p) {
+            std::memcpy(corners + p, task.polygons[p].vertex, 4);
+            both[p] = task.polygons[p].double_sided;
+        }
+        for (uint32_t p = count; p < padded; ++p) corners[p] = corners[count - 1], both[p] = 0;
+        const U u;
+        for (uint32_t p = 0; p < padded; p += static_cast<uint32_t>(hn::Lanes(u))) {
+            const auto quad = hn::Ne(hn::ShiftRight<24>(hn::Load(u, corners + p)), hn::Set(u, OccluderPolygon::kNone));
+            if (!hn::AllFalse(u, quad)) quads |= 1u << p / kBatch;
         }
     }
 };
 
-/// A batch on its way. The masks are in the order in which the transpose leaves them: of the polygons 4 b + k those
-/// with the least k first.
+/// The masks' order, as the transpose leaves them: the first two polygons of each four, and then the other two.
+constexpr size_t placeOf(size_t polygon) { return (polygon & 2) * 4 + polygon / 4 * 2 + (polygon & 1); }
+
+/// A batch on its way.
 struct Batch {
-    alignas(64) uint32_t corners[kBatch];                        ///< four indices of vertices
-    alignas(64) uint32_t both[kBatch];                           ///< 1: double-sided
     alignas(64) uint32_t rows[2][SmallPolygons::kRows][kBatch];  ///< spans: of inner and of outer pixels
-    alignas(64) uint64_t half[2][2][2][kBatch][2];  ///< inner or outer; rows from 0, from 8; columns from 0, from 2
-    alignas(64) uint64_t shift[kBatch][2];          ///< bits from a tile's lowest row to the polygon's
-    alignas(64) uint64_t place[kBatch][2];          ///< of the lowest tiles of the first two columns
+    /// Inner or outer, of rows from 0 or from 8, per column of tiles.
+    alignas(64) uint64_t half[2][2][SmallPolygons::kColumns][kBatch];
+    alignas(64) uint64_t shift[kBatch];  ///< bits from a tile's lowest row to the polygon's
+    alignas(64) uint64_t place[kBatch];  ///< in the lowest tile of the first column
     alignas(64) int32_t tile_x[kBatch], low[kBatch];
 
-    uint32_t count = 0;   ///< polygons
-    uint32_t large = 0;   ///< bit per polygon
-    uint32_t cut = 0;     ///< bit per polygon whose window is not wholly inside the buffer
-    uint32_t height = 0;  ///< rows that any needs
-    bool wide = false;    ///< some need the last two columns
+    uint32_t count = 0;    ///< polygons
+    uint32_t large = 0;    ///< bit per polygon
+    uint32_t cut = 0;      ///< bit per polygon whose window is not wholly inside the buffer
+    uint32_t height = 0;   ///< rows that any needs
+    uint32_t columns = 0;  ///< of tiles, that any needs
 };
 
 template <class D, class Mask>
@@ -290,19 +290,16 @@ HWY_INLINE Shape shapeOf(const VI* x, const VI* y, VI perimeter, MI triangle, MI
 
 /// Where the records go, in the transpose's order.
 inline void notePlaces(VU polygon, VU tile, VU shift, Batch& batch, size_t h) {
-    const size_t at = 4 * (h & 3) + h / 4;
-    const uint64_t place = hn::GetLane(polygon) | uint64_t{hn::GetLane(tile)} << 32;
-    batch.place[at][0] = place;
-    batch.place[at][1] = place + (uint64_t{1} << 32);
-    batch.shift[at][0] = batch.shift[at][1] = hn::GetLane(shift);
+    batch.place[placeOf(h)] = hn::GetLane(polygon) | uint64_t{hn::GetLane(tile)} << 32;
+    batch.shift[placeOf(h)] = hn::GetLane(shift);
 }
 
 /// Turns eight rows of pixels of each polygon into columns of tiles: bytes of a row into 64-bit words.
-inline void transposeRows(const uint32_t (*rows)[kBatch], size_t h, uint64_t (*out)[kBatch][2]) {
-    for (int column = 0; column < 4; ++column) {
+inline void transposeRows(const uint32_t (*rows)[kBatch], size_t h, uint32_t columns, uint64_t (*out)[kBatch]) {
+    for (uint32_t column = 0; column < columns; ++column) {
         uint64_t word = 0;
         for (int row = 0; row < 8; ++row) word |= uint64_t{rows[row][h] >> 8 * column & 255} << 8 * row;
-        out[column / 2][4 * (h & 3) + h / 4][column & 1] = word;
+        out[column][placeOf(h)] = word;
     }
 }
 
@@ -312,17 +309,11 @@ inline void transposeRows(const uint32_t (*rows)[kBatch], size_t h, uint64_t (*o
 HWY_INLINE void notePlaces(VU polygon, VU tile, VU shift, Batch& batch, size_t h) {
     const U u;
     const hn::Repartition<uint64_t, U> l;
-    alignas(64) constexpr uint64_t kNext[8] = {0, uint64_t{1} << 32, 0, uint64_t{1} << 32,
-                                               0, uint64_t{1} << 32, 0, uint64_t{1} << 32};
-    const auto next = hn::Load(l, kNext);
-    const auto put = [&](auto pairs, size_t k, uint64_t(*to)[2], auto add) HWY_ATTR {
-        hn::Store(hn::Add(hn::InterleaveLower(l, pairs, pairs), add), l, to[4 * k + h / 4]);
-        hn::Store(hn::Add(hn::InterleaveUpper(l, pairs, pairs), add), l, to[4 * k + 4 + h / 4]);
-    };
-    put(hn::BitCast(l, hn::InterleaveLower(u, polygon, tile)), 0, batch.place, next);
-    put(hn::BitCast(l, hn::InterleaveUpper(u, polygon, tile)), 2, batch.place, next);
-    put(hn::BitCast(l, hn::InterleaveLower(u, shift, hn::Zero(u))), 0, batch.shift, hn::Zero(l));
-    put(hn::BitCast(l, hn::InterleaveUpper(u, shift, hn::Zero(u))), 2, batch.shift, hn::Zero(l));
+    const size_t at = placeOf(h);
+    hn::Store(hn::BitCast(l, hn::InterleaveLower(u, polygon, tile)), l, batch.place + at);
+    hn::Store(hn::BitCast(l, hn::InterleaveUpper(u, polygon, tile)), l, batch.place + at + 8);
+    hn::Store(hn::BitCast(l, hn::InterleaveLower(u, shift, hn::Zero(u))), l, batch.shift + at);
+    hn::Store(hn::BitCast(l, hn::InterleaveUpper(u, shift, hn::Zero(u))), l, batch.shift + at + 8);
 }
 
 /// Four rows of pixels: of the polygons k, 4 + k ... a byte per row, the four of a column in a lane. References, since
@@ -344,20 +335,24 @@ HWY_INLINE void transposeFour(const uint32_t (*rows)[kBatch], size_t h, VU& p0, 
 }
 
 /// Turns eight rows of pixels of each polygon into columns of tiles: bytes of a row into 64-bit words.
-HWY_INLINE void transposeRows(const uint32_t (*rows)[kBatch], size_t h, uint64_t (*out)[kBatch][2]) {
+HWY_INLINE void transposeRows(const uint32_t (*rows)[kBatch], size_t h, uint32_t columns, uint64_t (*out)[kBatch]) {
     const U u;
     const hn::Repartition<uint64_t, U> l;
     VU a0, a1, a2, a3, b0, b1, b2, b3;
     transposeFour(rows, h, a0, a1, a2, a3);
     transposeFour(rows + 4, h, b0, b1, b2, b3);
-    const auto put = [&](VU a, VU b, size_t k) HWY_ATTR {
-        hn::Store(hn::BitCast(l, hn::InterleaveLower(u, a, b)), l, out[0][4 * k + h / 4]);
-        hn::Store(hn::BitCast(l, hn::InterleaveUpper(u, a, b)), l, out[1][4 * k + h / 4]);
+    const size_t at = placeOf(h);
+    const auto put = [&](auto k0, auto k1, uint64_t* low, uint64_t* high) HWY_ATTR {
+        hn::Store(hn::InterleaveLower(l, k0, k1), l, low);
+        hn::Store(hn::InterleaveUpper(l, k0, k1), l, high);
     };
-    put(a0, b0, 0);
-    put(a1, b1, 1);
-    put(a2, b2, 2);
-    put(a3, b3, 3);
+    const auto lower = [&](VU a, VU b) HWY_ATTR { return hn::BitCast(l, hn::InterleaveLower(u, a, b)); };
+    put(lower(a0, b0), lower(a1, b1), out[0] + at, out[1] + at);
+    put(lower(a2, b2), lower(a3, b3), out[0] + at + 8, out[1] + at + 8);
+    if (columns <= 2) return;
+    const auto upper = [&](VU a, VU b) HWY_ATTR { return hn::BitCast(l, hn::InterleaveUpper(u, a, b)); };
+    put(upper(a0, b0), upper(a1, b1), out[2] + at, out[3] + at);
+    put(upper(a2, b2), upper(a3, b3), out[2] + at + 8, out[3] + at + 8);
 }
 
 #endif  // HWY_SCALAR
@@ -438,7 +433,11 @@ HWY_INLINE void scanPolygons(const SmallPolygonsTask& task, const Parts& parts, 
     }
     const VI rows_drawn = hn::IfThenElseZero(drawn, height);
     batch.height = std::max(batch.height, static_cast<uint32_t>(hn::GetLane(hn::MaxOfLanes(i, rows_drawn))));
-    batch.wide |= !hn::AllFalse(i, hn::And(drawn, hn::Gt(hn::Sub(last_x, tile_x), one)));
+    const VI across = hn::IfThenElseZero(drawn, hn::Sub(last_x, tile_x));
+    const uint32_t columns = hn::AllFalse(i, hn::Gt(across, one))             ? 2
+                             : hn::AllFalse(i, hn::Gt(across, hn::Set(i, 2))) ? 3
+                                                                              : 4;
+    batch.columns = std::max(batch.columns, columns);
     const auto bits = [&](VI from) HWY_ATTR {  // from column `from`, 0 to 31, on
         return hn::Shl(hn::Set(u, ~0u), hn::And(hn::BitCast(u, from), hn::Set(u, 31)));
     };
@@ -464,14 +463,14 @@ template <bool kOuter>
 void cutWindows(const SmallPolygonsTask& task, Batch& batch) {
     const int32_t height = static_cast<int32_t>(8 * task.rows), columns = static_cast<int32_t>(task.columns);
     for (uint32_t left = batch.cut; left; left &= left - 1) {
-        const int lane = std::countr_zero(left), at = 4 * (lane & 3) + lane / 4;
+        const size_t lane = static_cast<size_t>(std::countr_zero(left)), at = placeOf(lane);
         for (int column = 0; column < SmallPolygons::kColumns; ++column)
             for (int part = 0; part < 2; ++part) {
                 const int32_t x = batch.tile_x[lane] + column, y = batch.low[lane] + 8 * part;
                 uint64_t keep = x < 0 || x >= columns || y <= -8 || y >= height ? 0 : ~uint64_t{0};
                 if (keep && y < 0) keep <<= -8 * y;
                 if (keep && y + 8 > height) keep &= ~uint64_t{0} >> 8 * (y + 8 - height);
-                for (int o = 0; o < (kOuter ? 2 : 1); ++o) batch.half[o][part][column / 2][at][column & 1] &= keep;
+                for (int o = 0; o < (kOuter ? 2 : 1); ++o) batch.half[o][part][column][at] &= keep;
             }
     }
 }
@@ -520,13 +519,13 @@ HWY_INLINE void writeRecords(const SmallPolygonsTask& task, const Batch& batch, 
     uint32_t count = out.count;
     const V most = hn::Set(l, 56), zero = hn::Zero(l);
     const bool tall = batch.height > 8;
-    for (size_t pair = 0; pair < (batch.wide ? 2 : 1); ++pair)
-        for (size_t up = 0; up < (batch.height > 9 ? 3 : batch.height > 1 ? 2 : 1); ++up) {
-            const uint64_t go = (uint64_t{task.stride} * up + 2 * pair) << 32;
-            for (size_t at = 0; at < 2 * kBatch; at += hn::Lanes(l)) {
-                const V shift = hn::Load(l, batch.shift[0] + at);
+    for (uint32_t column = 0; column < batch.columns; ++column)
+        for (uint32_t up = 0; up < (batch.height > 9 ? 3 : batch.height > 1 ? 2 : 1); ++up) {
+            const uint64_t go = uint64_t{task.stride * up + column} << 32;
+            for (size_t at = 0; at < kBatch; at += hn::Lanes(l)) {
+                const V shift = hn::Load(l, batch.shift + at);
                 const auto word = [&](int o) HWY_ATTR {
-                    const uint64_t *low = batch.half[o][0][pair][0] + at, *high = batch.half[o][1][pair][0] + at;
+                    const uint64_t *low = batch.half[o][0][column] + at, *high = batch.half[o][1][column] + at;
                     const auto below = [&](const uint64_t* from) HWY_ATTR {  // in two steps: the second may be 56
                         return hn::Shr(hn::ShiftRight<8>(hn::Load(l, from)), hn::Sub(most, shift));
                     };
@@ -538,7 +537,7 @@ HWY_INLINE void writeRecords(const SmallPolygonsTask& task, const Batch& batch, 
                 const auto some = hn::Ne(outer, zero);
                 const size_t found = hn::CountTrue(l, some);
                 if (!found) continue;
-                const V place = hn::Add(hn::Load(l, batch.place[0] + at), hn::Set(l, go));
+                const V place = hn::Add(hn::Load(l, batch.place + at), hn::Set(l, go));
                 const Compressor to(some);
                 to.write(inner, out.inner + count);
                 if (kOuter) to.write(outer, out.outer + count);
@@ -564,12 +563,11 @@ HWY_INLINE void scanBatch(const SmallPolygonsTask& task, const Parts& parts, uin
             for (uint32_t row = height; row < (height + 7) / 8 * 8; ++row)
                 hn::Store(hn::Zero(u), u, batch.rows[o][row] + h);
             for (uint32_t part = 0; part < 2; ++part) {
-                if (8 * part < height) {
-                    transposeRows(batch.rows[o] + 8 * part, h, batch.half[o][part]);
-                    continue;
-                }
-                static constexpr uint32_t kEmpty[8][kBatch] = {};
-                transposeRows(kEmpty, h, batch.half[o][part]);
+                alignas(64) static constexpr uint32_t kEmpty[8][kBatch] = {};
+                const bool some = 8 * part < height;
+                // A batch of several vectors may need more columns than are known of yet.
+                transposeRows(some ? batch.rows[o] + 8 * part : kEmpty, h, lanes == kBatch ? batch.columns : 4,
+                              batch.half[o][part]);
             }
         }
         batch.height = std::max(before, height);
@@ -588,8 +586,7 @@ HWY_INLINE void classifySmallPolygons(const SmallPolygonsTask& task, SmallPolygo
     sp::Batch batch;
     for (uint32_t first = 0; first < task.count; first += sp::kBatch) {
         batch.count = std::min(sp::kBatch, task.count - first);
-        batch.large = batch.cut = batch.height = 0;
-        batch.wide = false;
+        batch.large = batch.cut = batch.height = batch.columns = 0;
         sp::scanBatch<kOuter>(task, parts, first, batch, out);
         if (batch.cut) sp::cutWindows<kOuter>(task, batch);
         if (batch.height) sp::writeRecords<kOuter>(task, batch, out);
