@@ -20,7 +20,7 @@ constexpr Case kCases[] = {
 #ifdef SIGHTLINE_GL
     {"gl", benchGl},
 #endif
-    {"hidden", benchHidden}, {"occlusion", benchOcclusion}, {"order", benchOrder},
+    {"hidden", benchHidden}, {"occlusion", benchOcclusion}, {"order", benchOrder}, {"volumes", benchVolumes},
 };
 
 }  // namespace

@@ -36,4 +36,8 @@ Table benchOcclusion(const Options& options);
 /// hierarchy beside Embree's.
 Table benchOrder(const Options& options);
 
+/// City from its streets and from above, building and terrain: what 1 to 64 occluder volumes cull beside the tiles, alone
+/// and before them, and what the query then costs.
+Table benchVolumes(const Options& options);
+
 }  // namespace sightline::bench

@@ -103,7 +103,8 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
         ->type_name("N")
         ->capture_default_str()
         ->group("Culling");
-    verb.add_option("--use", options.use, "only these stages, separated by commas (" + stageNames() + ")")
+    verb.add_option("--use", options.use,
+                    "only these stages, separated by commas (" + stageNames() + "; default: all but volumes)")
         ->delimiter(',')
         ->type_name("LIST")
         ->group("Culling");
@@ -130,7 +131,7 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     const Result<uint32_t> use = readStages("--use", options.use), skip = readStages("--skip", options.skip);
     if (!use) return use.error();
     if (!skip) return skip.error();
-    options.stages = (options.use.empty() ? kAllStages : *use) & ~*skip;
+    options.stages = (options.use.empty() ? kDefaultStages : *use) & ~*skip;
     options.seed_given = verb.count("--seed") > 0;
     if (!options.cameras.empty() && (options.frames > 0 || options.seed_given))
         return usage("--cameras excludes --frames and --seed");

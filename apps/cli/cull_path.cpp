@@ -153,10 +153,13 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     if (run.jitter != View().jitter) command += fmt::format(" --jitter {}", run.jitter);
     if (run.occluder_triangles != View().occluder_triangles)
         command += fmt::format(" --occluder-triangles {}", run.occluder_triangles);
-    std::string names;
-    for (int stage = 0; stage < kStageCount; ++stage)
-        if (!(run.stages >> stage & 1)) names += (names.empty() ? "" : ",") + std::string(kStageNames[stage]);
-    if (!names.empty()) command += " --skip " + names;
+    std::string used, left_out;
+    for (int stage = 0; stage < kStageCount; ++stage) {
+        std::string& names = run.stages >> stage & 1 ? used : left_out;
+        names += (names.empty() ? "" : ",") + std::string(kStageNames[stage]);
+    }
+    if (run.stages & ~kDefaultStages) command += " --use " + used;
+    else if (run.stages != kDefaultStages) command += " --skip " + left_out;
     return command;
 }
 

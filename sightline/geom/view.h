@@ -10,12 +10,14 @@
 namespace sightline {
 
 /// The stages of a query, in the order in which they are applied. Their names are the names of
-/// the files in cull/.
-enum class Stage : uint8_t { kFrustum, kOcclusion };
-inline constexpr int kStageCount = 2;
-inline constexpr const char* kStageNames[kStageCount] = {"frustum", "occlusion"};
+/// the files in cull/; volumes are occluder volumes.
+enum class Stage : uint8_t { kFrustum, kVolumes, kOcclusion };
+inline constexpr int kStageCount = 3;
+inline constexpr const char* kStageNames[kStageCount] = {"frustum", "volumes", "occlusion"};
 inline constexpr uint32_t stageBit(Stage stage) { return 1u << static_cast<uint32_t>(stage); }
 inline constexpr uint32_t kAllStages = (1u << kStageCount) - 1;
+/// Those that pay in most worlds.
+inline constexpr uint32_t kDefaultStages = kAllStages & ~stageBit(Stage::kVolumes);
 
 /// One eye's view of a world for one frame.
 ///
@@ -30,7 +32,8 @@ struct View {
     uint32_t height = 720;                   ///<                                             [pixels, >= 1]
     double jitter = 0.5;                     ///< largest shift of the image that the frame may use  [pixels, 0 to 1e6]
     uint32_t layers = ~0u;                   ///< objects outside these layers are neither reported nor hide
-    uint32_t stages = kAllStages;            ///< bits of Stage: which stages may cull
+    uint32_t stages = kDefaultStages;        ///< bits of Stage: which stages may cull
+    uint32_t occluder_volumes = 8;           ///< that the stage of volumes chooses at most  [limit: <= 64]
     uint32_t occluder_triangles = 1u << 17;  ///< work budget: triangles that may be rasterized, nearest first  [limit]
     uint32_t occlusion_size = 640;           ///< longer side of the occlusion buffer; a viewport that is smaller
                                              ///< gets its own size  [pixels, limit: 1 to 8192]

@@ -79,7 +79,7 @@ struct CullRun {
     uint32_t width = 0, height = 0;
     double jitter = 0;                                        ///< [pixels]
     uint32_t occluder_triangles = View().occluder_triangles;  ///< that a query drew at most
-    uint32_t stages = kAllStages;                             ///< bits of Stage in use
+    uint32_t stages = kDefaultStages;                         ///< bits of Stage in use
     int repeat = 1;
     bool interrupted = false;    ///< the frames after the last one here were not begun, or not finished
     uint64_t frames_wanted = 0;  ///< of the path; 0: as many as there are here

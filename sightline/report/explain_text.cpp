@@ -101,7 +101,9 @@ std::string occlusionText(const Explanation& why, const std::string& subject, co
     if (reason.hiders.empty()) return fmt::format("culled by occlusion: {}.", subject) + rectangleText(why);
     const std::string hiders = listOf(reason.hiders, name);
     std::string text;
-    if (reason.outside_too)
+    if (reason.stage == Stage::kVolumes)
+        text = fmt::format("culled by volumes: all of {} lies in the shadow of {}", subject, hiders);
+    else if (reason.outside_too)
         text = fmt::format(
             "culled by occlusion: {} was culled in one step with {} objects near it, all behind {}. By "
             "itself it lies {}, out of view",
@@ -112,7 +114,8 @@ std::string occlusionText(const Explanation& why, const std::string& subject, co
             fmt::format("culled by occlusion: {} lies behind {}, and is hidden only with the rest of the world there",
                         subject, hiders);
     text += withoutText(reason, name) + ".";
-    return reason.outside_too ? text : text + togetherText(why) + rectangleText(why);
+    return reason.outside_too && reason.stage == Stage::kOcclusion ? text
+                                                                   : text + togetherText(why) + rectangleText(why);
 }
 
 std::string keptText(const Explanation& why, const NameOfObject& name) {
@@ -181,7 +184,7 @@ std::string explanationClause(const Explanation& why, const NameOfObject& name, 
 
 std::string stageOf(const Explanation& why) {
     if (why.verdict == Verdict::kOutsideFrustum) return kStageNames[static_cast<int>(Stage::kFrustum)];
-    if (why.verdict == Verdict::kOccluded) return kStageNames[static_cast<int>(Stage::kOcclusion)];
+    if (why.verdict == Verdict::kOccluded) return kStageNames[static_cast<int>(why.occlusion.stage)];
     return "";
 }
 

@@ -8,7 +8,8 @@
 
 namespace sightline {
 
-const glm::u8vec4 kPlanPalette[kPlanColours] = {{0, 114, 178, 255}, {138, 148, 163, 140}, {230, 126, 0, 215}};
+const glm::u8vec4 kPlanPalette[kPlanColours] = {
+    {0, 114, 178, 255}, {138, 148, 163, 140}, {204, 121, 167, 215}, {230, 126, 0, 215}};
 
 namespace {
 

@@ -27,6 +27,7 @@ struct CreditBook::Impl {
     void weigh(std::span<const double> weights);
     double weightOf(const detail::WalkRecord::Cull& cull) const;
     void share(const detail::WalkRecord::Cull& cull);
+    void shareVolume(const detail::WalkRecord::Cull& cull);
     void gather();
 };
 
@@ -70,11 +71,26 @@ void CreditBook::Impl::share(const detail::WalkRecord::Cull& cull) {
     met.clear();
 }
 
-/// Only what was rasterized has a credit: an instance may have been offered and skipped.
+/// Gives a range that a volume culled to the volume's object, which need not have been drawn.
+void CreditBook::Impl::shareVolume(const detail::WalkRecord::Cull& cull) {
+    const detail::SnapshotState& state = snapshot.state();
+    const uint32_t item = state.itemOf(state.bvh.order[cull.hider]);
+    size_t at = 0;
+    while (at < of_instance.size() && of_instance[at].item != item) ++at;
+    if (at == of_instance.size()) {
+        Credit& credit = of_instance.emplace_back();
+        credit.item = item;
+        credit.id = state.object(item).id;
+    }
+    of_instance[at].hidden += static_cast<double>(walk.inLayers(cull.first, cull.count));
+    of_instance[at].hidden_weight += weightOf(cull);
+}
+
+/// What was not rasterized and hid nothing has no credit: an instance may have been offered and skipped.
 void CreditBook::Impl::gather() {
     credits.clear();
     for (const Credit& credit : of_instance)
-        if (credit.triangles > 0) credits.push_back(credit);
+        if (credit.triangles > 0 || credit.hidden > 0) credits.push_back(credit);
     std::sort(credits.begin(), credits.end(), [](const Credit& a, const Credit& b) { return a.item < b.item; });
 }
 
@@ -96,8 +112,8 @@ std::span<const Credit> CreditBook::credits(const View& view) {
     const detail::SnapshotState& state = impl.snapshot.state();
     impl.record.clear();  // a view that is not usable, or without the occlusion stage, draws nothing
     impl.walk.run(&state, view);
-    if (impl.record.draws.empty()) return {};
-    impl.owners.run(impl.walk, impl.record);
+    if (impl.record.draws.empty() && impl.walk.volumes.count() == 0) return {};
+    if (!impl.record.draws.empty()) impl.owners.run(impl.walk, impl.record);
     impl.of_instance.assign(impl.record.owners.size(), Credit());
     impl.pixels.assign(impl.record.owners.size(), 0);
     for (size_t i = 0; i < impl.record.owners.size(); ++i) {
@@ -108,6 +124,7 @@ std::span<const Credit> CreditBook::credits(const View& view) {
         impl.of_instance[draw.instance].triangles += draw.triangles;
     for (const detail::WalkRecord::Cull& cull : impl.record.culls)
         if (cull.stage == Stage::kOcclusion) impl.share(cull);
+        else if (cull.stage == Stage::kVolumes) impl.shareVolume(cull);
     impl.gather();
     return impl.credits;
 }

@@ -22,10 +22,10 @@ struct Credit {
 
 /// Reckons up the credits of queries on one snapshot. Each occluder of a frame is drawn once more, alone, and each
 /// pixel belongs to the nearest that covers it. Whatever the occlusion stage culled is shared among the owners of the
-/// pixels in its rectangle, by their number. Costs some tens of queries a frame, and O(objects) once.
+/// pixels in its rectangle, by their number; what a volume culled goes to the volume's object. Costs some tens of queries a frame, and O(objects) once.
 ///
 /// Objects that were culled together, as a node of the hierarchy, have one rectangle. The credits of a frame add up to
-/// the objects that its occlusion stage culled.
+/// the objects that its occlusion stage and its volumes culled.
 class CreditBook {
 public:
     /// @param weights  of the objects, for Credit::hidden_weight [size: Snapshot::objectCount(), or none: all 1]
@@ -34,7 +34,7 @@ public:
     CreditBook(CreditBook&&) noexcept;
     CreditBook& operator=(CreditBook&&) noexcept;
 
-    /// Of all occluders that a query for this view rasterizes, by item. Valid until the next call.
+    /// Of all occluders that a query for this view rasterizes, or in whose volumes it culls something, by item. Valid until the next call.
     std::span<const Credit> credits(const View& view);
 
     /// Objects that the last view's occlusion stage culled and whose pixels no occluder owns: 0, but for rounding.

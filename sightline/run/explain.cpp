@@ -74,6 +74,7 @@ struct Explainer::Impl {
     KeptBecause doubtOf(const Box3d& box) const;
     void explainOccluded(uint32_t item, const PixelRect& rect, const ExplainSettings& settings, OcclusionReason& out);
     void tryWithout(uint32_t item, OcclusionReason& out);
+    void nameVolume(const SnapshotState& state, Array<Hider>& hiders) const;
 };
 
 uint32_t Explainer::Impl::find(ObjectId id) const {
@@ -149,13 +150,21 @@ void Explainer::Impl::explainOpenPixel(const PixelRect& rect, Explanation& out) 
 void Explainer::Impl::explainOccluded(uint32_t item, const PixelRect& rect, const ExplainSettings& settings,
                                       OcclusionReason& out) {
     if (!settings.hiders) return;
-    if (out.outside_too) {
+    if (out.stage == Stage::kVolumes) {
+        nameVolume(snapshot.state(), out.hiders);
+    } else if (out.outside_too) {
         out.sufficient = false;
         search.own(snapshot.state(), trial, out.hiders);
     } else {
         out.sufficient = search.run(snapshot.state(), view, item, trial, rect, out.hiders);
     }
     if (settings.without) tryWithout(item, out);
+}
+
+/// The object whose volume culled what the trial asked for.
+void Explainer::Impl::nameVolume(const SnapshotState& state, Array<Hider>& hiders) const {
+    const detail::ObjectRecord& owner = state.objectAt(trial.cull.hider);
+    hiders.push_back({owner.id, owner.key, 1.0});
 }
 
 /// Builds the world without the hiders and looks again.
@@ -175,6 +184,7 @@ void Explainer::Impl::tryWithout(uint32_t item, OcclusionReason& out) {
                   : verdict == Verdict::kOutsideFrustum ? Without::kOutsideFrustum
                                                         : Without::kVisible;
     if (verdict != Verdict::kOccluded) return;
+    if (trial.cull.stage == Stage::kVolumes) return nameVolume(*left, out.others);
     const LeafAnswer leaf = detail::askLeaf(*left, detail::hierarchyPlace(*left, self), view, trial.walk.screen);
     if (leaf.beyond_plane || leaf.outside()) search.own(*left, trial, out.others);
     else search.run(*left, view, self, trial, leaf.rect(), out.others);
@@ -229,6 +239,7 @@ Explanation Explainer::explain(ObjectId id, const ExplainSettings& settings) {
     if (out.verdict == Verdict::kVisible) impl.explainVisible(item, out);
     else out.together = static_cast<uint32_t>(impl.trial.walk.inLayers(impl.trial.cull.first, impl.trial.cull.count));
     out.occlusion.outside_too = out.verdict == Verdict::kOccluded && out.frustum.outside_any;
+    if (out.verdict == Verdict::kOccluded) out.occlusion.stage = impl.trial.cull.stage;
     if (out.verdict == Verdict::kOccluded) impl.explainOccluded(item, rect, settings, out.occlusion);
     return out;
 }

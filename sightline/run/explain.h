@@ -17,7 +17,7 @@ enum class Verdict : uint8_t {
     kOutsideLayers,   ///< View::layers leaves it out
     kVisible,         ///< it is in the answer
     kOutsideFrustum,  ///< culled by the frustum stage
-    kOccluded,        ///< culled by the occlusion stage
+    kOccluded,        ///< culled by the occlusion stage, or by the stage of volumes
 };
 
 /// A rectangle of the viewport. What a query looks at is the viewport widened by the jitter, in the whole pixels of its
@@ -55,6 +55,8 @@ struct Hider {
 enum class Without : uint8_t { kNotAsked, kVisible, kOccluded, kOutsideFrustum };
 
 struct OcclusionReason {
+    /// That culled it. The stage of volumes has one hider, whose shadow holds all of the object's box: a proof by itself.
+    Stage stage = Stage::kOcclusion;
     /// A minimal sufficient set, those with the largest share first: a world of the object and these alone still hides
     /// it, and without any one of them the others of the set do not.
     Array<Hider> hiders;

@@ -10,10 +10,12 @@ bool HiderSearch::run(const SnapshotState& state, const View& view, uint32_t ite
                       const PixelRect& rect, Array<Hider>& hiders) {
     hiders.clear();
     owners.run(decided.walk, decided.record, rect);
+    View by_tiles = view;  // what the tiles of a set hide a volume may hide as well, and nobody would own a pixel
+    by_tiles.stages &= ~stageBit(Stage::kVolumes);
     for (const bool anywhere : {false, true}) {
         collect(state, decided, rect, anywhere);
-        if (!shrink(state, view, item)) continue;
-        share(state, view, item, hiders);
+        if (!shrink(state, by_tiles, item)) continue;
+        share(state, by_tiles, item, hiders);
         return true;
     }
     reportOwners(state, hiders);

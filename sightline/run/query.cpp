@@ -39,7 +39,8 @@ VisibleSet Query::visible(const Snapshot& now, const View& view) {
     walk.stats.nanoseconds = static_cast<uint64_t>(
         std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count());
     if (view.time_stages && walk.uses(Stage::kOcclusion))
-        walk.of(Stage::kOcclusion).nanoseconds = walk.stats.nanoseconds - walk.of(Stage::kFrustum).nanoseconds;
+        walk.of(Stage::kOcclusion).nanoseconds =
+            walk.stats.nanoseconds - walk.of(Stage::kFrustum).nanoseconds - walk.of(Stage::kVolumes).nanoseconds;
     return {walk.visible, walk.stats};
 }
 

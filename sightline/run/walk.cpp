@@ -1,4 +1,4 @@
-// The walk behind a query: front to back over the hierarchy, frustum and occlusion; and what it notes on request.
+// The walk behind a query: front to back over the hierarchy, stage by stage; and what it notes on request.
 // SPDX-License-Identifier: MIT
 #include "sightline/run/walk.h"
 
@@ -20,6 +20,13 @@ uint64_t since(Clock::time_point start) {
 /// What is smaller in both directions hides next to nothing, and is not drawn.  [pixels]
 constexpr int32_t kLeastExtent = 4;
 
+/// Bit per slot of a node that has a child.
+uint32_t usedSlots(const BvhNode& node) {
+    uint32_t used = 0;
+    for (int slot = 0; slot < 8; ++slot) used |= uint32_t{node.count[slot] != 0} << slot;
+    return used;
+}
+
 bool isSmall(const PixelRect& rect) { return rect.x1 - rect.x0 < kLeastExtent && rect.y1 - rect.y0 < kLeastExtent; }
 
 }  // namespace
@@ -40,11 +47,12 @@ uint64_t Walk::inLayers(uint32_t first, uint32_t count) const {
     return within;
 }
 
-/// @param rect  that decided; null: a plane did
-void Walk::cull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect) {
+/// @param rect   that decided; null: a plane or a volume did
+/// @param hider  place of the object that the volume belongs to
+void Walk::cull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect, uint32_t hider) {
     of(stage).culled += inLayers(first, count);
     culled.push_back({first, count, stage});
-    if (record) noteCull(first, count, stage, rect);
+    if (record) noteCull(first, count, stage, rect, hider);
 }
 
 void WalkRecord::clear() {
@@ -60,11 +68,11 @@ void Walk::noteDraw(const OccluderInstance& instance, uint32_t cluster, const Bo
     if (record->log) record->log->noteDraw();
 }
 
-void Walk::noteCull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect) {
-    WalkRecord::Cull note{first, count, stage, stage == Stage::kFrustum && rect, PixelRect()};
+void Walk::noteCull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect, uint32_t hider) {
+    WalkRecord::Cull note{first, count, stage, stage == Stage::kFrustum && rect, PixelRect(), hider};
     if (rect) note.rect = *rect;
     record->culls.push_back(note);
-    if (stage == Stage::kOcclusion && record->stopsAt(first, count)) {
+    if (stage != Stage::kFrustum && record->stopsAt(first, count)) {
         record->stopped = true;
         undecided = 0;
     }
@@ -87,6 +95,7 @@ void Walk::begin(const SnapshotState* now, const View& new_view) {
     visible.clear();
     culled.clear();
     tiles.clear(0, 0);
+    volumes.clear();
     if (record) record->clear();
     tiles.log = record ? record->log : nullptr;
     if (!snapshot) return;
@@ -118,14 +127,25 @@ void Walk::keepEverything() {
     for (uint32_t item = 0; item < state().count; ++item) keep(item);
 }
 
-/// Tests a node's children against the frustum and puts those that are left in line.
-void Walk::expand(uint32_t index, uint8_t planes) {
+/// Culls the children that lie in a volume.
+VolumesAnswer Walk::askVolumes(const BvhNode& node, const EyeBoxes& boxes, VolumeRange range, uint32_t left) {
+    const auto start = view.time_stages ? Clock::now() : Clock::time_point();
+    const VolumesAnswer answer = volumes.test(boxes, range, left);
+    if (view.time_stages) of(Stage::kVolumes).nanoseconds += since(start);
+    for (int slot = 0; slot < 8; ++slot)
+        if (answer.hidden >> slot & 1)
+            cull(node.first[slot], node.count[slot], Stage::kVolumes, nullptr, volumes.owner(answer.volume[slot]));
+    return answer;
+}
+
+/// Tests a node's children against the frustum and the volumes and puts those that are left in line.
+void Walk::expand(const Visit& from) {
     const auto start = view.time_stages ? Clock::now() : Clock::time_point();
     ++stats.nodes_visited;
-    const BvhNode& node = state().bvh.nodes[index];
+    const BvhNode& node = state().bvh.nodes[from.node];
     const EyeBoxes boxes = eyeBoxes(node, state().bvh.origin - frustum.eye);
     FrustumAnswer answer;
-    if (uses(Stage::kFrustum)) answer = testFrustum(frustum, boxes, planes);
+    if (uses(Stage::kFrustum)) answer = testFrustum(frustum, boxes, from.planes);
     if (view.time_stages) of(Stage::kFrustum).nanoseconds += since(start);
     uint32_t left = 0;
     for (int slot = 0; slot < 8; ++slot) {
@@ -133,13 +153,22 @@ void Walk::expand(uint32_t index, uint8_t planes) {
         if (answer.outside >> slot & 1) cull(node.first[slot], node.count[slot], Stage::kFrustum, nullptr);
         else left |= 1u << slot;
     }
+    VolumesAnswer hidden;
+    if (left && from.volumes.count) {
+        hidden = askVolumes(node, boxes, from.volumes, left);
+        left &= ~hidden.hidden;
+    }
     if (!left) return;
     const ScreenAnswer on_screen = projectBoxes(screen, boxes);
-    for (int slot = 0; slot < 8; ++slot)
-        if (left >> slot & 1) meet(node, slot, uses(Stage::kFrustum) ? answer.planes[slot] : 0, on_screen);
+    for (int slot = 0; slot < 8; ++slot) {
+        if (!(left >> slot & 1)) continue;
+        const uint8_t planes = uses(Stage::kFrustum) ? answer.planes[slot] : uint8_t{0};
+        meet(node, slot, {node.child[slot], planes, hidden.range[slot]}, on_screen);
+    }
 }
 
-void Walk::meet(const BvhNode& node, int slot, uint8_t planes, const ScreenAnswer& on_screen) {
+/// @param below  the child as a node: planes and volumes that it crosses
+void Walk::meet(const BvhNode& node, int slot, const Visit& below, const ScreenAnswer& on_screen) {
     const bool doubt = on_screen.doubt >> slot & 1, outside = on_screen.outside >> slot & 1;
     if (outside && uses(Stage::kFrustum))
         return cull(node.first[slot], node.count[slot], Stage::kFrustum, &on_screen.rects[slot]);
@@ -149,7 +178,8 @@ void Walk::meet(const BvhNode& node, int slot, uint8_t planes, const ScreenAnswe
     entry.index = node.child[slot] & ~BvhNode::kLeaf;
     entry.first = node.first[slot];
     entry.count = node.count[slot];
-    entry.planes = planes;
+    entry.planes = below.planes;
+    entry.volumes = below.volumes;
     entry.rect = on_screen.rects[slot];
     if (doubt) entry.rect.nearness = std::numeric_limits<float>::infinity();
     if (outside) entry.rect.nearness = -std::numeric_limits<float>::infinity();
@@ -209,16 +239,16 @@ void Walk::visit(const Pending& entry) {
     const Seams seams = entry.kind == Pending::Kind::kNode ? Seams::kLeave : Seams::kResolve;
     if (occlusion && entry.testable && isHidden(tiles, entry.rect, seams))
         return cull(entry.first, entry.count, Stage::kOcclusion, &entry.rect);
-    if (entry.kind == Pending::Kind::kNode) return expand(entry.index, entry.planes);
+    if (entry.kind == Pending::Kind::kNode) return expand({entry.index, entry.planes, entry.volumes});
     report(entry.index, 1);
     if (record) noteKept(entry);
     if (occlusion && undecided > 0 && !(entry.testable && isSmall(entry.rect))) offerOccluder(entry.index);
 }
 
 /// Without the occlusion stage the order does not matter: depth first, and whole subtrees that are inside at once.
-void Walk::walkFrustumOnly(uint32_t root, uint8_t all_planes) {
+void Walk::walkUnordered(const Visit& root) {
     Array<Visit>& stack = visits;
-    stack.assign(1, {root, all_planes});
+    stack.assign(1, root);
     while (!stack.empty()) {
         const Visit visit = stack.back();
         stack.pop_back();
@@ -226,14 +256,22 @@ void Walk::walkFrustumOnly(uint32_t root, uint8_t all_planes) {
         const BvhNode& node = state().bvh.nodes[visit.node];
         const EyeBoxes boxes = eyeBoxes(node, state().bvh.origin - frustum.eye);
         const FrustumAnswer answer = testFrustum(frustum, boxes, visit.planes);
+        VolumesAnswer hidden;
+        if (visit.volumes.count) hidden = askVolumes(node, boxes, visit.volumes, ~answer.outside & usedSlots(node));
         for (int slot = 0; slot < 8; ++slot) {
-            if (node.count[slot] == 0) continue;
+            if (node.count[slot] == 0 || (hidden.hidden >> slot & 1)) continue;
+            const bool decided = answer.planes[slot] == 0 && hidden.range[slot].count == 0;
             if (answer.outside >> slot & 1) cull(node.first[slot], node.count[slot], Stage::kFrustum, nullptr);
-            else if (answer.planes[slot] == 0 || (node.child[slot] & BvhNode::kLeaf))
-                report(node.first[slot], node.count[slot]);
-            else stack.push_back({node.child[slot], answer.planes[slot]});
+            else if (decided || (node.child[slot] & BvhNode::kLeaf)) report(node.first[slot], node.count[slot]);
+            else stack.push_back({node.child[slot], answer.planes[slot], hidden.range[slot]});
         }
     }
+}
+
+void Walk::chooseVolumes() {
+    const auto start = view.time_stages ? Clock::now() : Clock::time_point();
+    volumes.choose(state(), view, frustum, screen, view.occluder_volumes);
+    if (view.time_stages) of(Stage::kVolumes).nanoseconds += since(start);
 }
 
 void Walk::walk() {
@@ -243,8 +281,10 @@ void Walk::walk() {
     for (uint32_t item : state().unbounded) keep(item);
     if (state().bvh.nodes.empty()) return;
     const uint8_t planes = static_cast<uint8_t>(uses(Stage::kFrustum) ? (1u << frustum.count) - 1 : 0);
-    if (!uses(Stage::kOcclusion)) return walkFrustumOnly(0, planes);
-    expand(0, planes);
+    if (uses(Stage::kVolumes)) chooseVolumes();
+    const Visit root{0, planes, volumes.all()};
+    if (!uses(Stage::kOcclusion)) return walkUnordered(root);
+    expand(root);
     while (undecided > 0) {
         std::pop_heap(pending.begin(), pending.end());
         const Pending entry = pending.back();
@@ -255,8 +295,11 @@ void Walk::walk() {
 }
 
 void Walk::finish() {
-    of(Stage::kFrustum).tested = uses(Stage::kFrustum) ? stats.objects : 0;
-    of(Stage::kOcclusion).tested = uses(Stage::kOcclusion) ? stats.objects - of(Stage::kFrustum).culled : 0;
+    uint64_t left = stats.objects;
+    for (const Stage stage : {Stage::kFrustum, Stage::kVolumes, Stage::kOcclusion}) {
+        of(stage).tested = uses(stage) ? left : 0;
+        left -= of(stage).culled;
+    }
     stats.visible = visible.size();
     stats.seam_pixels = tiles.seam_pixels;
     uint64_t culled_objects = 0;

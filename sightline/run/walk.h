@@ -1,4 +1,4 @@
-// The walk behind a query: front to back over the hierarchy, frustum and occlusion; and what it notes on request.
+// The walk behind a query: front to back over the hierarchy, stage by stage; and what it notes on request.
 // SPDX-License-Identifier: MIT
 //
 // Ned Greene, Michael Kass, Gavin Miller. Hierarchical Z-Buffer Visibility. 1993.
@@ -10,6 +10,7 @@
 #include "sightline/cull/occlusion.h"
 #include "sightline/raster/tile_log.h"
 #include "sightline/run/query.h"
+#include "sightline/run/volumes.h"
 #include "sightline/run/world_state.h"
 
 namespace sightline::detail {
@@ -24,6 +25,7 @@ struct Pending {
     uint32_t first = 0, count = 1;  ///< places of the objects below
     uint8_t planes = 0;             ///< of a node: frustum planes that it is not inside of
     Kind kind = Kind::kNode;
+    VolumeRange volumes;    ///< of a node: volumes that it crosses
     bool testable = false;  ///< the rectangle stands for the bound; else it is in doubt, or outside and kept
 
     bool operator<(const Pending& other) const {  // std heaps keep the largest at the front
@@ -35,6 +37,7 @@ struct Pending {
 struct Visit {
     uint32_t node = 0;
     uint8_t planes = 0;
+    VolumeRange volumes;  ///< that it crosses
 };
 
 /// Objects that were culled together.
@@ -58,8 +61,9 @@ struct WalkRecord {
     struct Cull {
         uint32_t first = 0, count = 0;
         Stage stage = Stage::kFrustum;
-        bool off_screen = false;  ///< the rectangle misses the buffer; no plane decided
-        PixelRect rect;           ///< by the occlusion stage: what was hidden
+        bool off_screen = false;    ///< the rectangle misses the buffer; no plane decided
+        PixelRect rect;             ///< by the occlusion stage: what was hidden
+        uint32_t hider = kNowhere;  ///< by a volume: the place of the object that hides it
     };
     /// The rectangle of the object at `stop_at`, where it was kept.
     struct Kept {
@@ -92,6 +96,7 @@ struct Walk {
     bool every_layer = true;       ///< no object is outside the view's layers
     Frustum frustum;
     Screen screen;
+    VolumeStage volumes{memory};
     DepthTiles tiles{memory};
     Array<Pending> pending{memory};
     Array<Visit> visits{memory};
@@ -117,19 +122,22 @@ private:
     void begin(const SnapshotState* now, const View& new_view);
     void keepEverything();
     void walk();
-    void walkFrustumOnly(uint32_t node, uint8_t planes);
-    void expand(uint32_t node, uint8_t planes);
-    void meet(const BvhNode& node, int slot, uint8_t planes, const ScreenAnswer& on_screen);
+    void chooseVolumes();
+    void walkUnordered(const Visit& root);
+    void expand(const Visit& from);
+    VolumesAnswer askVolumes(const BvhNode& node, const EyeBoxes& boxes, VolumeRange range, uint32_t left);
+    void meet(const BvhNode& node, int slot, const Visit& below, const ScreenAnswer& on_screen);
     void visit(const Pending& entry);
     void keep(uint32_t item);
     void report(uint32_t first, uint32_t count);
     void offerOccluder(uint32_t place);
     void draw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box);
-    void cull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect);
+    void cull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect,
+              uint32_t hider = WalkRecord::kNowhere);
     void push(Pending entry);
     void finish();
     void noteDraw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box, uint32_t triangles);
-    void noteCull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect);
+    void noteCull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect, uint32_t hider);
     void noteKept(const Pending& entry);
 };
 

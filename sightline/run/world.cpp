@@ -166,9 +166,7 @@ World& World::operator=(World&&) noexcept = default;
 uint32_t Snapshot::objectCount() const { return state_ ? state_->count : 0; }
 
 OccluderId World::addOccluder(const Occluder& occluder) {
-    auto copy = makeShared<Occluder>(state_->memory, state_->memory);
-    *copy = occluder;
-    state_->occluders.push_back(std::move(copy));
+    state_->occluders.push_back(makeShared<detail::HeldOccluder>(state_->memory, occluder, state_->memory));
     state_->rebuild = true;
     return {static_cast<uint32_t>(state_->occluders.size() - 1)};
 }

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "sightline/base/memory.h"
+#include "sightline/cull/volume_parts.h"
 #include "sightline/geom/occluder.h"
 #include "sightline/run/world.h"
 #include "sightline/space/bvh.h"
@@ -50,7 +51,16 @@ struct PlacedObject {
     uint32_t layers = 0;
 };
 
-using OccluderTable = Array<std::shared_ptr<const Occluder>>;  // entry 0 is null
+/// An occluder, and what of it hides by itself.
+struct HeldOccluder : Occluder {
+    VolumeParts parts;
+
+    HeldOccluder(const Occluder& from, Memory* memory) : Occluder(memory), parts(findVolumeParts(from, memory)) {
+        Occluder::operator=(from);
+    }
+};
+
+using OccluderTable = Array<std::shared_ptr<const HeldOccluder>>;  // entry 0 is null
 
 /// An immutable state of a world. Items are the living objects in the order of World::add.
 struct SnapshotState {

@@ -47,7 +47,7 @@ TEST(CullRun, VisibleAndCulledAddUpForAnyReasons) {
         for (SceneObject& object : scene.objects) {
             object.key = random.below(12);
             object.mesh = static_cast<uint32_t>(random.below(2));
-            frame.reasons.push_back(static_cast<uint8_t>(random.below(3)));
+            frame.reasons.push_back(static_cast<uint8_t>(random.below(1 + kStageCount)));
         }
         const auto order = orderByKey(scene);
         countByKey(scene, order, kAllStages, frame);

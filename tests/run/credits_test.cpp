@@ -77,8 +77,9 @@ TEST(Credits, AddUpToWhatTheOcclusionStageCulled) {
                 weight += credit.hidden_weight;
                 triangles += credit.triangles;
             }
-            culled += stats.stages[1].culled;
-            EXPECT_EQ(static_cast<double>(stats.stages[1].culled), expected);
+            const uint64_t by_occlusion = stats.stages[static_cast<int>(Stage::kOcclusion)].culled;
+            culled += by_occlusion;
+            EXPECT_EQ(static_cast<double>(by_occlusion), expected);
             EXPECT_NEAR(hidden, expected, 1e-6) << "seed " << seed << " frame " << frame;
             EXPECT_NEAR(weight, expected_weight, 1e-6) << "seed " << seed << " frame " << frame;
             EXPECT_EQ(triangles, stats.occluder_triangles);

@@ -55,14 +55,14 @@ inline uint8_t reasonOf(const Snapshot& now, const View& view, uint32_t item) {
 constexpr uint8_t kByFrustum = 1 + static_cast<uint8_t>(Stage::kFrustum);
 constexpr uint8_t kByOcclusion = 1 + static_cast<uint8_t>(Stage::kOcclusion);
 
-inline uint8_t reasonOf(Verdict verdict) {
-    switch (verdict) {
+inline uint8_t reasonOf(const Explanation& why) {
+    switch (why.verdict) {
         case Verdict::kVisible:
             return 0;
         case Verdict::kOutsideFrustum:
             return kByFrustum;
         case Verdict::kOccluded:
-            return kByOcclusion;
+            return 1 + static_cast<uint8_t>(why.occlusion.stage);
         default:
             return 255;
     }
@@ -118,7 +118,7 @@ public:
     Explanation expectVerdict(uint32_t item, const ExplainSettings& settings = {false, false}) {
         Explanation why = explainer_.explain(now_.state().object(item).id, settings);
         ++count.verdicts;
-        EXPECT_EQ(int(reasonOf(why.verdict)), int(reasons_[item])) << name_ << ": object " << item;
+        EXPECT_EQ(int(reasonOf(why)), int(reasons_[item])) << name_ << ": object " << item;
         return why;
     }
 

@@ -143,7 +143,7 @@ TEST(Explain, SaysOfEveryObjectWhatTheQuerySays) {
         Random random(seed);
         for (int kind = 0; kind < 12; ++kind) {
             View view = randomView(random, kind);
-            view.stages = static_cast<uint32_t>(kind % 4);
+            view.stages = static_cast<uint32_t>(kind % (1 << kStageCount));
             if (kind == 7) view.layers = 2;
             if (kind == 11) view.projection[1][1] = 0;
             Laws laws(now, view, "seed " + std::to_string(seed) + " kind " + std::to_string(kind));
