@@ -7,6 +7,7 @@
 #include "sightline/prepare/clusters.h"
 #include "sightline/prepare/junctions.h"
 #include "sightline/prepare/merge.h"
+#include "sightline/prepare/orient.h"
 #include "sightline/prepare/quads.h"
 
 namespace sightline {
@@ -23,6 +24,7 @@ struct Prepared {
 Prepared prepare(std::span<const OccluderSource> sources, const OccluderSettings& settings, bool by_mesh) {
     Prepared out;
     out.patchwork = weld(sources);
+    orientDoubleSided(out.patchwork);
     pairTriangles(out.patchwork);
     if (settings.merge) mergeCoplanar(out.patchwork, by_mesh);
     if (settings.junctions) findJunctions(out.patchwork);

@@ -28,7 +28,8 @@ struct OccluderSource {
 /// Prepares the given triangles as an occluder.
 ///
 /// Keeps every triangle except those whose corners lie on a line or whose positions are not finite.
-/// Positions are kept bit for bit (a negative zero becomes zero); nothing is welded by tolerance.
+/// Positions are kept bit for bit (a negative zero becomes zero); nothing is welded by tolerance. Double-sided triangles
+/// may be turned, so that neighbours wind the same way.
 /// Triangles that share an edge and make a convex, nearly flat quadrangle are paired. Three polygons or more that hang
 /// together by shared edges make joined clusters of their own; all others are gathered in loose ones. O(n log n).
 ///
