@@ -45,24 +45,57 @@ constexpr float kLevel = 0x1p17f;
 // by 2^-12.
 constexpr float kRounding = 0x1p-9f + 0x1p-11f;
 
-/// A task's polygons, taken apart ahead of time: a vector read waits long for narrow writes that it spans.
+/// A task's polygons, corner by corner. Vertices are fetched by plain moves, which take a third of a gather's time; and
+/// ahead of their use, since a vector read waits long for narrow writes that it spans.
 struct Parts {
-    alignas(64) uint32_t corners[64];  ///< four indices of vertices
+    SnappedVertex corner[4][4][4][4];  ///< the fourth only in batches that have it; per batch: of the polygons 4 b + k
+                                       ///< those with the least k first
     alignas(64) uint32_t both[64];     ///< 1: double-sided
+    alignas(64) uint32_t three[64];    ///< 1: has three corners
     uint32_t quads = 0;                ///< bit per batch that has some with four corners
 
     explicit Parts(const SmallPolygonsTask& task) {
         const uint32_t count = task.count, padded = (count + kBatch - 1) / kBatch * kBatch;
-        for (uint32_t p = 0; p < count; ++p) {
-            std::memcpy(corners + p, task.polygons[p].vertex, 4);
-            both[p] = task.polygons[p].double_sided;
+        const auto fetch = [&](uint32_t p, const OccluderPolygon& polygon) {
+            for (int k = 0; k < 3; ++k) at(k, p) = task.vertices[polygon.vertex[k]];
+            both[p] = polygon.double_sided;
+            three[p] = polygon.vertex[3] == OccluderPolygon::kNone;
+        };
+        for (uint32_t p = 0; p < count; ++p) fetch(p, task.polygons[p]);
+        for (uint32_t p = count; p < padded; ++p) fetch(p, task.polygons[count - 1]);
+        for (uint32_t first = 0; first < padded; first += kBatch) {
+            uint32_t threes = 1;
+            for (uint32_t p = first; p < first + kBatch; ++p) threes &= three[p];
+            if (threes) continue;
+            quads |= 1u << first / kBatch;
+            for (uint32_t p = first; p < first + kBatch; ++p) {
+                const uint8_t* vertex = task.polygons[std::min(p, count - 1)].vertex;
+                at(3, p) = task.vertices[vertex[three[p] ? 2 : 3]];
+            }
         }
-        for (uint32_t p = count; p < padded; ++p) corners[p] = corners[count - 1], both[p] = 0;
-        const U u;
-        for (uint32_t p = 0; p < padded; p += static_cast<uint32_t>(hn::Lanes(u))) {
-            const auto quad = hn::Ne(hn::ShiftRight<24>(hn::Load(u, corners + p)), hn::Set(u, OccluderPolygon::kNone));
-            if (!hn::AllFalse(u, quad)) quads |= 1u << p / kBatch;
-        }
+    }
+    SnappedVertex& at(int k, uint32_t p) { return corner[k][p / kBatch][p & 3][p % kBatch / 4]; }
+
+    /// One corner of the polygons of a vector.
+    HWY_INLINE void load(int k, size_t p, VI& x, VI& y, VF& d) const {
+        const I i;
+        const SnappedVertex* from = &corner[k][p / kBatch][p & 3][p % kBatch / 4];
+#if HWY_TARGET == HWY_SCALAR
+        x = hn::Set(i, from->x);
+        y = hn::Set(i, from->y);
+        d = hn::Set(F(), from->d);
+#else
+        const hn::Repartition<int64_t, I> l;
+        const auto part = [&](int polygon) HWY_ATTR { return hn::Load(i, &from[4 * polygon].x); };
+        const VI v0 = part(0), v1 = part(1), v2 = part(2), v3 = part(3);
+        const auto xy01 = hn::BitCast(l, hn::InterleaveLower(i, v0, v1));
+        const auto xy23 = hn::BitCast(l, hn::InterleaveLower(i, v2, v3));
+        const auto d01 = hn::BitCast(l, hn::InterleaveUpper(i, v0, v1));
+        const auto d23 = hn::BitCast(l, hn::InterleaveUpper(i, v2, v3));
+        x = hn::BitCast(i, hn::InterleaveLower(l, xy01, xy23));
+        y = hn::BitCast(i, hn::InterleaveUpper(l, xy01, xy23));
+        d = hn::BitCast(F(), hn::InterleaveLower(l, d01, d23));
+#endif
     }
 };
 
@@ -365,19 +398,10 @@ HWY_INLINE void scanPolygons(const SmallPolygonsTask& task, const Parts& parts, 
     const I i;
     const U u;
     constexpr int kCorners = kQuads ? 4 : 3;
-    const SnappedVertices& vertices = *task.vertices;
-    const VU word = hn::Load(u, parts.corners + first + h), byte = hn::Set(u, 255);
-    VI index[4] = {hn::BitCast(i, hn::And(word, byte)), hn::BitCast(i, hn::And(hn::ShiftRight<8>(word), byte)),
-                   hn::BitCast(i, hn::And(hn::ShiftRight<16>(word), byte)), hn::BitCast(i, hn::ShiftRight<24>(word))};
-    const MI triangle = hn::Eq(index[3], hn::Set(i, OccluderPolygon::kNone));
-    index[3] = hn::IfThenElse(triangle, index[2], index[3]);
+    const MI triangle = hn::Eq(hn::Load(i, reinterpret_cast<const int32_t*>(parts.three) + first + h), hn::Set(i, 1));
     VI x[4], y[4];
     VF nearness[4];
-    for (int k = 0; k < kCorners; ++k) {
-        x[k] = hn::GatherIndex(i, vertices.x, index[k]);
-        y[k] = hn::GatherIndex(i, vertices.y, index[k]);
-        nearness[k] = hn::GatherIndex(d, vertices.d, index[k]);
-    }
+    for (int k = 0; k < kCorners; ++k) parts.load(k, first + h, x[k], y[k], nearness[k]);
     VI x0 = x[0], x1 = x[0], y0 = y[0], y1 = y[0];
     VF d0 = nearness[0], d1 = nearness[0];
     for (int k = 1; k < kCorners; ++k) {
@@ -388,7 +412,7 @@ HWY_INLINE void scanPolygons(const SmallPolygonsTask& task, const Parts& parts, 
     // Snapping has moved the corners by half a step, and the slack is rounded up.
     const int32_t steps = static_cast<int32_t>(std::ceil(task.slack * 256.0f)) + 1;
     const VI slack = hn::Set(i, steps), zero = hn::Zero(i), one = hn::Set(i, 1);
-    const MI near = hn::Eq(x0, hn::Set(i, SnappedVertices::kNone));
+    const MI near = hn::Eq(x0, hn::Set(i, SnappedVertex::kNone));
     const VI left = hn::ShiftRight<8>(hn::Sub(x0, slack)), right = hn::ShiftRight<8>(hn::Add(x1, slack));
     const VI low = hn::ShiftRight<8>(hn::Sub(y0, slack)), high = hn::ShiftRight<8>(hn::Add(y1, slack));
     const VI tile_x = hn::ShiftRight<3>(left), tile_y = hn::ShiftRight<3>(low);
@@ -536,7 +560,6 @@ HWY_INLINE void writeRecords(const SmallPolygonsTask& task, const Batch& batch, 
                 const V inner = word(0), outer = kOuter ? word(1) : inner;
                 const auto some = hn::Ne(outer, zero);
                 const size_t found = hn::CountTrue(l, some);
-                if (!found) continue;
                 const V place = hn::Add(hn::Load(l, batch.place + at), hn::Set(l, go));
                 const Compressor to(some);
                 to.write(inner, out.inner + count);
@@ -596,14 +619,15 @@ HWY_INLINE void classifySmallPolygons(const SmallPolygonsTask& task, SmallPolygo
 }
 
 /// Snaps projected vertices.
-/// @param x,y,d  [size: count, rounded up to 8]; x is NaN before the near plane
+/// @param x,y,nearness  [size: count, rounded up to 8]; x is NaN before the near plane
+/// @param out           [size: count, rounded up to 8]
 HWY_INLINE void snapVertices(const double* x, const double* y, const double* nearness, uint32_t count,
-                             SnappedVertices& out) {
+                             SnappedVertex* out) {
     namespace hn = hwy::HWY_NAMESPACE;
     const hn::CappedTag<double, 8> d;
     const hn::Rebind<float, decltype(d)> f;
     const hn::Rebind<int32_t, decltype(d)> i;
-    const auto most = hn::Set(d, double{SnappedVertices::kFarthest}), least = hn::Neg(most);
+    const auto most = hn::Set(d, double{SnappedVertex::kFarthest}), least = hn::Neg(most);
     const auto fine = hn::Set(d, 256.0), whole = hn::Set(d, 0x1.8p52);
     const auto snap = [&](auto v) HWY_ATTR {
         const auto near = hn::Min(hn::Max(hn::Mul(v, fine), least), most);
@@ -612,11 +636,10 @@ HWY_INLINE void snapVertices(const double* x, const double* y, const double* nea
     for (size_t v = 0; v < count; v += hn::Lanes(d)) {
         const auto px = hn::LoadU(d, x + v), py = hn::LoadU(d, y + v);
         const auto none = hn::Or(hn::IsNaN(px), hn::IsNaN(py));
-        const auto sx = hn::IfThenElse(none, hn::Set(d, double{SnappedVertices::kNone}), snap(px));
+        const auto sx = hn::IfThenElse(none, hn::Set(d, double{SnappedVertex::kNone}), snap(px));
         const auto sy = hn::IfThenElse(none, hn::Zero(d), snap(py));
-        hn::Store(hn::DemoteTo(i, sx), i, out.x + v);
-        hn::Store(hn::DemoteTo(i, sy), i, out.y + v);
-        hn::Store(hn::DemoteTo(f, hn::LoadU(d, nearness + v)), f, out.d + v);
+        const auto sd = hn::BitCast(i, hn::DemoteTo(f, hn::LoadU(d, nearness + v)));
+        hn::StoreInterleaved4(hn::DemoteTo(i, sx), hn::DemoteTo(i, sy), sd, hn::Zero(i), i, &out[v].x);
     }
 }
 

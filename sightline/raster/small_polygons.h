@@ -9,21 +9,21 @@
 
 namespace sightline {
 
-/// A cluster's projected vertices on a grid of 1/256 pixel.
-struct SnappedVertices {
+/// A projected vertex on a grid of 1/256 pixel; of a size that is moved at once.
+struct alignas(16) SnappedVertex {
     static constexpr int32_t kNone = std::numeric_limits<int32_t>::min();  ///< x of a vertex before the near plane
     static constexpr int32_t kFarthest = 1 << 29;  ///< places beyond are moved here, which is outside every buffer
-    static constexpr uint32_t kMost = OccluderCluster::kMaxVertices + 16;
 
-    alignas(64) int32_t x[kMost], y[kMost];  ///< [pixels / 256], to the nearest
-    alignas(64) float d[kMost];              ///< nearness, to the nearest
+    int32_t x, y;  ///< [pixels / 256], to the nearest
+    float d;       ///< nearness, to the nearest
+    int32_t unused;
 };
 
 /// A run of polygons to classify, and the buffer.
 struct SmallPolygonsTask {
     const OccluderPolygon* polygons = nullptr;
-    uint32_t count = 0;  ///< [limit: <= 64]
-    const SnappedVertices* vertices = nullptr;
+    uint32_t count = 0;                          ///< [limit: <= 64]
+    const SnappedVertex* vertices = nullptr;     ///< the cluster's
     uint32_t columns = 0, rows = 0, stride = 0;  ///< the buffer  [tiles]; stride from one row to the next
     bool reverse = false;                        ///< front faces come out clockwise
     float slack = 0;        ///< bound on the error of both coordinates of a vertex before it was snapped

@@ -26,9 +26,9 @@ namespace HWY_NAMESPACE {
 
 void classifyForTest(const double (*corners)[256], uint32_t vertices, SmallPolygonsTask task, bool outer,
                      SmallPolygons& out) {
-    SnappedVertices snapped;
+    SnappedVertex snapped[256];
     snapVertices(corners[0], corners[1], corners[2], vertices, snapped);
-    task.vertices = &snapped;
+    task.vertices = snapped;
     if (outer) classifySmallPolygons<true>(task, out);
     else classifySmallPolygons<false>(task, out);
 }
