@@ -24,8 +24,9 @@ TEST(CullRun, KeepsAKeyIfAnyOfItsObjectsIsVisible) {
     EXPECT_EQ(frame.triangles, 4u);
     EXPECT_EQ(frame.stages[0].tested, 3u);
     EXPECT_EQ(frame.stages[0].culled, 0u);
-    EXPECT_EQ(frame.stages[1].tested, 3u);
-    EXPECT_EQ(frame.stages[1].culled, 1u);
+    const StageRow& occlusion = frame.stages[static_cast<int>(Stage::kOcclusion)];
+    EXPECT_EQ(occlusion.tested, 3u);
+    EXPECT_EQ(occlusion.culled, 1u);
 }
 
 TEST(CullRun, CountsACulledKeyOnceAndForItsFinestStage) {

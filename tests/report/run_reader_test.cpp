@@ -41,7 +41,8 @@ TEST(RunReader, ReadsBackWhatWasWritten) {
     ASSERT_EQ(read->run.frames.size(), 3u);
     for (size_t i = 0; i < 3; ++i) {
         EXPECT_EQ(read->run.frames[i].visible, run.frames[i].visible);
-        EXPECT_EQ(read->run.frames[i].stages[1].culled, run.frames[i].stages[1].culled);
+        for (int stage = 0; stage < kStageCount; ++stage)
+            EXPECT_EQ(read->run.frames[i].stages[stage].culled, run.frames[i].stages[stage].culled);
         EXPECT_EQ(read->run.frames[i].query_microseconds, run.frames[i].query_microseconds);
         EXPECT_EQ(read->run.frames[i].verification->exactly_visible, 2u);
     }

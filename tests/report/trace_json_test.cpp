@@ -26,7 +26,7 @@ CullRun timedRun() {
         frame.thread = static_cast<uint32_t>(i % 2);
         frame.begin_microseconds = 100.0 * static_cast<double>(i);
         frame.end_microseconds = frame.begin_microseconds + 60;
-        frame.stages[1].microseconds = 5;
+        frame.stages[static_cast<int>(Stage::kOcclusion)].microseconds = 5;
     }
     return run;
 }
