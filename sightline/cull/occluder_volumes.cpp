@@ -15,7 +15,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using F8 = hn::CappedTag<float, 8>;
 
-void testVolumeKernel(const OccluderVolume& volume, const EyeBoxes& boxes, uint32_t active, VolumeAnswer& answer) {
+void testVolumeKernel(const OccluderVolume& volume, const EyeBoxes& boxes, uint32_t active, uint32_t wanted,
+                      VolumeAnswer& answer) {
     const F8 d;
     alignas(64) float reach[8];  // no point of a box is farther from the eye
     for (size_t i = 0; i < 8; i += hn::Lanes(d)) {
@@ -28,10 +29,11 @@ void testVolumeKernel(const OccluderVolume& volume, const EyeBoxes& boxes, uint3
         }
         hn::Store(sum, d, reach + i);
     }
-    uint32_t outside = 0, above_all = 0xff;
-    for (uint32_t& planes : answer.planes) planes = 0;
-    for (uint32_t plane = 0; plane < volume.planes && outside != 0xff; ++plane) {
-        if (!(active >> plane & 1)) continue;
+    // Boxes that nobody asks for are done with from the start: the sooner all are, the fewer planes are asked.
+    uint32_t outside = ~wanted & 0xff, above_all = 0xff, asked = 0;
+    uint8_t above_of[OccluderVolume::kMaxPlanes], plane_of[OccluderVolume::kMaxPlanes];
+    for (uint32_t left = active & volume.allPlanes(); left && outside != 0xff; left &= left - 1) {
+        const uint32_t plane = static_cast<uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
         uint32_t above = 0;
         for (size_t i = 0; i < 8; i += hn::Lanes(d)) {
             auto highest = hn::Set(d, volume.distance[plane]), lowest = highest;
@@ -50,12 +52,18 @@ void testVolumeKernel(const OccluderVolume& volume, const EyeBoxes& boxes, uint3
             hn::StoreMaskBits(d, hn::Gt(highest, hn::Zero(d)), bits);
             outside |= (~uint32_t{bits[0]} & ((1u << hn::Lanes(d)) - 1)) << i;
         }
-        for (int box = 0; box < 8; ++box)
-            if (!(above >> box & 1)) answer.planes[box] |= 1u << plane;
+        above_of[asked] = static_cast<uint8_t>(above);
+        plane_of[asked++] = static_cast<uint8_t>(plane);
         above_all &= above;
     }
-    answer.outside = outside;
+    answer.outside = outside & wanted;
     answer.hidden = above_all & ~outside;
+    for (uint32_t left = ~(outside | above_all) & 0xff; left; left &= left - 1) {
+        const uint32_t box = static_cast<uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
+        uint32_t planes = 0;
+        for (uint32_t i = 0; i < asked; ++i) planes |= (~uint32_t{above_of[i]} >> box & 1) << plane_of[i];
+        answer.planes[box] = planes;
+    }
 }
 
 }  // namespace HWY_NAMESPACE
@@ -67,9 +75,9 @@ namespace sightline {
 
 HWY_EXPORT(testVolumeKernel);
 
-VolumeAnswer testVolume(const OccluderVolume& volume, const EyeBoxes& boxes, uint32_t active) {
+VolumeAnswer testVolume(const OccluderVolume& volume, const EyeBoxes& boxes, uint32_t active, uint32_t wanted) {
     VolumeAnswer answer;
-    HWY_DYNAMIC_DISPATCH(testVolumeKernel)(volume, boxes, active, answer);
+    HWY_DYNAMIC_DISPATCH(testVolumeKernel)(volume, boxes, active, wanted, answer);
     return answer;
 }
 

@@ -112,11 +112,12 @@ bool holds(const OccluderVolume& volume, const VolumeOutline& outline);
 struct VolumeAnswer {
     uint32_t hidden = 0;   ///< bit per box: wholly in the volume
     uint32_t outside = 0;  ///< bit per box: no point of it is in the volume
-    uint32_t planes[8];    ///< per box: bit per plane that it is not surely above
+    uint32_t planes[8];    ///< per box that is neither: bit per plane that it is not surely above
 };
 
 /// Tests boxes against the planes named in `active`; planes that hold a parent wholly need not be asked again.
 /// A box that touches a plane, or that rounding might place on it, is not hidden; nor is a NaN.
-VolumeAnswer testVolume(const OccluderVolume& volume, const EyeBoxes& boxes, uint32_t active);
+/// @param wanted  bit per box that is asked about; the others' bits stay clear
+VolumeAnswer testVolume(const OccluderVolume& volume, const EyeBoxes& boxes, uint32_t active, uint32_t wanted = 0xff);
 
 }  // namespace sightline

@@ -170,13 +170,13 @@ VolumesAnswer VolumeStage::test(const EyeBoxes& boxes, VolumeRange range, uint32
     Open crossing[8][kMostVolumes];
     for (uint32_t i = range.first; i < range.first + range.count && left; ++i) {
         const Open open = open_[i];
-        const VolumeAnswer one = testVolume(volumes_[open.volume], boxes, open.planes);
+        const VolumeAnswer one = testVolume(volumes_[open.volume], boxes, open.planes, left);
         for (uint32_t bits = left & ~one.outside; bits; bits &= bits - 1) {
             const int slot = std::countr_zero(bits);
             if (one.hidden >> slot & 1) answer.volume[slot] = static_cast<uint8_t>(open.volume);
             else crossing[slot][counts[slot]++] = {open.volume, one.planes[slot]};
         }
-        answer.hidden |= left & one.hidden;
+        answer.hidden |= one.hidden;
         left &= ~one.hidden;
     }
     for (uint32_t bits = left; bits; bits &= bits - 1) {

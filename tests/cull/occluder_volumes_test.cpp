@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 #include "sightline/base/random.h"
@@ -362,7 +361,8 @@ TEST(OccluderVolumes, InheritPlanesWithoutLoss) {
         const VolumeAnswer all = testVolume(volume, boxes, volume.allPlanes());
         if (parent.hidden) { EXPECT_EQ(all.hidden, 0xffu); }
         if (parent.outside) { EXPECT_EQ(all.outside, 0xffu); }
-        const VolumeAnswer some = testVolume(volume, boxes, parent.planes[0]);
+        const bool known = !((parent.hidden | parent.outside) & 1);
+        const VolumeAnswer some = testVolume(volume, boxes, known ? parent.planes[0] : volume.allPlanes());
         if (!parent.outside) { EXPECT_EQ(some.hidden, all.hidden); }
         ++compared;
     }
@@ -391,8 +391,10 @@ TEST(OccluderVolumes, AreTheSameOnEveryInstructionSet) {
         for (size_t i = 0; i < answers.size(); ++i) {
             EXPECT_EQ(answers[i].hidden, expected[i].hidden) << target;
             EXPECT_EQ(answers[i].outside, expected[i].outside) << target;
-            if (answers[i].outside == 0xff) continue;
-            EXPECT_EQ(std::memcmp(answers[i].planes, expected[i].planes, sizeof expected[i].planes), 0) << target;
+            for (int box = 0; box < 8; ++box) {
+                if ((answers[i].outside | answers[i].hidden) >> box & 1) continue;
+                EXPECT_EQ(answers[i].planes[box], expected[i].planes[box]) << target;
+            }
         }
     });
     EXPECT_GE(targets, 1);
