@@ -37,6 +37,7 @@ struct View {
     uint32_t occluder_triangles = 1u << 17;  ///< work budget: triangles that may be rasterized, nearest first  [limit]
     uint32_t occlusion_size = 640;           ///< longer side of the occlusion buffer; a viewport that is smaller
                                              ///< gets its own size  [pixels, limit: 1 to 8192]
+    bool last_visible_first = false;         ///< draw first what the query's last answer kept; see Query::visible()
     bool time_stages = false;                ///< fill StageStats::nanoseconds (costs some time itself)
 };
 

@@ -12,12 +12,23 @@
 namespace sightline {
 
 struct Query::Impl {
-    explicit Impl(Memory* from) : memory(from) {}
+    explicit Impl(Memory* from) : memory(from) { walk.remembers = true; }
+
+    static constexpr uint32_t kTaken = 4;  ///< in `mark`, beside the eyes: it stands in `both`
+
+    /// The objects of the last answer.
+    Array<Visible>& last() { return stereo ? both : walk.visible; }
+    void mergeEyes();
 
     Memory* const memory;
-    Snapshot snapshot;  ///< of the last answer
-    detail::Walk walk{memory};
-    Array<Visible> before{memory};  ///< the answer before the last
+    Snapshot snapshot;                     ///< of the last answer
+    detail::Walk walk{memory};             ///< of the left eye, where there are two
+    Owned<detail::Walk> right;             ///< made when first needed
+    bool stereo = false;                   ///< the last answer was visibleStereo()'s
+    Array<Visible> both{memory};           ///< what either eye sees
+    Array<uint8_t> eyes{memory};           ///< per object of `both`
+    mutable Array<uint8_t> other{memory};  ///< the right eye's reasons, while both are put together
+    Array<Visible> before{memory};         ///< the answer before the last
     Array<float> depth_image{memory};
     Array<uint8_t> depth_covered{memory};
     Array<Visible> appeared{memory}, disappeared{memory};
@@ -29,19 +40,76 @@ Query::~Query() = default;
 Query::Query(Query&&) noexcept = default;
 Query& Query::operator=(Query&&) noexcept = default;
 
-VisibleSet Query::visible(const Snapshot& now, const View& view) {
+namespace {
+
+/// Walks, and takes the time.
+void answer(detail::Walk& walk, const Snapshot& now, const View& view) {
     const auto start = std::chrono::steady_clock::now();
-    Impl& impl = *impl_;
-    detail::Walk& walk = impl.walk;
-    std::swap(walk.visible, impl.before);
-    impl.snapshot = now;
     walk.run(now ? &now.state() : nullptr, view);
     walk.stats.nanoseconds = static_cast<uint64_t>(
         std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count());
     if (view.time_stages && walk.uses(Stage::kOcclusion))
         walk.of(Stage::kOcclusion).nanoseconds =
             walk.stats.nanoseconds - walk.of(Stage::kFrustum).nanoseconds - walk.of(Stage::kVolumes).nanoseconds;
-    return {walk.visible, walk.stats};
+}
+
+}  // namespace
+
+VisibleSet Query::visible(const Snapshot& now, const View& view) {
+    Impl& impl = *impl_;
+    std::swap(impl.last(), impl.before);
+    impl.stereo = false;
+    impl.snapshot = now;
+    answer(impl.walk, now, view);
+    return {impl.walk.visible, impl.walk.stats};
+}
+
+StereoSet Query::visibleStereo(const Snapshot& now, const View& left, const View& right) {
+    Impl& impl = *impl_;
+    std::swap(impl.last(), impl.before);
+    impl.stereo = true;
+    impl.snapshot = now;
+    if (!impl.right) {
+        impl.right = makeOwned<detail::Walk>(impl.memory, impl.memory);
+        impl.right->remembers = true;
+    }
+    answer(impl.walk, now, left);
+    answer(*impl.right, now, right);
+    impl.mergeEyes();
+    return {impl.both, impl.eyes, impl.walk.stats, impl.right->stats};
+}
+
+/// The left eye's objects in their order; what the right eye sees alone stands behind what it sees before it.
+void Query::Impl::mergeEyes() {
+    uint32_t last = 0;
+    for (const auto* set : {&walk.visible, &right->visible})
+        for (const Visible& v : *set) last = std::max(last, v.id.index);
+    if (mark.size() <= last) mark.resize(last + 1, 0);
+    for (const Visible& v : walk.visible) mark[v.id.index] = kLeftEye;
+    for (const Visible& v : right->visible) mark[v.id.index] |= kRightEye;
+    both.clear();
+    eyes.clear();
+    const auto take = [&](const Visible& v) {
+        both.push_back(v);
+        eyes.push_back(static_cast<uint8_t>(mark[v.id.index]));
+    };
+    size_t at = 0;
+    for (const Visible& v : right->visible) {
+        if (mark[v.id.index] == kRightEye) {
+            take(v);
+            continue;
+        }
+        // A shared one: the left eye's objects up to it, unless they stand here already.
+        size_t end = at;
+        if (mark[v.id.index] & kTaken) continue;
+        do {
+            take(walk.visible[end]);
+            mark[walk.visible[end].id.index] |= kTaken;
+        } while (walk.visible[end++].id != v.id);
+        at = end;
+    }
+    for (; at < walk.visible.size(); ++at) take(walk.visible[at]);
+    for (const Visible& v : both) mark[v.id.index] = 0;
 }
 
 VisibleChanges Query::changes() {
@@ -49,11 +117,11 @@ VisibleChanges Query::changes() {
     impl.appeared.clear();
     impl.disappeared.clear();
     uint32_t last = 0;
-    for (const auto* set : {&impl.before, &impl.walk.visible})
+    for (const auto* set : {&impl.before, &impl.last()})
         for (const Visible& v : *set) last = std::max(last, v.id.index);
     if (impl.mark.size() <= last) impl.mark.resize(last + 1, 0);
     for (size_t i = 0; i < impl.before.size(); ++i) impl.mark[impl.before[i].id.index] = static_cast<uint32_t>(i + 1);
-    for (const Visible& v : impl.walk.visible) {
+    for (const Visible& v : impl.last()) {
         uint32_t& mark = impl.mark[v.id.index];
         if (mark > 0 && impl.before[mark - 1].id == v.id) mark = 0;
         else impl.appeared.push_back(v);
@@ -66,7 +134,24 @@ VisibleChanges Query::changes() {
     return {impl.appeared, impl.disappeared};
 }
 
-void Query::reasons(std::span<uint8_t> reasons) const { impl_->walk.reasons(reasons); }
+void Query::reasons(std::span<uint8_t> reasons) const {
+    const Impl& impl = *impl_;
+    impl.walk.reasons(reasons);
+    if (!impl.stereo) return;
+    impl.other.resize(reasons.size());
+    impl.right->reasons(impl.other);
+    constexpr uint8_t kOutside = 255;
+    for (size_t i = 0; i < reasons.size(); ++i) {
+        const uint8_t a = reasons[i], b = impl.other[i];
+        if (a == 0 || b == 0) reasons[i] = 0;
+        else reasons[i] = a == kOutside ? b : b == kOutside ? a : std::max(a, b);
+    }
+}
+
+void Query::reasons(std::span<uint8_t> reasons, uint8_t eye) const {
+    const Impl& impl = *impl_;
+    (impl.stereo && eye == kRightEye ? *impl.right : impl.walk).reasons(reasons);
+}
 
 Explanation Query::explain(const Snapshot& now, const View& view, ObjectId id) const {
     return Explainer(now, view, impl_->memory).explain(id);

@@ -33,6 +33,16 @@ struct QueryStats {
     uint64_t nanoseconds = 0;         ///< the whole query
 };
 
+/// Bits of StereoSet::eyes.
+inline constexpr uint8_t kLeftEye = 1, kRightEye = 2;
+
+/// One answer for a pair of views.
+struct StereoSet {
+    std::span<const Visible> objects;  ///< that either eye may see, nearly front to back; valid until the next call
+    std::span<const uint8_t> eyes;     ///< per object: which eyes may see it
+    QueryStats left, right;            ///< of each eye's own walk
+};
+
 struct VisibleSet {
     std::span<const Visible> objects;  ///< front to back; valid until the query's next call
     QueryStats stats;
@@ -61,7 +71,16 @@ public:
     /// is reported, at any resolution and under any image shift up to View::jitter. Objects in doubt
     /// (bounds that touch the near plane or hold the eye, or are not finite) are reported and counted.
     /// Deterministic: the same set, in the same order, on every instruction set.
+    ///
+    /// With View::last_visible_first the occluders that the last answer kept are drawn before anything is asked. The
+    /// answer is conservative in the same way, and may be another one than without: it depends on the calls before it,
+    /// and is the same for the same calls.
     VisibleSet visible(const Snapshot& now, const View& view);
+
+    /// The objects that may be visible from either of two views, as the eyes of a headset: for each eye exactly what
+    /// visible() says of its view, bit for bit. One occlusion buffer for each eye: what one eye sees past the other does
+    /// not. Costs the two queries. changes(), reasons() and depthImage() then speak of both eyes, as they say.
+    StereoSet visibleStereo(const Snapshot& now, const View& left, const View& right);
 
     /// What the last answer changed against the one before; the first answer's objects have all appeared. Snapshots and
     /// views may have changed as they like: objects are told apart by their ids, and one that was removed from its
@@ -71,7 +90,11 @@ public:
     /// For each object of the last answer's snapshot, in the order of World::add with removed objects
     /// left out: 0 visible, 1 + Stage of the stage that culled it, 255 outside View::layers.
     /// @param reasons  [size: Snapshot::objectCount()]
+    /// Of visibleStereo(): 0 if either eye may see it, else the finer of both stages.
     void reasons(std::span<uint8_t> reasons) const;
+    /// The same of one eye of visibleStereo().
+    /// @param eye  kLeftEye or kRightEye; after visible() both are that view
+    void reasons(std::span<uint8_t> reasons, uint8_t eye) const;
 
     /// Why visible(now, view) has the object in its answer or not; see run/explain.h. The last answer stays as it is.
     /// For many objects of one answer make an Explainer, which does what they share once.
@@ -85,6 +108,7 @@ public:
         std::span<const float> nearness;   ///< valid until the query's next call
         std::span<const uint8_t> covered;  ///< 1 where there is a depth
     };
+    /// After visibleStereo() it is the left eye's.
     /// @param resolve_seams  look first at all pixels that polygons share, not only at those that the answer needed
     DepthImage depthImage(bool resolve_seams = false);
 

@@ -96,6 +96,7 @@ void Walk::begin(const SnapshotState* now, const View& new_view) {
     culled.clear();
     tiles.clear(0, 0);
     volumes.clear();
+    if (remembers) last.begin(now, view.last_visible_first);
     if (record) record->clear();
     tiles.log = record ? record->log : nullptr;
     if (!snapshot) return;
@@ -188,8 +189,25 @@ void Walk::meet(const BvhNode& node, int slot, const Visit& below, const ScreenA
     push(entry);
 }
 
-/// Puts the clusters of a visible object's occluder in line, or draws it at once if there is one only.
-void Walk::offerOccluder(uint32_t place) {
+/// Draws what the last answer drew, nearest first, before anything is asked.
+void Walk::drawLast() {
+    for (const uint32_t place : last.places()) offerOccluder(place, true);
+    while (!pending.empty()) {
+        std::pop_heap(pending.begin(), pending.end());
+        const Pending entry = pending.back();
+        pending.pop_back();
+        visit(entry);
+    }
+}
+
+void Walk::offerVisible(uint32_t place) {
+    if (remembers) last.note(place);
+    if (!remembers || !last.has(place)) offerOccluder(place, false);
+}
+
+/// Puts the clusters of an object's occluder in line, or draws it at once if there is one only.
+/// @param in_line  not at once in any case
+void Walk::offerOccluder(uint32_t place, bool in_line) {
     const PlacedObject& placed = (*state().placed)[place];
     if (placed.occluder.index == 0 || !(placed.layers & view.layers)) return;
     const Occluder& occluder = *state().occluders[placed.occluder.index];
@@ -200,7 +218,7 @@ void Walk::offerOccluder(uint32_t place) {
     for (uint32_t cluster = 0; cluster < clusters; ++cluster) {
         const BoxAnswer box = projectBox(instances[owner].screen, occluder.clusters[cluster].bounds);
         if (box.outside) continue;
-        if (clusters == 1) {
+        if (clusters == 1 && !in_line) {
             draw(instances[owner], cluster, box);
             continue;
         }
@@ -242,7 +260,7 @@ void Walk::visit(const Pending& entry) {
     if (entry.kind == Pending::Kind::kNode) return expand({entry.index, entry.planes, entry.volumes});
     report(entry.index, 1);
     if (record) noteKept(entry);
-    if (occlusion && undecided > 0 && !(entry.testable && isSmall(entry.rect))) offerOccluder(entry.index);
+    if (occlusion && undecided > 0 && !(entry.testable && isSmall(entry.rect))) offerVisible(entry.index);
 }
 
 /// Without the occlusion stage the order does not matter: depth first, and whole subtrees that are inside at once.
@@ -284,6 +302,7 @@ void Walk::walk() {
     if (uses(Stage::kVolumes)) chooseVolumes();
     const Visit root{0, planes, volumes.all()};
     if (!uses(Stage::kOcclusion)) return walkUnordered(root);
+    drawLast();
     expand(root);
     while (undecided > 0) {
         std::pop_heap(pending.begin(), pending.end());

@@ -9,6 +9,7 @@
 #include "sightline/cull/frustum.h"
 #include "sightline/cull/occlusion.h"
 #include "sightline/raster/tile_log.h"
+#include "sightline/run/last_drawn.h"
 #include "sightline/run/query.h"
 #include "sightline/run/volumes.h"
 #include "sightline/run/world_state.h"
@@ -98,6 +99,8 @@ struct Walk {
     Screen screen;
     VolumeStage volumes{memory};
     DepthTiles tiles{memory};
+    bool remembers = false;  ///< `last` is kept from answer to answer: of a query, not of those who ask why
+    LastDrawn last{memory};
     Array<Pending> pending{memory};
     Array<Visit> visits{memory};
     Array<OccluderInstance> instances{memory};
@@ -130,7 +133,9 @@ private:
     void visit(const Pending& entry);
     void keep(uint32_t item);
     void report(uint32_t first, uint32_t count);
-    void offerOccluder(uint32_t place);
+    void drawLast();
+    void offerVisible(uint32_t place);
+    void offerOccluder(uint32_t place, bool in_line);
     void draw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box);
     void cull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect,
               uint32_t hider = WalkRecord::kNowhere);
