@@ -25,7 +25,7 @@ struct Expansion {
             if (error != 0) parts[kept++] = error;
             value = sum;
         }
-        parts[kept++] = value;
+        if (value != 0) parts[kept++] = value;  // what cancels at the top must not hide what is left below
         count = kept;
     }
 
@@ -41,7 +41,7 @@ struct Expansion {
         addProduct(product, c);
     }
 
-    /// Of the sum; 0 if nothing was added.
+    /// Of the sum; 0 if there is none.
     int sign() const { return count == 0 ? 0 : parts[count - 1] > 0 ? 1 : parts[count - 1] < 0 ? -1 : 0; }
 };
 
