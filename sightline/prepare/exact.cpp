@@ -14,10 +14,14 @@ namespace {
 
 constexpr double kSure = 0x1p-48;  // of the terms' sizes: far above the rounding of a dozen operations
 
-/// Whether the images of three points on one coordinate plane lie on a line. Products of two floats are exact in double.
-bool areCollinear(double ax, double ay, double bx, double by, double cx, double cy) {
+/// Whether the images of three points on one coordinate plane are surely not on a line.
+bool surelyTurns(double ax, double ay, double bx, double by, double cx, double cy) {
     const double left = (bx - ax) * (cy - ay), right = (by - ay) * (cx - ax);
-    if (std::abs(left - right) > kSure * (std::abs(left) + std::abs(right))) return false;
+    return std::abs(left - right) > kSure * (std::abs(left) + std::abs(right));
+}
+
+/// Whether they are on a line, exactly. Products of two floats are exact in double.
+bool isStraight(double ax, double ay, double bx, double by, double cx, double cy) {
     Expansion sum;
     sum.add(ax * by);
     sum.add(-(ay * bx));
@@ -42,8 +46,11 @@ bool subtract(const glm::vec3& a, const glm::vec3& b, glm::dvec3& difference) {
 }  // namespace
 
 bool areCollinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-    return areCollinear(a.x, a.y, b.x, b.y, c.x, c.y) && areCollinear(a.y, a.z, b.y, b.z, c.y, c.z) &&
-           areCollinear(a.z, a.x, b.z, b.x, c.z, c.x);
+    if (surelyTurns(a.x, a.y, b.x, b.y, c.x, c.y) || surelyTurns(a.y, a.z, b.y, b.z, c.y, c.z) ||
+        surelyTurns(a.z, a.x, b.z, b.x, c.z, c.x))
+        return false;
+    return isStraight(a.x, a.y, b.x, b.y, c.x, c.y) && isStraight(a.y, a.z, b.y, b.z, c.y, c.z) &&
+           isStraight(a.z, a.x, b.z, b.x, c.z, c.x);
 }
 
 bool liesBetween(const glm::vec3& point, const glm::vec3& a, const glm::vec3& b) {

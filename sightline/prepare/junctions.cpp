@@ -12,9 +12,10 @@
 namespace sightline {
 namespace {
 
-constexpr double kSharp = 0.7;           // cosine: polygons that go on more smoothly need no others at their side
-constexpr size_t kMostVisits = 256;      // nodes and hits per side and vertex, on average
-constexpr size_t kLeastVisits = 100000;  // and this many in any case
+constexpr double kSharp = 0.7;  // cosine: polygons that go on more smoothly need no others at their side
+// Work is counted in nodes of the tree that are looked into: this many per line and per vertex on average, and so many
+// in any case; for one line at most; and what a vertex in a chain counts for, since each makes an edge.
+constexpr size_t kAverageWork = 64, kLeastWork = 1 << 20, kMostWorkOfLine = 1 << 16, kWorkOfVertex = 16;
 
 /// A line between two vertices, with the sides that run along it.
 struct Line {
@@ -49,12 +50,12 @@ public:
         }
     }
 
-    /// Adds the points between a and b to `found`; returns how many nodes it looked into.
-    size_t findBetween(const glm::vec3& a, const glm::vec3& b, std::vector<uint32_t>& found) {
+    /// Adds points between a and b to `found`: all of them if `most` nodes are enough. Returns how many it looked into.
+    size_t findBetween(const glm::vec3& a, const glm::vec3& b, size_t most, std::vector<uint32_t>& found) {
         size_t visits = 0;
         if (nodes_.empty()) return 0;
         stack_.assign(1, 0);
-        while (!stack_.empty()) {
+        while (!stack_.empty() && visits < most) {
             const Node& node = nodes_[stack_.back()];
             stack_.pop_back();
             ++visits;
@@ -130,7 +131,7 @@ void findJunctions(Patchwork& patchwork) {
     for (const Line& line : lines) ends.insert(ends.end(), {line.low, line.high});
     std::sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-    size_t left = kLeastVisits + kMostVisits * (lines.size() + ends.size());
+    size_t left = kLeastWork + kAverageWork * (lines.size() + ends.size());
     PointTree tree(positions, std::move(ends));
 
     struct Found {
@@ -142,9 +143,10 @@ void findJunctions(Patchwork& patchwork) {
     for (const Line& line : lines) {
         const glm::vec3 &a = positions[line.low], &b = positions[line.high];
         between.clear();
-        const size_t work = tree.findBetween(a, b, between) + between.size() * (line.last_side - line.first_side);
-        if (work > left) break;
-        left -= work;
+        left -= tree.findBetween(a, b, std::min(left, kMostWorkOfLine), between);
+        const size_t weight = kWorkOfVertex * between.size() * (line.last_side - line.first_side);
+        if (weight > left) break;
+        left -= weight;
         if (between.empty()) continue;
         const glm::vec3 size = glm::abs(b - a);
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;

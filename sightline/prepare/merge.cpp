@@ -66,18 +66,8 @@ private:
     /// their plane, or a side that nobody shares yet.
     void findMerges() {
         merges_.clear();
-        sides_.clear();
-        for (uint32_t i : active_) {
-            if (!flat_[i]) continue;
-            const PatchPolygon& p = polygons_[i];
-            for (uint8_t k = 0; k < p.corners; ++k) {
-                const uint32_t from = p.vertex[k], to = p.vertex[(k + 1) % p.corners];
-                sides_.push_back({std::min(from, to), std::max(from, to), i, k, from < to});
-            }
-        }
-        std::sort(sides_.begin(), sides_.end(), [](const PatchSide& a, const PatchSide& b) {
-            return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.polygon < b.polygon;
-        });
+        if (active_.size() == polygons_.size()) sides_ = sortedSides(patchwork_);
+        else sortActiveSides();
         std::vector<uint8_t> stays(polygons_.size(), 0);
         forSharedSides(std::span<const PatchSide>(sides_), [&](std::span<const PatchSide> shared) {
             if (shared.size() == 1) stays[shared[0].polygon] = 1;
@@ -91,8 +81,23 @@ private:
         std::erase_if(active_, [&](uint32_t i) { return !stays[i]; });
     }
 
+    void sortActiveSides() {
+        sides_.clear();
+        for (uint32_t i : active_) {
+            const PatchPolygon& p = polygons_[i];
+            for (uint8_t k = 0; k < p.corners; ++k) {
+                const uint32_t from = p.vertex[k], to = p.vertex[(k + 1) % p.corners];
+                sides_.push_back({std::min(from, to), std::max(from, to), i, k, from < to});
+            }
+        }
+        std::sort(sides_.begin(), sides_.end(), [](const PatchSide& a, const PatchSide& b) {
+            return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.polygon < b.polygon;
+        });
+    }
+
     bool liesInOnePlane(const PatchSide& a, const PatchSide& b) const {
         const PatchPolygon &p = polygons_[a.polygon], &q = polygons_[b.polygon];
+        if (!flat_[a.polygon] || !flat_[b.polygon]) return false;
         if (a.forward == b.forward || p.double_sided != q.double_sided || (by_mesh_ && p.mesh != q.mesh)) return false;
         return areCoplanar(at(a.polygon, a.corner), at(a.polygon, a.corner + 1), at(a.polygon, a.corner + 2),
                            at(b.polygon, b.corner + 2)) &&

@@ -100,5 +100,26 @@ TEST(Occluder, LeavesOutWhatDoesNotHideAndWhatIsBroken) {
     EXPECT_TRUE(prepareOccluder({}).clusters.empty());
 }
 
+TEST(Occluder, TakesPositionsOfAnySize) {
+    constexpr float kPlaces[] = {
+        0,      -0.0f,  1,       -1,     2,       0.1f,     3e38f,
+        -3e38f, 1e-45f, -1e-45f, 1e-38f, 0x1p60f, 0x1p-60f, std::numeric_limits<float>::infinity()};
+    for (uint64_t seed = 1; seed <= 60; ++seed) {
+        SCOPED_TRACE(seed);
+        Random random(seed);
+        Soup soup;
+        for (int i = 0; i < 25; ++i) {
+            const float x = kPlaces[random.below(14)], y = kPlaces[random.below(14)];
+            soup.positions.push_back({x, y, kPlaces[random.below(14)]});
+        }
+        for (int i = 0; i < 3 * 400; ++i) soup.indices.push_back(uint32_t(random.below(26)));
+        std::vector<uint8_t> double_sided(400);
+        for (uint8_t& both : double_sided) both = uint8_t(random.below(2));
+        const Occluder o = prepareOccluder(soup.view(), {}, double_sided, {.rings = true, .merge = true});
+        expectWithinLimits(o);
+        expectRightEdges(o);
+    }
+}
+
 }  // namespace
 }  // namespace sightline
