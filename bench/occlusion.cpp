@@ -6,6 +6,7 @@
 #include "bench/exact_boxes.h"
 #include "bench/flat_boxes.h"
 #include "bench/occlusion_core.h"
+#include "bench/small_polygons.h"
 #include "bench/stopwatch.h"
 #include "sightline/load/load_world.h"
 #include "sightline/load/seeded_cameras.h"
@@ -91,6 +92,7 @@ Table benchOcclusion(const Options& options) {
         measureTightness(*options.scene, path, where, table);
         return table;
     }
+    measureSmallPolygons(options, table);
     measureOcclusionCore(options, table);
     const CameraPath path = cityStreetPath(kSeed, 16);
     double smallest = 0;

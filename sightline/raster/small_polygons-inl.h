@@ -45,8 +45,8 @@ constexpr float kLevel = 0x1p17f;
 // by 2^-12.
 constexpr float kRounding = 0x1p-9f + 0x1p-11f;
 
-/// A task's polygons, corner by corner. Vertices are fetched by plain moves, which take a third of a gather's time; and
-/// ahead of their use, since a vector read waits long for narrow writes that it spans.
+/// A task's polygons, corner by corner. Vertices are fetched by plain moves: gathers are slower, and some machines have
+/// none. And ahead of their use, since a vector read waits long for narrow writes that it spans.
 struct Parts {
     SnappedVertex corner[4][4][4][4];  ///< the fourth only in batches that have it; per batch: of the polygons 4 b + k
                                        ///< those with the least k first
@@ -600,7 +600,7 @@ HWY_INLINE void scanBatch(const SmallPolygonsTask& task, const Parts& parts, uin
 }  // namespace small_polygons
 
 /// Classifies the polygons of a task; see SmallPolygons.
-/// @tparam kOuter  also records that only touch, and the outer masks; without them it takes two thirds of the time
+/// @tparam kOuter  also records that only touch, and the outer masks; without them it takes three quarters of the time
 template <bool kOuter>
 HWY_INLINE void classifySmallPolygons(const SmallPolygonsTask& task, SmallPolygons& out) {
     namespace sp = small_polygons;
