@@ -9,7 +9,8 @@
 
 namespace sightline {
 
-/// A triangle, or two triangles 0 1 2 and 0 2 3 that make a convex and nearly flat quadrangle. Counter-clockwise is front.
+/// A triangle, or two triangles 0 1 2 and 0 2 3 that make a convex and nearly flat quadrangle. Counter-clockwise
+/// is front.
 struct OccluderPolygon {
     static constexpr uint8_t kNone = 255;
     uint8_t vertex[4] = {0, 0, 0, kNone};  ///< counted from the cluster's first; the last is kNone in a triangle
@@ -37,9 +38,9 @@ struct OccluderCluster {
 
     Box3f bounds;                                   ///< of its own polygons' vertices
     uint32_t first_vertex = 0, vertex_count = 0;    ///< [limit: <= kMaxVertices]; first is a multiple of 8
-    uint32_t first_polygon = 0, polygon_count = 0;  ///< its own polygons [limit: <= kMaxOwn]
-    uint32_t ring_count = 0;                        ///< polygons after its own that are neighbours' own: they close the
-        ///< seam to them  [limit: polygon_count + ring_count <= kMaxPolygons]
+    uint32_t first_polygon = 0, polygon_count = 0;  ///< its own polygons [limit: <= kMaxOwn; <= kMaxLoose if loose]
+    /// Polygons after its own that belong to neighbours, and close the seam to them.
+    uint32_t ring_count = 0;                  ///< [limit: polygon_count + ring_count <= kMaxPolygons]
     uint32_t first_edge = 0, edge_count = 0;  ///< of all its polygons; none in a loose cluster
     uint32_t triangle_count = 0;              ///< of its own polygons
 };

@@ -63,8 +63,8 @@ uint8_t ClusterWriter::localOf(uint32_t vertex) {
     return local_[vertex];
 }
 
-/// Takes in the polygons that hang together with the cluster's own and touch them at a vertex: those with a side or part
-/// of one in common first, as far as the limits allow. One that is left out only leaves its sides open.
+/// Takes in the polygons that hang together with the cluster's own and touch them at a vertex: those with a side or a
+/// part of one in common first, as far as the limits allow. One that is left out only leaves its sides open.
 void ClusterWriter::addRing() {
     struct Neighbour {
         uint32_t touches;  ///< vertices of the cluster's own

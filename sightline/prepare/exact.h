@@ -14,8 +14,8 @@ bool areCollinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 /// Whether a point lies on the straight line between two others, and is neither of them.
 bool liesBetween(const glm::vec3& point, const glm::vec3& a, const glm::vec3& b);
 
-/// Whether four finite points lie in one plane. True only if they do; false also if their coordinates are so far apart in
-/// size that a double cannot hold their differences.
+/// Whether four finite points lie in one plane. True only if they do; false also if their coordinates are so far apart
+/// in size that a double cannot hold their differences.
 bool areCoplanar(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d);
 
 }  // namespace sightline

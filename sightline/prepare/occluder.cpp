@@ -1,4 +1,4 @@
-// Makes an occluder from a mesh: its hiding triangles, bit for bit, in pairs and clusters.
+// Makes occluders from meshes: their hiding triangles in pairs, in clusters that hang together, with edges.
 // SPDX-License-Identifier: MIT
 #include "sightline/prepare/occluder.h"
 

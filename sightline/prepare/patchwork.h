@@ -57,7 +57,8 @@ struct PatchSide {
     bool joins(const PatchSide& other) const { return low == other.low && high == other.high; }
 };
 
-/// All sides, in parts where there are chains, sorted by (low, high, polygon, corner): those that join the same vertices stand together.
+/// All sides, in parts where there are chains, sorted by (low, high, polygon, corner): those that join the same
+/// vertices stand together.
 std::vector<PatchSide> sortedSides(const Patchwork& patchwork);
 
 /// Calls `each` with every run of sides that join the same vertices.

@@ -6,7 +6,7 @@
 
 namespace sightline {
 
-/// Pairs triangles of one mesh greedily, longest shared side first: of a rectangle's two triangles that is the diagonal.
+/// Pairs triangles of one mesh greedily, longest shared side first: of a rectangle's triangles that is the diagonal.
 /// The fourth corner lies within 1e-4 of the longest side of the plane of the other three; both are double-sided, or
 /// neither. Of each mesh, pairs come first, longest shared side first, then what is left. Deterministic; O(n log n).
 ///

@@ -1,4 +1,4 @@
-// Sorts polygons into runs that become clusters: compact pieces of what hangs together, and gatherings of what does not.
+// Sorts polygons into runs that become clusters: compact pieces of what hangs together, gatherings of the rest.
 // SPDX-License-Identifier: MIT
 #include "sightline/prepare/runs.h"
 

@@ -96,8 +96,8 @@ TEST(Merge, CoversTheSamePointsAsOften) {
             const double x = random.uniform(0, xs.back()), y = random.uniform(0, ys.back());
             ASSERT_EQ(coverOf(before, right, up, x, y), coverOf(after, right, up, x, y)) << x << ' ' << y;
         }
-        // What the merged polygons leave between them is closed again by parts of edges: only the rim of the wall and of
-        // its holes is open.
+        // What the merged polygons leave between them is closed again by parts of edges: only the rim of the wall and
+        // of its holes is open.
         double open[2] = {0, 0};
         for (const Occluder* o : {&before, &after})
             for (const OccluderCluster& c : o->clusters)
