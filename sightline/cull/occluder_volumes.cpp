@@ -66,6 +66,27 @@ void testVolumeKernel(const OccluderVolume& volume, const EyeBoxes& boxes, uint3
     }
 }
 
+void shadowSharesKernel(const OccluderVolume& volume, const EyeBoxes& boxes, float* share) {
+    const F8 d;
+    for (size_t i = 0; i < 8; i += hn::Lanes(d)) {
+        auto product = hn::Set(d, 1.0f);
+        for (uint32_t plane = 0; plane < volume.planes; ++plane) {
+            auto highest = hn::Set(d, volume.distance[plane]), lowest = highest;
+            for (int axis = 0; axis < 3; ++axis) {
+                const auto n = hn::Set(d, volume.normal[plane][axis]);
+                const auto a = hn::Mul(n, hn::Load(d, boxes.min[axis] + i));
+                const auto b = hn::Mul(n, hn::Load(d, boxes.max[axis] + i));
+                highest = hn::Add(highest, hn::Max(a, b));
+                lowest = hn::Add(lowest, hn::Min(a, b));
+            }
+            const auto tiny = hn::Set(d, 1e-30f);
+            const auto part = hn::Div(highest, hn::Max(hn::Sub(highest, lowest), tiny));
+            product = hn::Mul(product, hn::Min(hn::Max(part, hn::Zero(d)), hn::Set(d, 1.0f)));
+        }
+        hn::Store(product, d, share + i);
+    }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace sightline
 HWY_AFTER_NAMESPACE();
@@ -74,11 +95,16 @@ HWY_AFTER_NAMESPACE();
 namespace sightline {
 
 HWY_EXPORT(testVolumeKernel);
+HWY_EXPORT(shadowSharesKernel);
 
 VolumeAnswer testVolume(const OccluderVolume& volume, const EyeBoxes& boxes, uint32_t active, uint32_t wanted) {
     VolumeAnswer answer;
     HWY_DYNAMIC_DISPATCH(testVolumeKernel)(volume, boxes, active, wanted, answer);
     return answer;
+}
+
+void shadowShares(const OccluderVolume& volume, const EyeBoxes& boxes, float* share) {
+    HWY_DYNAMIC_DISPATCH(shadowSharesKernel)(volume, boxes, share);
 }
 
 }  // namespace sightline

@@ -120,4 +120,9 @@ struct VolumeAnswer {
 /// @param wanted  bit per box that is asked about; the others' bits stay clear
 VolumeAnswer testVolume(const OccluderVolume& volume, const EyeBoxes& boxes, uint32_t active, uint32_t wanted = 0xff);
 
+/// About which share of each of eight boxes lies in a volume, as if its planes cut the boxes independently of one another;
+/// for choosing.
+/// @param share  [size: 8, aligned to 64 bytes]
+void shadowShares(const OccluderVolume& volume, const EyeBoxes& boxes, float* share);
+
 }  // namespace sightline

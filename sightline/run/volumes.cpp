@@ -11,6 +11,7 @@ namespace sightline::detail {
 namespace {
 
 constexpr double kLeastShare = 1.0 / 256.0;  // of the buffer
+constexpr double kLeastObjects = 0.5;        // that a volume holds, about
 
 /// How large a box looks from the eye, at most about.  [pixels]
 double boxPixels(const EyeBoxes& boxes, int slot, const VolumeView& view) {
@@ -61,6 +62,7 @@ void VolumeStage::gather(const SnapshotState& state, const View& view, const Fru
     places_.clear();
     candidates_.clear();
     serial_ = 0;
+    top_count_ = 0;
     uint32_t nodes = 0, objects = 0;
     Met top;
     top.planes = static_cast<uint8_t>((1u << frustum.count) - 1);
@@ -84,7 +86,12 @@ void VolumeStage::openNode(const SnapshotState& state, const Frustum& frustum, c
     const BvhNode& node = state.bvh.nodes[from.index];
     const EyeBoxes boxes = eyeBoxes(node, state.bvh.origin - frustum.eye);
     const FrustumAnswer answer = testFrustum(frustum, boxes, from.planes);
+    Top* const top = from.depth < 2 && top_count_ < std::size(top_) ? &top_[top_count_++] : nullptr;
+    if (top) top->boxes = boxes;
     for (int slot = 0; slot < 8; ++slot) {
+        const bool counts = node.count[slot] > 0 && !(answer.outside >> slot & 1);
+        const bool opened = from.depth == 0 && !(node.child[slot] & BvhNode::kLeaf);
+        if (top) top->objects[slot] = counts && !opened ? static_cast<float>(node.count[slot]) : 0.0f;
         if (node.count[slot] == 0 || (answer.outside >> slot & 1)) continue;
         Met met;
         met.pixels = boxPixels(boxes, slot, shared);
@@ -93,6 +100,7 @@ void VolumeStage::openNode(const SnapshotState& state, const Frustum& frustum, c
         met.index = node.child[slot] & ~BvhNode::kLeaf;
         met.planes = answer.planes[slot];
         met.serial = ++serial_;
+        met.depth = static_cast<uint8_t>(from.depth + (from.depth < 2));
         if (met.leaf && (*state.placed)[met.index].occluder.index == 0) continue;
         heap_.push_back(met);
         std::push_heap(heap_.begin(), heap_.end());
@@ -128,7 +136,7 @@ void VolumeStage::lookAt(const SnapshotState& state, const View& view, const Vol
     if (any) places_.push_back(object);
 }
 
-/// Makes volumes of the best candidates and takes those that cover most, none that lies in another.
+/// Makes volumes of the best candidates and takes those that hold most, none that lies in another.
 void VolumeStage::take(const VolumeView& shared, uint32_t most) {
     const size_t tries = std::min<size_t>(candidates_.size(), 3 * size_t{most} + 4);
     std::partial_sort(candidates_.begin(), candidates_.begin() + static_cast<ptrdiff_t>(tries), candidates_.end(),
@@ -139,21 +147,21 @@ void VolumeStage::take(const VolumeView& shared, uint32_t most) {
     made_.resize(std::max(made_.size(), tries));
     size_t count = 0;
     struct Rank {
-        double pixels;
+        double objects;
         uint32_t made;
     } rank[3 * kMostVolumes + 4];
     for (size_t i = 0; i < tries; ++i) {
         Made& made = made_[count];
         if (!makeVolume(shared, places_[candidates_[i].owner], candidates_[i].part, made.volume, made.outline))
             continue;
-        made.pixels = visiblePixels(shared, made.outline);
+        const double objects = heldObjects(made.volume);
+        if (!(objects >= kLeastObjects) || !(visiblePixels(shared, made.outline) >= least_)) continue;
         made.object = candidates_[i].object;
-        if (!(made.pixels >= least_)) continue;
-        rank[count] = {made.pixels, static_cast<uint32_t>(count)};
+        rank[count] = {objects, static_cast<uint32_t>(count)};
         ++count;
     }
     std::sort(rank, rank + count, [](const Rank& a, const Rank& b) {
-        return a.pixels != b.pixels ? a.pixels > b.pixels : a.made < b.made;
+        return a.objects != b.objects ? a.objects > b.objects : a.made < b.made;
     });
     for (size_t i = 0; i < count && volumes_.size() < most; ++i) {
         const Made& made = made_[rank[i].made];
@@ -162,6 +170,18 @@ void VolumeStage::take(const VolumeView& shared, uint32_t most) {
         volumes_.push_back(made.volume);
         owners_.push_back(made.object);
     }
+}
+
+/// About how many objects in view a volume holds.
+double VolumeStage::heldObjects(const OccluderVolume& volume) const {
+    double sum = 0;
+    alignas(64) float share[8];
+    for (uint32_t i = 0; i < top_count_; ++i) {
+        shadowShares(volume, top_[i].boxes, share);
+        for (int slot = 0; slot < 8; ++slot)
+            if (top_[i].objects[slot] > 0) sum += static_cast<double>(share[slot]) * top_[i].objects[slot];
+    }
+    return sum;
 }
 
 VolumesAnswer VolumeStage::test(const EyeBoxes& boxes, VolumeRange range, uint32_t left) {

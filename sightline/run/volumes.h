@@ -27,15 +27,16 @@ struct VolumesAnswer {
 ///
 /// Candidates are found by a walk of its own over the hierarchy, the nodes first that look largest from the eye, within
 /// limits that count work: so the choice is the same everywhere. Every face and every body of an object that is met gets
-/// an estimate of the pixels that it may cover; volumes are made for the best, and of these the ones that cover the most
-/// pixels are taken, but none whose occluder another one hides. Occluders need not be visible (OccluderVolume says why),
+/// an estimate of the pixels that it may cover, its solid angle; volumes are made for the best, and of these the ones are
+/// taken that hold the most objects, as far as the topmost boxes of the hierarchy tell (ground covers many pixels, and hides
+/// nothing), but none whose occluder another one hides. Occluders need not be visible (OccluderVolume says why),
 /// but their objects must be in the view's layers: only what is surely drawn, or hidden by what is drawn, hides.
 class VolumeStage {
 public:
     static constexpr uint32_t kMostVolumes = 64;
-    static constexpr uint32_t kMostNodes = 48;     ///< opened while choosing
-    static constexpr uint32_t kMostObjects = 96;   ///< looked at while choosing
-    static constexpr uint32_t kMostOfObject = 12;  ///< parts of one object that are estimated
+    static constexpr uint32_t kMostNodes = 32;    ///< opened while choosing
+    static constexpr uint32_t kMostObjects = 64;  ///< looked at while choosing
+    static constexpr uint32_t kMostOfObject = 8;  ///< parts of one object that are estimated
 
     explicit VolumeStage(Memory* memory)
         : volumes_(memory),
@@ -74,6 +75,7 @@ private:
         uint32_t serial = 0;
         uint32_t index = 0;  ///< node, or place of an object
         uint8_t planes = 0;
+        uint8_t depth = 0;  ///< below the root; 2 stands for more
         bool leaf = false;
         bool operator<(const Met& other) const {
             return pixels != other.pixels ? pixels < other.pixels : serial > other.serial;
@@ -86,7 +88,6 @@ private:
         uint32_t object = 0;  ///< place
     };
     struct Made {
-        double pixels = 0;
         uint32_t object = 0;
         OccluderVolume volume;
         VolumeOutline outline;
@@ -96,6 +97,7 @@ private:
     void openNode(const SnapshotState& state, const Frustum& frustum, const VolumeView& shared, const Met& from);
     void lookAt(const SnapshotState& state, const View& view, const VolumeView& shared, uint32_t place);
     void take(const VolumeView& shared, uint32_t most);
+    double heldObjects(const OccluderVolume& volume) const;
 
     Array<OccluderVolume> volumes_;
     Array<uint32_t> owners_;  ///< per volume
@@ -104,6 +106,13 @@ private:
     Array<VolumePlace> places_;
     Array<Candidate> candidates_;
     Array<Made> made_;
+    /// The boxes of the root's children, and of those that are nodes, of theirs; with their objects in view.
+    struct Top {
+        EyeBoxes boxes;
+        float objects[8];
+    };
+    Top top_[9];
+    uint32_t top_count_ = 0;
     double least_ = 0;  ///< what covers less is not worth a volume  [pixels]
     uint32_t serial_ = 0;
 };
