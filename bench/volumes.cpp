@@ -1,5 +1,7 @@
 // Occluder volumes: what a few large convex occluders hide by themselves, and whether they pay before the tiles.
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "bench/cases.h"
@@ -18,7 +20,7 @@ constexpr uint64_t kSeed = 1;
 constexpr uint32_t kFrames = 16;
 constexpr uint32_t kStandard = 8;  // volumes, as View has it
 
-/// What one choice of stages gives on a path: means over the frames, of medians over the repeats.
+/// What one choice of stages gives on a path: means over the frames, of medians over the repeats. Times are the thread's own.
 struct Answer {
     double time = 0;  ///< [microseconds]
     double by_volumes = 0, by_tiles = 0, kept = 0;
@@ -33,18 +35,20 @@ std::vector<Answer> measure(const Snapshot& now, const CameraPath& path, const s
     std::vector<Answer> answers(choices.size());
     Query query;
     for (const CameraFrame& frame : path.frames) {
-        std::vector<std::function<void()>> jobs;
+        std::vector<std::vector<double>> times(choices.size());
         std::vector<QueryStats> stats(choices.size());
-        for (size_t i = 0; i < choices.size(); ++i)
-            jobs.push_back([&, i] {
+        for (int round = -1; round < repeat; ++round)  // in turn, so that the machine's moods meet them all alike
+            for (size_t i = 0; i < choices.size(); ++i) {
                 View view = makeView(frame, 1280, 720);
                 view.stages = choices[i].stages;
                 view.occluder_volumes = choices[i].volumes;
+                const double start = threadTime();
                 stats[i] = query.visible(now, view).stats;
-            });
-        const std::vector<double> times = timeInterleaved(jobs, repeat);
+                if (round >= 0) times[i].push_back(threadTime() - start);
+            }
         for (size_t i = 0; i < choices.size(); ++i) {
-            answers[i].time += times[i];
+            std::nth_element(times[i].begin(), times[i].begin() + repeat / 2, times[i].end());
+            answers[i].time += times[i][static_cast<size_t>(repeat / 2)];
             answers[i].by_volumes += static_cast<double>(stats[i].stages[static_cast<int>(Stage::kVolumes)].culled);
             answers[i].by_tiles += static_cast<double>(stats[i].stages[static_cast<int>(Stage::kOcclusion)].culled);
             answers[i].kept += static_cast<double>(stats[i].visible);
