@@ -530,8 +530,13 @@ struct Compressor {
     }
     HWY_INLINE void write(V v, uint64_t* to) const {
         const L l;
-        if constexpr (hn::MaxLanes(L()) == 8) hn::StoreU(hn::TableLookupLanes(v, hn::IndicesFromVec(l, order)), l, to);
-        else hn::StoreU(hn::Compress(v, chosen), l, to);
+        if constexpr (hn::MaxLanes(L()) == 8) {
+            hn::StoreU(hn::TableLookupLanes(v, hn::IndicesFromVec(l, order)), l, to);
+        } else {
+            alignas(64) uint64_t lanes[8];
+            hn::Store(v, l, lanes);
+            for (uint32_t left = bitsOf(l, chosen); left; left &= left - 1) *to++ = lanes[std::countr_zero(left)];
+        }
     }
 };
 
