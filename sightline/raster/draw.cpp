@@ -216,11 +216,11 @@ public:
     }
 
     /// Adds the sides along the near plane.
-    void addPlaneSides(Patch& patch, int8_t turn) const {
+    void addPlaneSides(OpenEdges& open, int8_t turn) const {
         for (int p = 0; p < windings_.count; ++p) {
             if (windings_.turn[p] != turn || windings_.place[p] != Place::kCut) continue;
             const Cut &a = cut_[leaves_[p]], &b = cut_[returns_[p]];
-            addOpenEdge(patch, a.x, a.y, b.x, b.y, turn);
+            open.add(a.x, a.y, b.x, b.y, turn);
         }
     }
 
@@ -275,8 +275,9 @@ bool drawJoined(const ClusterDraw& c, const Projected& projected, const Windings
         if (windings.turn[p] != turn) continue;
         const bool cut = windings.place[p] == Place::kCut;
         const Corners corners = cut ? cutCorners(c, c.polygons[p]) : cornersOf(c, c.polygons[p]);
-        if (corners.count >= 3) addDepth(patch, corners);
+        if (corners.count >= 3) addDepth(patch, corners, turn);
     }
+    OpenEdges open;
     const OccluderEdge* edges = c.drawn.occluder->edges.data() + c.cluster.first_edge;
     for (uint32_t i = 0; i < c.cluster.edge_count; ++i) {
         const OccluderEdge& e = edges[i];
@@ -285,15 +286,17 @@ bool drawJoined(const ClusterDraw& c, const Projected& projected, const Windings
         if (change == 0) continue;
         double ends[4] = {c.x[e.from], c.y[e.from], c.x[e.to], c.y[e.to]};
         if (cuts && !cuts->clip(i, e, ends)) continue;
-        addOpenEdge(patch, ends[0], ends[1], ends[2], ends[3], change);
+        open.add(ends[0], ends[1], ends[2], ends[3], change);
     }
-    if (cuts) cuts->addPlaneSides(patch, turn);
+    if (cuts) cuts->addPlaneSides(open, turn);
+    addOpenEdges(patch, open);
     return coverPatch(patch, source | SeamEntry::kAllPolygons);
 }
 
 /// Draws each polygon of a loose cluster by itself.
 bool drawLoose(const ClusterDraw& c, const Windings& windings, int8_t turn, uint32_t source) {
     bool seams = false;
+    OpenEdges open;
     for (int p = 0; p < windings.count; ++p) {
         if (windings.turn[p] != turn) continue;
         const bool cut = windings.place[p] == Place::kCut;
@@ -303,11 +306,13 @@ bool drawLoose(const ClusterDraw& c, const Windings& windings, int8_t turn, uint
         for (int i = 0; i < corners.count; ++i) extent.grow(corners.x[i], corners.y[i], corners.d[i]);
         Patch patch = makePatch(c);
         if (!beginPatch(patch, extent)) continue;
-        addDepth(patch, corners);
+        addDepth(patch, corners, turn);
+        open.count = 0;
         for (int i = 0; i < corners.count; ++i) {
             const int j = i + 1 < corners.count ? i + 1 : 0;
-            addOpenEdge(patch, corners.x[i], corners.y[i], corners.x[j], corners.y[j], turn);
+            open.add(corners.x[i], corners.y[i], corners.x[j], corners.y[j], turn);
         }
+        addOpenEdges(patch, open);
         seams |= coverPatch(patch, source | static_cast<uint32_t>(p));
     }
     return seams;
@@ -332,7 +337,7 @@ void drawClusterKernel(DepthTiles& tiles, const DrawnCluster& cluster, const Scr
                         static_cast<int8_t>(flips != object.mirrored ? -1 : 1)};
     Windings windings;
     windPolygons(c, projected.regular, windings);
-    const bool loose = source.edge_count == 0;
+    const bool loose = source.edge_count == 0 || source.edge_count + kMaxAtOnce > OpenEdges::kMost;
     bool kept = false;
     const auto drawTurn = [&](int8_t turn, const CutEdges* cuts) {
         if ((turn > 0 ? windings.forward : windings.backward) == 0) return;

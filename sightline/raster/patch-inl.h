@@ -53,6 +53,31 @@ struct Patch {
     uint32_t slots = 0;  ///< in use
 };
 
+/// Finds in each row the columns between which the patch may lie in front of what the tiles claim; false if nowhere.
+HWY_INLINE bool openColumns(Patch& patch) {
+    DepthTiles& tiles = patch.tiles;
+    const F16 d;
+    const auto nearest = hn::Set(d, patch.nearest);
+    bool any = false;
+    for (int32_t row = 0; row < patch.rows; ++row) {
+        const float* base = tiles.base.data() + size_t{static_cast<uint32_t>(patch.row0 + row)} * tiles.stride +
+                            static_cast<size_t>(patch.column0);
+        int32_t first = patch.columns, last = -1;
+        for (int32_t i = 0; i < patch.columns; i += static_cast<int32_t>(hn::Lanes(d))) {
+            const auto within = hn::FirstN(d, static_cast<size_t>(patch.columns - i));
+            const auto open = hn::And(within, hn::Lt(hn::LoadU(d, base + i), nearest));
+            const uint64_t bits = bitsFromMask(d, open);
+            if (!bits) continue;
+            if (last < 0) first = i + std::countr_zero(bits);
+            last = i + 63 - std::countl_zero(bits);
+        }
+        tiles.scratch.first[static_cast<size_t>(row)] = first;
+        tiles.scratch.last[static_cast<size_t>(row)] = last;
+        any |= last >= 0;
+    }
+    return any;
+}
+
 /// Lays out the scratch for the tiles that the extent meets; false if it misses the buffer.
 inline bool beginPatch(Patch& patch, const Extent& extent) {
     DepthTiles& tiles = patch.tiles;
@@ -80,9 +105,13 @@ inline bool beginPatch(Patch& patch, const Extent& extent) {
     }
     const size_t marks = size_t{patch.words} * static_cast<size_t>(patch.rows);
     if (scratch.marked.size() < marks) scratch.marked.resize(marks);
+    if (scratch.first.size() < static_cast<size_t>(patch.rows)) {
+        scratch.first.resize(static_cast<size_t>(patch.rows));
+        scratch.last.resize(static_cast<size_t>(patch.rows));
+    }
     std::fill_n(scratch.z.data(), count, std::numeric_limits<float>::infinity());
     std::fill_n(scratch.marked.data(), marks, uint64_t{0});
-    return true;
+    return openColumns(patch);
 }
 
 /// The slot of a tile that an open edge meets.
@@ -105,6 +134,8 @@ HWY_INLINE uint32_t slotOf(Patch& patch, uint32_t column, uint32_t row) {
     return slot;
 }
 
+constexpr double kLevel = 0x1p-10;  // [pixels]: an edge that rises less counts as level
+
 /// A straight line from one point up to another, or along a row.
 struct Line {
     double x, y, height, slope;  ///< slope 0 if it is level
@@ -118,7 +149,7 @@ struct Line {
         height = up ? by - ay : ay - by;
         x_least = std::min(ax, bx);
         x_most = std::max(ax, bx);
-        level = height < 0x1p-10;
+        level = height < kLevel;
         slope = level ? 0.0 : ((up ? bx - ax : ax - bx) / height);
     }
     HWY_INLINE double at(double above) const { return x + above * slope; }
@@ -129,87 +160,165 @@ struct Line {
     }
 };
 
-/// Notes an open edge: the pixels that it touches, and where it changes the winding number.
-/// @param up  the change where it runs upward; the opposite where it runs downward
-inline void addOpenEdge(Patch& patch, double ax, double ay, double bx, double by, int change) {
-    DepthTiles::Scratch& scratch = patch.tiles.scratch;
-    const Line line(ax, ay, bx, by);
-    const double e = patch.reach, left = 8.0 * patch.column0, bottom = 8.0 * patch.row0;
-    const double ex = e + line.error();
-    const double width = 8.0 * patch.columns, y0 = line.y - bottom, y1 = y0 + line.height;
-    if (!(line.x_least - ex < left + width)) return;  // beyond the right border nothing counts
-    const int32_t last_row = patch.rows - 1;
-    const int32_t first = static_cast<int32_t>(std::clamp((y0 - e) * 0.125, 0.0, last_row + 1.0));
-    const int32_t last = static_cast<int32_t>(std::clamp((y1 + e) * 0.125, -1.0, double(last_row)) + 1.0) - 1;
-    const bool upward = ay <= by;
-    const double top = upward ? by : ay;
-    const uint8_t sign = ((change > 0) == upward) ? 0xff : 0x01;  // the inside is on the left of the edge
+/// Open edges of a patch, as they are gathered.
+struct OpenEdges {
+    static constexpr int kMost = 1024;
+    alignas(64) double ax[kMost + 8], ay[kMost + 8], bx[kMost + 8], by[kMost + 8];
+    int8_t change[kMost];  ///< of the winding number where the edge runs upward; the opposite where it runs downward
+    int count = 0;
+
+    HWY_INLINE void add(double x0, double y0, double x1, double y1, int by_how_much) {
+        ax[count] = x0;
+        ay[count] = y0;
+        bx[count] = x1;
+        by[count] = y1;
+        change[count++] = static_cast<int8_t>(by_how_much);
+    }
+};
+
+/// What the rows of tiles need of some edges; places are relative to the patch's lower left corner.
+struct EdgeSetups {
+    static constexpr int kMost = 8;
+    alignas(64) double x[kMost], slope[kMost];  ///< x at the centre of the lowest row of pixels; its change per row
+    alignas(64) double x_least[kMost], x_most[kMost];          ///< of pixels that it may touch
+    alignas(64) double reach[kMost];                           ///< bound on all errors, along x
+    alignas(64) int32_t first[kMost], last[kMost];             ///< rows of pixels that it may touch
+    alignas(64) int32_t cross_first[kMost], cross_end[kMost];  ///< rows whose centres it crosses
+    alignas(64) int32_t upward[kMost];                         ///< 1: it runs upward
+};
+
+HWY_INLINE void setUpEdges(const Patch& patch, const OpenEdges& edges, int at, EdgeSetups& out) {
     const D8 d;
     const I8 i32;
-    const hn::Rebind<uint8_t, D8> u8;
-    const auto slope = hn::Set(d, line.slope), base = hn::Set(d, line.x - left), zero = hn::Zero(d);
-    const auto height = hn::Set(d, line.height), grow = hn::Set(d, ex), right = hn::Set(d, width);
-    const auto last_pixel = hn::Set(d, width - 1.0);
-    for (int32_t row = first; row <= last; ++row) {
-        // The tiles that the edge meets in this row.
-        double xa, xb;
-        if (line.level) {
-            xa = line.x_least;
-            xb = line.x_most;
-        } else {
-            xa = line.at(std::clamp(8.0 * row - e - y0, 0.0, line.height));
-            xb = line.at(std::clamp(8.0 * row + 8.0 + e - y0, 0.0, line.height));
-        }
-        const double x_low = std::min(xa, xb) - ex - left, x_high = std::max(xa, xb) + ex - left;
-        const int32_t t0 = static_cast<int32_t>(std::clamp(x_low * 0.125, 0.0, double(patch.columns)));
-        const int32_t t1 = static_cast<int32_t>(std::clamp(x_high * 0.125, 0.0, patch.columns - 1.0));
-        alignas(64) int32_t lows[8], highs[8], crossings[8];
+    const double left = 8.0 * patch.column0, bottom = 8.0 * patch.row0, rows = 8.0 * patch.rows;
+    const auto zero = hn::Zero(d), e = hn::Set(d, patch.reach), half = hn::Set(d, 0.5), top = hn::Set(d, rows);
+    for (int k = 0; k < EdgeSetups::kMost; k += static_cast<int>(hn::Lanes(d))) {
+        const auto ax = hn::Load(d, edges.ax + at + k), ay = hn::Load(d, edges.ay + at + k);
+        const auto bx = hn::Load(d, edges.bx + at + k), by = hn::Load(d, edges.by + at + k);
+        const auto up = hn::Le(ay, by);
+        const auto y_low = hn::Min(ay, by), y_high = hn::Max(ay, by), height = hn::Sub(y_high, y_low);
+        const auto x_low = hn::IfThenElse(up, ax, bx), x_high = hn::IfThenElse(up, bx, ax);
+        // A level edge has no slope to rely on: it may be anywhere along its row.
+        const auto level = hn::Lt(height, hn::Set(d, kLevel));
+        const auto run = hn::Sub(x_high, x_low);
+        const auto slope = hn::IfThenElse(level, zero, hn::Div(run, hn::IfThenElse(level, hn::Set(d, 1.0), height)));
+        // A few steps of the coordinates, and of heights times the slope.
+        const auto size = hn::Add(hn::Abs(x_low), hn::Abs(run));
+        const auto tall = hn::Add(hn::Add(hn::Abs(y_low), height), hn::Set(d, 8192.0));
+        const auto error =
+            hn::Add(hn::Mul(size, hn::Set(d, 0x1p-48)), hn::Mul(hn::Mul(hn::Abs(slope), tall), hn::Set(d, 0x1p-50)));
+        const auto reach = hn::IfThenElse(level, hn::Add(hn::Abs(run), hn::Add(e, error)), hn::Add(e, error));
+        const auto y = hn::Sub(y_low, hn::Set(d, bottom));
+        hn::Store(hn::Add(hn::Sub(x_low, hn::Set(d, left)), hn::Mul(hn::Sub(half, y), slope)), d, out.x + k);
+        hn::Store(slope, d, out.slope + k);
+        hn::Store(hn::Sub(hn::Sub(hn::Min(ax, bx), hn::Set(d, left)), hn::Add(e, error)), d, out.x_least + k);
+        hn::Store(hn::Add(hn::Sub(hn::Max(ax, bx), hn::Set(d, left)), hn::Add(e, error)), d, out.x_most + k);
+        hn::Store(reach, d, out.reach + k);
+        const auto row = [&](auto v, double low, double high) HWY_ATTR {
+            return hn::DemoteTo(i32, hn::Min(hn::Max(hn::Floor(v), hn::Set(d, low)), hn::Set(d, high)));
+        };
+        hn::Store(row(hn::Sub(y, e), 0.0, rows), i32, out.first + k);
+        hn::Store(row(hn::Add(hn::Add(y, height), e), -1.0, rows - 1.0), i32, out.last + k);
+        // The same function of y for all edges that end there, so that where one ends the next begins.
+        const auto crossed = [&](auto v) HWY_ATTR {
+            const auto first = hn::Sub(hn::Ceil(hn::Sub(v, half)), hn::Set(d, bottom));
+            return hn::DemoteTo(i32, hn::Min(hn::Max(first, zero), top));
+        };
+        hn::Store(crossed(y_low), i32, out.cross_first + k);
+        hn::Store(crossed(y_high), i32, out.cross_end + k);
+        hn::Store(hn::DemoteTo(i32, hn::IfThenElseZero(up, hn::Set(d, 1.0))), i32, out.upward + k);
+    }
+}
+
+/// Bytes of a word from the first to the last, inclusive; none if first > last. Both in -8 to 15.
+HWY_INLINE uint64_t bytesBetween(int32_t first, int32_t last) {
+    if (last < 0 || first > 7 || first > last) return 0;
+    return ~uint64_t{0} << (8 * std::max(first, 0)) & ~uint64_t{0} >> (56 - 8 * std::min(last, 7));
+}
+
+/// Notes what an edge is to the tiles of one row: the pixels that it touches, and where the winding number changes.
+HWY_INLINE void addEdgeInRow(Patch& patch, const EdgeSetups& s, int i, int32_t row, uint8_t change) {
+    DepthTiles::Scratch& scratch = patch.tiles.scratch;
+    const F8 d;
+    const hn::Rebind<int32_t, F8> i32;
+    const hn::Rebind<uint8_t, F8> u8;
+    const int32_t width = 8 * patch.columns;
+    const double start = s.x[i] + 8.0 * row * s.slope[i];
+    const float slope = static_cast<float>(s.slope[i]), x = static_cast<float>(start);
+    // Float adds its own: a few steps of what is computed here.
+    const float reach = static_cast<float>(s.reach[i]) + 0x1p-20f * (std::abs(x) + 8.0f * std::abs(slope));
+    const float half = std::abs(slope) * (0.5f + static_cast<float>(patch.reach)) + reach;
+    const float edge = 0x1p-20f * static_cast<float>(width);
+    const float least = static_cast<float>(std::max(s.x_least[i], -1.0)) - edge;
+    const float most = static_cast<float>(std::min(s.x_most[i], width + 1.0)) + edge;
+    const int32_t k0 = std::max(s.first[i] - 8 * row, 0), k1 = std::min(s.last[i] - 8 * row, 7);
+    const float xa = x + slope * static_cast<float>(k0), xb = x + slope * static_cast<float>(k1);
+    const float low_all = std::max(std::min(xa, xb) - half, least), high_all = std::min(std::max(xa, xb) + half, most);
+    // What lies left of the columns that matter changes the winding number at their border; right of them nothing does.
+    const int32_t first = scratch.first[static_cast<size_t>(row)], last = scratch.last[static_cast<size_t>(row)];
+    if (!(low_all < static_cast<float>(8 * last + 8))) return;
+    const int32_t t0 = std::max(static_cast<int32_t>(std::max(low_all, 0.0f)) >> 3, first);
+    const int32_t t1 = std::clamp(static_cast<int32_t>(std::max(high_all, 0.0f)) >> 3, first, last);
+    const uint64_t rows_touched = bytesBetween(k0, k1);
+    const int32_t c0 = std::max(s.cross_first[i] - 8 * row, 0), c1 = std::min(s.cross_end[i] - 8 * row, 8);
+    alignas(32) int32_t lows[8], highs[8], crossings[8];
+    const auto zero = hn::Zero(d), beyond = hn::Set(d, static_cast<float>(width));
+    const auto border = hn::Set(d, static_cast<float>(8 * first));
+    for (size_t k = 0; k < 8; k += hn::Lanes(d)) {
+        const auto at = hn::Add(hn::Set(d, x), hn::Mul(hn::Set(d, slope), hn::Iota(d, static_cast<float>(k))));
+        const auto low = hn::Max(hn::Sub(at, hn::Set(d, half)), hn::Set(d, least));
+        const auto high = hn::Min(hn::Add(at, hn::Set(d, half)), hn::Set(d, most));
+        const auto crossing = hn::Min(hn::Max(at, hn::Set(d, least)), hn::Set(d, most));
+        hn::Store(hn::ConvertTo(i32, hn::Min(hn::Max(low, zero), beyond)), i32, lows + k);
+        // Truncation is the floor but between -1 and 0: there, one less.
+        hn::Store(hn::Sub(hn::ConvertTo(i32, hn::Min(hn::Max(hn::Add(high, hn::Set(d, 1.0f)), zero), beyond)),
+                          hn::Set(i32, 1)),
+                  i32, highs + k);
+        hn::Store(hn::ConvertTo(i32, hn::Min(hn::Max(crossing, border), beyond)), i32, crossings + k);
+    }
+    for (int32_t t = t0; t <= t1; ++t) {
+        const uint32_t slot = slotOf(patch, static_cast<uint32_t>(t), static_cast<uint32_t>(row));
+        alignas(8) uint8_t touched[8];
+        uint64_t here = 0;
         for (size_t k = 0; k < 8; k += hn::Lanes(d)) {
-            const auto y = hn::Iota(d, 8.0 * row + static_cast<double>(k) - y0);  // of the pixels' lower sides
-            const auto from = hn::Sub(y, hn::Set(d, e)), to = hn::Add(y, hn::Set(d, 1.0 + e));
-            const auto touched = hn::And(hn::Le(from, height), hn::Ge(to, zero));
-            const auto pa = hn::Add(base, hn::Mul(hn::Min(hn::Max(from, zero), height), slope));
-            const auto pb = hn::Add(base, hn::Mul(hn::Min(hn::Max(to, zero), height), slope));
-            auto low = hn::Sub(hn::Min(pa, pb), grow), high = hn::Add(hn::Max(pa, pb), grow);
-            if (line.level) {
-                low = hn::Set(d, line.x_least - ex - left);
-                high = hn::Set(d, line.x_most + ex - left);
-            }
-            const auto within = hn::And(touched, hn::And(hn::Ge(high, zero), hn::Lt(low, right)));
-            low = hn::Max(low, zero);
-            high = hn::Min(high, last_pixel);
-            const auto none = hn::Set(d, 1e6);
-            hn::Store(hn::DemoteTo(i32, hn::IfThenElse(within, low, none)), i32, lows + k);
-            hn::Store(hn::DemoteTo(i32, hn::IfThenElse(within, high, hn::Neg(none))), i32, highs + k);
-            const auto center = hn::Add(y, hn::Set(d, 0.5));
-            const auto crossing = hn::Max(hn::Add(base, hn::Mul(center, slope)), zero);
-            // Exact, so that where one edge ends the next begins.
-            const auto row_y = hn::Iota(d, bottom + 8.0 * row + static_cast<double>(k) + 0.5);
-            const auto crosses = hn::And(hn::And(hn::Ge(row_y, hn::Set(d, line.y)), hn::Lt(row_y, hn::Set(d, top))),
-                                         hn::Lt(crossing, right));
-            hn::Store(hn::DemoteTo(i32, hn::IfThenElse(crosses, crossing, none)), i32, crossings + k);
+            const auto eight = hn::Set(i32, 8), none = hn::Zero(i32), ones = hn::Set(i32, 0xff);
+            const auto low = hn::Sub(hn::Load(i32, lows + k), hn::Set(i32, 8 * t));
+            const auto high = hn::Sub(hn::Set(i32, 8 * t + 7), hn::Load(i32, highs + k));
+            const auto bits = hn::And(hn::And(hn::Shl(ones, hn::Min(hn::Max(low, none), eight)),
+                                              hn::Shr(ones, hn::Min(hn::Max(high, none), eight))),
+                                      ones);
+            hn::StoreU(hn::DemoteTo(u8, bits), u8, touched + k);
+            const auto at = hn::Sub(hn::Load(i32, crossings + k), hn::Set(i32, 8 * t));
+            here |= bitsFromMask(i32, hn::And(hn::Gt(at, hn::Set(i32, -1)), hn::Lt(at, eight))) << k;
         }
-        for (int32_t t = std::min(t0, t1); t <= t1; ++t) {
-            const uint32_t slot = slotOf(patch, static_cast<uint32_t>(t), static_cast<uint32_t>(row));
-            uint8_t* touched = reinterpret_cast<uint8_t*>(scratch.touched.data() + slot);
-            uint8_t* winding = scratch.winding.data() + 64 * size_t{slot};
-            for (size_t k = 0; k < 8; k += hn::Lanes(d)) {
-                const auto eight = hn::Set(i32, 8), none = hn::Zero(i32), ones = hn::Set(i32, 0xff);
-                const auto low = hn::Sub(hn::Load(i32, lows + k), hn::Set(i32, 8 * t));
-                const auto high = hn::Sub(hn::Set(i32, 8 * t + 7), hn::Load(i32, highs + k));
-                const auto bits = hn::And(hn::And(hn::Shl(ones, hn::Min(hn::Max(low, none), eight)),
-                                                  hn::Shr(ones, hn::Min(hn::Max(high, none), eight))),
-                                          ones);
-                const auto byte = hn::TruncateTo(u8, hn::BitCast(hn::Rebind<uint32_t, I8>(), bits));
-                hn::StoreU(hn::Or(hn::LoadU(u8, touched + k), byte), u8, touched + k);
-                const auto at = hn::Sub(hn::Load(i32, crossings + k), hn::Set(i32, 8 * t));
-                uint64_t here = bitsFromMask(i32, hn::And(hn::Gt(at, hn::Set(i32, -1)), hn::Lt(at, eight)));
-                for (; here; here &= here - 1) {
-                    const size_t row_of_tile = k + static_cast<size_t>(std::countr_zero(here));
-                    uint8_t& place = winding[8 * row_of_tile + static_cast<size_t>(crossings[row_of_tile] & 7)];
-                    place = static_cast<uint8_t>(place + sign);
-                }
-            }
+        uint64_t word;
+        std::memcpy(&word, touched, sizeof word);
+        scratch.touched[slot] |= word & rows_touched;
+        if (c0 >= c1) continue;
+        here &= (0xffu << c0) & (0xffu >> (8 - c1));
+        uint8_t* winding = scratch.winding.data() + 64 * size_t{slot};
+        for (; here; here &= here - 1) {
+            const int k = std::countr_zero(here);
+            uint8_t& place = winding[8 * k + (crossings[k] & 7)];
+            place = static_cast<uint8_t>(place + change);
+        }
+    }
+}
+
+/// Notes the open edges: the pixels that they touch, and where they change the winding number.
+inline void addOpenEdges(Patch& patch, OpenEdges& edges) {
+    EdgeSetups setups;
+    for (int k = 0; k < EdgeSetups::kMost; ++k)  // read, but not used
+        edges.ax[edges.count + k] = edges.ay[edges.count + k] = edges.bx[edges.count + k] = edges.by[edges.count + k] =
+            0;
+    for (int at = 0; at < edges.count; at += EdgeSetups::kMost) {
+        setUpEdges(patch, edges, at, setups);
+        for (int i = 0; i < std::min(EdgeSetups::kMost, edges.count - at); ++i) {
+            if (setups.first[i] > setups.last[i] || !(setups.x_least[i] < 8.0 * patch.columns)) continue;
+            const uint8_t change = (edges.change[at + i] > 0) == (setups.upward[i] == 1) ? 0xff : 0x01;
+            for (int32_t row = setups.first[i] >> 3; row <= setups.last[i] >> 3; ++row)
+                if (patch.tiles.scratch.last[static_cast<size_t>(row)] >= 0)
+                    addEdgeInRow(patch, setups, i, row, change);
         }
     }
 }
@@ -263,22 +372,28 @@ HWY_INLINE bool planeOf(const Corners& c, double depth_error, double position_er
 struct RowSpans {
     static constexpr int kRows = 8;
     alignas(64) int32_t first[kRows], last[kRows];
+    alignas(64) int32_t whole_first[kRows], whole_last[kRows];  ///< those that lie wholly inside it
 };
 
-HWY_INLINE void spansOfRows(const Patch& patch, const Corners& c, int32_t row, RowSpans& out) {
+/// @param turn  which way the polygon winds, if it is surely convex; else 0
+HWY_INLINE void spansOfRows(const Patch& patch, const Corners& c, int turn, int32_t row, RowSpans& out) {
     const D8 d;
     const I8 i32;
-    const double e = patch.reach, left = 8.0 * patch.column0;
-    const auto far = hn::Set(d, 1e30);
+    const double e = patch.reach, left = 8.0 * patch.column0, bottom = 8.0 * (patch.row0 + row);
+    const auto far = hn::Set(d, 1e30), zero = hn::Zero(d), eight = hn::Set(d, 8.0);
+    double y_least = c.y[0], y_most = c.y[0];
+    for (int i = 1; i < c.count; ++i) {
+        y_least = std::min(y_least, c.y[i]);
+        y_most = std::max(y_most, c.y[i]);
+    }
     for (size_t k = 0; k < 8; k += hn::Lanes(d)) {
-        const auto from =
-            hn::Add(hn::Mul(hn::Iota(d, patch.row0 + row + static_cast<double>(k)), hn::Set(d, 8.0)), hn::Set(d, -e));
+        const auto from = hn::Add(hn::Mul(hn::Iota(d, static_cast<double>(k)), eight), hn::Set(d, bottom - e));
         const auto to = hn::Add(from, hn::Set(d, 8.0 + 2.0 * e));
-        auto low = far, high = hn::Neg(far);
+        auto low = far, high = hn::Neg(far), in_low = high, in_high = far;
         for (int i = 0; i < c.count; ++i) {
             const int j = i + 1 < c.count ? i + 1 : 0;
             const Line line(c.x[i], c.y[i], c.x[j], c.y[j]);
-            const auto y = hn::Set(d, line.y), height = hn::Set(d, line.height), zero = hn::Zero(d);
+            const auto y = hn::Set(d, line.y), height = hn::Set(d, line.height), error = hn::Set(d, line.error());
             const auto ya = hn::Sub(from, y), yb = hn::Sub(to, y);
             const auto met = hn::And(hn::Le(ya, height), hn::Ge(yb, zero));
             auto xa = hn::Set(d, line.x_least), xb = hn::Set(d, line.x_most);
@@ -289,25 +404,40 @@ HWY_INLINE void spansOfRows(const Patch& patch, const Corners& c, int32_t row, R
                 xa = hn::Min(pa, pb);
                 xb = hn::Max(pa, pb);
             }
-            const auto error = hn::Set(d, line.error());
             low = hn::IfThenElse(met, hn::Min(low, hn::Sub(xa, error)), low);
             high = hn::IfThenElse(met, hn::Max(high, hn::Add(xb, error)), high);
+            // Inside is on the left of a side that runs the polygon's way: the right of one that runs down.
+            const bool on_left = (c.y[j] < c.y[i]) == (turn > 0);
+            if (on_left) in_low = hn::IfThenElse(met, hn::Max(in_low, hn::Add(xb, error)), in_low);
+            else in_high = hn::IfThenElse(met, hn::Min(in_high, hn::Sub(xa, error)), in_high);
         }
-        const auto eighth = hn::Set(d, 0.125), grow = hn::Set(d, e);
-        const auto a = hn::Mul(hn::Sub(hn::Sub(low, grow), hn::Set(d, left)), eighth);
-        const auto b = hn::Mul(hn::Sub(hn::Add(high, grow), hn::Set(d, left)), eighth);
-        // Truncation is the floor where it is not negative.
+        const auto eighth = hn::Set(d, 0.125), one = hn::Set(d, 1.0);
+        const auto column = [&](auto x, double by)
+                                HWY_ATTR { return hn::Mul(hn::Add(x, hn::Set(d, by - left)), eighth); };
         const auto columns = hn::Set(d, static_cast<double>(patch.columns));
-        hn::Store(hn::DemoteTo(i32, hn::Min(hn::Max(a, hn::Zero(d)), columns)), i32, out.first + k);
-        const auto b1 = hn::Min(hn::Max(hn::Add(b, hn::Set(d, 1.0)), hn::Zero(d)), columns);
-        hn::Store(hn::Sub(hn::DemoteTo(i32, b1), hn::Set(i32, 1)), i32, out.last + k);
+        const auto store = [&](auto v, int32_t* at) HWY_ATTR {
+            // Truncation is the floor where it is not negative.
+            hn::Store(hn::DemoteTo(i32, hn::Min(hn::Max(v, zero), columns)), i32, at + k);
+        };
+        store(column(low, -e), out.first);
+        store(hn::Add(column(high, e), one), out.last);
+        const auto tall = hn::And(hn::Gt(from, hn::Set(d, y_least + e)), hn::Lt(to, hn::Set(d, y_most - e)));
+        store(hn::IfThenElse(tall, hn::Ceil(column(in_low, e)), columns), out.whole_first);
+        store(hn::IfThenElse(tall, column(in_high, -e), zero), out.whole_last);
+    }
+    for (int k = 0; k < RowSpans::kRows; ++k) {
+        --out.last[k];
+        if (turn == 0) out.whole_last[k] = 0;
+        --out.whole_last[k];
     }
 }
 
-/// Lowers the depth of tiles in a row of the scratch to a plane's.
+/// Takes a polygon's part in a row of tiles: those that lie wholly inside it are covered by it alone; in the scratch the
+/// others' depth is lowered to its own.
 HWY_INLINE void lowerRow(Patch& patch, const BufferPlane& plane, uint32_t index, int32_t row, int32_t first,
-                         int32_t last) {
-    DepthTiles::Scratch& scratch = patch.tiles.scratch;
+                         int32_t last, int32_t whole_first, int32_t whole_last) {
+    DepthTiles& tiles = patch.tiles;
+    DepthTiles::Scratch& scratch = tiles.scratch;
     const F16 d;
     const hn::Rebind<uint32_t, F16> u;
     const double tilt = std::abs(plane.dx) + std::abs(plane.dy);
@@ -318,22 +448,47 @@ HWY_INLINE void lowerRow(Patch& patch, const BufferPlane& plane, uint32_t index,
     const auto step = hn::Set(d, static_cast<float>(8.0 * plane.dx)), floor = hn::Set(d, plane.floor);
     const auto untouched = hn::Set(d, std::numeric_limits<float>::infinity());
     const size_t at = size_t{patch.pitch} * static_cast<size_t>(row) + static_cast<size_t>(first);
-    const size_t count = static_cast<size_t>(last - first + 1);
-    for (size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const size_t tile =
+        size_t{static_cast<uint32_t>(patch.row0 + row)} * tiles.stride + static_cast<size_t>(patch.column0 + first);
+    const int32_t count = last - first + 1;
+    const int32_t lanes = static_cast<int32_t>(hn::Lanes(d));
+    for (int32_t i = 0; i < count; i += lanes) {
         float* z = scratch.z.data() + at + i;
-        uint32_t* planes = scratch.plane.data() + at + i;
         const auto depth = hn::Max(hn::Add(start, hn::Mul(step, hn::Iota(d, static_cast<float>(i)))), floor);
-        const auto wanted = hn::FirstN(d, count - i);
+        const auto wanted = hn::FirstN(d, static_cast<size_t>(count - i));
         const auto old = hn::LoadU(d, z);
         const auto index_or_none =
             hn::IfThenElse(hn::RebindMask(u, hn::Eq(old, untouched)), hn::Set(u, index), hn::Set(u, DepthTiles::kNone));
-        hn::BlendedStore(index_or_none, hn::RebindMask(u, wanted), u, planes);
+        hn::BlendedStore(index_or_none, hn::RebindMask(u, wanted), u, scratch.plane.data() + at + i);
         hn::BlendedStore(hn::Min(old, depth), wanted, d, z);
+        const int32_t from = std::max(whole_first - first - i, 0), end = std::min(whole_last + 1 - first - i, lanes);
+        if (from >= end) continue;
+        float* base = tiles.base.data() + tile + i;
+        const auto whole =
+            hn::AndNot(hn::FirstN(d, static_cast<size_t>(from)), hn::FirstN(d, static_cast<size_t>(end)));
+        const auto better = hn::And(whole, hn::Gt(depth, hn::LoadU(d, base)));
+        if (hn::AllFalse(d, better)) continue;
+        hn::BlendedStore(depth, better, d, base);
+        hn::BlendedStore(hn::Set(u, index), hn::RebindMask(u, better), u, tiles.plane.data() + tile + i);
+        float* layer = tiles.layer.data() + tile + i;
+        hn::BlendedStore(hn::Set(d, DepthTiles::kOpen), hn::And(better, hn::Le(hn::LoadU(d, layer), depth)), d, layer);
     }
 }
 
+/// Whether all corners surely turn the same way.
+HWY_INLINE bool isConvex(const Corners& c, int turn, double reach) {
+    for (int i = 0; i < c.count; ++i) {
+        const int j = i + 1 < c.count ? i + 1 : 0, k = j + 1 < c.count ? j + 1 : 0;
+        const double ux = c.x[j] - c.x[i], uy = c.y[j] - c.y[i], vx = c.x[k] - c.x[i], vy = c.y[k] - c.y[i];
+        const double least = 4.0 * (reach + 0x1p-16) * (std::abs(ux) + std::abs(uy) + std::abs(vx) + std::abs(vy));
+        if (!(turn * (ux * vy - vx * uy) > least)) return false;
+    }
+    return true;
+}
+
 /// Lowers the depth of the tiles that a polygon meets to its own.
-inline void addDepth(Patch& patch, const Corners& c) {
+/// @param turn  which way it winds
+inline void addDepth(Patch& patch, const Corners& c, int turn) {
     DepthTiles::Scratch& scratch = patch.tiles.scratch;
     double x0 = c.x[0], x1 = x0, y0 = c.y[0], y1 = y0, d0 = c.d[0], d1 = d0;
     for (int i = 1; i < c.count; ++i) {
@@ -368,12 +523,15 @@ inline void addDepth(Patch& patch, const Corners& c) {
     plane.floor = farthest;
     const uint32_t index = static_cast<uint32_t>(patch.tiles.planes.size());
     patch.tiles.planes.push_back(plane);
+    const bool large = c1 - c0 > 1 && r1 - r0 > 1;
+    const int surely = large && isConvex(c, turn, patch.reach) ? turn : 0;
     RowSpans spans;
     for (int32_t row = r0; row <= r1; ++row) {
         const int k = (row - r0) % RowSpans::kRows;
-        if (k == 0) spansOfRows(patch, c, row, spans);
-        const int32_t first = std::max(spans.first[k], c0), last = std::min(spans.last[k], c1);
-        if (first <= last) lowerRow(patch, plane, index, row, first, last);
+        if (k == 0) spansOfRows(patch, c, surely, row, spans);
+        const int32_t first = std::max(spans.first[k], patch.tiles.scratch.first[static_cast<size_t>(row)]);
+        const int32_t last = std::min(spans.last[k], patch.tiles.scratch.last[static_cast<size_t>(row)]);
+        if (first <= last) lowerRow(patch, plane, index, row, first, last, spans.whole_first[k], spans.whole_last[k]);
     }
 }
 

@@ -54,6 +54,12 @@ HWY_INLINE uint64_t notYetNearer(const DepthTiles& tiles, uint32_t tile, uint64_
     return mask & ~pixelsNearer(tiles.blocks.data() + 64 * size_t{tiles.block[tile]}, nearness);
 }
 
+/// Bits of pixels whose winding number is 1 or more: in a tile, and all along the row on its right as far as its right
+/// border tells.
+struct Wound {
+    uint64_t pixels = 0, beyond = 0;
+};
+
 /// The winding numbers of one row of tiles at a tile's left border: of its eight rows of pixels, each in eight bytes.
 struct RowWinding {
     alignas(64) uint8_t at[64];
@@ -61,59 +67,63 @@ struct RowWinding {
 
 #if HWY_TARGET == HWY_SCALAR
 
-/// Bits of the pixels whose winding number is 1 or more; the tile's right border becomes the next one's left.
-inline uint64_t windPixels(RowWinding& row, const uint8_t* changes) {
-    uint64_t inside = 0;
+/// Goes through a tile: its right border becomes the next one's left.
+inline Wound windPixels(RowWinding& row, const uint8_t* changes) {
+    Wound out;
     for (int i = 0; i < 64; ++i) {
         row.at[i & ~7] = static_cast<uint8_t>(row.at[i & ~7] + changes[i]);
-        inside |= uint64_t{static_cast<int8_t>(row.at[i & ~7]) > 0} << i;
+        out.pixels |= uint64_t{static_cast<int8_t>(row.at[i & ~7]) > 0} << i;
     }
-    for (int i = 0; i < 64; ++i) row.at[i] = row.at[i & ~7];
-    return inside;
+    for (int i = 0; i < 64; ++i) {
+        row.at[i] = row.at[i & ~7];
+        out.beyond |= uint64_t{static_cast<int8_t>(row.at[i]) > 0} << i;
+    }
+    return out;
 }
 
 #else
 
-/// Bits of the bytes that are greater than zero as signed numbers, of 64.
+/// Bits of the bytes that are greater than zero as signed numbers.
 template <class Bytes, class V>
-HWY_INLINE uint64_t positiveBits(Bytes, V v, size_t i) {
+HWY_INLINE uint64_t positiveBits(Bytes, V v) {
     const hn::RebindToSigned<Bytes> d;
-    uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, hn::Gt(hn::BitCast(d, v), hn::Zero(d)), bits);
-    uint64_t part;
-    std::memcpy(&part, bits, sizeof part);
-    return part << i;
+    const auto positive = hn::Gt(hn::BitCast(d, v), hn::Zero(d));
+    if constexpr (hn::MaxLanes(Bytes()) == 64) {
+        uint64_t bits;
+        hn::StoreMaskBits(d, positive, reinterpret_cast<uint8_t*>(&bits));
+        return bits;
+    } else {
+        uint8_t bits[8] = {};
+        hn::StoreMaskBits(d, positive, bits);
+        uint64_t part;
+        std::memcpy(&part, bits, sizeof part);
+        return part;
+    }
 }
 
-/// Bits of the pixels whose winding number is 1 or more; the tile's right border becomes the next one's left.
-HWY_INLINE uint64_t windPixels(RowWinding& row, const uint8_t* changes) {
+/// Goes through a tile: its right border becomes the next one's left.
+HWY_INLINE Wound windPixels(RowWinding& row, const uint8_t* changes) {
     const hn::CappedTag<uint8_t, 64> bytes;
     const hn::Repartition<uint64_t, decltype(bytes)> words;
     alignas(64) static constexpr uint8_t kLastOfEight[64] = {
         7, 7, 7, 7, 7, 7, 7, 7, 15, 15, 15, 15, 15, 15, 15, 15, 7, 7, 7, 7, 7, 7, 7, 7, 15, 15, 15, 15, 15, 15, 15, 15,
         7, 7, 7, 7, 7, 7, 7, 7, 15, 15, 15, 15, 15, 15, 15, 15, 7, 7, 7, 7, 7, 7, 7, 7, 15, 15, 15, 15, 15, 15, 15, 15};
-    uint64_t inside = 0;
+    Wound out;
     for (size_t i = 0; i < 64; i += hn::Lanes(bytes)) {
         auto v = hn::LoadU(bytes, changes + i);
         v = hn::Add(v, hn::BitCast(bytes, hn::ShiftLeft<8>(hn::BitCast(words, v))));
         v = hn::Add(v, hn::BitCast(bytes, hn::ShiftLeft<16>(hn::BitCast(words, v))));
         v = hn::Add(v, hn::BitCast(bytes, hn::ShiftLeft<32>(hn::BitCast(words, v))));
         v = hn::Add(v, hn::Load(bytes, row.at + i));
-        hn::Store(hn::TableLookupBytes(v, hn::Load(bytes, kLastOfEight + i)), bytes, row.at + i);
-        inside |= positiveBits(bytes, v, i);
+        const auto last = hn::TableLookupBytes(v, hn::Load(bytes, kLastOfEight + i));
+        hn::Store(last, bytes, row.at + i);
+        out.pixels |= positiveBits(bytes, v) << i;
+        out.beyond |= positiveBits(bytes, last) << i;
     }
-    return inside;
+    return out;
 }
 
 #endif
-
-/// Bits of the pixels that are inside all along a row of tiles, as far as the winding at its left border tells.
-HWY_INLINE uint64_t insideOf(const RowWinding& row) {
-    uint64_t inside = 0;
-    for (int k = 0; k < 8; ++k)
-        if (static_cast<int8_t>(row.at[8 * k]) > 0) inside |= uint64_t{0xff} << (8 * k);
-    return inside;
-}
 
 /// Covers the tiles of a run that no open edge meets.
 inline void coverBetween(Patch& patch, uint32_t row, uint32_t first, uint32_t end, uint64_t inside) {
@@ -135,9 +145,11 @@ inline bool coverPatch(Patch& patch, uint32_t source) {
     const DepthTiles::Scratch& scratch = tiles.scratch;
     bool seams = false;
     for (uint32_t row = 0; row < static_cast<uint32_t>(patch.rows); ++row) {
+        const int32_t first = scratch.first[row], last = scratch.last[row];
+        if (last < 0) continue;  // all of it is hidden
         RowWinding winding{};
         uint64_t inside = 0;
-        uint32_t from = 0;  // the first column that is not done yet
+        uint32_t from = static_cast<uint32_t>(first);  // the first column that is not done yet
         const uint32_t tile_row = (static_cast<uint32_t>(patch.row0) + row) * tiles.stride;
         for (uint32_t word = 0; word < patch.words; ++word)
             for (uint64_t left = scratch.marked[row * patch.words + word]; left; left &= left - 1) {
@@ -146,9 +158,10 @@ inline bool coverPatch(Patch& patch, uint32_t source) {
                 from = column + 1;
                 const size_t at = size_t{patch.pitch} * row + column;
                 const uint32_t slot = scratch.slot[at], tile = tile_row + static_cast<uint32_t>(patch.column0) + column;
-                const uint64_t pixels = windPixels(winding, scratch.winding.data() + 64 * size_t{slot});
-                inside = insideOf(winding);
-                const uint64_t touched = scratch.touched[slot], covered = pixels & ~touched;
+                const Wound wound = windPixels(winding, scratch.winding.data() + 64 * size_t{slot});
+                inside = wound.beyond;
+                if (!(tiles.base[tile] < patch.nearest)) continue;
+                const uint64_t touched = scratch.touched[slot], covered = wound.pixels & ~touched;
                 const float z = scratch.z[at];
                 if (covered && z < std::numeric_limits<float>::infinity()) {
                     if (covered == ~uint64_t{0}) coverWhole(tiles, tile, z, scratch.plane[at]);
@@ -160,7 +173,7 @@ inline bool coverPatch(Patch& patch, uint32_t source) {
                     seams = true;
                 }
             }
-        coverBetween(patch, row, from, static_cast<uint32_t>(patch.columns), inside);
+        coverBetween(patch, row, from, static_cast<uint32_t>(last) + 1, inside);
     }
     return seams;
 }
