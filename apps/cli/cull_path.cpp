@@ -187,7 +187,9 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
 
     LoadedWorld loaded = [&] {
         Progress progress("preparing", "meshes", scene.meshes.size());
-        return loadWorld(scene, [&](size_t done, size_t total) { progress.set(done, total); });
+        return loadWorld(
+            scene, [&](size_t done, size_t total) { progress.set(done, total); },
+            options.stages & stageBit(Stage::kVolumes));
     }();
     const Snapshot now = loaded.world.commit();
 

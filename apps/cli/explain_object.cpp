@@ -87,7 +87,8 @@ std::string sightingText(const ObjectAnswer& answer) {
 
 AskedScene::AskedScene(const Scene& from) : scene(from) {
     Progress progress("preparing", "meshes", scene.meshes.size());
-    loaded = loadWorld(scene, [&](size_t done, size_t total) { progress.set(done, total); });
+    loaded = loadWorld(
+        scene, [&](size_t done, size_t total) { progress.set(done, total); }, true);
     now = loaded.world.commit();
 }
 

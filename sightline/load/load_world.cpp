@@ -23,8 +23,10 @@ Occluder occluderOf(const Scene& scene, const Mesh& mesh) {
 
 }  // namespace
 
-LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_t)>& progress) {
-    LoadedWorld loaded;
+LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_t)>& progress, bool volumes) {
+    WorldDef world;
+    world.volumes = volumes;
+    LoadedWorld loaded{World::create(world), {}};
     std::vector<OccluderId> occluders(scene.meshes.size());
     for (size_t i = 0; i < scene.meshes.size(); ++i) {
         const Occluder occluder = occluderOf(scene, scene.meshes[i]);

@@ -17,6 +17,8 @@ struct LoadedWorld {
 
 /// Deforming meshes and materials that do not hide give no occluder triangles.
 /// @param progress  called with (done, total) meshes now and then; may be empty
-LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_t)>& progress = {});
+/// @param volumes   WorldDef::volumes
+LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_t)>& progress = {},
+                      bool volumes = false);
 
 }  // namespace sightline

@@ -84,6 +84,7 @@ struct WorldState {
     Array<IdSlot> ids{memory};         ///< per ObjectId::index - 1
     Array<uint32_t> free_ids{memory};  ///< indices of removed objects
     uint32_t living = 0;
+    bool volumes = false;           ///< WorldDef::volumes
     bool rebuild = true;            ///< objects came, went, or changed between bounded and unbounded
     Array<uint32_t> moved{memory};  ///< places
     std::shared_ptr<const SnapshotState> last;
@@ -157,6 +158,7 @@ std::shared_ptr<SnapshotState> WorldState::refitted() {
 World::World(const WorldDef& def) : state_(makeOwned<detail::WorldState>(def.memory, def.memory)) {
     state_->objects.chunks.reserve(def.objects / detail::ObjectChunk::kSize + 1);
     state_->ids.reserve(def.objects);
+    state_->volumes = def.volumes;
 }
 World World::create(const WorldDef& def) { return World(def); }
 World::~World() = default;
@@ -166,7 +168,7 @@ World& World::operator=(World&&) noexcept = default;
 uint32_t Snapshot::objectCount() const { return state_ ? state_->count : 0; }
 
 OccluderId World::addOccluder(const Occluder& occluder) {
-    state_->occluders.push_back(makeShared<detail::HeldOccluder>(state_->memory, occluder, state_->memory));
+    state_->occluders.push_back(makeShared<detail::HeldOccluder>(state_->memory, occluder, state_->volumes, state_->memory));
     state_->rebuild = true;
     return {static_cast<uint32_t>(state_->occluders.size() - 1)};
 }

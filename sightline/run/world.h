@@ -61,6 +61,8 @@ private:
 /// How a world is set up.
 struct WorldDef {
     uint32_t objects = 0;              ///< room for so many from the start  [hint]
+    bool volumes = false;              ///< prepare occluders for Stage::kVolumes too, which culls nothing without;
+                                       ///< takes addOccluder() about as long as prepareOccluder()
     Memory* memory = defaultMemory();  ///< of the world and its snapshots. Thread-safe, if snapshots are let go by
                                        ///< other threads than the world's; outlives the world and its snapshots
 };

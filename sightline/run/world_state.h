@@ -53,10 +53,11 @@ struct PlacedObject {
 
 /// An occluder, and what of it hides by itself.
 struct HeldOccluder : Occluder {
-    VolumeParts parts;
+    VolumeParts parts;  ///< none unless WorldDef::volumes
 
-    HeldOccluder(const Occluder& from, Memory* memory) : Occluder(memory), parts(findVolumeParts(from, memory)) {
+    HeldOccluder(const Occluder& from, bool volumes, Memory* memory) : Occluder(memory), parts(memory) {
         Occluder::operator=(from);
+        if (volumes) parts = findVolumeParts(from, memory);
     }
 };
 

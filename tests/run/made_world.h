@@ -19,8 +19,14 @@ struct MadeWorld {
     std::vector<glm::dmat4> transforms;
     std::vector<uint8_t> hides;
     std::vector<ObjectId> ids;
-    World world;
+    World world = World::create(worldDef());
     OccluderId cube;
+
+    static WorldDef worldDef() {
+        WorldDef def;
+        def.volumes = true;
+        return def;
+    }
 
     MadeWorld() {
         for (int i = 0; i < 8; ++i) positions.push_back({float(i & 1), float(i >> 1 & 1), float(i >> 2)});
