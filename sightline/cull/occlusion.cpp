@@ -7,6 +7,20 @@
 #include <cstring>
 #include <limits>
 
+#ifndef SIGHTLINE_CULL_CORNER_BOUNDS
+#define SIGHTLINE_CULL_CORNER_BOUNDS
+namespace sightline {
+namespace {
+
+/// What the corners of a box are on the screen: bounds, and the sizes of the terms that they come from.
+struct CornerBounds {
+    double x0, y0, x1, y1, w_least, near_least, d_most, w_size, near_size, d_size;
+};
+
+}  // namespace
+}  // namespace sightline
+#endif
+
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sightline/cull/occlusion.cpp"
@@ -97,6 +111,45 @@ uint32_t projectBoxesKernel(const Screen& screen, const EyeBoxes& boxes, float (
     return doubt;
 }
 
+/// All eight corners side by side.
+void projectCornersKernel(const Screen& object, const Box3f& box, CornerBounds& out) {
+    const hn::CappedTag<double, 8> d;
+    alignas(64) static constexpr double kAtMost[3][8] = {
+        {0, 1, 0, 1, 0, 1, 0, 1}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}};
+    const auto huge = hn::Set(d, 1e300);
+    auto x0 = huge, y0 = huge, x1 = hn::Neg(huge), y1 = x1, w_least = huge, near_least = huge, d_most = x1;
+    auto w_size = hn::Zero(d), near_size = w_size, d_size = w_size;
+    for (size_t i = 0; i < 8; i += hn::Lanes(d)) {
+        const auto along = [&](int axis) HWY_ATTR {
+            const auto most = hn::Gt(hn::Load(d, kAtMost[axis] + i), hn::Zero(d));
+            return hn::IfThenElse(most, hn::Set(d, static_cast<double>(box.max[axis])),
+                                  hn::Set(d, static_cast<double>(box.min[axis])));
+        };
+        const auto cx = along(0), cy = along(1), cz = along(2);
+        const auto row = [&](const glm::dvec4& r) HWY_ATTR {
+            return hn::Add(hn::Add(hn::Mul(hn::Set(d, r.x), cx), hn::Mul(hn::Set(d, r.y), cy)),
+                           hn::Add(hn::Mul(hn::Set(d, r.z), cz), hn::Set(d, r.w)));
+        };
+        const auto w = row(object.w), near = row(object.near), depth = row(object.d);
+        const auto inverse = hn::Div(hn::Set(d, 1.0), w);
+        const auto px = hn::Mul(row(object.x), inverse), py = hn::Mul(row(object.y), inverse);
+        x0 = hn::Min(x0, px);
+        x1 = hn::Max(x1, px);
+        y0 = hn::Min(y0, py);
+        y1 = hn::Max(y1, py);
+        w_least = hn::Min(w_least, w);
+        near_least = hn::Min(near_least, near);
+        d_most = hn::Max(d_most, depth);
+        w_size = hn::Max(w_size, hn::Abs(w));
+        near_size = hn::Max(near_size, hn::Abs(near));
+        d_size = hn::Max(d_size, hn::Abs(depth));
+    }
+    const auto least_of = [&](auto v) HWY_ATTR { return hn::GetLane(hn::MinOfLanes(d, v)); };
+    const auto most_of = [&](auto v) HWY_ATTR { return hn::GetLane(hn::MaxOfLanes(d, v)); };
+    out = {least_of(x0),         least_of(y0),    most_of(x1),     most_of(y1),        least_of(w_least),
+           least_of(near_least), most_of(d_most), most_of(w_size), most_of(near_size), most_of(d_size)};
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace sightline
 HWY_AFTER_NAMESPACE();
@@ -125,6 +178,7 @@ Fit toPixels(const Screen& screen, double x0, double y0, double x1, double y1, P
 }  // namespace
 
 HWY_EXPORT(projectBoxesKernel);
+HWY_EXPORT(projectCornersKernel);
 
 ScreenAnswer projectBoxes(const Screen& screen, const EyeBoxes& boxes) {
     alignas(64) float bounds[5][8];
@@ -143,35 +197,19 @@ ScreenAnswer projectBoxes(const Screen& screen, const EyeBoxes& boxes) {
 BoxAnswer projectBox(const Screen& object, const Box3f& box) {
     constexpr double kRounding = 0x1p-46;
     BoxAnswer answer;
-    double x0 = 1e300, y0 = 1e300, x1 = -1e300, y1 = -1e300, w_least = 1e300, near_least = 1e300, d_most = -1e300;
-    double size_w = 0, size_near = 0, size_d = 0;
-    for (int which = 0; which < 8; ++which) {
-        const glm::dvec4 p(which & 1 ? box.max.x : box.min.x, which & 2 ? box.max.y : box.min.y,
-                           which & 4 ? box.max.z : box.min.z, 1.0);
-        const double w = glm::dot(object.w, p), near = glm::dot(object.near, p), d = glm::dot(object.d, p);
-        const double px = glm::dot(object.x, p) / w, py = glm::dot(object.y, p) / w;
-        w_least = std::min(w_least, w);
-        near_least = std::min(near_least, near);
-        d_most = std::max(d_most, d);
-        size_w = std::max(size_w, std::abs(w));
-        size_near = std::max(size_near, std::abs(near));
-        size_d = std::max(size_d, std::abs(d));
-        x0 = std::min(x0, px);
-        x1 = std::max(x1, px);
-        y0 = std::min(y0, py);
-        y1 = std::max(y1, py);
-    }
+    CornerBounds c;
+    HWY_DYNAMIC_DISPATCH(projectCornersKernel)(object, box, c);
     // Doubles: a millionth of a pixel is far above the rounding of any place inside the buffer.
     constexpr double kSlack = 1e-6;
-    if (!(near_least > kRounding * size_near && w_least > kRounding * size_w)) {
+    if (!(c.near_least > kRounding * c.near_size && c.w_least > kRounding * c.w_size)) {
         answer.doubt = true;
         return answer;
     }
-    const Fit fit = toPixels(object, x0 - kSlack, y0 - kSlack, x1 + kSlack, y1 + kSlack, answer.rect);
+    const Fit fit = toPixels(object, c.x0 - kSlack, c.y0 - kSlack, c.x1 + kSlack, c.y1 + kSlack, answer.rect);
     answer.outside = fit == Fit::kOutside;
     answer.doubt = fit == Fit::kDoubt;
-    const double nearness = object.perspective ? 1.0 / w_least : d_most;
-    answer.rect.nearness = static_cast<float>(nearness + std::abs(nearness) * 0x1p-22 + 0x1p-40 * size_d);
+    const double nearness = object.perspective ? 1.0 / c.w_least : c.d_most;
+    answer.rect.nearness = static_cast<float>(nearness + std::abs(nearness) * 0x1p-22 + 0x1p-40 * c.d_size);
     return answer;
 }
 

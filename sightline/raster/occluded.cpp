@@ -126,14 +126,14 @@ void pairSeamsKernel(DepthTiles& tiles, uint32_t tile, uint64_t pixels) {
 /// Calls `look` with each tile of the rectangle that is not wholly nearer; stops when it returns false.
 template <class Look>
 HWY_INLINE bool forOpenTiles(DepthTiles& tiles, const PixelRect& rect, Look look) {
-    const F8 d;
+    const F16 d;
     const auto limit = hn::Set(d, rect.nearness);
     const int32_t first = rect.x0 >> 3, last = rect.x1 >> 3;
     for (int32_t row = rect.y0 >> 3; row <= rect.y1 >> 3; ++row) {
         const float* base = tiles.base.data() + static_cast<size_t>(row) * tiles.stride;
-        for (int32_t chunk = first & ~7; chunk <= last; chunk += 8) {
-            uint32_t open = 0xffu << std::max(0, first - chunk) & 0xffu >> std::max(0, chunk + 7 - last);
-            for (size_t h = 0; h < 8; h += hn::Lanes(d))
+        for (int32_t chunk = first & ~15; chunk <= last; chunk += 16) {
+            uint32_t open = 0xffffu << std::max(0, first - chunk) & 0xffffu >> std::max(0, chunk + 15 - last);
+            for (size_t h = 0; h < 16; h += hn::Lanes(d))
                 open &= ~static_cast<uint32_t>(bitsFromMask(d, hn::Gt(hn::LoadU(d, base + chunk + h), limit)) << h);
             for (; open; open &= open - 1) {
                 const int32_t column = chunk + std::countr_zero(open);
