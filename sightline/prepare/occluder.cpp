@@ -32,6 +32,7 @@ Prepared prepare(std::span<const OccluderSource> sources, const OccluderSettings
     limits.by_mesh = by_mesh;
     limits.reach_across = settings.rings;
     limits.most_joined = std::clamp(settings.own_polygons, 3u, OccluderCluster::kMaxOwn);
+    limits.most_folded = std::clamp(settings.folded_polygons, 3u, limits.most_joined);
     limits.most_loose = OccluderCluster::kMaxLoose;
     limits.most_vertices = OccluderCluster::kMaxVertices - (settings.rings ? kRoomForRing : 0);
     out.runs = sortIntoRuns(out.patchwork, limits);

@@ -51,17 +51,18 @@ public:
 
     /// Splits at a median of the longest axis until the pieces are small enough, so that each is compact. Iterative:
     /// meshes of millions of triangles must not exhaust the stack.
-    void split(Runs& out, std::span<const uint32_t> polygons, bool joined, uint32_t most) {
+    void split(Runs& out, std::span<const uint32_t> polygons, bool joined, uint32_t most, uint32_t most_folded) {
         if (polygons.empty()) return;
         const uint32_t first = static_cast<uint32_t>(out.order.size());
         sorted_.clear();
-        for (uint32_t polygon : polygons) sorted_.push_back({centerOf(polygon), polygon});
+        for (uint32_t polygon : polygons)
+            sorted_.push_back({centerOf(polygon), glm::vec3(normalOf(patchwork_, polygon)), polygon});
         stack_.assign(1, {0, static_cast<uint32_t>(polygons.size())});
         while (!stack_.empty()) {
             const Range range = stack_.back();
             stack_.pop_back();
             const uint32_t count = range.last - range.first;
-            if (count <= most && fits(range)) {
+            if (count <= most && fits(range) && (count <= most_folded || facesOneWay(range))) {
                 std::sort(sorted_.begin() + range.first, sorted_.begin() + range.last,
                           [](const Sorted& a, const Sorted& b) { return a.polygon < b.polygon; });
                 out.runs.push_back({first + range.first, first + range.last, joined});
@@ -78,7 +79,7 @@ public:
 
 private:
     struct Sorted {
-        glm::vec3 center;
+        glm::vec3 center, normal;
         uint32_t polygon;
     };
     struct Range {
@@ -103,6 +104,17 @@ private:
             }
         }
         return vertices <= most_vertices_;
+    }
+
+    /// Whether no two polygons are far from facing the same way, so that they lie beside each other, not in front.
+    bool facesOneWay(const Range& range) const {
+        constexpr float kLeastCosine = 0.3f;  // to the mean
+        glm::vec3 sum(0.0f);
+        for (uint32_t i = range.first; i < range.last; ++i) sum += sorted_[i].normal;
+        const float least = kLeastCosine * glm::length(sum);
+        for (uint32_t i = range.first; i < range.last; ++i)
+            if (!(glm::dot(sum, sorted_[i].normal) > least)) return false;
+        return true;
     }
 
     void halve(const Range& range, uint32_t middle) {
@@ -163,7 +175,7 @@ Runs sortIntoRuns(const Patchwork& patchwork, const RunLimits& limits) {
     std::vector<uint32_t> order = std::move(out.order);
     const auto endMesh = [&] {
         std::sort(loose.begin(), loose.end());
-        splitter.split(out, loose, false, limits.most_loose);
+        splitter.split(out, loose, false, limits.most_loose, limits.most_loose);
         loose.clear();
     };
     for (size_t first = 0, last = 0; first < count; first = last) {
@@ -172,7 +184,7 @@ Runs sortIntoRuns(const Patchwork& patchwork, const RunLimits& limits) {
         const size_t size = limits.reach_across ? whole_size[out.whole[order[first]]] : last - first;
         joined.assign(order.begin() + static_cast<ptrdiff_t>(first), order.begin() + static_cast<ptrdiff_t>(last));
         if (size < kLeastJoined) loose.insert(loose.end(), joined.begin(), joined.end());
-        else splitter.split(out, joined, true, limits.most_joined);
+        else splitter.split(out, joined, true, limits.most_joined, limits.most_folded);
     }
     endMesh();
     return out;

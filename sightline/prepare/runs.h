@@ -21,6 +21,7 @@ struct RunLimits {
     bool by_mesh = true;         ///< keep meshes apart
     bool reach_across = false;   ///< what hangs together across meshes counts as one, though its runs are kept apart
     uint32_t most_joined = 0;    ///< polygons of a joined run
+    uint32_t most_folded = 0;    ///< polygons of a joined run that do not face one way
     uint32_t most_loose = 0;     ///< polygons of a loose run
     uint32_t most_vertices = 0;  ///< of any run  [limit: >= 4]
 };

@@ -63,6 +63,36 @@ TEST(Clusters, WhatDoesNotHangTogetherIsGatheredWithoutEdges) {
     EXPECT_EQ(o.edges.size(), 12u);
 }
 
+TEST(Clusters, AreSmallerWhereTheyDoNotFaceOneWay) {
+    Soup ground;
+    Random random(4);
+    for (int j = 0; j < 40; ++j)
+        for (int i = 0; i < 40; ++i) ground.add({{i, 0, j}, {i, 0, j + 1}, {i + 1, 0, j + 1}, {i + 1, 0, j}});
+    for (glm::vec3& p : ground.positions) p.y = 0.1f * float(Random(uint64_t(p.x * 100 + p.z)).uniform());
+    const Occluder flat = prepareOccluder(ground.view());
+    const Occluder ball = prepareOccluder(makeBall(4, 20).view());
+    expectWithinLimits(flat);
+    expectWithinLimits(ball);
+    uint32_t most_flat = 0, polygons = 0;
+    for (const OccluderCluster& c : flat.clusters) most_flat = std::max(most_flat, c.polygon_count);
+    EXPECT_GT(most_flat, 100u);
+    for (const OccluderCluster& c : flat.clusters) polygons += c.polygon_count;
+    EXPECT_LE(flat.clusters.size(), polygons / 90);
+    for (const Occluder* o : {&flat, &ball})
+        for (const OccluderCluster& c : o->clusters) {
+            if (c.polygon_count <= OccluderSettings().folded_polygons) continue;
+            glm::vec3 sum(0.0f);
+            std::vector<glm::vec3> normals;
+            for (uint32_t p = 0; p < c.polygon_count; ++p) {
+                const uint8_t* v = o->polygons[c.first_polygon + p].vertex;
+                const auto at = [&](int k) { return positionOf(*o, c, v[k]); };
+                normals.push_back(glm::normalize(glm::cross(at(1) - at(0), at(2) - at(0))));
+                sum += normals.back();
+            }
+            for (const glm::vec3& n : normals) EXPECT_GT(glm::dot(n, sum), 0.29f * glm::length(sum));
+        }
+}
+
 TEST(Clusters, EdgesOfMoreThanTwoPolygonsHaveSeveralRecords) {
     for (uint64_t seed = 1; seed <= 40; ++seed) {
         SCOPED_TRACE(seed);
@@ -82,7 +112,7 @@ TEST(Clusters, FacesBetweenBoxesDoNotBreakTheWall) {
     Soup soup;
     for (int i = 0; i < 5; ++i)
         for (int j = 0; j < 4; ++j) soup.addBox({i, j, 0}, {i + 1, j + 1, 1});
-    const Occluder o = prepareOccluder(soup.view());
+    const Occluder o = prepareOccluder(soup.view(), {}, {}, {.folded_polygons = OccluderCluster::kMaxOwn});
     expectWithinLimits(o);
     expectRightEdges(o);
     uint32_t closed = 0;
