@@ -126,6 +126,17 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
         ->group("Culling");
 }
 
+void addQueryOptions(CLI::App& verb, RunOptions& options) {
+    verb.add_option("--stereo", options.stereo,
+                    "two eyes so far apart [world units], each with a buffer of its own; pictures are the left one's")
+        ->check(CLI::Range(1e-9, 1e9))
+        ->type_name("IPD")
+        ->group("Culling");
+    verb.add_flag("--last-visible-first", options.last_visible_first,
+                  "draw first what the frame before it kept, which is asked each time for that")
+        ->group("Culling");
+}
+
 Status finish(const CLI::App& verb, RunOptions& options) {
     if (Status size = readSize(options); !size) return size;
     const Result<uint32_t> use = readStages("--use", options.use), skip = readStages("--skip", options.skip);

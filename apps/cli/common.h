@@ -33,6 +33,8 @@ struct RunOptions {
     uint32_t stages = 0;  ///< from `use` and `skip`
     double jitter = 0.5;
     uint32_t occluder_triangles = View().occluder_triangles;
+    double stereo = 0;  ///< distance of the eyes  [world units]; 0: one eye
+    bool last_visible_first = false;
     uint64_t rays = 1000000;
     std::string json;      ///< file, `-`, or empty
     std::string report;    ///< directory, or empty
@@ -44,6 +46,8 @@ struct RunOptions {
 void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& shared);
 /// These, and what culling needs.
 void addSceneOptions(CLI::App& verb, RunOptions& options);
+/// And what cull and verify may ask a query for besides: two eyes, what was visible last first.
+void addQueryOptions(CLI::App& verb, RunOptions& options);
 /// Checks what single options cannot: sizes, stage names. Errors are kUsage.
 Status finish(const CLI::App& verb, RunOptions& options);
 

@@ -184,6 +184,7 @@ void addCull(CLI::App& tool, int& exit_code) {
     CLI::App* verb = tool.add_subcommand("cull", "the visible set along a camera path");
     const auto options = std::make_shared<CullOptions>();
     addSceneOptions(*verb, *options);
+    addQueryOptions(*verb, *options);
     verb->add_flag("--verify", options->verify,
                    "let rays and an id-buffer judge every frame; exit code 1 if "
                    "anything visible was culled");

@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/cli/cull_frame.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/session.h"
 #include "apps/cli/verbs.h"
@@ -27,35 +28,6 @@
 
 namespace sightline::cli {
 namespace {
-
-View viewOf(const CameraFrame& camera, const CullRun& run) {
-    View view = makeView(camera, run.width, run.height);
-    view.jitter = run.jitter;
-    view.stages = run.stages;
-    view.occluder_triangles = run.occluder_triangles;
-    return view;
-}
-
-/// Queries one frame `repeat` times for the time of the whole, and once more for the times of the stages.
-void cullFrame(const Snapshot& now, const CullRun& run, Query& query, FrameResult& frame) {
-    View view = viewOf(frame.camera, run);
-    std::vector<double> times;
-    for (int i = 0; i < run.repeat; ++i)
-        times.push_back(1e-3 * static_cast<double>(query.visible(now, view).stats.nanoseconds));
-    frame.query_microseconds = medianOf(std::move(times));
-    view.time_stages = true;
-    const QueryStats stats = query.visible(now, view).stats;
-    for (int stage = 0; stage < kStageCount; ++stage) {
-        frame.stages[stage].doubt = stats.stages[stage].doubt;
-        frame.stages[stage].microseconds = 1e-3 * static_cast<double>(stats.stages[stage].nanoseconds);
-    }
-    frame.occluder_triangles = stats.occluder_triangles;
-    frame.budget_spent = stats.budget_spent;
-    frame.nodes_visited = stats.nodes_visited;
-    frame.seam_pixels = stats.seam_pixels;
-    frame.reasons.resize(now.objectCount());
-    query.reasons(frame.reasons);
-}
 
 /// What a thread answers frames with.
 struct Answerer {
@@ -153,6 +125,8 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     if (run.jitter != View().jitter) command += fmt::format(" --jitter {}", run.jitter);
     if (run.occluder_triangles != View().occluder_triangles)
         command += fmt::format(" --occluder-triangles {}", run.occluder_triangles);
+    if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
+    if (run.last_visible_first) command += " --last-visible-first";
     std::string used, left_out;
     for (int stage = 0; stage < kStageCount; ++stage) {
         std::string& names = run.stages >> stage & 1 ? used : left_out;
@@ -182,6 +156,8 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.jitter = options.jitter;
     run.stages = options.stages;
     run.occluder_triangles = options.occluder_triangles;
+    run.stereo = options.stereo;
+    run.last_visible_first = options.last_visible_first;
     run.repeat = options.repeat;
     run.frames.resize(path.frames.size());
 
@@ -213,7 +189,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
             frame.thread = thread;
             frame.begin_microseconds = since();
             frame.camera = path.frames[i];
-            cullFrame(now, run, answerer->query, frame);
+            cullFrame(now, run, i > 0 ? &path.frames[i - 1] : nullptr, answerer->query, frame);
             countByKey(scene, key_order, run.stages, frame);
             frame.end_microseconds = since();
             if (answerer->book) creditFrame(run, *answerer->book, frame);
@@ -236,7 +212,7 @@ void verifyPath(const Scene& scene, const RunOptions& options, CullRun& run) {
     Progress progress("verifying", "frames", run.frames.size());
     const Worker judge = [&](size_t i) {
         FrameResult& frame = run.frames[i];
-        const FrameVerdict verdict = witness.judge(viewOf(frame.camera, run), frame.reasons, settings);
+        const FrameVerdict verdict = judgeFrame(witness, run, frame, settings);
         frame.verification = rowOf(verdict, frame, scene);
         progress.step();
     };
@@ -272,6 +248,7 @@ Status explainFalseCulls(const Scene& scene, const RunOptions& options, const Cu
         if (!frame.verification || frame.verification->rows.empty()) continue;
         const std::string file = fmt::format("{}replay-frame-{}.json", directoryOfOutputs(options), i);
         CameraPath path;
+        if (run.last_visible_first && i > 0) path.frames.push_back(run.frames[i - 1].camera);
         path.frames.push_back(frame.camera);
         if (Status written = writeFileAside(file, cameraPathJson(path)); !written) return written;
         const auto& rows = frame.verification->rows;

@@ -101,7 +101,7 @@ View viewOfFrame(const CameraFrame& camera, const RunOptions& options) {
     view.jitter = options.jitter;
     view.stages = options.stages;
     view.occluder_triangles = options.occluder_triangles;
-    return view;
+    return options.stereo > 0 ? shiftedEye(view, -0.5 * options.stereo) : view;
 }
 
 Sighting lookFor(const Scene& scene, const View& view, uint32_t object, const RunOptions& options) {

@@ -56,6 +56,7 @@ struct AskedScene {
     std::string nameOf(ObjectId id) const { return callOf(scene, objectOf(id)); }
 };
 
+/// With two eyes the left one's.
 View viewOfFrame(const CameraFrame& camera, const RunOptions& options);
 
 /// Lets the witnesses look for an object that is kept.

@@ -48,6 +48,7 @@ void addVerify(CLI::App& tool, int& exit_code) {
     const auto options = std::make_shared<RunOptions>();
     options->repeat = 1;
     addSceneOptions(*verb, *options);
+    addQueryOptions(*verb, *options);
     verb->callback([verb, options, &exit_code] {
         const Result<int> done = runVerify(*verb, *options);
         exit_code = done ? *done : report(done.error());

@@ -63,6 +63,12 @@ glm::dvec3 eyePosition(const View& view) {
     return -(glm::inverse(glm::dmat3(view.view)) * glm::dvec3(view.view[3]));
 }
 
+View shiftedEye(const View& view, double right) {
+    View shifted = view;
+    shifted.view[3].x -= right;  // what stands before the eye moves the other way
+    return shifted;
+}
+
 bool isOrthographic(const View& view) {
     const glm::dmat4& p = view.projection;
     return p[0][3] == 0.0 && p[1][3] == 0.0 && p[2][3] == 0.0;

@@ -58,6 +58,9 @@ glm::dmat4 orthographic(double height, double aspect, double z_near, double z_fa
 /// The eye of a perspective view, or, for an orthographic one, the origin of its eye space.
 glm::dvec3 eyePosition(const View& view);
 
+/// The same view from an eye so far to the right along the camera's own axis: an eye of a pair.  [world units]
+View shiftedEye(const View& view, double right);
+
 /// True if clip w is the same for all points: parallel projection.
 bool isOrthographic(const View& view);
 

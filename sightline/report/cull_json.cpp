@@ -38,6 +38,7 @@ Json frameJson(const FrameResult& frame, const CullRun& run, const Scene& scene)
     Json out;
     out["camera"] = cameraJson(frame.camera);
     out["visible"] = frame.visible;
+    if (run.stereo > 0) out["eyes"] = frame.eyes;
     out["stages"] = Json::array();
     for (int stage = 0; stage < kStageCount; ++stage) {
         if (!(run.stages >> stage & 1)) continue;
@@ -75,6 +76,8 @@ Json headJson(const CullRun& run, const Scene& scene) {
     head["height"] = run.height;
     head["jitter"] = run.jitter;
     head["occluder_triangles_limit"] = run.occluder_triangles;
+    if (run.stereo > 0) head["stereo"] = run.stereo;
+    if (run.last_visible_first) head["last_visible_first"] = true;
     head["repeat"] = run.repeat;
     if (run.interrupted) {
         head["interrupted"] = true;

@@ -59,21 +59,26 @@ uint64_t countKeys(const Scene& scene, const std::vector<uint32_t>& key_order) {
 
 void countByKey(const Scene& scene, const std::vector<uint32_t>& key_order, uint32_t stages, FrameResult& frame) {
     frame.visible.clear();
+    frame.eyes.clear();
+    const bool two_eyes = !frame.eye_reasons[0].empty();
     frame.objects_visible = frame.triangles = 0;
     uint64_t keys = 0;
     for (size_t i = 0; i < key_order.size();) {
         const uint64_t key = scene.objects[key_order[i]].key;
         bool visible = false;
-        uint8_t finest = 0;
+        uint8_t finest = 0, eyes = 0;
         for (; i < key_order.size() && scene.objects[key_order[i]].key == key; ++i) {
             const uint8_t reason = frame.reasons[key_order[i]];
             finest = std::max(finest, reason);
+            for (int eye = 0; two_eyes && eye < 2; ++eye)
+                eyes |= static_cast<uint8_t>((frame.eye_reasons[eye][key_order[i]] == 0) << eye);
             if (reason != 0) continue;
             visible = true;
             ++frame.objects_visible;
             frame.triangles += scene.meshes[scene.objects[key_order[i]].mesh].triangles();
         }
         ++keys;
+        if (visible && two_eyes) frame.eyes.push_back(eyes);
         if (visible) frame.visible.push_back(key);
         else if (finest <= kStageCount) ++frame.stages[finest - 1].culled;
     }

@@ -55,6 +55,8 @@ struct FrameResult {
     CameraFrame camera;
     std::vector<uint64_t> visible;  ///< keys, ascending, each once
     std::vector<uint8_t> reasons;   ///< per object: 0 visible, else 1 + Stage  [size: Scene::objects]
+    std::vector<uint8_t> eyes;      ///< of two eyes: per visible key, bit 0 if the left may see it, bit 1 the right
+    std::vector<uint8_t> eye_reasons[2];  ///< of two eyes: `reasons` of each; else empty
     StageRow stages[kStageCount];
     uint64_t objects_visible = 0;     ///< objects, not keys
     uint64_t triangles = 0;           ///< of the visible objects: what a renderer would submit
@@ -80,6 +82,8 @@ struct CullRun {
     double jitter = 0;                                        ///< [pixels]
     uint32_t occluder_triangles = View().occluder_triangles;  ///< that a query drew at most
     uint32_t stages = kDefaultStages;                         ///< bits of Stage in use
+    double stereo = 0;                ///< distance of the two eyes  [world units]; 0: there is one
+    bool last_visible_first = false;  ///< each frame drew first what the one before it kept
     int repeat = 1;
     bool interrupted = false;    ///< the frames after the last one here were not begun, or not finished
     uint64_t frames_wanted = 0;  ///< of the path; 0: as many as there are here

@@ -28,7 +28,8 @@ View pictureView(const CullRun& run, const FrameResult& frame, const PageSetting
     // Many pictures are drawn smaller, so that the page stays one that can be sent.
     const double wide = pictures > 32 ? std::min(720u, settings.picture_width) : settings.picture_width;
     const double scale = std::min(wide / run.width, double(settings.picture_limit) / run.height);
-    View view = makeView(frame.camera, run.width, run.height);  // the projection keeps the frame's aspect
+    View view = makeView(frame.camera, run.width, run.height);       // the projection keeps the frame's aspect
+    if (run.stereo > 0) view = shiftedEye(view, -0.5 * run.stereo);  // a sight between the eyes is neither's
     view.width = std::max(1u, static_cast<uint32_t>(std::lround(run.width * scale)));
     view.height = std::max(1u, static_cast<uint32_t>(std::lround(run.height * scale)));
     return view;

@@ -78,5 +78,56 @@ TEST_F(Replay, CullDrawsTheBufferOfEachFrame) {
     EXPECT_NE(read(path("out/index.html")).find("Occlusion buffer"), std::string::npos);
 }
 
+TEST_F(Replay, TwoEyesSeeWhatEachSeesAlone) {
+    // A camera path of matrices for each eye, beside the pair.
+    const double ipd = 2;
+    const char* const head = R"({"fov_y_degrees": 60, "near": 0.1, "frames": [{"eye": [)";
+    const char* const tail = R"(, 1.7, 3], "target": [)";
+    const auto at = [&](double x) {
+        return head + std::to_string(x) + tail + std::to_string(x) + ", 1.7, -40], \"up\": [0, 1, 0]}]}";
+    };
+    write("pair.json", at(0));
+    write("left.json", at(-ipd / 2));
+    write("right.json", at(ipd / 2));
+    const auto visible = [&](const std::string& camera, const std::string& options) {
+        const Outcome culled =
+            run("cull city:1:400 --repeat 1 --size 320x180 --json out.json --cameras " + camera + options);
+        EXPECT_EQ(culled.exit_code, 0) << culled.err;
+        return nlohmann::json::parse(read(path("out.json")));
+    };
+    const auto pair = visible("pair.json", " --stereo 2 --verify --rays 20000");
+    const auto left = visible("left.json", "")["frames"][0]["visible"];
+    const auto right = visible("right.json", "")["frames"][0]["visible"];
+    EXPECT_EQ(pair["stereo"], 2);
+    EXPECT_EQ(pair["verification"]["false_culls"], 0);
+    const auto& frame = pair["frames"][0];
+    ASSERT_EQ(frame["eyes"].size(), frame["visible"].size());
+    nlohmann::json by_left = nlohmann::json::array(), by_right = nlohmann::json::array();
+    for (size_t i = 0; i < frame["visible"].size(); ++i) {
+        const int eyes = frame["eyes"][i];
+        if (eyes & 1) by_left.push_back(frame["visible"][i]);
+        if (eyes & 2) by_right.push_back(frame["visible"][i]);
+    }
+    EXPECT_EQ(by_left, left);
+    EXPECT_EQ(by_right, right);
+    EXPECT_GT(frame["visible"].size(), 5u);
+    expectError("cull city:1:50 --stereo -1", 2, "--stereo");
+}
+
+TEST_F(Replay, LastVisibleFirstIsSoundAndTheSameForAnyThreads) {
+    const std::string frames = " city:1:400 --frames 6 --repeat 1 --size 320x180 --last-visible-first";
+    const auto visible = [&](const std::string& options) {
+        const Outcome culled = run("cull" + frames + options + " --json out.json");
+        EXPECT_EQ(culled.exit_code, 0) << culled.err;
+        nlohmann::json all = nlohmann::json::array();
+        const auto json = nlohmann::json::parse(read(path("out.json")));
+        EXPECT_EQ(json["last_visible_first"], true);
+        for (const auto& frame : json["frames"]) all.push_back({frame["visible"], frame["occluder_triangles"]});
+        return all;
+    };
+    EXPECT_EQ(visible(" --threads 1"), visible(" --threads 4"));
+    EXPECT_EQ(run("verify" + frames + " --rays 20000").exit_code, 0);
+}
+
 }  // namespace
 }  // namespace sightline

@@ -1,0 +1,93 @@
+// One frame of a path: asked, timed, and judged; by one eye or two.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/cull_frame.h"
+
+#include <algorithm>
+
+namespace sightline::cli {
+namespace {
+
+/// What a query did, of both eyes together.
+QueryStats sumOf(const StereoSet& set) {
+    QueryStats sum = set.left;
+    for (int stage = 0; stage < kStageCount; ++stage) {
+        sum.stages[stage].doubt += set.right.stages[stage].doubt;
+        sum.stages[stage].nanoseconds += set.right.stages[stage].nanoseconds;
+    }
+    sum.occluder_triangles += set.right.occluder_triangles;
+    sum.budget_spent |= set.right.budget_spent;
+    sum.nodes_visited += set.right.nodes_visited;
+    sum.seam_pixels += set.right.seam_pixels;
+    sum.nanoseconds += set.right.nanoseconds;
+    return sum;
+}
+
+QueryStats ask(const Snapshot& now, const CullRun& run, const View& view, Query& query) {
+    if (run.stereo > 0) return sumOf(query.visibleStereo(now, view, shiftedEye(view, run.stereo)));
+    return query.visible(now, view).stats;
+}
+
+}  // namespace
+
+View viewOf(const CameraFrame& camera, const CullRun& run) {
+    View view = makeView(camera, run.width, run.height);
+    view.jitter = run.jitter;
+    view.stages = run.stages;
+    view.occluder_triangles = run.occluder_triangles;
+    return run.stereo > 0 ? shiftedEye(view, -0.5 * run.stereo) : view;
+}
+
+void cullFrame(const Snapshot& now, const CullRun& run, const CameraFrame* before, Query& query, FrameResult& frame) {
+    View view = viewOf(frame.camera, run);
+    view.last_visible_first = run.last_visible_first && before;
+    const auto answer = [&] {
+        if (view.last_visible_first) ask(now, run, viewOf(*before, run), query);
+        return ask(now, run, view, query);
+    };
+    std::vector<double> times;
+    for (int i = 0; i < run.repeat; ++i) times.push_back(1e-3 * static_cast<double>(answer().nanoseconds));
+    frame.query_microseconds = medianOf(std::move(times));
+    view.time_stages = true;
+    const QueryStats stats = answer();
+    for (int stage = 0; stage < kStageCount; ++stage) {
+        frame.stages[stage].doubt = stats.stages[stage].doubt;
+        frame.stages[stage].microseconds = 1e-3 * static_cast<double>(stats.stages[stage].nanoseconds);
+    }
+    frame.occluder_triangles = stats.occluder_triangles;
+    frame.budget_spent = stats.budget_spent;
+    frame.nodes_visited = stats.nodes_visited;
+    frame.seam_pixels = stats.seam_pixels;
+    frame.reasons.resize(now.objectCount());
+    query.reasons(frame.reasons);
+    if (!(run.stereo > 0)) return;
+    for (const uint8_t eye : {kLeftEye, kRightEye}) {
+        std::vector<uint8_t>& reasons = frame.eye_reasons[eye - 1];
+        reasons.resize(now.objectCount());
+        query.reasons(reasons, eye);
+    }
+}
+
+FrameVerdict judgeFrame(const Witness& witness, const CullRun& run, const FrameResult& frame,
+                        const WitnessSettings& settings) {
+    const View view = viewOf(frame.camera, run);
+    if (!(run.stereo > 0)) return witness.judge(view, frame.reasons, settings);
+    FrameVerdict both = witness.judge(view, frame.eye_reasons[0], settings);
+    const FrameVerdict right = witness.judge(shiftedEye(view, run.stereo), frame.eye_reasons[1], settings);
+    for (const FalseCull& cull : right.false_culls) {
+        const auto same = [&](const FalseCull& other) { return other.object == cull.object; };
+        if (std::none_of(both.false_culls.begin(), both.false_culls.end(), same)) both.false_culls.push_back(cull);
+    }
+    std::sort(both.false_culls.begin(), both.false_culls.end(),
+              [](const FalseCull& a, const FalseCull& b) { return a.object < b.object; });
+    both.rays += right.rays;
+    both.aimed_rays += right.aimed_rays;
+    both.id_samples += right.id_samples;
+    both.supersampling = std::min(both.supersampling, right.supersampling);
+    both.unconfirmed += right.unconfirmed;
+    both.seen.resize(std::max(both.seen.size(), right.seen.size()), 0);
+    for (size_t i = 0; i < right.seen.size(); ++i) both.seen[i] |= right.seen[i];
+    both.exactly_visible = static_cast<uint64_t>(std::count(both.seen.begin(), both.seen.end(), uint8_t{1}));
+    return both;
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,23 @@
+// One frame of a path: asked, timed, and judged; by one eye or two.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "sightline/report/cull_run.h"
+#include "sightline/run/query.h"
+#include "sightline/truth/verify.h"
+
+namespace sightline::cli {
+
+/// The view of a frame; of a run for two eyes the left one's, which pictures and explanations show.
+View viewOf(const CameraFrame& camera, const CullRun& run);
+
+/// Queries one frame `repeat` times for the time of the whole, and once more for the times of the stages.
+/// @param before  the frame before it, which the query answers first each time, with CullRun::last_visible_first: so the
+///                answer is the same for any number of threads; null: there is none
+void cullFrame(const Snapshot& now, const CullRun& run, const CameraFrame* before, Query& query, FrameResult& frame);
+
+/// What the witnesses say of a frame; of two eyes, each is held to its own answer, and what is said is of both.
+FrameVerdict judgeFrame(const Witness& witness, const CullRun& run, const FrameResult& frame,
+                        const WitnessSettings& settings);
+
+}  // namespace sightline::cli
