@@ -13,8 +13,8 @@ namespace sightline {
 /// How occluders are cut into clusters.
 struct OccluderSettings {
     uint32_t own_polygons = OccluderCluster::kMaxOwn;  ///< of a joined cluster  [limit: 3 to kMaxOwn]
-    /// The same if its polygons do not face one way: where they lie one behind the other, the farthest of them gives the
-    /// depth. Smaller clusters hide more there.  [limit: 3 to own_polygons]
+    /// The same if its polygons do not face one way: where they lie one behind the other, the farthest of them gives
+    /// the depth. Smaller clusters hide more there.  [limit: 3 to own_polygons]
     uint32_t folded_polygons = 48;
     bool rings = false;     ///< give joined clusters their neighbours' polygons around them, so that no seam stays open
     bool merge = false;     ///< make larger polygons of those that lie exactly in one plane
