@@ -119,6 +119,16 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
         ->type_name("N")
         ->capture_default_str()
         ->group("Culling");
+    verb.add_flag("--no-faces", options.no_faces,
+                  "ask an object by the rectangle around its box, not by the box's faces")
+        ->group("Culling");
+    verb.add_flag("--no-second-look", options.no_second_look, "do not ask what its box keeps by its own triangles")
+        ->group("Culling");
+    verb.add_option("--second-look-polygons", options.second_look_polygons,
+                    "that a query asks at most; further objects are kept by their boxes")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Culling");
     verb.add_option("--rays", options.rays, "that the first witness casts for a frame")
         ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
         ->type_name("N")

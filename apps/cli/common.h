@@ -35,6 +35,8 @@ struct RunOptions {
     uint32_t occluder_triangles = View().occluder_triangles;
     double stereo = 0;  ///< distance of the eyes  [world units]; 0: one eye
     bool last_visible_first = false;
+    bool no_faces = false, no_second_look = false;
+    uint32_t second_look_polygons = View().second_look_polygons;
     uint64_t rays = 1000000;
     std::string json;      ///< file, `-`, or empty
     std::string report;    ///< directory, or empty

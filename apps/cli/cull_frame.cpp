@@ -34,6 +34,9 @@ View viewOf(const CameraFrame& camera, const CullRun& run) {
     view.jitter = run.jitter;
     view.stages = run.stages;
     view.occluder_triangles = run.occluder_triangles;
+    view.faces = run.faces;
+    view.second_look = run.second_look;
+    view.second_look_polygons = run.second_look_polygons;
     return run.stereo > 0 ? shiftedEye(view, -0.5 * run.stereo) : view;
 }
 
@@ -57,6 +60,12 @@ void cullFrame(const Snapshot& now, const CullRun& run, const CameraFrame* befor
     frame.budget_spent = stats.budget_spent;
     frame.nodes_visited = stats.nodes_visited;
     frame.seam_pixels = stats.seam_pixels;
+    frame.faces_tested = stats.faces_tested;
+    frame.faces_culled = stats.faces_culled;
+    frame.second_looks = stats.second_looks;
+    frame.second_look_culled = stats.second_look_culled;
+    frame.second_look_polygons = stats.second_look_polygons;
+    frame.second_look_spent = stats.second_look_spent;
     frame.reasons.resize(now.objectCount());
     query.reasons(frame.reasons);
     if (!(run.stereo > 0)) return;

@@ -127,6 +127,10 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
         command += fmt::format(" --occluder-triangles {}", run.occluder_triangles);
     if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
     if (run.last_visible_first) command += " --last-visible-first";
+    if (!run.faces) command += " --no-faces";
+    if (!run.second_look) command += " --no-second-look";
+    if (run.second_look_polygons != View().second_look_polygons)
+        command += fmt::format(" --second-look-polygons {}", run.second_look_polygons);
     std::string used, left_out;
     for (int stage = 0; stage < kStageCount; ++stage) {
         std::string& names = run.stages >> stage & 1 ? used : left_out;
@@ -158,6 +162,9 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.occluder_triangles = options.occluder_triangles;
     run.stereo = options.stereo;
     run.last_visible_first = options.last_visible_first;
+    run.faces = !options.no_faces;
+    run.second_look = !options.no_second_look;
+    run.second_look_polygons = options.second_look_polygons;
     run.repeat = options.repeat;
     run.frames.resize(path.frames.size());
 

@@ -38,7 +38,10 @@ struct View {
     uint32_t occlusion_size = 640;           ///< longer side of the occlusion buffer; a viewport that is smaller
                                              ///< gets its own size  [pixels, limit: 1 to 8192]
     bool last_visible_first = false;         ///< draw first what the query's last answer kept; see Query::visible()
-    bool time_stages = false;                ///< fill StageStats::nanoseconds (costs some time itself)
+    bool faces = true;                       ///< what its box's rectangle would keep is asked by the box's faces
+    bool second_look = true;                 ///< and then by its own triangles: ObjectDef::shape
+    uint32_t second_look_polygons = 1u << 16;  ///< work budget of that: polygons that may be asked  [limit]
+    bool time_stages = false;                  ///< fill StageStats::nanoseconds (costs some time itself)
 };
 
 /// Right-handed, y up in clip space; up need not be orthogonal to the direction. If up is parallel

@@ -2,14 +2,21 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/load/load_world.h"
 
+#include <algorithm>
+
 #include "sightline/prepare/occluder.h"
 
 namespace sightline {
 namespace {
 
-/// The occluder of a mesh: the triangles whose material hides.
-Occluder occluderOf(const Scene& scene, const Mesh& mesh) {
-    if (mesh.deforms) return Occluder();
+/// What a mesh hides with, and what it is asked about.
+struct Forms {
+    OccluderId occluder, shape;
+};
+
+/// The occluder holds the triangles whose material hides, the shape all; one record serves both where they are equal.
+Forms formsOf(const Scene& scene, const Mesh& mesh, World& world) {
+    if (mesh.deforms) return {};
     std::vector<uint8_t> hides(mesh.triangles(), 0), double_sided(mesh.triangles(), 0);
     for (const Primitive& primitive : mesh.primitives) {
         const Material& material = scene.materials[primitive.material];
@@ -18,7 +25,16 @@ Occluder occluderOf(const Scene& scene, const Mesh& mesh) {
             double_sided[primitive.first_triangle + t] = material.double_sided;
         }
     }
-    return prepareOccluder({mesh.positions, mesh.indices}, hides, double_sided);
+    const MeshView view{mesh.positions, mesh.indices};
+    const size_t hiding = static_cast<size_t>(std::count(hides.begin(), hides.end(), 1));
+    Forms forms;
+    if (hiding > 0) {
+        const Occluder occluder = prepareOccluder(view, hides, double_sided);
+        if (occluder.triangleCount() > 0) forms.occluder = world.addOccluder(occluder);
+    }
+    if (hiding == hides.size()) forms.shape = forms.occluder;
+    else forms.shape = world.addShape(prepareOccluder(view, {}, double_sided));
+    return forms;
 }
 
 }  // namespace
@@ -27,10 +43,9 @@ LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_
     WorldDef world;
     world.volumes = volumes;
     LoadedWorld loaded{World::create(world), {}};
-    std::vector<OccluderId> occluders(scene.meshes.size());
+    std::vector<Forms> forms(scene.meshes.size());
     for (size_t i = 0; i < scene.meshes.size(); ++i) {
-        const Occluder occluder = occluderOf(scene, scene.meshes[i]);
-        if (occluder.triangleCount() > 0) occluders[i] = loaded.world.addOccluder(occluder);
+        forms[i] = formsOf(scene, scene.meshes[i], loaded.world);
         if (progress && (i % 64 == 63 || i + 1 == scene.meshes.size())) progress(i + 1, scene.meshes.size());
     }
     loaded.ids.reserve(scene.objects.size());
@@ -39,7 +54,8 @@ LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_
         def.bounds = scene.meshes[object.mesh].bounds;
         def.transform = object.transform;
         def.key = object.key;
-        def.occluder = occluders[object.mesh];
+        def.occluder = forms[object.mesh].occluder;
+        def.shape = forms[object.mesh].shape;
         loaded.ids.push_back(loaded.world.add(def));
     }
     return loaded;

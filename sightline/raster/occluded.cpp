@@ -232,6 +232,10 @@ uint64_t openPixels(DepthTiles& tiles, uint32_t tile, uint64_t window, const flo
     return open;
 }
 
+uint64_t undecidedSeams(const DepthTiles& tiles, uint32_t tile) {
+    return tiles.seams[tile] == DepthTiles::kNone ? 0 : tiles.seam_mask[tile] & ~tiles.tried[tile];
+}
+
 void pairSeams(DepthTiles& tiles, uint32_t tile, uint64_t pixels) {
     HWY_DYNAMIC_DISPATCH(pairSeamsKernel)(tiles, tile, pixels);
 }

@@ -189,6 +189,9 @@ bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams = Seams::kRe
 uint64_t openPixels(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64],
                     Seams seams = Seams::kResolve);
 
+/// Pixels of a tile that seams may still cover; openPixels() with Seams::kResolve decides them.
+uint64_t undecidedSeams(const DepthTiles& tiles, uint32_t tile);
+
 /// The depth that each pixel of a tile claims; DepthTiles::kOpen where it claims none.
 void readClaims(const DepthTiles& tiles, uint32_t tile, float (&claims)[64]);
 

@@ -54,6 +54,12 @@ Json frameJson(const FrameResult& frame, const CullRun& run, const Scene& scene)
     out["nodes_visited"] = frame.nodes_visited;
     out["seam_pixels"] = frame.seam_pixels;
     out["budget_spent"] = frame.budget_spent;
+    out["faces_tested"] = frame.faces_tested;
+    out["faces_culled"] = frame.faces_culled;
+    out["second_looks"] = frame.second_looks;
+    out["second_look_culled"] = frame.second_look_culled;
+    out["second_look_polygons"] = frame.second_look_polygons;
+    out["second_look_spent"] = frame.second_look_spent;
     out["query_microseconds"] = frame.query_microseconds;
     out["thread"] = frame.thread;
     out["begin_microseconds"] = frame.begin_microseconds;
@@ -78,6 +84,9 @@ Json headJson(const CullRun& run, const Scene& scene) {
     head["occluder_triangles_limit"] = run.occluder_triangles;
     if (run.stereo > 0) head["stereo"] = run.stereo;
     if (run.last_visible_first) head["last_visible_first"] = true;
+    head["faces"] = run.faces;
+    head["second_look"] = run.second_look;
+    head["second_look_polygons_limit"] = run.second_look_polygons;
     head["repeat"] = run.repeat;
     if (run.interrupted) {
         head["interrupted"] = true;

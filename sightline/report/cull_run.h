@@ -64,10 +64,13 @@ struct FrameResult {
     bool budget_spent = false;
     double query_microseconds = 0;                ///< median over the repeats
     uint64_t nodes_visited = 0, seam_pixels = 0;  ///< QueryStats
-    std::vector<OccluderCredit> credits;          ///< of all that were rasterized, by object; empty unless asked for
-    uint32_t thread = 0;                          ///< that answered, from 0
-    double begin_microseconds = 0;                ///< when it began with this frame, since the run began
-    double end_microseconds = 0;                  ///< when it had done with it
+    uint64_t faces_tested = 0, faces_culled = 0;  ///< the same, and what follows
+    uint64_t second_looks = 0, second_look_culled = 0, second_look_polygons = 0;
+    bool second_look_spent = false;
+    std::vector<OccluderCredit> credits;  ///< of all that were rasterized, by object; empty unless asked for
+    uint32_t thread = 0;                  ///< that answered, from 0
+    double begin_microseconds = 0;        ///< when it began with this frame, since the run began
+    double end_microseconds = 0;          ///< when it had done with it
     std::optional<VerificationRow> verification;
     std::vector<std::string> notes;  ///< for a reader: why this frame is the slowest or the loosest of its run
 };
@@ -84,6 +87,8 @@ struct CullRun {
     uint32_t stages = kDefaultStages;                         ///< bits of Stage in use
     double stereo = 0;                ///< distance of the two eyes  [world units]; 0: there is one
     bool last_visible_first = false;  ///< each frame drew first what the one before it kept
+    bool faces = true, second_look = true;  ///< View
+    uint32_t second_look_polygons = View().second_look_polygons;
     int repeat = 1;
     bool interrupted = false;    ///< the frames after the last one here were not begun, or not finished
     uint64_t frames_wanted = 0;  ///< of the path; 0: as many as there are here

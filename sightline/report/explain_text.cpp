@@ -64,6 +64,8 @@ std::string rectangleText(const Explanation& why) {
 
 /// "beyond the left plane by 3.2 units".
 std::string planeText(const FrustumReason& reason) {
+    if (reason.by_triangles) return "in view with its box alone: none of its triangles that would be drawn is";
+    if (reason.by_faces) return "in view with the box along the axes alone, not with its own";
     return fmt::format("beyond the {} plane by {} units", kPlaneNames[reason.plane], units(reason.distance()));
 }
 

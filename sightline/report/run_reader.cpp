@@ -185,6 +185,12 @@ void readFrame(const At& at, CullRun& run, uint32_t& stages, FrameResult& frame,
     count("nodes_visited", frame.nodes_visited);
     count("seam_pixels", frame.seam_pixels);
     if (const auto spent = at.maybe("budget_spent")) frame.budget_spent = spent->flag();
+    count("faces_tested", frame.faces_tested);
+    count("faces_culled", frame.faces_culled);
+    count("second_looks", frame.second_looks);
+    count("second_look_culled", frame.second_look_culled);
+    count("second_look_polygons", frame.second_look_polygons);
+    if (const auto spent = at.maybe("second_look_spent")) frame.second_look_spent = spent->flag();
     if (const auto thread = at.maybe("thread")) frame.thread = static_cast<uint32_t>(thread->whole(0, 65535));
     if (const auto begin = at.maybe("begin_microseconds")) frame.begin_microseconds = begin->positive();
     if (const auto end = at.maybe("end_microseconds")) frame.end_microseconds = end->positive();
@@ -240,6 +246,10 @@ RunFile readHead(const At& head) {
     if (const auto jitter = head.maybe("jitter")) run.jitter = jitter->positive();
     if (const auto limit = head.maybe("occluder_triangles_limit"))
         run.occluder_triangles = static_cast<uint32_t>(limit->whole(0, ~uint32_t{0}));
+    if (const auto faces = head.maybe("faces")) run.faces = faces->flag();
+    if (const auto look = head.maybe("second_look")) run.second_look = look->flag();
+    if (const auto limit = head.maybe("second_look_polygons_limit"))
+        run.second_look_polygons = static_cast<uint32_t>(limit->whole(0, ~uint32_t{0}));
     if (const auto repeat = head.maybe("repeat")) run.repeat = static_cast<int>(repeat->whole(1, 1000000));
     if (const auto interrupted = head.maybe("interrupted")) run.interrupted = interrupted->flag();
     if (const auto wanted = head.maybe("frames_wanted")) run.frames_wanted = wanted->whole();

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "sightline/base/assert.h"
+#include "sightline/run/asked_pixels.h"
 #include "sightline/run/attribution.h"
 
 namespace sightline {
@@ -17,6 +18,7 @@ struct CreditBook::Impl {
     detail::Walk walk{memory};
     detail::WalkRecord record{memory};
     detail::Attribution owners{memory};
+    detail::AskedPixels asked{memory};
     Array<double> weight_before{memory};  ///< per place of the hierarchy: the sum over the places before it
     Array<Credit> of_instance{memory};
     Array<uint32_t> pixels{memory};  ///< per instance, of the rectangle at hand
@@ -53,9 +55,13 @@ double CreditBook::Impl::weightOf(const detail::WalkRecord::Cull& cull) const {
 /// Shares a culled range among the owners of its rectangle's pixels.
 void CreditBook::Impl::share(const detail::WalkRecord::Cull& cull) {
     uint32_t owned = 0;
-    for (int32_t y = cull.rect.y0; y <= cull.rect.y1; ++y)
-        for (int32_t x = cull.rect.x0; x <= cull.rect.x1; ++x) {
-            const uint32_t instance = owners.at(x, y).inFrontOf(cull.rect.nearness);
+    if (cull.look == detail::Look::kBox) asked.run(cull.rect);
+    else asked.run(walk, cull.first, cull.look, cull.boxed ? &cull.rect : nullptr);
+    const PixelRect& rect = asked.rect;
+    for (int32_t y = rect.y0; y <= rect.y1; ++y)
+        for (int32_t x = rect.x0; x <= rect.x1; ++x) {
+            if (asked.at(x, y) == detail::AskedPixels::kNotAsked) continue;
+            const uint32_t instance = owners.at(x, y).inFrontOf(asked.at(x, y));
             if (instance == detail::PixelOwner::kNone) continue;
             if (pixels[instance]++ == 0) met.push_back(instance);
             ++owned;

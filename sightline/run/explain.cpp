@@ -67,10 +67,12 @@ struct Explainer::Impl {
     Trial trial{memory};              ///< of the object, in the whole world
     detail::HiderSearch search{memory};
     detail::OpenPixels open{memory};
+    detail::AskedPixels asked{memory};
 
     uint32_t find(ObjectId id) const;
     void explainVisible(uint32_t item, Explanation& out);
-    void explainOpenPixel(const PixelRect& rect, Explanation& out);
+    void explainOpenPixel(Explanation& out);
+    bool askAgain(uint32_t place, Explanation& out);
     KeptBecause doubtOf(const Box3d& box) const;
     void explainOccluded(uint32_t item, const PixelRect& rect, const ExplainSettings& settings, OcclusionReason& out);
     void tryWithout(uint32_t item, OcclusionReason& out);
@@ -114,23 +116,40 @@ void Explainer::Impl::explainVisible(uint32_t item, Explanation& out) {
     } else if (!(view.stages & stageBit(Stage::kOcclusion))) {
         why.because = KeptBecause::kStageOff;
         why.stage = Stage::kOcclusion;
-    } else if (!trial.record.kept.testable) {
+    } else if (!askAgain(place, out)) {
         why.because = doubtOf(detail::worldBounds(state.object(item)));
     } else {
-        explainOpenPixel(trial.record.kept.rect, out);
-        if (!trial.walk.stats.budget_spent) return;
+        explainOpenPixel(out);
+        if (!trial.walk.stats.budget_spent && !trial.walk.stats.second_look_spent) return;
         View generous = view;
+        generous.second_look_polygons = ~0u;
         generous.occluder_triangles = ~0u;
         if (trial.run(state, generous, item) == Verdict::kOccluded) why.because = KeptBecause::kBudgetSpent;
     }
 }
 
+/// Finds the pixels that the walk asked about when it kept the object; false if it was in doubt. An object whose box has
+/// no image may have triangles that do.
+bool Explainer::Impl::askAgain(uint32_t place, Explanation& out) {
+    const WalkRecord::Kept& kept = trial.record.kept;
+    if (!asked.run(trial.walk, place, kept.look, kept.testable ? &kept.rect : nullptr) && !kept.testable) return false;
+    if (out.on_screen) return true;
+    float nearest = detail::AskedPixels::kNotAsked;
+    for (const float nearness : asked.nearness) nearest = std::max(nearest, nearness);
+    if (nearest == detail::AskedPixels::kNotAsked) return false;
+    const Screen& screen = trial.walk.screen;
+    out.on_screen = true;
+    out.rect = imageOf(asked.rect, screen, view);
+    out.depth = screen.perspective ? 1.0 / static_cast<double>(nearest) : -static_cast<double>(nearest);
+    return true;
+}
+
 /// Looks for what the walk found open, in the depth tiles as they were then.
-void Explainer::Impl::explainOpenPixel(const PixelRect& rect, Explanation& out) {
+void Explainer::Impl::explainOpenPixel(Explanation& out) {
     VisibleReason& why = out.visible;
     const SnapshotState& state = snapshot.state();
     DepthTiles& tiles = trial.walk.tiles;
-    open.run(tiles, rect);
+    open.run(tiles, asked);
     why.pixels = open.pixels;
     why.open_pixels = open.open;
     const PixelRect pixel{open.x, open.y, open.x, open.y, 0};
@@ -235,6 +254,12 @@ Explanation Explainer::explain(ObjectId id, const ExplainSettings& settings) {
             out.depth =
                 screen.perspective ? 1.0 / static_cast<double>(rect.nearness) : -static_cast<double>(rect.nearness);
         }
+    }
+    const bool by_frustum = out.verdict == Verdict::kOutsideFrustum;
+    if (out.verdict != Verdict::kVisible) {
+        const detail::Look look = impl.trial.cull.look;
+        (by_frustum ? out.frustum.by_faces : out.occlusion.by_faces) = look == detail::Look::kFaces;
+        (by_frustum ? out.frustum.by_triangles : out.occlusion.by_triangles) = look == detail::Look::kTriangles;
     }
     if (out.verdict == Verdict::kVisible) impl.explainVisible(item, out);
     else out.together = static_cast<uint32_t>(impl.trial.walk.inLayers(impl.trial.cull.first, impl.trial.cull.count));

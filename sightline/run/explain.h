@@ -39,6 +39,8 @@ struct FrustumReason {
     /// The planes could not tell, for rounding; the rectangle on the screen, which rounds otherwise, decided.
     bool by_rectangle = false;
     bool outside_any = false;  ///< the frustum stage would cull the object by itself
+    /// Its box reaches into the view, but no face of it or, by a second look, none of its triangles that would be drawn.
+    bool by_faces = false, by_triangles = false;
 
     double distance() const { return outside[plane]; }
 };
@@ -66,6 +68,8 @@ struct OcclusionReason {
     /// The object itself lies outside of the frustum: it was culled with a node that does not, and the hiders are those
     /// that own pixels of the node's rectangle.
     bool outside_too = false;
+    bool by_faces = false;                 ///< its box's rectangle is open: the faces of the box are hidden
+    bool by_triangles = false;             ///< the box is open: its own triangles are hidden
     Without without = Without::kNotAsked;  ///< the hiders, removed from the world
     Array<Hider> others;                   ///< that would hide it then, as `hiders` do now
 
@@ -74,14 +78,15 @@ struct OcclusionReason {
 
 /// Why an object is kept.
 enum class KeptBecause : uint8_t {
-    kOpenPixel,        ///< a pixel of its rectangle is not hidden
+    kOpenPixel,        ///< a pixel is not hidden: of its rectangle, or of its triangles where they were asked
     kViewNotUsable,    ///< matrices that are not finite or cannot be inverted, or no viewport: everything is kept
     kBoundsNotUsable,  ///< bounds that are empty, not finite, or too far away
     kHoldsEye,         ///< its box holds the eye
     kNearPlane,        ///< its box reaches across the near plane
     kNotProjectable,   ///< its box has no rectangle that rounding could not spoil
     kStageOff,         ///< the stage that would look at it is switched off: VisibleReason::stage
-    kBudgetSpent,      ///< occluders that would hide it were not rasterized: View::occluder_triangles
+    kBudgetSpent,      ///< occluders that would hide it were not rasterized: View::occluder_triangles; or its triangles
+                       ///< were not asked: View::second_look_polygons
 };
 
 struct VisibleReason {
@@ -90,7 +95,7 @@ struct VisibleReason {
     /// The middle of an open pixel, as far from hidden ones as can be; beyond the viewport by the jitter at most.
     /// [viewport pixels from the left and the top]
     double x = 0, y = 0;
-    uint64_t open_pixels = 0, pixels = 0;  ///< of its rectangle  [pixels of the occlusion buffer]
+    uint64_t open_pixels = 0, pixels = 0;  ///< that it was asked at  [pixels of the occlusion buffer]
     bool covered = false;                  ///< that pixel is covered, but not in front of the object's nearest point
     ObjectId cover;                        ///< by this object; null: by several together
     uint64_t cover_key = 0;

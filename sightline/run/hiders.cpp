@@ -6,14 +6,23 @@
 
 namespace sightline::detail {
 
+/// What must be hidden for the object to be: the rectangle, or what a closer look asked about.
+const PixelRect& HiderSearch::ask(const Trial& decided, const PixelRect& rect) {
+    const WalkRecord::Cull& cull = decided.cull;
+    if (cull.look == Look::kBox) asked.run(rect);
+    else asked.run(decided.walk, cull.first, cull.look, cull.boxed ? &cull.rect : nullptr);
+    return asked.rect;
+}
+
 bool HiderSearch::run(const SnapshotState& state, const View& view, uint32_t item, const Trial& decided,
                       const PixelRect& rect, Array<Hider>& hiders) {
     hiders.clear();
-    owners.run(decided.walk, decided.record, rect);
+    const PixelRect& within = ask(decided, rect);
+    owners.run(decided.walk, decided.record, within);
     View by_tiles = view;  // what the tiles of a set hide a volume may hide as well, and nobody would own a pixel
     by_tiles.stages &= ~stageBit(Stage::kVolumes);
     for (const bool anywhere : {false, true}) {
-        collect(state, decided, rect, anywhere);
+        collect(state, decided, within, anywhere);
         if (!shrink(state, by_tiles, item)) continue;
         share(state, by_tiles, item, hiders);
         return true;
@@ -24,8 +33,9 @@ bool HiderSearch::run(const SnapshotState& state, const View& view, uint32_t ite
 
 void HiderSearch::own(const SnapshotState& state, const Trial& decided, Array<Hider>& hiders) {
     hiders.clear();
-    owners.run(decided.walk, decided.record, decided.cull.rect);
-    collect(state, decided, decided.cull.rect, false);
+    const PixelRect& within = ask(decided, decided.cull.rect);
+    owners.run(decided.walk, decided.record, within);
+    collect(state, decided, within, false);
     reportOwners(state, hiders);
 }
 
@@ -50,7 +60,8 @@ void HiderSearch::collect(const SnapshotState& state, const Trial& decided, cons
         if (anywhere || draw.box.doubt || overlaps(draw.box.rect, rect)) over[draw.instance] = 1;
     for (int32_t y = rect.y0; y <= rect.y1; ++y)
         for (int32_t x = rect.x0; x <= rect.x1; ++x) {
-            const uint32_t instance = owners.at(x, y).inFrontOf(rect.nearness);
+            if (asked.at(x, y) == AskedPixels::kNotAsked) continue;
+            const uint32_t instance = owners.at(x, y).inFrontOf(asked.at(x, y));
             if (instance != PixelOwner::kNone) ++pixels[instance];
         }
     candidates.clear();
@@ -107,7 +118,7 @@ void HiderSearch::share(const SnapshotState& state, const View& view, uint32_t i
     const auto world = stateOfSome(state, items, memory);
     const auto self = static_cast<uint32_t>(std::lower_bound(items.begin(), items.end(), item) - items.begin());
     trial.run(*world, view, self);
-    const PixelRect rect = askLeaf(*world, hierarchyPlace(*world, self), view, trial.walk.screen).rect();
+    const PixelRect rect = ask(trial, askLeaf(*world, hierarchyPlace(*world, self), view, trial.walk.screen).rect());
     owners.run(trial.walk, trial.record, rect);
     collect(*world, trial, rect, true);
     uint64_t owned = 0;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "sightline/run/asked_pixels.h"
 #include "sightline/run/attribution.h"
 #include "sightline/run/trial.h"
 
@@ -25,6 +26,7 @@ struct HiderSearch {
     Memory* const memory;
     Trial trial;
     Attribution owners;
+    AskedPixels asked{memory};
     Array<Candidate> candidates;  ///< those that own most first
     Array<uint32_t> set;          ///< items
 
@@ -39,6 +41,7 @@ struct HiderSearch {
     void own(const SnapshotState& state, const Trial& decided, Array<Hider>& hiders);
 
 private:
+    const PixelRect& ask(const Trial& decided, const PixelRect& rect);
     void reportOwners(const SnapshotState& state, Array<Hider>& hiders) const;
     void collect(const SnapshotState& state, const Trial& decided, const PixelRect& rect, bool anywhere);
     bool hides(const SnapshotState& state, const View& view, uint32_t item, std::span<const uint32_t> with);

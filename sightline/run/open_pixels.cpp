@@ -1,4 +1,4 @@
-// Which pixels of a rectangle the depth tiles leave open, and the one that lies deepest among them.
+// Which pixels of those asked about the depth tiles leave open, and the one that lies deepest among them.
 // SPDX-License-Identifier: MIT
 #include "sightline/run/open_pixels.h"
 
@@ -9,7 +9,7 @@ namespace sightline::detail {
 namespace {
 
 bool isOpen(DepthTiles& tiles, int32_t x, int32_t y, float nearness) {
-    return !isHidden(tiles, {x, y, x, y, nearness});
+    return nearness != AskedPixels::kNotAsked && !isHidden(tiles, {x, y, x, y, nearness});
 }
 
 bool isCovered(DepthTiles& tiles, int32_t x, int32_t y) {
@@ -19,19 +19,22 @@ bool isCovered(DepthTiles& tiles, int32_t x, int32_t y) {
 
 }  // namespace
 
-void OpenPixels::run(DepthTiles& tiles, const PixelRect& rect) {
+void OpenPixels::run(DepthTiles& tiles, const AskedPixels& asked) {
+    const PixelRect& rect = asked.rect;
     const int32_t width = rect.x1 - rect.x0 + 1, height = rect.y1 - rect.y0 + 1;
-    pixels = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
+    pixels = 0;
+    for (const float nearness : asked.nearness) pixels += nearness != AskedPixels::kNotAsked;
     open = 0;
     x = rect.x0;
     y = rect.y0;
-    depth.assign(pixels, 0);
+    depth.assign(asked.nearness.size(), 0);
     const auto at = [&](int32_t column, int32_t row) -> uint32_t& {
         return depth[static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column)];
     };
     for (int32_t row = 0; row < height; ++row)
         for (int32_t column = 0; column < width; ++column)
-            if (isOpen(tiles, rect.x0 + column, rect.y0 + row, rect.nearness)) at(column, row) = ~0u - 1, ++open;
+            if (isOpen(tiles, rect.x0 + column, rect.y0 + row, asked.at(rect.x0 + column, rect.y0 + row)))
+                at(column, row) = ~0u - 1, ++open;
     // Steps along rows and columns; what lies outside of the rectangle is not open.
     const auto step = [&](int32_t column, int32_t row, int32_t by) {
         uint32_t& here = at(column, row);
@@ -51,7 +54,7 @@ void OpenPixels::run(DepthTiles& tiles, const PixelRect& rect) {
             const uint32_t here = at(column, row);
             const int32_t off = std::abs(2 * column + 1 - width) + std::abs(2 * row + 1 - height);
             if (here == 0 || here < deepest || (here == deepest && off >= farthest)) continue;
-            if (!isOpen(tiles, rect.x0 + column, rect.y0 + row, rect.nearness)) continue;
+            if (!isOpen(tiles, rect.x0 + column, rect.y0 + row, asked.at(rect.x0 + column, rect.y0 + row))) continue;
             deepest = here;
             farthest = off;
             x = rect.x0 + column;

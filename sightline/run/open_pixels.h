@@ -1,4 +1,4 @@
-// Which pixels of a rectangle the depth tiles leave open, and the one that lies deepest among them.
+// Which pixels of those asked about the depth tiles leave open, and the one that lies deepest among them.
 // SPDX-License-Identifier: MIT
 //
 // Gunilla Borgefors. Distance Transformations in Digital Images. 1986.
@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "sightline/raster/tiles.h"
+#include "sightline/run/asked_pixels.h"
 
 namespace sightline::detail {
 
@@ -14,14 +14,14 @@ namespace sightline::detail {
 struct OpenPixels {
     explicit OpenPixels(Memory* memory) : depth(memory) {}
 
-    uint64_t pixels = 0, open = 0;
+    uint64_t pixels = 0, open = 0;  ///< asked about, and open of these
     int32_t x = 0, y = 0;   ///< of the open pixels one that is farthest, in steps along rows and columns, from those
                             ///< that are not, nearest to the middle; the rectangle's first if none is open
     bool covered = false;   ///< that pixel is covered, but not in front of the rectangle
     Array<uint32_t> depth;  ///< per pixel of the rectangle: steps to the nearest that is not open
 
     /// Each pixel is asked as isHidden() asks, in its order.
-    void run(DepthTiles& tiles, const PixelRect& rect);
+    void run(DepthTiles& tiles, const AskedPixels& asked);
 };
 
 }  // namespace sightline::detail

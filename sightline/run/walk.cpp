@@ -78,10 +78,10 @@ void Walk::noteCull(uint32_t first, uint32_t count, Stage stage, const PixelRect
     }
 }
 
-void Walk::noteKept(const Pending& entry) {
+void Walk::noteKept(const Pending& entry, Look look) {
     if (!record->stopsAt(entry.index, 1)) return;
     record->stopped = true;
-    record->kept = {entry.rect, entry.testable};
+    record->kept = {entry.rect, entry.testable, look};
     undecided = 0;
 }
 
@@ -94,6 +94,7 @@ void Walk::begin(const SnapshotState* now, const View& new_view) {
     instances.clear();
     visible.clear();
     culled.clear();
+    second.clear();
     tiles.clear(0, 0);
     volumes.clear();
     if (remembers) last.begin(now, view.last_visible_first);
@@ -258,8 +259,10 @@ void Walk::visit(const Pending& entry) {
     if (occlusion && entry.testable && isHidden(tiles, entry.rect, seams))
         return cull(entry.first, entry.count, Stage::kOcclusion, &entry.rect);
     if (entry.kind == Pending::Kind::kNode) return expand({entry.index, entry.planes, entry.volumes});
+    if (occlusion && lookCloser(entry)) return;
     report(entry.index, 1);
-    if (record) noteKept(entry);
+    const bool again = !second.empty() && second.back().entry.serial == entry.serial;
+    if (record && !again) noteKept(entry, view.faces && entry.testable ? Look::kFaces : Look::kBox);
     if (occlusion && undecided > 0 && !(entry.testable && isSmall(entry.rect))) offerVisible(entry.index);
 }
 
@@ -311,6 +314,7 @@ void Walk::walk() {
         undecided -= entry.kind != Pending::Kind::kCluster;
         visit(entry);
     }
+    if (!(record && record->stopped)) lookAgain();
 }
 
 void Walk::finish() {

@@ -8,6 +8,7 @@
 
 #include "sightline/cull/frustum.h"
 #include "sightline/cull/occlusion.h"
+#include "sightline/cull/triangles.h"
 #include "sightline/raster/tile_log.h"
 #include "sightline/run/last_drawn.h"
 #include "sightline/run/query.h"
@@ -41,6 +42,19 @@ struct Visit {
     VolumeRange volumes;  ///< that it crosses
 };
 
+/// What an object was asked by.
+enum class Look : uint8_t {
+    kBox,        ///< the rectangle around its box, with the box's nearest depth
+    kFaces,      ///< the faces of its box
+    kTriangles,  ///< its own triangles
+};
+
+/// An object that was kept, and will be asked by its triangles.
+struct SecondLook {
+    Pending entry;
+    uint32_t visible = 0;  ///< index into Walk::visible
+};
+
 /// Objects that were culled together.
 struct CulledRange {
     uint32_t first = 0, count = 0;
@@ -65,11 +79,14 @@ struct WalkRecord {
         bool off_screen = false;    ///< the rectangle misses the buffer; no plane decided
         PixelRect rect;             ///< by the occlusion stage: what was hidden
         uint32_t hider = kNowhere;  ///< by a volume: the place of the object that hides it
+        Look look = Look::kBox;     ///< that decided
+        bool boxed = true;          ///< the rectangle is that of the box; else its box has none
     };
     /// The rectangle of the object at `stop_at`, where it was kept.
     struct Kept {
         PixelRect rect;
         bool testable = false;  ///< the occlusion stage could look at it
+        Look look = Look::kBox;  ///< the last that was tried
     };
 
     Array<Draw> draws;
@@ -106,6 +123,8 @@ struct Walk {
     Array<OccluderInstance> instances{memory};
     Array<Visible> visible{memory};
     Array<CulledRange> culled{memory};
+    Array<SecondLook> second{memory};
+    TriangleScratch looks{memory};
     QueryStats stats;
     uint32_t serial = 0;
     uint32_t undecided = 0;  ///< nodes and objects in line; without any, nothing is left to hide
@@ -132,6 +151,10 @@ private:
     void meet(const BvhNode& node, int slot, const Visit& below, const ScreenAnswer& on_screen);
     void visit(const Pending& entry);
     void keep(uint32_t item);
+    bool lookCloser(const Pending& entry);
+    void lookAgain();
+    bool hasSecondLook(const ObjectRecord& object) const;
+    bool settle(const Pending& entry, Look look, Sight sight, uint64_t& count);
     void report(uint32_t first, uint32_t count);
     void drawLast();
     void offerVisible(uint32_t place);
@@ -143,7 +166,7 @@ private:
     void finish();
     void noteDraw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box, uint32_t triangles);
     void noteCull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect, uint32_t hider);
-    void noteKept(const Pending& entry);
+    void noteKept(const Pending& entry, Look look);
 };
 
 }  // namespace sightline::detail

@@ -37,7 +37,7 @@ std::shared_ptr<const Array<PlacedObject>> placeObjects(const SnapshotState& sta
     placed->reserve(state.bvh.order.size());
     for (uint32_t place = 0; place < state.bvh.order.size(); ++place) {
         const ObjectRecord& object = state.objectAt(place);
-        placed->push_back({{object.key, object.id}, object.occluder, object.layers});
+        placed->push_back({{object.key, object.id}, object.occluder, object.layers, object.shape});
     }
     return placed;
 }
@@ -175,8 +175,10 @@ OccluderId World::addOccluder(const Occluder& occluder) {
 
 ObjectId World::add(const ObjectDef& object) {
     SIGHTLINE_ASSERT(object.occluder.index < state_->occluders.size());
+    SIGHTLINE_ASSERT(object.shape.index < state_->occluders.size());
     const ObjectId id = state_->newId();
-    state_->objects.append() = {object.transform, object.bounds, object.key, id, object.occluder, object.layers};
+    state_->objects.append() = {object.transform, object.bounds, object.key,  id,
+                                object.occluder,  object.layers, object.shape};
     ++state_->living;
     state_->rebuild = true;
     return id;

@@ -32,6 +32,9 @@ struct ObjectDef {
     uint64_t key = 0;           ///< yours; reported back
     OccluderId occluder;        ///< what it hides with, or null
     uint32_t layers = 1;        ///< bit mask; View::layers selects
+    /// Its own triangles, for View::second_look; or null. It must hold every triangle that may be drawn of it, also those
+    /// that hide nothing, in every level of detail; none that a shader moves. May be the same as `occluder`.
+    OccluderId shape;
 };
 
 /// What a query says of an object.
@@ -78,6 +81,9 @@ public:
 
     /// Copies the occluder; many objects may share it. It lives as long as the world and its snapshots.
     OccluderId addOccluder(const Occluder& occluder);
+
+    /// The same for ObjectDef::shape; the ids are of one kind. prepareOccluder(mesh, {}, double_sided) makes it.
+    OccluderId addShape(const Occluder& shape) { return addOccluder(shape); }
 
     /// Bounds that are NaN, infinite, or empty make an object that is always visible and never hides.
     ObjectId add(const ObjectDef& object);

@@ -20,6 +20,7 @@ struct ObjectRecord {
     ObjectId id;  ///< null: the place is free
     OccluderId occluder;
     uint32_t layers = 0;
+    OccluderId shape;
 };
 
 /// Objects in chunks that snapshots share: a commit copies only the chunks that changed.
@@ -49,6 +50,7 @@ struct PlacedObject {
     Visible visible;
     OccluderId occluder;
     uint32_t layers = 0;
+    OccluderId shape;
 };
 
 /// An occluder, and what of it hides by itself.

@@ -21,6 +21,7 @@ struct MadeWorld {
     std::vector<ObjectId> ids;
     World world = World::create(worldDef());
     OccluderId cube;
+    bool shapes = false;  ///< objects are also asked by their triangles
 
     static WorldDef worldDef() {
         WorldDef def;
@@ -50,6 +51,7 @@ struct MadeWorld {
         def.transform = transform;
         def.key = transforms.size();
         def.occluder = hiding ? cube : OccluderId();
+        def.shape = shapes ? cube : OccluderId();
         def.layers = layers;
         transforms.push_back(transform);
         hides.push_back(hiding);

@@ -1,0 +1,30 @@
+// Where an occludee stands before an eye, and how exactly that is known.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "sightline/math/box.h"
+#include "sightline/raster/screen.h"
+
+namespace sightline {
+
+/// The map from an occludee's own space to the buffer, with bounds on its rounding.
+struct OccludeePlace {
+    Screen screen;           ///< objectScreen() of the transform
+    bool reverse = false;    ///< what is counter-clockwise in its own space comes out clockwise
+    double pixel_error = 0;  ///< bound on the rounding of a projected point at w = 1  [pixels]
+    double depth_error = 0;  ///< bound on the rounding of its w, or of its depth in parallel projection
+    bool clips = false;      ///< and of its distance from the near plane: small against Screen::near_guard
+
+    /// Bound on the error of a projected point.  [pixels]
+    /// @param w  no point asked about has less  [> 0]
+    double positionError(double w) const { return 0x1p-36 + pixel_error / w; }
+    /// Of its nearness.
+    double depthError(double w) const { return screen.perspective ? depth_error / (w * w) : depth_error; }
+};
+
+/// @param screen     makeScreen()
+/// @param transform  own space to world, affine
+/// @param bounds     of all that will be asked about, in its own space
+OccludeePlace makeOccludeePlace(const Screen& screen, const glm::dmat4& transform, const Box3d& bounds);
+
+}  // namespace sightline

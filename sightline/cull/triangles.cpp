@@ -1,0 +1,227 @@
+// An object asked of the depth tiles by its own triangles: the second look.
+// SPDX-License-Identifier: MIT
+#include "sightline/cull/triangles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sightline/cull/occlusion.h"
+
+namespace sightline {
+namespace {
+
+constexpr double kWorstPosition = 0.125;  // [pixels]: known less exactly, it is visible
+
+/// Clip coordinates of a vertex, up to the division.
+struct Homogeneous {
+    double x, y, w, d, near;
+};
+
+Homogeneous project(const Screen& object, double x, double y, double z) {
+    const auto row = [&](const glm::dvec4& r) { return r.x * x + r.y * y + r.z * z + r.w; };
+    return {row(object.x), row(object.y), row(object.w), row(object.d), row(object.near)};
+}
+
+/// Corners of a polygon on the screen.
+struct Corners {
+    static constexpr int kMost = 5;
+    double x[kMost], y[kMost], d[kMost];
+    int count = 0;
+};
+
+/// Cuts a polygon at the near plane, the guard before it, so that nothing that is drawn is cut off. False if it cannot
+/// be said where its corners lie.
+bool clipAtNear(const Screen& object, const Homogeneous* corner, int count, Corners& out) {
+    const double guard = -object.near_guard;
+    const auto emit = [&](const Homogeneous& p) {
+        if (!(p.w > 0.0)) return false;
+        const int i = out.count++;
+        out.x[i] = p.x / p.w;
+        out.y[i] = p.y / p.w;
+        out.d[i] = p.d / p.w;
+        return true;
+    };
+    out.count = 0;
+    for (int i = 0; i < count; ++i) {
+        const Homogeneous &a = corner[i], &b = corner[i + 1 < count ? i + 1 : 0];
+        const bool a_in = a.near >= guard, b_in = b.near >= guard;
+        if (a_in && !emit(a)) return false;
+        if (a_in == b_in) continue;
+        const Homogeneous &in = a_in ? a : b, &beyond = a_in ? b : a;
+        const double t = (in.near - guard) / (in.near - beyond.near);
+        const auto mix = [t](double p, double q) { return p + t * (q - p); };
+        if (!emit({mix(in.x, beyond.x), mix(in.y, beyond.y), mix(in.w, beyond.w), mix(in.d, beyond.d), guard}))
+            return false;
+    }
+    return true;
+}
+
+/// One cluster on its way to the tiles.
+struct ClusterWalk {
+    const OccludeePlace& place;
+    const Occluder& shape;
+    const OccluderCluster& cluster;
+    double position_error = 0, depth_error = 0;
+    OccludeeVertices vertices;
+
+    ClusterWalk(const OccludeePlace& at, const Occluder& of, uint32_t index)
+        : place(at), shape(of), cluster(of.clusters[index]) {}
+
+    /// False if its place is known too badly.
+    bool begin(double w) {
+        w = std::max(w, place.screen.near_w);
+        if (!(w > 0.0)) return false;
+        position_error = place.positionError(w);
+        depth_error = place.depthError(w);
+        if (!(position_error < kWorstPosition)) return false;
+        const size_t first = cluster.first_vertex;
+        projectOccludee(place.screen, shape.x.data() + first, shape.y.data() + first, shape.z.data() + first,
+                        cluster.vertex_count, vertices);
+        return true;
+    }
+
+    Sight polygon(const OccluderPolygon& polygon, OccludeePolygon& out) const;
+
+private:
+    Sight clipped(const OccluderPolygon& polygon, bool both, OccludeePolygon& out) const;
+    Sight make(const double* x, const double* y, const double* d, int count, bool both, OccludeePolygon& out) const;
+};
+
+/// kOutside also for what is surely turned away, and so not drawn.
+Sight ClusterWalk::make(const double* x, const double* y, const double* d, int count, bool both,
+                        OccludeePolygon& out) const {
+    if (!both) {
+        double perimeter = 0, widest = -std::numeric_limits<double>::infinity();
+        for (int i = 0; i < count; ++i) {
+            const int j = i + 1 < count ? i + 1 : 0;
+            perimeter += std::abs(x[j] - x[i]) + std::abs(y[j] - y[i]);
+        }
+        // A quadrangle that is not quite flat is turned away if both of its triangles are.
+        for (int i = 2; i < count; ++i) {
+            const double area2 = (x[i - 1] - x[0]) * (y[i] - y[0]) - (x[i] - x[0]) * (y[i - 1] - y[0]);
+            widest = std::max(widest, place.reverse ? -area2 : area2);
+        }
+        if (widest < -4.0 * (position_error + 0x1p-16) * perimeter) return Sight::kOutside;
+    }
+    return makeOccludeePolygon(x, y, d, count, position_error, depth_error, place.screen.width, place.screen.height,
+                               out);
+}
+
+Sight ClusterWalk::clipped(const OccluderPolygon& polygon, bool both, OccludeePolygon& out) const {
+    if (!place.clips) return Sight::kVisible;
+    Homogeneous corner[4];
+    const int count = polygon.corners();
+    for (int k = 0; k < count; ++k) {
+        const size_t at = size_t{cluster.first_vertex} + polygon.vertex[k];
+        corner[k] = project(place.screen, shape.x[at], shape.y[at], shape.z[at]);
+    }
+    Corners corners;
+    if (!clipAtNear(place.screen, corner, count, corners)) return Sight::kVisible;
+    if (corners.count < 3) return Sight::kOutside;
+    return make(corners.x, corners.y, corners.d, corners.count, both, out);
+}
+
+Sight ClusterWalk::polygon(const OccluderPolygon& polygon, OccludeePolygon& out) const {
+    double x[4], y[4], d[4];
+    const int count = polygon.corners();
+    int before = 0;
+    for (int k = 0; k < count; ++k) {
+        x[k] = vertices.x[polygon.vertex[k]];
+        y[k] = vertices.y[polygon.vertex[k]];
+        d[k] = vertices.d[polygon.vertex[k]];
+        before += std::isnan(x[k]);
+    }
+    return before ? clipped(polygon, polygon.double_sided, out) : make(x, y, d, count, polygon.double_sided, out);
+}
+
+/// Gathers the clusters that their boxes leave undecided, nearest first. Returns the polygons in them; `in_view` is set
+/// if one was hidden.
+uint64_t gatherClusters(DepthTiles& tiles, const OccludeePlace& place, const Occluder& shape,
+                        Array<ClusterLook>& clusters, bool& in_view) {
+    uint64_t polygons = 0;
+    clusters.clear();
+    for (uint32_t c = 0; c < shape.clusters.size(); ++c) {
+        ClusterLook look{c, std::numeric_limits<float>::infinity(), 0};
+        if (shape.clusters.size() > 1) {
+            const BoxAnswer box = projectBox(place.screen, shape.clusters[c].bounds);
+            if (box.outside) continue;
+            if (!box.doubt) {
+                if (isHidden(tiles, box.rect, Seams::kLeave)) {
+                    in_view = true;
+                    continue;
+                }
+                look.nearness = box.rect.nearness;
+                look.w = place.screen.perspective ? 1.0 / box.rect.nearness : 0.0;
+            }
+        }
+        clusters.push_back(look);
+        polygons += shape.clusters[c].polygon_count;
+    }
+    std::sort(clusters.begin(), clusters.end(), [](const ClusterLook& a, const ClusterLook& b) {
+        return a.nearness != b.nearness ? a.nearness > b.nearness : a.cluster < b.cluster;
+    });
+    return polygons;
+}
+
+}  // namespace
+
+Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder& shape, TriangleScratch& scratch,
+                   TriangleLook& look) {
+    bool in_view = false;
+    const uint64_t polygons = gatherClusters(tiles, place, shape, scratch.clusters, in_view);
+    look.polygons = 0;
+    look.spent = polygons > look.most_polygons;
+    if (look.spent) return Sight::kVisible;
+    scratch.undecided.clear();
+    scratch.names.clear();
+    OccludeePolygon occludee;
+    for (const ClusterLook& next : scratch.clusters) {
+        look.open.cluster = next.cluster;
+        ClusterWalk walk(place, shape, next.cluster);
+        if (!walk.begin(next.w)) return Sight::kVisible;
+        for (uint32_t p = 0; p < walk.cluster.polygon_count; ++p) {
+            look.open.polygon = p;
+            ++look.polygons;
+            const Sight made = walk.polygon(shape.polygons[walk.cluster.first_polygon + p], occludee);
+            if (made == Sight::kVisible) return made;
+            if (made == Sight::kOutside) continue;
+            in_view = true;
+            const Cover cover = lookAt(tiles, occludee);
+            if (cover == Cover::kOpen) return Sight::kVisible;
+            if (cover == Cover::kHidden) continue;
+            scratch.undecided.push_back(occludee);
+            scratch.names.push_back(look.open);
+        }
+    }
+    // Only if nothing is open for good are seams worth resolving.
+    for (size_t i = 0; i < scratch.undecided.size(); ++i) {
+        look.open = scratch.names[i];
+        if (!resolveHidden(tiles, scratch.undecided[i])) return Sight::kVisible;
+    }
+    return in_view ? Sight::kOccluded : Sight::kOutside;
+}
+
+bool isOpen(DepthTiles& tiles, const OccludeePlace& place, const Occluder& shape, const OpenPolygon& polygon) {
+    ClusterWalk walk(place, shape, polygon.cluster);
+    OccludeePolygon occludee;
+    if (!walk.begin(0.0)) return true;
+    const Sight made = walk.polygon(shape.polygons[walk.cluster.first_polygon + polygon.polygon], occludee);
+    return made == Sight::kVisible || (made == Sight::kOccluded && !isPolygonHidden(tiles, occludee));
+}
+
+bool forTriangles(const OccludeePlace& place, const Occluder& shape, PolygonSink& sink) {
+    OccludeePolygon occludee;
+    for (uint32_t c = 0; c < shape.clusters.size(); ++c) {
+        ClusterWalk walk(place, shape, c);
+        if (!walk.begin(0.0)) return false;
+        for (uint32_t p = 0; p < walk.cluster.polygon_count; ++p) {
+            const Sight made = walk.polygon(shape.polygons[walk.cluster.first_polygon + p], occludee);
+            if (made == Sight::kVisible) return false;
+            if (made == Sight::kOccluded && !sink.take(occludee)) return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace sightline

@@ -1,0 +1,64 @@
+// An object asked of the depth tiles by its own triangles: the second look.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "sightline/cull/occludee_place.h"
+#include "sightline/raster/occludee.h"
+
+namespace sightline {
+
+/// A run of triangles that could not be decided by its box.
+struct ClusterLook {
+    uint32_t cluster = 0;
+    float nearness = 0;  ///< no triangle of it is nearer
+    double w = 0;        ///< no drawn point of it has less; 0: not known
+};
+
+/// Which polygon was found open.
+struct OpenPolygon {
+    uint32_t cluster = 0;
+    uint32_t polygon = 0;  ///< of the cluster
+};
+
+/// What one look may cost, what it did cost, and where it ended.
+struct TriangleLook {
+    uint64_t most_polygons = ~0u;  ///< beyond it the answer is kVisible
+    uint32_t polygons = 0;         ///< that were looked at
+    bool spent = false;            ///< it ran into the limit
+    OpenPolygon open;              ///< where the answer is kVisible and nothing was in doubt
+};
+
+/// What the second look needs from object to object.
+struct TriangleScratch {
+    Array<ClusterLook> clusters;
+    Array<OccludeePolygon> undecided;  ///< by what the tiles hold without resolving seams
+    Array<OpenPolygon> names;          ///< of these
+
+    explicit TriangleScratch(Memory* memory) : clusters(memory), undecided(memory), names(memory) {}
+};
+
+/// Asks an object's triangles until one has a pixel that is open: clusters by their boxes, nearest first, then the
+/// polygons. A triangle before the near plane is clipped there; one that is single-sided and turned away is not drawn,
+/// and shows nothing.
+///
+/// @param place  makeOccludeePlace() of the object and shape.bounds
+/// @param shape  every triangle that may be drawn of the object, in its space
+/// @returns kOutside if no triangle that would be drawn lies in the view
+Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder& shape, TriangleScratch& scratch,
+                   TriangleLook& look);
+
+/// The same question about one of its polygons: whether it is still open.
+bool isOpen(DepthTiles& tiles, const OccludeePlace& place, const Occluder& shape, const OpenPolygon& polygon);
+
+/// What receives polygons, one after another.
+struct PolygonSink {
+    virtual ~PolygonSink() = default;
+    /// @returns false to end
+    virtual bool take(const OccludeePolygon& polygon) = 0;
+};
+
+/// Gives all polygons of an object that would be drawn and lie in the view.
+/// @returns false if one of them cannot be bounded, or the sink ended it
+bool forTriangles(const OccludeePlace& place, const Occluder& shape, PolygonSink& sink);
+
+}  // namespace sightline
