@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
@@ -13,6 +14,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "sightline/raster/dense-inl.h"
 #include "sightline/raster/loose-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -176,23 +178,31 @@ void drawClusterKernel(DepthTiles& tiles, const DrawnCluster& cluster, const Scr
                         tiles.py.data() + first,
                         tiles.pd.data() + first,
                         static_cast<int8_t>(flips != object.mirrored ? -1 : 1)};
-    Windings windings;
-    windPolygons(c, projected.regular, windings);
     bool kept = false;
-    const auto drawTurn = [&](int8_t turn, const CutEdges* cuts) {
-        if ((turn > 0 ? windings.forward : windings.backward) == 0) return;
-        const uint32_t name = static_cast<uint32_t>(tiles.drawn.size()) << 8;
-        if (!drawJoined(c, projected, windings, cuts, turn, name)) return;
+    // Draws those of one winding, and keeps a record if seams are left.
+    const auto drawTurn = [&](int8_t turn, auto draw) {
+        if (!draw(turn, static_cast<uint32_t>(tiles.drawn.size()) << 8)) return;
         keepDrawn(c, turn, first, projected.regular);
         kept = true;
     };
-    if (projected.regular) {
-        drawTurn(c.front, nullptr);
-        drawTurn(static_cast<int8_t>(-c.front), nullptr);
+    const int8_t back = static_cast<int8_t>(-c.front);
+    if (projected.regular && isDense(c, projected.extent)) {
+        DenseDraw dense(c, projected);
+        if (dense.begin()) {
+            drawTurn(c.front, [&](int8_t turn, uint32_t name) { return dense.draw(turn, name, false); });
+            drawTurn(back, [&](int8_t turn, uint32_t name) { return dense.draw(turn, name, true); });
+        }
     } else {
-        const CutEdges cuts(c, windings);
-        drawTurn(c.front, &cuts);
-        drawTurn(static_cast<int8_t>(-c.front), &cuts);
+        Windings windings;
+        windPolygons(c, projected.regular, windings);
+        std::optional<CutEdges> cuts;
+        if (!projected.regular) cuts.emplace(c, windings);
+        const auto draw = [&](int8_t turn, uint32_t name) {
+            if ((turn > 0 ? windings.forward : windings.backward) == 0) return false;
+            return drawJoined(c, projected, windings, cuts ? &*cuts : nullptr, turn, name);
+        };
+        drawTurn(c.front, draw);
+        drawTurn(back, draw);
     }
     if (kept) return;
     tiles.px.resize(first);

@@ -49,7 +49,6 @@ struct Patch {
     float nearest = 0;      ///< no point of it is nearer
     int32_t column0 = 0, row0 = 0, columns = 0, rows = 0;  ///< [tiles]
     uint32_t pitch = 0;  ///< tiles from one row of the scratch to the next, a multiple of 16
-    uint32_t words = 0;  ///< of marks in a row
     uint32_t slots = 0;  ///< in use
 };
 
@@ -92,41 +91,42 @@ inline bool beginPatch(Patch& patch, const Extent& extent) {
     patch.columns = tileOf(extent.x1 + e, tiles.width) - patch.column0 + 1;
     patch.rows = tileOf(extent.y1 + e, tiles.height) - patch.row0 + 1;
     patch.pitch = static_cast<uint32_t>(patch.columns + 15) / 16 * 16;
-    patch.words = static_cast<uint32_t>(patch.columns + 63) / 64;
     patch.slots = 0;
     const double near = extent.nearest + std::abs(extent.nearest) * 0x1p-22 + patch.depth_error;
     patch.nearest = static_cast<float>(near + std::abs(near) * 0x1p-22);
     DepthTiles::Scratch& scratch = tiles.scratch;
     const size_t count = size_t{patch.pitch} * static_cast<size_t>(patch.rows);
-    if (scratch.z.size() < count) {
-        scratch.z.resize(count);
+    if (scratch.slot.size() < count) {
+        scratch.z.resize(count + 16);  // addDepths() reads and writes back some beyond a tile
         scratch.plane.resize(count);
         scratch.slot.resize(count);
     }
-    const size_t marks = size_t{patch.words} * static_cast<size_t>(patch.rows);
-    if (scratch.marked.size() < marks) scratch.marked.resize(marks);
     if (scratch.first.size() < static_cast<size_t>(patch.rows)) {
         scratch.first.resize(static_cast<size_t>(patch.rows));
         scratch.last.resize(static_cast<size_t>(patch.rows));
     }
+    if (!openColumns(patch)) return false;
     std::fill_n(scratch.z.data(), count, std::numeric_limits<float>::infinity());
-    std::fill_n(scratch.marked.data(), marks, uint64_t{0});
-    return openColumns(patch);
+    std::fill_n(scratch.plane.data(), count, DepthTiles::kNone);
+    std::fill_n(scratch.slot.data(), count, DepthTiles::kNone);
+    return true;
 }
 
-/// The slot of a tile that an open edge meets.
-HWY_INLINE uint32_t slotOf(Patch& patch, uint32_t column, uint32_t row) {
+/// Makes room for more tiles that open edges meet.
+HWY_INLINE void reserveSlots(Patch& patch, uint32_t more) {
     DepthTiles::Scratch& scratch = patch.tiles.scratch;
-    uint64_t& word = scratch.marked[row * patch.words + column / 64];
-    const uint64_t bit = uint64_t{1} << (column & 63);
-    uint32_t& slot = scratch.slot[row * patch.pitch + column];
-    if (word & bit) return slot;
-    word |= bit;
+    if (scratch.touched.size() >= patch.slots + more) return;
+    scratch.touched.resize(2 * size_t{patch.slots + more});
+    scratch.winding.resize(128 * size_t{patch.slots + more});
+}
+
+/// The slot of a tile that an open edge meets; there must be room.
+/// @param at  its place in the scratch
+HWY_INLINE uint32_t slotOf(Patch& patch, size_t at) {
+    DepthTiles::Scratch& scratch = patch.tiles.scratch;
+    uint32_t& slot = scratch.slot[at];
+    if (slot != DepthTiles::kNone) return slot;
     slot = patch.slots++;
-    if (scratch.touched.size() < patch.slots) {
-        scratch.touched.resize(2 * size_t{patch.slots});
-        scratch.winding.resize(128 * size_t{patch.slots});
-    }
     scratch.touched[slot] = 0;
     const hn::CappedTag<uint8_t, 64> d;
     for (size_t i = 0; i < 64; i += hn::Lanes(d))
@@ -276,8 +276,9 @@ HWY_INLINE void addEdgeInRow(Patch& patch, const EdgeSetups& s, int i, int32_t r
                   i32, highs + k);
         hn::Store(hn::ConvertTo(i32, hn::Min(hn::Max(crossing, border), beyond)), i32, crossings + k);
     }
+    reserveSlots(patch, static_cast<uint32_t>(std::max(t1 - t0 + 1, 0)));
     for (int32_t t = t0; t <= t1; ++t) {
-        const uint32_t slot = slotOf(patch, static_cast<uint32_t>(t), static_cast<uint32_t>(row));
+        const uint32_t slot = slotOf(patch, size_t{patch.pitch} * static_cast<size_t>(row) + static_cast<size_t>(t));
         alignas(8) uint8_t touched[8];
         uint64_t here = 0;
         for (size_t k = 0; k < 8; k += hn::Lanes(d)) {

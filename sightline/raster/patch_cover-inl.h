@@ -138,6 +138,16 @@ inline void coverBetween(Patch& patch, uint32_t row, uint32_t first, uint32_t en
             coverPixels(tiles, tile + column, inside, z);
 }
 
+/// Which of sixteen tiles have a slot.
+HWY_INLINE uint32_t metByEdges(const uint32_t* slots) {
+    const hn::CappedTag<uint32_t, 16> u;
+    uint32_t bits = 0;
+    for (size_t i = 0; i < 16; i += hn::Lanes(u))
+        bits |= static_cast<uint32_t>(bitsFromMask(u, hn::Ne(hn::LoadU(u, slots + i), hn::Set(u, DepthTiles::kNone))))
+                << i;
+    return bits;
+}
+
 /// Carries the patch into the tiles. Returns whether it left seams.
 /// @param source  as SeamEntry::source
 inline bool coverPatch(Patch& patch, uint32_t source) {
@@ -151,9 +161,10 @@ inline bool coverPatch(Patch& patch, uint32_t source) {
         uint64_t inside = 0;
         uint32_t from = static_cast<uint32_t>(first);  // the first column that is not done yet
         const uint32_t tile_row = (static_cast<uint32_t>(patch.row0) + row) * tiles.stride;
-        for (uint32_t word = 0; word < patch.words; ++word)
-            for (uint64_t left = scratch.marked[row * patch.words + word]; left; left &= left - 1) {
-                const uint32_t column = 64 * word + static_cast<uint32_t>(std::countr_zero(left));
+        for (uint32_t group = 0; group <= static_cast<uint32_t>(last); group += 16)
+            for (uint32_t left = metByEdges(scratch.slot.data() + size_t{patch.pitch} * row + group); left;
+                 left &= left - 1) {
+                const uint32_t column = group + static_cast<uint32_t>(std::countr_zero(left));
                 coverBetween(patch, row, from, column, inside);
                 from = column + 1;
                 const size_t at = size_t{patch.pitch} * row + column;

@@ -576,6 +576,24 @@ HWY_INLINE void writeRecords(const SmallPolygonsTask& task, const Batch& batch, 
     out.count = count;
 }
 
+/// Turns the rows of pixels that one vector of polygons holds, batch.height of them, into words per column of tiles.
+template <bool kOuter>
+HWY_INLINE void transposeSpans(Batch& batch, size_t h) {
+    const U u;
+    const uint32_t height = batch.height;
+    for (int o = 0; o < (kOuter ? 2 : 1); ++o) {
+        for (uint32_t row = height; row < (height + 7) / 8 * 8; ++row)
+            hn::Store(hn::Zero(u), u, batch.rows[o][row] + h);
+        for (uint32_t part = 0; part < 2; ++part) {
+            alignas(64) static constexpr uint32_t kEmpty[8][kBatch] = {};
+            const bool some = 8 * part < height;
+            // A batch of several vectors may need more columns than are known of yet.
+            transposeRows(some ? batch.rows[o] + 8 * part : kEmpty, h, hn::Lanes(u) == kBatch ? batch.columns : 4,
+                          batch.half[o][part]);
+        }
+    }
+}
+
 template <bool kOuter>
 HWY_INLINE void scanBatch(const SmallPolygonsTask& task, const Parts& parts, uint32_t first, Batch& batch,
                           SmallPolygons& out) {
@@ -586,18 +604,7 @@ HWY_INLINE void scanBatch(const SmallPolygonsTask& task, const Parts& parts, uin
         if (parts.quads >> first / kBatch & 1) scanPolygons<kOuter, true>(task, parts, first, batch, h, out);
         else scanPolygons<kOuter, false>(task, parts, first, batch, h, out);
         const uint32_t height = batch.height;
-        const U u;
-        for (int o = 0; o < (kOuter ? 2 : 1); ++o) {
-            for (uint32_t row = height; row < (height + 7) / 8 * 8; ++row)
-                hn::Store(hn::Zero(u), u, batch.rows[o][row] + h);
-            for (uint32_t part = 0; part < 2; ++part) {
-                alignas(64) static constexpr uint32_t kEmpty[8][kBatch] = {};
-                const bool some = 8 * part < height;
-                // A batch of several vectors may need more columns than are known of yet.
-                transposeRows(some ? batch.rows[o] + 8 * part : kEmpty, h, lanes == kBatch ? batch.columns : 4,
-                              batch.half[o][part]);
-            }
-        }
+        transposeSpans<kOuter>(batch, h);
         batch.height = std::max(before, height);
     }
 }
