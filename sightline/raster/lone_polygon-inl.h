@@ -11,6 +11,8 @@
 #define SIGHTLINE_RASTER_LONE_POLYGON_INL_H
 #endif
 
+#include <bit>
+
 #include "sightline/raster/cluster_draw-inl.h"
 #include "sightline/raster/small_polygons.h"
 
@@ -20,23 +22,42 @@ namespace HWY_NAMESPACE {
 
 constexpr double kLargeSides = 128.0;  // [pixels]: width and height of a polygon that keeps its seams in any cluster
 
-/// coverPixels() for tiles that are not to have blocks, without a jump that depends on depths: those are as random as the
-/// polygons' order. The layer lies in front of the base, or there is none.
-HWY_INLINE void coverMasked(DepthTiles& tiles, uint32_t tile, uint64_t mask, float z) {
-    if (!(z > tiles.base[tile])) return;
-    const float layer = tiles.layer[tile];
-    const bool has_layer = layer > DepthTiles::kOpen;
-    const uint64_t old = has_layer ? tiles.layer_mask[tile] : 0, both = old | mask;
-    if (both == ~uint64_t{0} || (has_layer && tiles.block[tile] != DepthTiles::kNone))
-        return coverPixels(tiles, tile, mask, z);
-    const bool front = z > layer;
-    const float nearer = front ? z : layer, farther = front ? layer : z;
-    const uint64_t near_mask = front ? mask : old;
-    const bool says_it_all = both == near_mask;
-    tiles.layer[tile] = says_it_all ? nearer : farther;
-    tiles.layer_mask[tile] = both;  // the nearer one's if that says it all
-    tiles.block[tile] = DepthTiles::kNone;
-}
+/// The tiles as polygons in no order are merged into them.
+struct MaskedTiles {
+    DepthTiles& tiles;
+    const float* base;
+    float* layer;
+    uint64_t* layer_mask;
+    uint32_t* block;
+    bool blocks;  ///< some tile may have one
+
+    explicit MaskedTiles(DepthTiles& from)
+        : tiles(from),
+          base(from.base.data()),
+          layer(from.layer.data()),
+          layer_mask(from.layer_mask.data()),
+          block(from.block.data()),
+          blocks(!from.blocks.empty()) {}
+
+    /// coverPixels() for tiles that are not to have blocks, without a jump that depends on depths: those are as random
+    /// as the polygons' order. The layer lies in front of the base, or there is none.
+    HWY_INLINE void cover(uint32_t tile, uint64_t mask, float z) const {
+        if (!(z > base[tile])) return;
+        const float old_z = layer[tile];
+        const bool has_layer = old_z > DepthTiles::kOpen;
+        const uint64_t old = layer_mask[tile] & (uint64_t{0} - has_layer), both = old | mask;
+        if (HWY_UNLIKELY(both == ~uint64_t{0} || (blocks && has_layer && block[tile] != DepthTiles::kNone)))
+            return coverPixels(tiles, tile, mask, z);
+        const uint64_t in_front = uint64_t{0} - (z > old_z);
+        const uint64_t near_mask = old ^ ((old ^ mask) & in_front);
+        const uint32_t near_bits = std::bit_cast<uint32_t>(std::max(z, old_z));
+        const uint32_t far_bits = std::bit_cast<uint32_t>(std::min(z, old_z));
+        const uint32_t says_it_all = uint32_t{0} - (both == near_mask);
+        layer[tile] = std::bit_cast<float>(far_bits ^ ((far_bits ^ near_bits) & says_it_all));
+        layer_mask[tile] = both;  // the nearer one's if that says it all
+        block[tile] = DepthTiles::kNone;
+    }
+};
 
 /// The spans of a row of tiles: per row of pixels the first one and the one after the last.
 struct PixelSpans {
@@ -209,7 +230,7 @@ inline bool coverLone(DepthTiles& tiles, const LonePolygon& p, LoneDepth& depth,
             if (covered) {
                 const float z = depth.in(p.column0 + column, p.row0 + row);
                 if (covered != ~uint64_t{0}) {
-                    if (tiles.detail == Detail::kMasked) coverMasked(tiles, tile, covered, z);
+                    if (tiles.detail == Detail::kMasked) MaskedTiles(tiles).cover(tile, covered, z);
                     else coverPixels(tiles, tile, covered, z);
                 } else {
                     if (depth.planar && depth.index == DepthTiles::kNone) {

@@ -41,12 +41,13 @@ struct CenteredRow {
 };
 
 /// Projects a cluster's vertices in floats.
+/// @param f     vectors of it hold no more than the cluster's vertices, which are padded to a multiple of eight
 /// @param task  gets the errors' bounds
 /// @returns false if those are too large
-inline bool projectSnapped(const Screen& object, const Occluder& occluder, const OccluderCluster& cluster,
+template <class F>
+inline bool projectSnapped(F f, const Screen& object, const Occluder& occluder, const OccluderCluster& cluster,
                            const DrawnCluster& drawn, SnappedVertex* out, SmallPolygonsTask& task) {
-    const F8 f;
-    const hn::Rebind<int32_t, F8> i32;
+    const hn::Rebind<int32_t, F> i32;
     const Box3f& box = cluster.bounds;
     glm::dvec3 center, extent;
     for (int axis = 0; axis < 3; ++axis) {
@@ -70,7 +71,9 @@ inline bool projectSnapped(const Screen& object, const Occluder& occluder, const
     auto w_least = most, d_most = hn::Zero(f);
     const float *xs = occluder.x.data() + cluster.first_vertex, *ys = occluder.y.data() + cluster.first_vertex,
                 *zs = occluder.z.data() + cluster.first_vertex;
-    for (size_t v = 0; v < cluster.vertex_count; v += hn::Lanes(f)) {
+    const size_t end = (cluster.vertex_count + 7u) / 8 * 8 - hn::Lanes(f);
+    for (size_t i = 0; i < cluster.vertex_count; i += hn::Lanes(f)) {
+        const size_t v = std::min(i, end);  // the last ones once more, rather than what lies behind them
         const auto x = hn::Sub(hn::LoadU(f, xs + v), cx), y = hn::Sub(hn::LoadU(f, ys + v), cy);
         const auto z = hn::Sub(hn::LoadU(f, zs + v), cz);
         const auto w = row(w_row, x, y, z), inverse = hn::Div(one, w);
@@ -103,8 +106,9 @@ inline bool projectSnapped(const Screen& object, const Occluder& occluder, const
 
 /// Carries classified polygons into the tiles.
 inline void coverSmall(DepthTiles& tiles, const SmallPolygons& small) {
+    const MaskedTiles masked(tiles);
     for (uint32_t r = 0; r < small.count; ++r)
-        coverMasked(tiles, small.tile(r), small.inner[r], small.farthest[small.polygon(r)]);
+        masked.cover(small.tile(r), small.inner[r], small.farthest[small.polygon(r)]);
 }
 
 /// Which polygons of a loose cluster are drawn one by one, and which way they wind.
@@ -139,7 +143,10 @@ inline void drawSmall(DepthTiles& tiles, const DrawnCluster& cluster, const Scre
     task.rows = tiles.rows;
     task.stride = tiles.stride;
     task.reverse = reverse;
-    if (!projectSnapped(object, *cluster.occluder, source, cluster, vertices, task)) {
+    const bool exact = source.vertex_count > 8
+                           ? projectSnapped(F16(), object, *cluster.occluder, source, cluster, vertices, task)
+                           : projectSnapped(F8(), object, *cluster.occluder, source, cluster, vertices, task);
+    if (!exact) {
         double x[OccluderCluster::kMaxVertices], y[OccluderCluster::kMaxVertices], d[OccluderCluster::kMaxVertices];
         projectVertices(object, *cluster.occluder, source, x, y, d);
         snapVertices(x, y, d, source.vertex_count, vertices);
