@@ -157,14 +157,16 @@ Sight askBox(DepthTiles& tiles, const OccludeePlace& place, const Box3d& box) {
     const Sight sight = makeBoxFaces(place, box, faces);
     if (sight != Sight::kOccluded || isHidden(tiles, faces.rect, Seams::kLeave)) return sight;
     uint32_t undecided = 0;
+    bool in_view = false;
     for (int i = 0; i < faces.count; ++i) {
         const Cover cover = lookAt(tiles, faces.faces[i]);
         if (cover == Cover::kOpen) return Sight::kVisible;
         if (cover == Cover::kUndecided) undecided |= 1u << i;
+        in_view |= cover != Cover::kOutside;
     }
     for (; undecided; undecided &= undecided - 1)
         if (!resolveHidden(tiles, faces.faces[std::countr_zero(undecided)])) return Sight::kVisible;
-    return Sight::kOccluded;
+    return in_view ? Sight::kOccluded : Sight::kOutside;
 }
 
 Sight askSphere(DepthTiles& tiles, const Screen& screen, const glm::dvec3& center, double radius) {

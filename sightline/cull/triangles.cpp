@@ -186,10 +186,10 @@ Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder
             const Sight made = walk.polygon(shape.polygons[walk.cluster.first_polygon + p], occludee);
             if (made == Sight::kVisible) return made;
             if (made == Sight::kOutside) continue;
-            in_view = true;
             const Cover cover = lookAt(tiles, occludee);
+            in_view |= cover != Cover::kOutside;
             if (cover == Cover::kOpen) return Sight::kVisible;
-            if (cover == Cover::kHidden) continue;
+            if (cover != Cover::kUndecided) continue;
             scratch.undecided.push_back(occludee);
             scratch.names.push_back(look.open);
         }

@@ -74,8 +74,9 @@ HWY_INLINE float nearestOver(const OccludeePolygon& polygon, const PixelRect& ov
 
 /// Calls `look` with each tile, its pixels that the polygon may touch and how near it is there, leaving out rows that
 /// hide it; stops when it returns false.
+/// @param inside  set if a row or a tile was looked at
 template <class Look>
-HWY_INLINE bool forOccludeeTiles(DepthTiles& tiles, const OccludeePolygon& polygon, Look look) {
+HWY_INLINE bool forOccludeeTiles(DepthTiles& tiles, const OccludeePolygon& polygon, bool& inside, Look look) {
     const PixelRect& rect = polygon.rect;
     const int32_t first = rect.x0 >> 3, last = rect.x1 >> 3, low = rect.y0 >> 3, high = rect.y1 >> 3;
     alignas(64) float nearest[64];
@@ -83,11 +84,15 @@ HWY_INLINE bool forOccludeeTiles(DepthTiles& tiles, const OccludeePolygon& polyg
         if (low < high && first < last) {
             PixelRect line{rect.x0, std::max(rect.y0, 8 * row), rect.x1, std::min(rect.y1, 8 * row + 7), 0};
             line.nearness = nearestOver(polygon, line);
-            if (isHidden(tiles, line, Seams::kLeave)) continue;
+            if (isHidden(tiles, line, Seams::kLeave)) {
+                inside = true;
+                continue;
+            }
         }
         for (int32_t column = first; column <= last; ++column) {
             const uint64_t window = occludeePixelsKernel(polygon, column, row, nearest);
             if (!window) continue;
+            inside = true;
             const uint32_t tile = static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(column);
             if (!look(tile, window, nearest)) return false;
         }
@@ -97,22 +102,25 @@ HWY_INLINE bool forOccludeeTiles(DepthTiles& tiles, const OccludeePolygon& polyg
 
 Cover lookAtKernel(DepthTiles& tiles, const OccludeePolygon& polygon) {
     if (isHidden(tiles, polygon.rect, Seams::kLeave)) return Cover::kHidden;
-    bool undecided = false;
-    const bool closed =
-        forOccludeeTiles(tiles, polygon, [&](uint32_t tile, uint64_t window, const float(&nearest)[64]) HWY_ATTR {
+    bool undecided = false, inside = false;
+    const bool closed = forOccludeeTiles(
+        tiles, polygon, inside, [&](uint32_t tile, uint64_t window, const float(&nearest)[64]) HWY_ATTR {
             const uint64_t open = openPixels(tiles, tile, window, nearest, Seams::kLeave);
             undecided |= open != 0;
             return !(open & ~undecidedSeams(tiles, tile));
         });
+    if (!inside) return Cover::kOutside;
     return !closed ? Cover::kOpen : undecided ? Cover::kUndecided : Cover::kHidden;
 }
 
 bool resolveHiddenKernel(DepthTiles& tiles, const OccludeePolygon& polygon) {
-    return forOccludeeTiles(tiles, polygon, [&](uint32_t tile, uint64_t window, const float(&nearest)[64]) HWY_ATTR {
-        for (uint64_t open = openPixels(tiles, tile, window, nearest, Seams::kLeave); open; open &= open - 1)
-            if (openPixels(tiles, tile, open & -open, nearest, Seams::kResolve)) return false;
-        return true;
-    });
+    bool inside = false;
+    return forOccludeeTiles(
+        tiles, polygon, inside, [&](uint32_t tile, uint64_t window, const float(&nearest)[64]) HWY_ATTR {
+            for (uint64_t open = openPixels(tiles, tile, window, nearest, Seams::kLeave); open; open &= open - 1)
+                if (openPixels(tiles, tile, open & -open, nearest, Seams::kResolve)) return false;
+            return true;
+        });
 }
 
 using D8 = hn::CappedTag<double, 8>;
@@ -257,7 +265,7 @@ bool resolveHidden(DepthTiles& tiles, const OccludeePolygon& polygon) {
 
 bool isPolygonHidden(DepthTiles& tiles, const OccludeePolygon& polygon) {
     const Cover cover = lookAt(tiles, polygon);
-    return cover == Cover::kUndecided ? resolveHidden(tiles, polygon) : cover == Cover::kHidden;
+    return cover == Cover::kUndecided ? resolveHidden(tiles, polygon) : cover != Cover::kOpen;
 }
 
 void projectOccludee(const Screen& object, const float* x, const float* y, const float* z, uint32_t count,

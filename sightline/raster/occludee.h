@@ -51,6 +51,7 @@ enum class Cover : uint8_t {
     kHidden,     ///< surely hidden
     kOpen,       ///< a pixel is open whatever the seams are
     kUndecided,  ///< seams decide
+    kOutside,    ///< it touches no pixel of the buffer
 };
 
 /// Looks at a polygon without resolving anything: its rectangle first, then rows of tiles, then tile by tile; ends with

@@ -13,6 +13,7 @@ namespace {
 /// Takes polygons down, pixel by pixel.
 struct Painter : PolygonSink {
     AskedPixels& asked;
+    bool rects = false, painted = false;
 
     explicit Painter(AskedPixels& to) : asked(to) {}
 
@@ -21,7 +22,7 @@ struct Painter : PolygonSink {
         alignas(64) float nearest[64];
         for (int32_t row = from.y0 >> 3; row <= from.y1 >> 3; ++row)
             for (int32_t column = from.x0 >> 3; column <= from.x1 >> 3; ++column)
-                for (uint64_t left = occludeePixels(polygon, column, row, nearest); left; left &= left - 1) {
+                for (uint64_t left = pixelsOf(polygon, column, row, nearest); left; left &= left - 1) {
                     const int bit = std::countr_zero(left);
                     const int32_t x = 8 * column + (bit & 7), y = 8 * row + (bit >> 3);
                     if (x < rect.x0 || x > rect.x1 || y < rect.y0 || y > rect.y1) continue;
@@ -29,8 +30,21 @@ struct Painter : PolygonSink {
                         asked.nearness[static_cast<size_t>(y - rect.y0) * static_cast<size_t>(rect.x1 - rect.x0 + 1) +
                                        static_cast<size_t>(x - rect.x0)];
                     place = std::max(place, nearest[bit]);
+                    painted = true;
                 }
         return true;
+    }
+
+    uint64_t pixelsOf(const OccludeePolygon& polygon, int32_t column, int32_t row, float (&nearest)[64]) const {
+        if (!rects) return occludeePixels(polygon, column, row, nearest);
+        std::fill_n(nearest, 64, polygon.rect.nearness);
+        uint64_t bits = 0;
+        for (int bit = 0; bit < 64; ++bit) {
+            const int32_t x = 8 * column + (bit & 7), y = 8 * row + (bit >> 3);
+            const PixelRect& rect = polygon.rect;
+            if (x >= rect.x0 && x <= rect.x1 && y >= rect.y0 && y <= rect.y1) bits |= uint64_t{1} << bit;
+        }
+        return bits;
     }
 };
 
@@ -38,11 +52,17 @@ bool paint(const Walk& walk, uint32_t place, Look look, AskedPixels& asked) {
     const ObjectRecord& object = walk.state().objectAt(place);
     const OccludeePlace at = makeOccludeePlace(walk.screen, object.transform, object.bounds);
     Painter painter(asked);
-    if (look == Look::kTriangles) return forTriangles(at, *walk.state().occluders[object.shape.index], painter);
     BoxFaces faces;
-    if (makeBoxFaces(at, object.bounds, faces) != Sight::kOccluded) return false;
-    for (int i = 0; i < faces.count; ++i) painter.take(faces.faces[i]);
-    return true;
+    if (look == Look::kFaces && makeBoxFaces(at, object.bounds, faces) != Sight::kOccluded) return false;
+    // What was hidden by rectangles alone may touch no pixel at all: then these are what was asked.
+    for (const bool rects : {false, true}) {
+        if (painter.painted) break;
+        painter.rects = rects;
+        if (look == Look::kTriangles && !forTriangles(at, *walk.state().occluders[object.shape.index], painter))
+            return false;
+        for (int i = 0; i < faces.count; ++i) painter.take(faces.faces[i]);
+    }
+    return painter.painted;
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ TEST(OcclusionReplay, IsOfTheFrameThatAQuerySees) {
 TEST(OcclusionReplay, NoticesAnAnswerThatIsNotTheSame) {
     OcclusionRecording recording = recordWithTiles(2);
     EXPECT_TRUE(OcclusionReplay(recording).run().same());
-    recording.asked.tiles[1].open ^= 0x10;
+    recording.asked.tiles.back().open ^= 0x10;
     ReplayAnswer answer = OcclusionReplay(recording).run();
     EXPECT_EQ(answer.differences, 1u);
     EXPECT_EQ(answer.different, recording.asked.calls.size() - 1);
