@@ -126,7 +126,8 @@ void HiderSearch::share(const SnapshotState& state, const View& view, uint32_t i
     for (const Candidate& candidate : candidates) {
         if (candidate.item == self) continue;
         const ObjectRecord& object = world->object(candidate.item);
-        const double share = owned ? static_cast<double>(candidate.pixels) / static_cast<double>(owned) : 0.0;
+        const double share = owned ? static_cast<double>(candidate.pixels) / static_cast<double>(owned)
+                                   : 1.0 / static_cast<double>(set.size());  // it touches no pixel
         hiders.push_back({object.id, object.key, share});
     }
 }
