@@ -19,6 +19,12 @@ inline constexpr uint32_t kAllStages = (1u << kStageCount) - 1;
 /// Those that pay in most worlds.
 inline constexpr uint32_t kDefaultStages = kAllStages & ~stageBit(Stage::kVolumes);
 
+/// How much a tile of the occlusion buffer remembers.
+enum class OcclusionDetail : uint8_t {
+    kMasked,  ///< where depths meet in a tile that do not fit, the farthest stands for all: smallest, but looser
+    kFull,    ///< such a tile gets a depth per pixel
+};
+
 /// One eye's view of a world for one frame.
 ///
 /// Matrices are column-major with column vectors: clip = projection * view * world. Clip space is
@@ -41,7 +47,8 @@ struct View {
     bool faces = true;                       ///< what its box's rectangle would keep is asked by the box's faces
     bool second_look = true;                 ///< and then by its own triangles: ObjectDef::shape
     uint32_t second_look_polygons = 1u << 16;  ///< work budget of that: polygons that may be asked  [limit]
-    bool time_stages = false;                  ///< fill StageStats::nanoseconds (costs some time itself)
+    OcclusionDetail occlusion_detail = OcclusionDetail::kFull;
+    bool time_stages = false;  ///< fill StageStats::nanoseconds (costs some time itself)
 };
 
 /// Right-handed, y up in clip space; up need not be orthogonal to the direction. If up is parallel

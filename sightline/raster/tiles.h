@@ -82,11 +82,7 @@ struct BufferPlane {
     float error = 0;
 };
 
-/// How much a tile remembers.
-enum class Detail : uint8_t {
-    kMasked,  ///< where layers meet that do not fit, the farther depth is taken for both: small and fast
-    kFull,    ///< such a tile gets a depth per pixel
-};
+using Detail = OcclusionDetail;
 
 struct TileLog;
 
@@ -107,7 +103,7 @@ struct DepthTiles {
     uint32_t width = 0, height = 0;  ///< [pixels], multiples of 8
     uint32_t columns = 0, rows = 0;  ///< [tiles]
     uint32_t stride = 0;             ///< tiles from one row to the next: columns rounded up to 16
-    Detail detail = Detail::kMasked;
+    Detail detail = Detail::kFull;
 
     // Per tile, side by side, so that sixteen tiles of a row are looked at together.
     Array<float> base{memory};            ///< no pixel of the tile claims less; kOpen unless all is covered
@@ -163,7 +159,7 @@ struct DepthTiles {
     uint64_t seamBits(uint32_t tile) const { return seams[tile] == kNone ? 0 : seam_mask[tile]; }
 
     /// Makes the buffer empty. Allocates only when it grows.
-    void clear(uint32_t width, uint32_t height, Detail detail = Detail::kMasked);
+    void clear(uint32_t width, uint32_t height, Detail detail = Detail::kFull);
 };
 
 /// Draws one cluster of an occluder: covers the pixels that its polygons cover together, and keeps aside those that

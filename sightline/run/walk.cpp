@@ -298,7 +298,7 @@ void Walk::chooseVolumes() {
 void Walk::walk() {
     frustum = makeFrustum(view);
     screen = makeScreen(view, view.occlusion_size);
-    if (uses(Stage::kOcclusion)) tiles.clear(screen.width, screen.height);
+    if (uses(Stage::kOcclusion)) tiles.clear(screen.width, screen.height, view.occlusion_detail);
     for (uint32_t item : state().unbounded) keep(item);
     if (state().bvh.nodes.empty()) return;
     const uint8_t planes = static_cast<uint8_t>(uses(Stage::kFrustum) ? (1u << frustum.count) - 1 : 0);
