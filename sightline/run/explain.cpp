@@ -173,7 +173,7 @@ void Explainer::Impl::explainOccluded(uint32_t item, const PixelRect& rect, cons
         nameVolume(snapshot.state(), out.hiders);
     } else if (out.outside_too) {
         out.sufficient = false;
-        search.own(snapshot.state(), trial, out.hiders);
+        search.own(snapshot.state(), item, trial, out.hiders);
     } else {
         out.sufficient = search.run(snapshot.state(), view, item, trial, rect, out.hiders);
     }
@@ -205,7 +205,7 @@ void Explainer::Impl::tryWithout(uint32_t item, OcclusionReason& out) {
     if (verdict != Verdict::kOccluded) return;
     if (trial.cull.stage == Stage::kVolumes) return nameVolume(*left, out.others);
     const LeafAnswer leaf = detail::askLeaf(*left, detail::hierarchyPlace(*left, self), view, trial.walk.screen);
-    if (leaf.beyond_plane || leaf.outside()) search.own(*left, trial, out.others);
+    if (leaf.beyond_plane || leaf.outside()) search.own(*left, self, trial, out.others);
     else search.run(*left, view, self, trial, leaf.rect(), out.others);
 }
 

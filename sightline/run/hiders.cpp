@@ -22,7 +22,7 @@ bool HiderSearch::run(const SnapshotState& state, const View& view, uint32_t ite
     View by_tiles = view;  // what the tiles of a set hide a volume may hide as well, and nobody would own a pixel
     by_tiles.stages &= ~stageBit(Stage::kVolumes);
     for (const bool anywhere : {false, true}) {
-        collect(state, decided, within, anywhere);
+        collect(state, item, decided, within, anywhere);
         if (!shrink(state, by_tiles, item)) continue;
         share(state, by_tiles, item, hiders);
         return true;
@@ -31,11 +31,11 @@ bool HiderSearch::run(const SnapshotState& state, const View& view, uint32_t ite
     return false;
 }
 
-void HiderSearch::own(const SnapshotState& state, const Trial& decided, Array<Hider>& hiders) {
+void HiderSearch::own(const SnapshotState& state, uint32_t item, const Trial& decided, Array<Hider>& hiders) {
     hiders.clear();
     const PixelRect& within = ask(decided, decided.cull.rect);
     owners.run(decided.walk, decided.record, within);
-    collect(state, decided, within, false);
+    collect(state, item, decided, within, false);
     reportOwners(state, hiders);
 }
 
@@ -52,7 +52,8 @@ void HiderSearch::reportOwners(const SnapshotState& state, Array<Hider>& hiders)
 
 /// What may hide the object: what was drawn over its rectangle; or, if that will not do, all that was drawn, for what
 /// hides an occluder's cluster changes what is drawn.
-void HiderSearch::collect(const SnapshotState& state, const Trial& decided, const PixelRect& rect, bool anywhere) {
+void HiderSearch::collect(const SnapshotState& state, uint32_t item, const Trial& decided, const PixelRect& rect,
+                          bool anywhere) {
     const WalkRecord& record = decided.record;
     Array<uint8_t> over(record.owners.size(), 0, memory);
     Array<uint64_t> pixels(record.owners.size(), 0, memory);
@@ -65,8 +66,11 @@ void HiderSearch::collect(const SnapshotState& state, const Trial& decided, cons
             if (instance != PixelOwner::kNone) ++pixels[instance];
         }
     candidates.clear();
-    for (uint32_t i = 0; i < record.owners.size(); ++i)
-        if (over[i]) candidates.push_back({state.itemOf(state.bvh.order[record.owners[i]]), pixels[i], i});
+    for (uint32_t i = 0; i < record.owners.size(); ++i) {
+        // The object itself may have been drawn before a closer look culled it.
+        const uint32_t drawn = state.itemOf(state.bvh.order[record.owners[i]]);
+        if (over[i] && drawn != item) candidates.push_back({drawn, pixels[i], i});
+    }
     std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
         return a.pixels != b.pixels ? a.pixels > b.pixels : a.instance < b.instance;
     });
@@ -120,11 +124,10 @@ void HiderSearch::share(const SnapshotState& state, const View& view, uint32_t i
     trial.run(*world, view, self);
     const PixelRect rect = ask(trial, askLeaf(*world, hierarchyPlace(*world, self), view, trial.walk.screen).rect());
     owners.run(trial.walk, trial.record, rect);
-    collect(*world, trial, rect, true);
+    collect(*world, self, trial, rect, true);
     uint64_t owned = 0;
     for (const Candidate& candidate : candidates) owned += candidate.pixels;
     for (const Candidate& candidate : candidates) {
-        if (candidate.item == self) continue;
         const ObjectRecord& object = world->object(candidate.item);
         const double share = owned ? static_cast<double>(candidate.pixels) / static_cast<double>(owned)
                                    : 1.0 / static_cast<double>(set.size());  // it touches no pixel

@@ -38,12 +38,12 @@ struct HiderSearch {
              Array<Hider>& hiders);
 
     /// Those that own pixels of what was culled together.
-    void own(const SnapshotState& state, const Trial& decided, Array<Hider>& hiders);
+    void own(const SnapshotState& state, uint32_t item, const Trial& decided, Array<Hider>& hiders);
 
 private:
     const PixelRect& ask(const Trial& decided, const PixelRect& rect);
     void reportOwners(const SnapshotState& state, Array<Hider>& hiders) const;
-    void collect(const SnapshotState& state, const Trial& decided, const PixelRect& rect, bool anywhere);
+    void collect(const SnapshotState& state, uint32_t item, const Trial& decided, const PixelRect& rect, bool anywhere);
     bool hides(const SnapshotState& state, const View& view, uint32_t item, std::span<const uint32_t> with);
     bool hidesFirst(const SnapshotState& state, const View& view, uint32_t item, size_t count);
     bool shrink(const SnapshotState& state, const View& view, uint32_t item);

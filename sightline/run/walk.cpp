@@ -263,7 +263,7 @@ void Walk::visit(const Pending& entry) {
     report(entry.index, 1);
     const bool again = !second.empty() && second.back().entry.serial == entry.serial;
     if (record && !again) noteKept(entry, view.faces && entry.testable ? Look::kFaces : Look::kBox);
-    if (occlusion && undecided > 0 && !(entry.testable && isSmall(entry.rect))) offerVisible(entry.index);
+    if (occlusion && (undecided > 0 || !second.empty()) && !(entry.testable && isSmall(entry.rect))) offerVisible(entry.index);
 }
 
 /// Without the occlusion stage the order does not matter: depth first, and whole subtrees that are inside at once.
@@ -314,7 +314,14 @@ void Walk::walk() {
         undecided -= entry.kind != Pending::Kind::kCluster;
         visit(entry);
     }
-    if (!(record && record->stopped)) lookAgain();
+    if (record && record->stopped) return;
+    // The closer looks ask a buffer in which all is drawn that was found: their answers do not hang on when the last
+    // object was decided.
+    for (; !second.empty() && !pending.empty(); pending.pop_back()) {
+        std::pop_heap(pending.begin(), pending.end());
+        visit(Pending(pending.back()));
+    }
+    lookAgain();
 }
 
 void Walk::finish() {
