@@ -1,9 +1,9 @@
 // Draws polygons that share no sides, one by one: each covers the pixels that lie inside all its sides.
 // SPDX-License-Identifier: MIT
 //
-// The argument for a polygon drawn alone. A pixel is covered if it lies on the inner side of each side's line, farther
-// from it than all errors. Seen from a point of it each side then turns the same way, so the winding number is 1 or more;
-// and moving the corners within their errors moves no side over it. So it holds for polygons that are not convex, too.
+// The argument. A pixel is covered if it lies on the inner side of each side's line, farther from it than all errors.
+// Seen from a point of it each side then turns the same way, so the winding number is 1 or more; and moving the corners
+// within their errors moves no side over it. So it holds for polygons that are not convex, too.
 #if defined(SIGHTLINE_RASTER_LONE_POLYGON_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SIGHTLINE_RASTER_LONE_POLYGON_INL_H
 #undef SIGHTLINE_RASTER_LONE_POLYGON_INL_H

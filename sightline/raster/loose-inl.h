@@ -92,7 +92,8 @@ inline bool projectSnapped(F f, const Screen& object, const Occluder& occluder, 
         hn::StoreInterleaved4(sx, snap(py), hn::BitCast(i32, hn::IfThenElseZero(good, pd)), hn::Zero(i32), i32,
                               &out[v].x);
     }
-    // A polygon that is drawn from here lies near the buffer: x/w there is wrong by (ex + |x/w| ew) / w, and two roundings.
+    // A polygon that is drawn from here lies near the buffer: x/w there is wrong by (ex + |x/w| ew) / w, and by two
+    // roundings.
     const double w = hn::GetLane(hn::MinOfLanes(f, w_least)) - w_row.error;
     const double d = hn::GetLane(hn::MaxOfLanes(f, d_most));
     const double place = 8.0 * std::max(task.columns, task.rows) + 2.0 * kLargeSides;

@@ -1,4 +1,4 @@
-// Soups of triangles and quadrangles that share no sides, drawn and held to rays; and panels that close between batches.
+// Soups of polygons that share no sides, drawn and held to rays; and panels that close between batches.
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
