@@ -90,10 +90,13 @@ HWY_INLINE bool forOccludeeTiles(DepthTiles& tiles, const OccludeePolygon& polyg
             }
         }
         for (int32_t column = first; column <= last; ++column) {
+            const uint32_t tile = static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(column);
+            const PixelRect cell{std::max(rect.x0, 8 * column), std::max(rect.y0, 8 * row),
+                                 std::min(rect.x1, 8 * column + 7), std::min(rect.y1, 8 * row + 7), 0};
+            if (inside && tiles.base[tile] > nearestOver(polygon, cell)) continue;  // whatever of it is touched
             const uint64_t window = occludeePixelsKernel(polygon, column, row, nearest);
             if (!window) continue;
             inside = true;
-            const uint32_t tile = static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(column);
             if (!look(tile, window, nearest)) return false;
         }
     }

@@ -17,9 +17,6 @@ uint64_t since(Clock::time_point start) {
     return static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count());
 }
 
-/// What is smaller in both directions hides next to nothing, and is not drawn.  [pixels]
-constexpr int32_t kLeastExtent = 4;
-
 /// Bit per slot of a node that has a child.
 uint32_t usedSlots(const BvhNode& node) {
     uint32_t used = 0;
@@ -27,7 +24,11 @@ uint32_t usedSlots(const BvhNode& node) {
     return used;
 }
 
-bool isSmall(const PixelRect& rect) { return rect.x1 - rect.x0 < kLeastExtent && rect.y1 - rect.y0 < kLeastExtent; }
+/// What is smaller than a thirty-second of the buffer in both directions hides next to nothing, and is not drawn.
+bool isSmall(const Screen& screen, const PixelRect& rect) {
+    const auto least = static_cast<int32_t>(std::max(screen.width, screen.height) / 32);
+    return rect.x1 - rect.x0 < least && rect.y1 - rect.y0 < least;
+}
 
 }  // namespace
 
@@ -235,7 +236,7 @@ void Walk::offerOccluder(uint32_t place, bool in_line) {
 }
 
 void Walk::draw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box) {
-    if (!box.doubt && isSmall(box.rect)) return;
+    if (!box.doubt && isSmall(screen, box.rect)) return;
     if (stats.occluder_triangles >= view.occluder_triangles) {
         stats.budget_spent = true;
         return;
@@ -263,7 +264,9 @@ void Walk::visit(const Pending& entry) {
     report(entry.index, 1);
     const bool again = !second.empty() && second.back().entry.serial == entry.serial;
     if (record && !again) noteKept(entry, view.faces && entry.testable ? Look::kFaces : Look::kBox);
-    if (occlusion && (undecided > 0 || !second.empty()) && !(entry.testable && isSmall(entry.rect))) offerVisible(entry.index);
+    // Where nothing else is left to ask it hides nothing.
+    const bool others = undecided > 0 || second.size() > (again ? 1u : 0u);
+    if (occlusion && others && !(entry.testable && isSmall(screen, entry.rect))) offerVisible(entry.index);
 }
 
 /// Without the occlusion stage the order does not matter: depth first, and whole subtrees that are inside at once.
