@@ -50,7 +50,7 @@ public:
     bool draw(int8_t turn, uint32_t source, bool again) {
         if ((turn > 0 ? faces_.forward : faces_.backward) == 0) return false;
         if (again && !beginPatch(patch_, extent_)) return false;
-        addDepths(patch_, faces_, count_, turn);
+        addDepths(patch_, faces_, turn);
         for (uint32_t i = 0; i < faces_.large_count; ++i)
             if (const uint32_t p = faces_.large[i]; faces_.turn[p] == turn)
                 addDepth(patch_, cornersOf(c_, c_.polygons[p]), turn);

@@ -97,7 +97,7 @@ inline bool beginPatch(Patch& patch, const Extent& extent) {
     DepthTiles::Scratch& scratch = tiles.scratch;
     const size_t count = size_t{patch.pitch} * static_cast<size_t>(patch.rows);
     if (scratch.slot.size() < count) {
-        scratch.z.resize(count + 16);  // addDepths() reads and writes back some beyond a tile
+        scratch.z.resize(count);
         scratch.plane.resize(count);
         scratch.slot.resize(count);
     }

@@ -23,27 +23,35 @@ constexpr double kSnap = 0x1p-9;  // [pixels]: vertices move by that much, and s
 /// The polygons of a cluster as a patch needs them.
 struct SmallFaces {
     static constexpr uint32_t kMost = 256;
-    static constexpr int32_t kTiles = 4;  ///< that a small one meets at most, side by side or one above the other
+    static constexpr int32_t kTiles = 8;  ///< that a small one meets at most, side by side or one above the other
+    static constexpr int32_t kAligned = 4;
 
     int8_t turn[kMost + 16];  ///< which way it winds; 0: it is not drawn
     uint8_t folded[kMost + 16];
     int forward = 0, backward = 0;  ///< that are drawn: counter-clockwise, clockwise
 
-    /// Where the polygon is small: the first of its tiles in the scratch, and how many it meets; none if it misses them.
-    alignas(64) int32_t at[kMost], across[kMost], up[kMost];
+    /// Where the polygon is small: the place in the scratch from which its tiles are counted, a multiple of kAligned, for
+    /// what is read soon after it was written should be read in the same pieces; its columns, and how many rows it has.
+    alignas(64) int32_t at[kMost], from[kMost], end[kMost], up[kMost];
     /// It is no farther than the floor anywhere, and than start + i * right + j * above in the tile (i, j) of those.
     alignas(64) float floor[kMost], start[kMost], right[kMost], above[kMost];
 
-    uint32_t large_count = 0;
+    uint32_t small_count = 0, large_count = 0;
+    uint8_t small[kMost];  ///< those that are small, drawn, and meet the patch's tiles
     uint8_t large[kMost];  ///< those that are not small
+};
+
+/// Bits of the polygons of one vector.
+struct Sizes {
+    uint32_t small, drawn;  ///< drawn: of the small ones, those that are, and meet the patch's tiles
 };
 
 /// Sets up one vector of polygons.
 /// @param at     the first of them, among the task's
 /// @param first  the task's first, in `out`
 template <bool kQuads>
-HWY_INLINE uint32_t setUpFaces(const Patch& patch, const SmallPolygonsTask& task, const small_polygons::Parts& parts,
-                               uint32_t at, uint32_t first, SmallFaces& out) {
+HWY_INLINE Sizes setUpFaces(const Patch& patch, const SmallPolygonsTask& task, const small_polygons::Parts& parts,
+                            uint32_t at, uint32_t first, SmallFaces& out) {
     using namespace small_polygons;
     const F d;
     const I i;
@@ -86,12 +94,14 @@ HWY_INLINE uint32_t setUpFaces(const Patch& patch, const SmallPolygonsTask& task
 
     const VI c0 = hn::Max(left, zero), c1 = hn::Min(right, hn::Set(i, patch.columns - 1));
     const VI r0 = hn::Max(low, zero), r1 = hn::Min(high, hn::Set(i, patch.rows - 1));
-    hn::Store(hn::Add(hn::Mul(r0, hn::Set(i, static_cast<int32_t>(patch.pitch))), c0), i, out.at + first + at);
-    hn::Store(hn::Sub(hn::Add(c1, one), c0), i, out.across + first + at);
+    const VI aligned = hn::And(c0, hn::Set(i, -SmallFaces::kAligned));
+    hn::Store(hn::Add(hn::Mul(r0, hn::Set(i, static_cast<int32_t>(patch.pitch))), aligned), i, out.at + first + at);
+    hn::Store(hn::Sub(c0, aligned), i, out.from + first + at);
+    hn::Store(hn::Sub(hn::Add(c1, one), aligned), i, out.end + first + at);
     hn::Store(hn::Sub(hn::Add(r1, one), r0), i, out.up + first + at);
-    const MI seen =
-        hn::And(small, hn::And(hn::Ne(turn, zero), hn::Not(hn::Lt(hn::Min(hn::Sub(c1, c0), hn::Sub(r1, r0)), zero))));
-    if (hn::AllFalse(i, seen)) return bitsOf(i, small);
+    const MI missed = hn::Or(hn::Lt(c1, c0), hn::Lt(r1, r0));
+    const Sizes sizes{bitsOf(i, small), bitsOf(i, hn::AndNot(missed, hn::And(small, hn::Ne(turn, zero))))};
+    if (!sizes.drawn) return sizes;
 
     // Any plane will do: it is lowered below the corners. So is each point of both halves below it, but for what the
     // plane changes between the true corners and these. The plane is that of the greater half.
@@ -116,17 +126,17 @@ HWY_INLINE uint32_t setUpFaces(const Patch& patch, const SmallPolygonsTask& task
     };
     const VF tilt = hn::Add(hn::Abs(gx), hn::Abs(gy));
     const VF size = hn::Max(hn::Abs(z0), hn::Abs(z1));
-    // Some twenty roundings, of values below this: no place is farther than 64 pixels from the first corner.
-    const VF rounding = hn::Mul(hn::Set(d, 0x1p-18f), hn::Add(size, hn::Mul(hn::Set(d, 64.0f), tilt)));
+    // Some twenty roundings, of values below this: no place is farther than 128 pixels from the first corner.
+    const VF rounding = hn::Mul(hn::Set(d, 0x1p-18f), hn::Add(size, hn::Mul(hn::Set(d, 128.0f), tilt)));
     const VF error = hn::Set(d, task.depth_error * (1.0f + 0x1p-20f) + 0x1p-120f);
-    const VF slope = hn::Add(hn::Mul(gx, offset(c0, corner_x, x[0])), hn::Mul(gy, offset(r0, corner_y, y[0])));
+    const VF slope = hn::Add(hn::Mul(gx, offset(aligned, corner_x, x[0])), hn::Mul(gy, offset(r0, corner_y, y[0])));
     const VF below = hn::Add(hn::Mul(tilt, hn::Set(d, 4.0f + static_cast<float>(patch.reach) * (1.0f + 0x1p-20f))),
                              hn::Add(drop, hn::Add(rounding, error)));
     hn::Store(hn::Sub(hn::Add(z[0], slope), below), d, out.start + first + at);
     hn::Store(hn::Mul(gx, hn::Set(d, 8.0f)), d, out.right + first + at);
     hn::Store(hn::Mul(gy, hn::Set(d, 8.0f)), d, out.above + first + at);
     hn::Store(hn::Sub(hn::Sub(z0, hn::Mul(hn::Abs(z0), hn::Set(d, 0x1p-22f))), error), d, out.floor + first + at);
-    return bitsOf(i, small);
+    return sizes;
 }
 
 /// Which way a large polygon winds, twice its area with a sign; exact.
@@ -144,7 +154,7 @@ inline int64_t areaOf(const SnappedVertex* v, const OccluderPolygon& polygon, bo
 /// Finds which polygons are drawn, and the depth of those that are small.
 /// @param task  all of the cluster's polygons
 inline void setUpFaces(const Patch& patch, const SmallPolygonsTask& task, SmallFaces& out) {
-    out.large_count = 0;
+    out.small_count = out.large_count = 0;
     for (uint32_t first = 0; first < task.count; first += 64) {
         SmallPolygonsTask part = task;
         part.polygons += first;
@@ -153,12 +163,15 @@ inline void setUpFaces(const Patch& patch, const SmallPolygonsTask& task, SmallF
         const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(small_polygons::I()));
         for (uint32_t at = 0; at < part.count; at += lanes) {
             const bool quads = parts.quads >> at / small_polygons::kBatch & 1;
-            const uint32_t small = quads ? setUpFaces<true>(patch, part, parts, at, first, out)
-                                         : setUpFaces<false>(patch, part, parts, at, first, out);
+            const Sizes sizes = quads ? setUpFaces<true>(patch, part, parts, at, first, out)
+                                      : setUpFaces<false>(patch, part, parts, at, first, out);
             const uint32_t there = part.count - at < lanes ? (1u << (part.count - at)) - 1 : (1u << lanes) - 1;
-            for (uint32_t left = ~small & there; left; left &= left - 1)
-                out.large[out.large_count++] =
-                    static_cast<uint8_t>(first + at + static_cast<uint32_t>(std::countr_zero(left)));
+            const auto note = [&](uint32_t bits, uint8_t* list, uint32_t& count) {
+                for (; bits; bits &= bits - 1)
+                    list[count++] = static_cast<uint8_t>(first + at + static_cast<uint32_t>(std::countr_zero(bits)));
+            };
+            note(sizes.drawn & there, out.small, out.small_count);
+            note(~sizes.small & there, out.large, out.large_count);
         }
     }
     const int8_t front = task.reverse ? -1 : 1;
@@ -169,7 +182,6 @@ inline void setUpFaces(const Patch& patch, const SmallPolygonsTask& task, SmallF
         const int8_t turn = area > 0 ? 1 : area < 0 ? -1 : front;
         out.turn[p] = turn == front || task.polygons[p].double_sided ? turn : 0;
         out.folded[p] = folded;
-        out.across[p] = 0;
     }
     for (uint32_t p = task.count; p < SmallFaces::kMost; ++p) out.turn[p] = 0;
     // The winding number of a pixel, which counts in a byte, stays above -128 for sure.
@@ -186,24 +198,25 @@ inline void setUpFaces(const Patch& patch, const SmallPolygonsTask& task, SmallF
 
 /// Lowers the depth of the tiles that the small polygons of one winding meet to their own. Where nothing else does, those
 /// tiles have no plane.
-HWY_INLINE void addDepths(Patch& patch, const SmallFaces& faces, uint32_t count, int8_t turn) {
-    const hn::CappedTag<float, 4> d;
-    static_assert(SmallFaces::kTiles == 4);
+HWY_INLINE void addDepths(Patch& patch, const SmallFaces& faces, int8_t turn) {
+    const hn::CappedTag<float, SmallFaces::kAligned> d;
     const auto none = hn::Set(d, std::numeric_limits<float>::infinity());
     float* const depths = patch.tiles.scratch.z.data();
-    for (uint32_t p = 0; p < count; ++p) {
-        const int32_t across = faces.across[p], up = faces.up[p];
-        if (faces.turn[p] != turn || across <= 0) continue;
+    for (uint32_t k = 0; k < faces.small_count; ++k) {
+        const uint32_t p = faces.small[k];
+        if (faces.turn[p] != turn) continue;
+        const int32_t end = faces.end[p], up = faces.up[p];
         const auto floor = hn::Set(d, faces.floor[p]), right = hn::Set(d, faces.right[p]);
-        const float start = faces.start[p], above = faces.above[p];
-        float* row = depths + faces.at[p];
-        for (int32_t j = 0; j < up; ++j, row += patch.pitch) {
-            const auto from = hn::Set(d, start + static_cast<float>(j) * above);
-            for (size_t i = 0; i < 4; i += hn::Lanes(d)) {
-                const auto column = hn::Iota(d, static_cast<float>(i));
-                const auto there = hn::Lt(column, hn::Set(d, static_cast<float>(across)));
-                const auto z = hn::Max(hn::Add(from, hn::Mul(column, right)), floor);
-                hn::StoreU(hn::Min(hn::LoadU(d, row + i), hn::IfThenElse(there, z, none)), d, row + i);
+        const auto from = hn::Set(d, static_cast<float>(faces.from[p])), to = hn::Set(d, static_cast<float>(end));
+        const float above = faces.above[p];
+        for (int32_t i = 0; i < end; i += static_cast<int32_t>(hn::Lanes(d))) {
+            const auto column = hn::Iota(d, static_cast<float>(i));
+            const auto there = hn::AndNot(hn::Lt(column, from), hn::Lt(column, to));
+            const auto start = hn::Add(hn::Set(d, faces.start[p]), hn::Mul(column, right));
+            float* row = depths + faces.at[p] + i;
+            for (int32_t j = 0; j < up; ++j, row += patch.pitch) {
+                const auto z = hn::Max(hn::Add(start, hn::Set(d, static_cast<float>(j) * above)), floor);
+                hn::StoreU(hn::Min(hn::LoadU(d, row), hn::IfThenElse(there, z, none)), d, row);
             }
         }
     }

@@ -135,14 +135,12 @@ struct DepthTiles {
               z(memory),
               plane(memory),
               slot(memory),
-              marked(memory),
               touched(memory),
               winding(memory) {}
         Array<int32_t> first, last;  ///< per row: the columns between which something may become nearer
         Array<float> z;              ///< no polygon that touches the tile is farther in it; infinity: none does
         Array<uint32_t> plane;       ///< the plane of the only one, or kNone
-        Array<uint32_t> slot;        ///< where `marked`
-        Array<uint64_t> marked;      ///< bit per tile that an open edge meets; rows begin at a new word
+        Array<uint32_t> slot;        ///< of tiles that an open edge meets; kNone: none does
         Array<uint64_t> touched;     ///< per slot: pixels that an open edge touches
         Array<uint8_t> winding;      ///< per slot, 64: change of the winding number from the pixel to the left
     } scratch{memory};
