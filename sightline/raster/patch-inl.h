@@ -50,6 +50,8 @@ struct Patch {
     int32_t column0 = 0, row0 = 0, columns = 0, rows = 0;  ///< [tiles]
     uint32_t pitch = 0;  ///< tiles from one row of the scratch to the next, a multiple of 16
     uint32_t slots = 0;  ///< in use
+    /// What lies beside these rows and columns does not matter; on their left, only where the winding number changes.
+    int32_t open_low = 0, open_high = 0, open_first = 0, open_last = 0;  ///< [tiles]
 };
 
 /// Finds in each row the columns between which the patch may lie in front of what the tiles claim; false if nowhere.
@@ -57,7 +59,9 @@ HWY_INLINE bool openColumns(Patch& patch) {
     DepthTiles& tiles = patch.tiles;
     const F16 d;
     const auto nearest = hn::Set(d, patch.nearest);
-    bool any = false;
+    patch.open_low = patch.rows;
+    patch.open_high = patch.open_last = -1;
+    patch.open_first = patch.columns;
     for (int32_t row = 0; row < patch.rows; ++row) {
         const float* base = tiles.base.data() + size_t{static_cast<uint32_t>(patch.row0 + row)} * tiles.stride +
                             static_cast<size_t>(patch.column0);
@@ -72,9 +76,13 @@ HWY_INLINE bool openColumns(Patch& patch) {
         }
         tiles.scratch.first[static_cast<size_t>(row)] = first;
         tiles.scratch.last[static_cast<size_t>(row)] = last;
-        any |= last >= 0;
+        if (last < 0) continue;
+        patch.open_low = std::min(patch.open_low, row);
+        patch.open_high = row;
+        patch.open_first = std::min(patch.open_first, first);
+        patch.open_last = std::max(patch.open_last, last);
     }
-    return any;
+    return patch.open_high >= 0;
 }
 
 /// Lays out the scratch for the tiles that the extent meets; false if it misses the buffer.

@@ -44,8 +44,10 @@ HWY_INLINE uint32_t scanEdges(const Patch& patch, const SmallEdges& edges, uint3
     const VI low = hn::ShiftRight<8>(hn::Sub(y0, steps)), high = hn::ShiftRight<8>(hn::Add(y1, steps));
     const VI columns = hn::Set(i, patch.columns), rows = hn::Set(i, 8 * patch.rows);
     const MI there = hn::Lt(hn::Iota(i, static_cast<int32_t>(h)), hn::Set(i, static_cast<int32_t>(batch.count)));
-    // What lies on the right of all tiles changes nothing in them.
-    const MI beside = hn::Or(hn::Lt(high, zero), hn::Or(hn::Not(hn::Lt(left, columns)), hn::Not(hn::Lt(low, rows))));
+    // What lies on the right of all tiles that matter changes nothing in them.
+    const MI beside =
+        hn::Or(hn::Lt(high, hn::Set(i, 8 * patch.open_low)),
+               hn::Or(hn::Gt(left, hn::Set(i, patch.open_last)), hn::Gt(low, hn::Set(i, 8 * patch.open_high + 7))));
     const VI across = hn::Sub(right, left), height = hn::Add(hn::Sub(high, low), one);
     const MI fits = hn::And(hn::Lt(across, hn::Set(i, SmallPolygons::kColumns)),
                             hn::Lt(height, hn::Set(i, SmallPolygons::kRows + 1)));

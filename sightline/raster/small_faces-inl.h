@@ -99,7 +99,10 @@ HWY_INLINE Sizes setUpFaces(const Patch& patch, const SmallPolygonsTask& task, c
     hn::Store(hn::Sub(c0, aligned), i, out.from + first + at);
     hn::Store(hn::Sub(hn::Add(c1, one), aligned), i, out.end + first + at);
     hn::Store(hn::Sub(hn::Add(r1, one), r0), i, out.up + first + at);
-    const MI missed = hn::Or(hn::Lt(c1, c0), hn::Lt(r1, r0));
+    const MI outside = hn::Or(hn::Lt(c1, c0), hn::Lt(r1, r0));
+    const MI beside = hn::Or(hn::Lt(c1, hn::Set(i, patch.open_first)), hn::Gt(c0, hn::Set(i, patch.open_last)));
+    const MI hidden = hn::Or(hn::Lt(r1, hn::Set(i, patch.open_low)), hn::Gt(r0, hn::Set(i, patch.open_high)));
+    const MI missed = hn::Or(outside, hn::Or(beside, hidden));
     const Sizes sizes{bitsOf(i, small), bitsOf(i, hn::AndNot(missed, hn::And(small, hn::Ne(turn, zero))))};
     if (!sizes.drawn) return sizes;
 
