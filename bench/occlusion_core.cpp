@@ -23,18 +23,20 @@ constexpr int kBaselineEvery = 8;  ///< rounds for one of the baseline, which is
 
 /// Of one view, or sums over several.
 struct Figures {
-    double draw = 0, draw_all = 0, draw_plain = 0;  ///< [microseconds]
-    double flat = 0, grouped = 0, plain = 0;        ///< all boxes [microseconds]
+    double draw = 0, draw_all = 0, draw_plain = 0, draw_masked = 0;  ///< [microseconds]
+    double flat = 0, grouped = 0, plain = 0, masked = 0;             ///< all boxes [microseconds]
     double triangles = 0, offered = 0, boxes = 0, resolved = 0, aside = 0;
-    double kept = 0, kept_exactly = 0;
+    double kept = 0, kept_exactly = 0, kept_masked = 0;
     double truths = 0, kept_of_truths = 0, seen = 0, false_culls = 0, false_culls_exactly = 0;
 
     void add(const Figures& f) {
-        for (auto member :
-             {&Figures::draw, &Figures::draw_all, &Figures::draw_plain, &Figures::flat, &Figures::grouped,
-              &Figures::plain, &Figures::triangles, &Figures::offered, &Figures::boxes, &Figures::resolved,
-              &Figures::aside, &Figures::kept, &Figures::kept_exactly, &Figures::truths, &Figures::kept_of_truths,
-              &Figures::seen, &Figures::false_culls, &Figures::false_culls_exactly})
+        for (auto member : {&Figures::draw,         &Figures::draw_all,    &Figures::draw_plain,
+                            &Figures::draw_masked,  &Figures::masked,      &Figures::kept_masked,
+                            &Figures::flat,         &Figures::grouped,     &Figures::plain,
+                            &Figures::triangles,    &Figures::offered,     &Figures::boxes,
+                            &Figures::resolved,     &Figures::aside,       &Figures::kept,
+                            &Figures::kept_exactly, &Figures::truths,      &Figures::kept_of_truths,
+                            &Figures::seen,         &Figures::false_culls, &Figures::false_culls_exactly})
             this->*member += f.*member;
     }
 };
@@ -69,15 +71,17 @@ public:
         figures_.triangles = static_cast<double>(frame.trianglesInView());
         flat_.resize(frame.boxes().size());
         grouped_.resize(frame.boxes().size());
+        masked_.resize(frame.boxes().size());
         exact_.resize(frame.boxes().size());
     }
 
     /// Each round draws anew before it asks, so that seams are resolved in each of them.
     void time(int repeat) {
-        std::vector<double> draw, draw_all, draw_plain, flat, grouped, plain, unused;
+        std::vector<double> draw, draw_all, draw_plain, draw_masked, flat, grouped, plain, masked;
         for (int round = -1; round < repeat; ++round) {
             if (round == 0)
-                for (auto* times : {&draw, &draw_all, &flat, &grouped}) times->clear();  // the first was to warm up
+                for (auto* times : {&draw, &draw_all, &draw_masked, &flat, &grouped, &masked})
+                    times->clear();  // the first was to warm up
             clockJob(draw_all, [&] { frame_.rasterize(tiles_, OcclusionFrame::SelfTest::kNo); });
             clockJob(draw, [&] { frame_.rasterize(tiles_); });
             clockJob(flat, [&] { frame_.testFlat(tiles_, flat_); });
@@ -85,6 +89,9 @@ public:
             figures_.aside = openSeams(tiles_);
             clockJob(grouped, [&] { frame_.testGrouped(tiles_, grouped_); });
             figures_.resolved = static_cast<double>(tiles_.seam_pixels);
+            clockJob(draw_masked,
+                     [&] { frame_.rasterize(tiles_, OcclusionFrame::SelfTest::kYes, OcclusionDetail::kMasked); });
+            clockJob(masked, [&] { frame_.testGrouped(tiles_, masked_); });
             if (round < 0 || round % kBaselineEvery) continue;
             ZBufferImage image;
             clockJob(draw_plain, [&] { image = drawBatches(scene_, frame_.batches(), view_); });
@@ -93,12 +100,15 @@ public:
         figures_.draw = median(draw);
         figures_.draw_all = median(draw_all);
         figures_.draw_plain = median(draw_plain);
+        figures_.draw_masked = median(draw_masked);
+        figures_.masked = median(masked);
         figures_.flat = median(flat);
         figures_.grouped = median(grouped);
         figures_.plain = median(plain);
         for (size_t i = 0; i < flat_.size(); ++i) {
             figures_.kept += !flat_[i];
             figures_.kept_exactly += !exact_[i];
+            figures_.kept_masked += !masked_[i];
         }
     }
 
@@ -109,7 +119,7 @@ public:
         for (size_t i = 0; i < seen.size(); ++i) {
             figures_.seen += seen[i];
             figures_.kept_of_truths += !flat_[i];
-            figures_.false_culls += seen[i] && (flat_[i] || grouped_[i]);
+            figures_.false_culls += seen[i] && (flat_[i] || grouped_[i] || masked_[i]);
             figures_.false_culls_exactly += seen[i] && exact_[i];
         }
     }
@@ -127,7 +137,7 @@ private:
     OcclusionFrame& frame_;
     const View view_;
     DepthTiles tiles_;
-    std::vector<uint8_t> flat_, grouped_, exact_;  ///< per box in view: hidden
+    std::vector<uint8_t> flat_, grouped_, masked_, exact_;  ///< per box in view: hidden
     Figures figures_;
 };
 
@@ -138,11 +148,14 @@ void addRows(const std::string& where, const Figures& sum, double views, Table& 
     const double per_box = 1e3 / std::max(sum.boxes, 1.0);
     add("rasterize", sum.draw / views * 1e-3, "ms", "scalar z-buffer in double", sum.draw_plain / views * 1e-3);
     add("rasterize", sum.draw / views * 1e-3, "ms", "without self-test", sum.draw_all / views * 1e-3);
+    add("rasterize, masked", sum.draw_masked / views * 1e-3, "ms", "a depth per pixel", sum.draw / views * 1e-3);
     add("triangles rasterized", sum.offered / views, "triangles", "in the frustum", sum.triangles / views);
     add("triangles in the frustum a second", sum.triangles / sum.draw, "million/s", "scalar z-buffer in double",
         sum.triangles / sum.draw_plain);
     add("box test, flat", sum.flat * per_box, "ns", "every pixel of the z-buffer", sum.plain * per_box);
     add("box test, groups of 32", sum.grouped * per_box, "ns", "flat", sum.flat * per_box);
+    add("box test, groups of 32, masked", sum.masked * per_box, "ns", "a depth per pixel", sum.grouped * per_box);
+    add("boxes kept, masked", sum.kept_masked / views, "boxes", "same boxes, exact z-buffer", sum.kept_exactly / views);
     add("boxes kept", sum.kept / views, "boxes", "same boxes, exact z-buffer", sum.kept_exactly / views);
     add("boxes kept (over-estimate)", sum.kept_of_truths / sum.truths, "boxes", "seen by a 4x4 z-buffer",
         sum.seen / sum.truths);

@@ -22,6 +22,8 @@ std::vector<Box3d> inDouble(std::span<const Box3f> boxes) {
     return out;
 }
 
+constexpr uint32_t kFirst = 0;
+
 std::vector<Box3f> batchBounds(const OcclusionScene& scene) {
     std::vector<Box3f> bounds;
     for (const OccluderBatch& batch : scene.batches) bounds.push_back(batch.bounds);
@@ -88,8 +90,18 @@ OcclusionFrame::OcclusionFrame(const OcclusionScene& scene)
       morton_(mortonOrder(scene.boxes)),
       flat_batches_(inDouble(batchBounds(scene))),
       flat_boxes_(inOrder(scene, morton_)) {
-    occluders_.reserve(scene.batches.size());
-    for (const OccluderBatch& batch : scene.batches) occluders_.push_back(prepareOccluder(batch.mesh()));
+    std::vector<OccluderSource> sources;
+    for (const OccluderBatch& batch : scene.batches) sources.push_back({batch.mesh(), {}, {}});
+    OccluderSettings settings;
+    settings.rings = scene.batches_are != BatchesAre::kApart;
+    if (scene.batches_are == BatchesAre::kPanels) occluders_.push_back(prepareJoined(sources, settings));
+    else if (scene.batches_are == BatchesAre::kOneSurface) occluders_ = prepareOccluders(sources, settings);
+    else
+        for (const OccluderSource& source : sources) occluders_.push_back(prepareOccluder(source.mesh));
+    for (const Occluder& occluder : occluders_) {
+        own_bounds_.emplace_back();
+        for (const OccluderCluster& cluster : occluder.clusters) own_bounds_.back().grow(cluster.bounds);
+    }
 }
 
 void OcclusionFrame::begin(const View& view) {
@@ -122,16 +134,17 @@ void OcclusionFrame::begin(const View& view) {
     groups_ = inEights(groups);
 }
 
-uint64_t OcclusionFrame::rasterize(DepthTiles& tiles, SelfTest self_test) const {
-    tiles.clear(screen_.width, screen_.height);
+uint64_t OcclusionFrame::rasterize(DepthTiles& tiles, SelfTest self_test, OcclusionDetail detail) const {
+    tiles.clear(screen_.width, screen_.height, detail);
     uint64_t offered = 0;
     const Screen object = objectScreen(screen_, identity_);
     const auto covered = [&](const BoxAnswer& box) {
         return self_test == SelfTest::kYes && !box.doubt && isHidden(tiles, box.rect, Seams::kLeave);
     };
-    for (uint32_t batch : batches_) {
+    const bool joined = occluders_.size() < scene_.batches.size();
+    for (uint32_t batch : joined ? std::span<const uint32_t>(&kFirst, 1) : std::span<const uint32_t>(batches_)) {
         const Occluder& occluder = occluders_[batch];
-        if (const BoxAnswer box = projectBox(object, occluder.bounds); box.outside || covered(box)) continue;
+        if (const BoxAnswer box = projectBox(object, own_bounds_[batch]); box.outside || covered(box)) continue;
         const OccluderInstance instance = makeOccluderInstance(screen_, occluder, identity_);
         for (uint32_t cluster = 0; cluster < occluder.clusters.size(); ++cluster) {
             const BoxAnswer box = projectBox(instance.screen, occluder.clusters[cluster].bounds);

@@ -25,6 +25,7 @@ class OcclusionFrame {
 public:
     static constexpr uint32_t kGroup = 32;  ///< boxes that are asked together first
 
+    /// Prepares the batches as the scene says that they may be.
     explicit OcclusionFrame(const OcclusionScene& scene);
 
     /// What is done about a batch, and then a cluster of it, that what was drawn before hides already.
@@ -34,7 +35,8 @@ public:
     void begin(const View& view);
 
     /// Clears the tiles and draws. Returns the triangles that were offered to the rasterizer.
-    uint64_t rasterize(DepthTiles& tiles, SelfTest self_test = SelfTest::kYes) const;
+    uint64_t rasterize(DepthTiles& tiles, SelfTest self_test = SelfTest::kYes,
+                       OcclusionDetail detail = OcclusionDetail::kFull) const;
 
     /// Asks every box in view; hidden[i] answers for boxes()[i]. A box outside the buffer counts as hidden.
     /// @param hidden  [size: boxes().size()]
@@ -55,7 +57,8 @@ private:
     void testEight(DepthTiles& tiles, const BvhNode& boxes, size_t first, std::span<uint8_t> hidden) const;
 
     const OcclusionScene& scene_;
-    std::vector<Occluder> occluders_;  ///< per batch
+    std::vector<Occluder> occluders_;  ///< per batch; or one of all
+    std::vector<Box3f> own_bounds_;    ///< without rings
     std::vector<uint32_t> morton_;
     FlatBoxes flat_batches_, flat_boxes_;
     std::vector<uint32_t> batches_, boxes_;

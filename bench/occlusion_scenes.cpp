@@ -160,7 +160,7 @@ OcclusionScene makeOcclusionCity() {
     struct Building {
         float x0, z0, x1, z1, height;
     };
-    OcclusionScene scene{"city", 60 * kPi / 180, {}, {}, {}};
+    OcclusionScene scene{"city", 60 * kPi / 180, {}, {}, {}, BatchesAre::kApart};
     Stream random(12345);
     std::vector<Building> buildings;
     for (int z = 0; z < kSide; ++z)
@@ -203,7 +203,7 @@ OcclusionScene makeOcclusionCity() {
 OcclusionScene makeOcclusionTerrain() {
     constexpr int kCells = 512, kBatch = 16;
     constexpr float kCell = 4;
-    OcclusionScene scene{"terrain", 60 * kPi / 180, {}, {}, {}};
+    OcclusionScene scene{"terrain", 60 * kPi / 180, {}, {}, {}, BatchesAre::kOneSurface};
     Stream random(777);
     std::vector<float> heights;
     for (int z = 0; z <= kCells; ++z)
@@ -231,7 +231,7 @@ OcclusionScene makeOcclusionTerrain() {
 OcclusionScene makeOcclusionIndoor() {
     constexpr int kSide = 32;
     constexpr float kPitch = 10;
-    OcclusionScene scene{"indoor", 70 * kPi / 180, {}, {}, {}};
+    OcclusionScene scene{"indoor", 70 * kPi / 180, {}, {}, {}, BatchesAre::kApart};
     Stream random(4242);
     for (int z = 0; z < kSide; ++z)
         for (int x = 0; x < kSide; ++x)
@@ -254,7 +254,7 @@ OcclusionScene makeOcclusionIndoor() {
 OcclusionScene makeOcclusionSoup(SoupSize size) {
     constexpr size_t kTriangles = 100000, kBatch = 128;
     constexpr float kFov = 60 * kPi / 180, kLines = 720;
-    OcclusionScene scene{size == SoupSize::kArea ? "soup-area" : "soup-side", kFov, {}, {}, {}};
+    OcclusionScene scene{size == SoupSize::kArea ? "soup-area" : "soup-side", kFov, {}, {}, {}, BatchesAre::kApart};
     Stream random(99);
     const float slope = std::tan(kFov / 2);
     std::vector<glm::vec3> centers;
@@ -297,7 +297,8 @@ OcclusionScene makeOcclusionWall(WallBond bond, double gap) {
     constexpr int kColumns = 24, kRows = 32;  // on each side of the middle
     constexpr float kWide = 2, kTall = 1;
     static constexpr const char* kNames[] = {"grid", "brick", "tilted"};
-    OcclusionScene scene{fmt::format("wall-{}-{}", kNames[static_cast<int>(bond)], gap), kFov, {}, {}, {}};
+    OcclusionScene scene{
+        fmt::format("wall-{}-{}", kNames[static_cast<int>(bond)], gap), kFov, {}, {}, {}, BatchesAre::kPanels};
     const float slope = std::tan(kFov / 2);
     // Turned by a vector of short binary numbers, so that a corner which meets an edge lies on it exactly.
     const glm::vec2 along(1.0f, bond == WallBond::kTilted ? 0.1875f : 0.0f);

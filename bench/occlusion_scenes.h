@@ -26,12 +26,20 @@ struct OcclusionCamera {
     glm::vec3 direction{0.0f, 0.0f, 1.0f};  ///< not of unit length
 };
 
+/// What a culler may know of a scene's batches before the first frame.
+enum class BatchesAre {
+    kApart,       ///< nothing: each is prepared by itself
+    kOneSurface,  ///< pieces of one surface that never move: prepared together, one occluder each
+    kPanels,      ///< small parts of one thing that never moves: prepared as one occluder
+};
+
 struct OcclusionScene {
     std::string name;
     double fov_y = 0;  ///< [radians]
     std::vector<OcclusionCamera> cameras;
     std::vector<OccluderBatch> batches;
     std::vector<Box3f> boxes;  ///< occludees, in no particular order
+    BatchesAre batches_are = BatchesAre::kApart;
 
     size_t triangles() const;
 };
