@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace sightline {
 namespace HWY_NAMESPACE {
 
-/// Whether most polygons of a cluster may be expected to be small on the screen, and none is too far away to be snapped.
+/// Whether most polygons of a cluster may be expected to be small on the screen, and none is too far to be snapped.
 inline bool isDense(const ClusterDraw& c, const Extent& extent) {
     constexpr double kMostPixels = 1024.0, kFarthest = 0x1p20;  // per polygon; [pixels]
     const double count = c.cluster.polygon_count + c.cluster.ring_count;

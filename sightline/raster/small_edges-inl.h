@@ -1,4 +1,4 @@
-// The small open edges of a patch on the grid of snapped vertices, sixteen at once: pixels that they touch, and crossings.
+// The small open edges of a patch from snapped vertices, sixteen at once: pixels that they touch, and crossings.
 // SPDX-License-Identifier: MIT
 #if defined(SIGHTLINE_RASTER_SMALL_EDGES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SIGHTLINE_RASTER_SMALL_EDGES_INL_H

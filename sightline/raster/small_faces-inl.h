@@ -1,4 +1,4 @@
-// The polygons of a patch on the grid of snapped vertices, sixteen at once: which way they wind, and their depth per tile.
+// The polygons of a patch from snapped vertices, sixteen at once: which way they wind, and their depth per tile.
 // SPDX-License-Identifier: MIT
 //
 // Moving the vertices of a patch moves them for all of its edges at once, so its polygons may be drawn from snapped
@@ -30,8 +30,8 @@ struct SmallFaces {
     uint8_t folded[kMost + 16];
     int forward = 0, backward = 0;  ///< that are drawn: counter-clockwise, clockwise
 
-    /// Where the polygon is small: the place in the scratch from which its tiles are counted, a multiple of kAligned, for
-    /// what is read soon after it was written should be read in the same pieces; its columns, and how many rows it has.
+    /// Where the polygon is small: the place in the scratch from which its tiles are counted, a multiple of kAligned,
+    /// for what is read soon after it was written should be read in the same pieces; its columns, and how many rows.
     alignas(64) int32_t at[kMost], from[kMost], end[kMost], up[kMost];
     /// It is no farther than the floor anywhere, and than start + i * right + j * above in the tile (i, j) of those.
     alignas(64) float floor[kMost], start[kMost], right[kMost], above[kMost];
@@ -199,8 +199,8 @@ inline void setUpFaces(const Patch& patch, const SmallPolygonsTask& task, SmallF
     }
 }
 
-/// Lowers the depth of the tiles that the small polygons of one winding meet to their own. Where nothing else does, those
-/// tiles have no plane.
+/// Lowers the depth of the tiles that the small polygons of one winding meet to their own. Where nothing else does,
+/// those tiles have no plane.
 HWY_INLINE void addDepths(Patch& patch, const SmallFaces& faces, int8_t turn) {
     const hn::CappedTag<float, SmallFaces::kAligned> d;
     const auto none = hn::Set(d, std::numeric_limits<float>::infinity());
