@@ -344,21 +344,27 @@ bool resolveSeam(DepthTiles& tiles, uint32_t tile, int bit, float wanted) {
     ++tiles.seam_pixels;
     const double x = 8.0 * (tile % tiles.stride) + (bit & 7) + 0.5;
     const double y = 8.0 * (tile / tiles.stride) + (bit >> 3) + 0.5;
-    Resolver resolver;
+    uint32_t found[kMaxTriangles];  // not yet their places: making the next entry's polygons may move them all
+    int found_count = 0;
     for (uint32_t at = tiles.seams[tile]; at != DepthTiles::kNone; at = tiles.entries[at].next) {
         const SeamEntry entry = tiles.entries[at];
         if (!(entry.mask & pixel)) continue;
         uint32_t first, count;
         seamPolygons(tiles, entry, first, count);
         for (uint32_t i = first; i < first + count; ++i) {
-            SeamPolygon& polygon = tiles.polygons[i];
-            if (!mayTouch(polygon.raster, x, y) || polygon.raster.nearest <= before) continue;
-            if (resolver.piece_count == kMaxTriangles) return covered;
-            setSideKeys(tiles, polygon);
-            loadPiece(tiles, polygon, resolver.pieces[resolver.piece_count++]);
+            const RasterPolygon& raster = tiles.polygons[i].raster;
+            if (!mayTouch(raster, x, y) || raster.nearest <= before) continue;
+            if (found_count == kMaxTriangles) return covered;
+            found[found_count++] = i;
         }
     }
-    if (resolver.piece_count < 2) return covered;
+    if (found_count < 2) return covered;
+    Resolver resolver;
+    for (; resolver.piece_count < found_count; ++resolver.piece_count) {
+        SeamPolygon& polygon = tiles.polygons[found[resolver.piece_count]];
+        setSideKeys(tiles, polygon);
+        loadPiece(tiles, polygon, resolver.pieces[resolver.piece_count]);
+    }
     double nearness = resolver.resolve(tiles, x, y);
     if (!(nearness > wanted)) nearness = std::max(nearness, resolver.resolveByUnion(tiles, x, y));
     if (!(nearness > before)) return covered;
