@@ -104,10 +104,10 @@ inline bool beginPatch(Patch& patch, const Extent& extent) {
     patch.nearest = static_cast<float>(near + std::abs(near) * 0x1p-22);
     DepthTiles::Scratch& scratch = tiles.scratch;
     const size_t count = size_t{patch.pitch} * static_cast<size_t>(patch.rows);
-    if (scratch.slot.size() < count) {
-        scratch.z.resize(count);
-        scratch.plane.resize(count);
-        scratch.slot.resize(count);
+    if (scratch.slot.size() < count + DepthTiles::kBeyond) {
+        scratch.z.resize(count + DepthTiles::kBeyond);
+        scratch.plane.resize(count + DepthTiles::kBeyond);
+        scratch.slot.resize(count + DepthTiles::kBeyond);
     }
     if (scratch.first.size() < static_cast<size_t>(patch.rows)) {
         scratch.first.resize(static_cast<size_t>(patch.rows));

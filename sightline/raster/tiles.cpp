@@ -11,7 +11,7 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height, Detail new_detai
     rows = (height + 7) / 8;
     stride = (columns + 15) / 16 * 16;
     detail = new_detail;
-    const size_t count = size_t{stride} * rows;
+    const size_t count = size_t{stride} * rows + kBeyond;
     base.assign(count, kOpen);
     layer.assign(count, kOpen);
     seams.assign(count, kNone);

@@ -94,6 +94,7 @@ struct TileLog;
 struct DepthTiles {
     static constexpr uint32_t kNone = ~0u;
     static constexpr float kOpen = -std::numeric_limits<float>::infinity();
+    static constexpr size_t kBeyond = 16;  ///< arrays of tiles go on for so many, which are loaded with the last ones
 
     explicit DepthTiles(Memory* from = defaultMemory()) : memory(from) {}
     DepthTiles(const DepthTiles&) = delete;
