@@ -125,6 +125,16 @@ HWY_INLINE Wound windPixels(RowWinding& row, const uint8_t* changes) {
 
 #endif
 
+/// Covers pixels of a tile, where it pays each at its own depth: where one polygon alone slopes through the tile.
+HWY_INLINE void coverPart(DepthTiles& tiles, uint32_t tile, uint64_t mask, float z, uint32_t plane) {
+    if (tiles.detail == Detail::kFull && plane != DepthTiles::kNone) {
+        const BufferPlane& slope = tiles.planes[plane];
+        if (8.0 * (std::abs(slope.dx) + std::abs(slope.dy)) > 0x1p-9 * std::abs(z))
+            return coverPixelsByPlane(tiles, tile, mask, slope, tile % tiles.stride, tile / tiles.stride);
+    }
+    coverPixels(tiles, tile, mask, z);
+}
+
 /// Covers the tiles of a run that no open edge meets.
 inline void coverBetween(Patch& patch, uint32_t row, uint32_t first, uint32_t end, uint64_t inside) {
     if (!inside || first >= end) return;
@@ -176,7 +186,7 @@ inline bool coverPatch(Patch& patch, uint32_t source) {
                 const float z = scratch.z[at];
                 if (covered && z < std::numeric_limits<float>::infinity()) {
                     if (covered == ~uint64_t{0}) coverWhole(tiles, tile, z, scratch.plane[at]);
-                    else coverPixels(tiles, tile, covered, z);
+                    else coverPart(tiles, tile, covered, z, scratch.plane[at]);
                 }
                 if (!touched) continue;
                 if (const uint64_t seam = notYetNearer(tiles, tile, touched, patch.nearest)) {
