@@ -119,6 +119,9 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
         ->type_name("N")
         ->capture_default_str()
         ->group("Culling");
+    verb.add_flag("--masked", options.masked,
+                  "let a tile of the occlusion buffer remember two depths and a mask, not a depth per pixel")
+        ->group("Culling");
     verb.add_flag("--no-faces", options.no_faces,
                   "ask an object by the rectangle around its box, not by the box's faces")
         ->group("Culling");

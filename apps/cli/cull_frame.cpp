@@ -34,6 +34,7 @@ View viewOf(const CameraFrame& camera, const CullRun& run) {
     view.jitter = run.jitter;
     view.stages = run.stages;
     view.occluder_triangles = run.occluder_triangles;
+    view.occlusion_detail = run.masked ? OcclusionDetail::kMasked : OcclusionDetail::kFull;
     view.faces = run.faces;
     view.second_look = run.second_look;
     view.second_look_polygons = run.second_look_polygons;

@@ -127,6 +127,7 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
         command += fmt::format(" --occluder-triangles {}", run.occluder_triangles);
     if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
     if (run.last_visible_first) command += " --last-visible-first";
+    if (run.masked) command += " --masked";
     if (!run.faces) command += " --no-faces";
     if (!run.second_look) command += " --no-second-look";
     if (run.second_look_polygons != View().second_look_polygons)
@@ -162,6 +163,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.occluder_triangles = options.occluder_triangles;
     run.stereo = options.stereo;
     run.last_visible_first = options.last_visible_first;
+    run.masked = options.masked;
     run.faces = !options.no_faces;
     run.second_look = !options.no_second_look;
     run.second_look_polygons = options.second_look_polygons;

@@ -121,6 +121,7 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
         command += fmt::format(" --occluder-triangles {}", options.occluder_triangles);
     if (options.stereo > 0) command += fmt::format(" --stereo {}", options.stereo);
     if (options.last_visible_first) command += " --last-visible-first";
+    if (options.masked) command += " --masked";
     if (options.no_faces) command += " --no-faces";
     if (options.no_second_look) command += " --no-second-look";
     if (options.second_look_polygons != View().second_look_polygons)

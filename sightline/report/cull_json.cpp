@@ -85,6 +85,7 @@ Json headJson(const CullRun& run, const Scene& scene) {
     if (run.stereo > 0) head["stereo"] = run.stereo;
     if (run.last_visible_first) head["last_visible_first"] = true;
     head["faces"] = run.faces;
+    if (run.masked) head["masked"] = true;
     head["second_look"] = run.second_look;
     head["second_look_polygons_limit"] = run.second_look_polygons;
     head["repeat"] = run.repeat;

@@ -247,6 +247,7 @@ RunFile readHead(const At& head) {
     if (const auto limit = head.maybe("occluder_triangles_limit"))
         run.occluder_triangles = static_cast<uint32_t>(limit->whole(0, ~uint32_t{0}));
     if (const auto faces = head.maybe("faces")) run.faces = faces->flag();
+    if (const auto masked = head.maybe("masked")) run.masked = masked->flag();
     if (const auto look = head.maybe("second_look")) run.second_look = look->flag();
     if (const auto limit = head.maybe("second_look_polygons_limit"))
         run.second_look_polygons = static_cast<uint32_t>(limit->whole(0, ~uint32_t{0}));

@@ -84,7 +84,7 @@ inline constexpr const char* kSectionNames[kSectionCount] = {"view",     "occlud
                                                              "draws",    "rectangles", "tiles",     "nearnesses"};
 /// Of one record.  [bytes]
 inline constexpr uint64_t kRecordBytes[kSectionCount] = {
-    2 * 128 + 4 + 4 + 8 + 4, 40, 52, 12, 5, 4, 132, 1, 8, 13, 21, 4};
+    2 * 128 + 4 + 4 + 8 + 4 + 4, 40, 52, 12, 5, 4, 132, 1, 8, 13, 21, 4};
 
 }  // namespace recording_file
 

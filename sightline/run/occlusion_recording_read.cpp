@@ -109,7 +109,12 @@ private:
         const uint64_t at_size = from.at();
         out_.view.occlusion_size = from.take<uint32_t>();
         if (out_.view.occlusion_size < 1 || out_.view.occlusion_size > 8192)
-            wrong("a buffer of no pixels, or of more than 8192 in a row", at_size);
+            return (void)wrong("a buffer of no pixels, or of more than 8192 in a row", at_size);
+        const uint64_t at_detail = from.at();
+        const uint32_t detail = from.take<uint32_t>();
+        if (detail > static_cast<uint32_t>(OcclusionDetail::kFull))
+            return (void)wrong("a detail of the buffer that is not known", at_detail);
+        out_.view.occlusion_detail = static_cast<OcclusionDetail>(detail);
     }
 
     void readOccluders() {
