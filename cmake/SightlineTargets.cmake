@@ -15,6 +15,11 @@ function(sightline_settings target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -ffp-contract=off
     $<$<BOOL:${SIGHTLINE_WERROR}>:-Werror>)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)")
+    # NEON alone, which they all have: vectors of unknown length (SVE) cannot be members, and where the set is chosen at
+    # run time GCC cannot make structs of vectors. Highway takes this as a word for "do not choose at run time".
+    target_compile_definitions(${target} PRIVATE TOOLCHAIN_MISS_SYS_AUXV_H)
+  endif()
   if(SIGHTLINE_SANITIZE)
     # The check of virtual tables needs type information, which what a game links is built without.
     target_compile_options(${target} PRIVATE -fsanitize=${SIGHTLINE_SANITIZE} -fno-omit-frame-pointer
