@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <thread>
 
@@ -152,6 +153,8 @@ void addQueryOptions(CLI::App& verb, RunOptions& options) {
 
 Status finish(const CLI::App& verb, RunOptions& options) {
     if (Status size = readSize(options); !size) return size;
+    if (std::isnan(options.jitter)) return usage("--jitter: not a number");  // no range leaves it out
+    if (std::isnan(options.stereo)) return usage("--stereo: not a number");
     const Result<uint32_t> use = readStages("--use", options.use), skip = readStages("--skip", options.skip);
     if (!use) return use.error();
     if (!skip) return skip.error();

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "sightline/base/random.h"
 #include "sightline/geom/frustum.h"
@@ -67,6 +68,20 @@ TEST(View, SaysWhenItCannotBeUsed) {
     EXPECT_FALSE(isUsable(view));
     view.projection = glm::dmat4(0.0);
     EXPECT_FALSE(isUsable(view));
+}
+
+TEST(View, CannotBeUsedWithTheFarPlaneBeforeTheNearOne) {
+    // What the far plane cut away would hide: 27 false culls in one frame.
+    const double infinite = std::numeric_limits<double>::infinity();
+    for (double far : {40.0, infinite})
+        for (glm::dmat4 projection : {perspective(1.0, 2.0, 0.5, far), orthographic(3.0, 2.0, 0.5, far)}) {
+            View view;
+            view.width = view.height = 8;
+            view.projection = projection;
+            EXPECT_TRUE(isUsable(view)) << far;
+            for (int column = 0; column < 4; ++column) view.projection[column][2] *= -1.0;
+            EXPECT_FALSE(isUsable(view)) << far;
+        }
 }
 
 TEST(FrustumPlanes, AreTheInequalitiesOfClipSpace) {
