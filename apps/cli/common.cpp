@@ -147,7 +147,7 @@ void addQueryOptions(CLI::App& verb, RunOptions& options) {
         ->type_name("IPD")
         ->group("Culling");
     verb.add_flag("--last-visible-first", options.last_visible_first,
-                  "draw first what the frame before it kept, which is asked each time for that")
+                  "begin with what the frame before kept, which is asked each time for that")
         ->group("Culling");
 }
 

@@ -132,13 +132,15 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     if (!run.second_look) command += " --no-second-look";
     if (run.second_look_polygons != View().second_look_polygons)
         command += fmt::format(" --second-look-polygons {}", run.second_look_polygons);
-    std::string used, left_out;
+    std::string used, skipped;
     for (int stage = 0; stage < kStageCount; ++stage) {
-        std::string& names = run.stages >> stage & 1 ? used : left_out;
+        const bool uses = run.stages >> stage & 1;
+        if (!uses && !(kDefaultStages >> stage & 1)) continue;  // left out anyway
+        std::string& names = uses ? used : skipped;
         names += (names.empty() ? "" : ",") + std::string(kStageNames[stage]);
     }
     if (run.stages & ~kDefaultStages) command += " --use " + used;
-    else if (run.stages != kDefaultStages) command += " --skip " + left_out;
+    else if (run.stages != kDefaultStages) command += " --skip " + skipped;
     return command;
 }
 
