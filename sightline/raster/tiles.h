@@ -131,13 +131,7 @@ struct DepthTiles {
     /// What drawing a cluster needs meanwhile: the tiles of its rectangle.
     struct Scratch {
         explicit Scratch(Memory* memory)
-            : first(memory),
-              last(memory),
-              z(memory),
-              plane(memory),
-              slot(memory),
-              touched(memory),
-              winding(memory) {}
+            : first(memory), last(memory), z(memory), plane(memory), slot(memory), touched(memory), winding(memory) {}
         Array<int32_t> first, last;  ///< per row: the columns between which something may become nearer
         Array<float> z;              ///< no polygon that touches the tile is farther in it; infinity: none does
         Array<uint32_t> plane;       ///< the plane of the only one, or kNone

@@ -85,7 +85,7 @@ struct WalkRecord {
     /// The rectangle of the object at `stop_at`, where it was kept.
     struct Kept {
         PixelRect rect;
-        bool testable = false;  ///< the occlusion stage could look at it
+        bool testable = false;   ///< the occlusion stage could look at it
         Look look = Look::kBox;  ///< the last that was tried
     };
 

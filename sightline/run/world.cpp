@@ -168,7 +168,8 @@ World& World::operator=(World&&) noexcept = default;
 uint32_t Snapshot::objectCount() const { return state_ ? state_->count : 0; }
 
 OccluderId World::addOccluder(const Occluder& occluder) {
-    state_->occluders.push_back(makeShared<detail::HeldOccluder>(state_->memory, occluder, state_->volumes, state_->memory));
+    state_->occluders.push_back(
+        makeShared<detail::HeldOccluder>(state_->memory, occluder, state_->volumes, state_->memory));
     state_->rebuild = true;
     return {static_cast<uint32_t>(state_->occluders.size() - 1)};
 }
