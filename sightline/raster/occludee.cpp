@@ -175,7 +175,7 @@ void boundDepth(const double* x, const double* y, const double* d, int count, do
         best = part;
         widest = i;
     }
-    if (!(std::abs(best) >= kLeastHeight * perimeter)) return;
+    if (widest == 0 || !(std::abs(best) >= kLeastHeight * perimeter)) return;  // 0 >= 0 where all is one point
     const double ux = x[widest - 1] - x[0], uy = y[widest - 1] - y[0], ud = d[widest - 1] - d[0];
     const double vx = x[widest] - x[0], vy = y[widest] - y[0], vd = d[widest] - d[0];
     const double dx = (ud * vy - vd * uy) / best, dy = (vd * ux - ud * vx) / best;
