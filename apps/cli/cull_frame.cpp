@@ -18,6 +18,12 @@ QueryStats sumOf(const StereoSet& set) {
     sum.budget_spent |= set.right.budget_spent;
     sum.nodes_visited += set.right.nodes_visited;
     sum.seam_pixels += set.right.seam_pixels;
+    sum.faces_tested += set.right.faces_tested;
+    sum.faces_culled += set.right.faces_culled;
+    sum.second_looks += set.right.second_looks;
+    sum.second_look_culled += set.right.second_look_culled;
+    sum.second_look_polygons += set.right.second_look_polygons;
+    sum.second_look_spent |= set.right.second_look_spent;
     sum.nanoseconds += set.right.nanoseconds;
     return sum;
 }

@@ -80,11 +80,7 @@ bool isUsable(const View& view) {
             if (!std::isfinite(view.view[column][row]) || !std::isfinite(view.projection[column][row])) return false;
     if (view.width == 0 || view.height == 0 || !(view.jitter >= 0.0 && view.jitter <= 1e6)) return false;
     const double determinant = glm::determinant(view.projection);
-    if (!std::isfinite(determinant) || determinant == 0.0) return false;
-    // Where z alone grows: from the eye, so that it is the eye turned about (its w is negative), or in parallel away from
-    // the viewer. Else the far plane stands before the near one, and what it cuts away would hide.
-    const glm::dvec4 deeper = glm::inverse(view.projection)[2];
-    return isOrthographic(view) ? deeper.z < 0.0 : deeper.w < 0.0;
+    return std::isfinite(determinant) && determinant != 0.0;
 }
 
 }  // namespace sightline

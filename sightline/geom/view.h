@@ -75,7 +75,7 @@ View shiftedEye(const View& view, double right);
 bool isOrthographic(const View& view);
 
 /// True if all matrices are finite, the viewport has pixels, the jitter is in its range, and the projection can be
-/// inverted and has its far plane behind the near one: z / w grows with the distance, as in OpenGL.
+/// inverted.
 bool isUsable(const View& view);
 
 }  // namespace sightline

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/geom/depth_order.h"
 #include "sightline/run/hiders.h"
 #include "sightline/run/open_pixels.h"
 #include "sightline/run/query.h"
@@ -106,7 +107,7 @@ void Explainer::Impl::explainVisible(uint32_t item, Explanation& out) {
     VisibleReason& why = out.visible;
     const SnapshotState& state = snapshot.state();
     const uint32_t place = detail::hierarchyPlace(state, item);
-    if (!isUsable(view)) {
+    if (!isUsable(view) || !runsOutward(view)) {
         why.because = KeptBecause::kViewNotUsable;
     } else if (place == WalkRecord::kNowhere) {
         why.because = KeptBecause::kBoundsNotUsable;
@@ -240,7 +241,7 @@ Explanation Explainer::explain(ObjectId id, const ExplainSettings& settings) {
     out.verdict = impl.trial.run(state, impl.view, item);
     const uint32_t place = detail::hierarchyPlace(state, item);
     PixelRect rect;
-    if (isUsable(impl.view) && place != WalkRecord::kNowhere) {
+    if (isUsable(impl.view) && runsOutward(impl.view) && place != WalkRecord::kNowhere) {
         const Screen& screen = impl.trial.walk.screen;
         const LeafAnswer leaf = detail::askLeaf(state, place, impl.view, screen);
         out.on_screen = !leaf.doubt() && !leaf.outside();

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "sightline/base/assert.h"
+#include "sightline/geom/depth_order.h"
 
 namespace sightline::detail {
 namespace {
@@ -343,7 +344,7 @@ void Walk::finish() {
 void Walk::run(const SnapshotState* now, const View& new_view) {
     begin(now, new_view);
     if (!now) return;
-    if (isUsable(view)) walk();
+    if (isUsable(view) && runsOutward(view)) walk();
     else keepEverything();
     finish();
 }

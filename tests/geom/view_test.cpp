@@ -1,5 +1,6 @@
 // The laws of views: matrices put points where their definition says, and the eye is found again.
 // SPDX-License-Identifier: MIT
+#include "sightline/geom/depth_order.h"
 #include "sightline/geom/view.h"
 
 #include <gtest/gtest.h>
@@ -70,7 +71,7 @@ TEST(View, SaysWhenItCannotBeUsed) {
     EXPECT_FALSE(isUsable(view));
 }
 
-TEST(View, CannotBeUsedWithTheFarPlaneBeforeTheNearOne) {
+TEST(View, RunsOutwardUnlessItsDepthIsReversed) {
     // What the far plane cut away would hide: 27 false culls in one frame.
     const double infinite = std::numeric_limits<double>::infinity();
     for (double far : {40.0, infinite})
@@ -78,9 +79,9 @@ TEST(View, CannotBeUsedWithTheFarPlaneBeforeTheNearOne) {
             View view;
             view.width = view.height = 8;
             view.projection = projection;
-            EXPECT_TRUE(isUsable(view)) << far;
+            EXPECT_TRUE(runsOutward(view)) << far;
             for (int column = 0; column < 4; ++column) view.projection[column][2] *= -1.0;
-            EXPECT_FALSE(isUsable(view)) << far;
+            EXPECT_FALSE(runsOutward(view)) << far;
         }
 }
 
