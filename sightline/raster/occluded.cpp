@@ -193,18 +193,7 @@ void readClaimsKernel(const DepthTiles& tiles, uint32_t tile, float (&claims)[64
 }
 
 void raiseClaimsKernel(DepthTiles& tiles, uint32_t tile, uint64_t mask, const float (&depths)[64]) {
-    const F16 d;
-    float* block = layerBlock(tiles, tile);
-    auto greatest = hn::Set(d, DepthTiles::kOpen);
-    for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
-        const auto old = hn::LoadU(d, block + i);
-        const auto raised = hn::IfThenElse(maskFromBits(d, mask >> i), hn::Max(old, hn::LoadU(d, depths + i)), old);
-        hn::StoreU(raised, d, block + i);
-        greatest = hn::Max(greatest, raised);
-    }
-    tiles.layer_mask[tile] |= mask;
-    tiles.layer[tile] = hn::GetLane(hn::MaxOfLanes(d, greatest));
-    if (tiles.layer_mask[tile] == ~uint64_t{0}) settleBlock(tiles, tile, block);
+    raiseBlockBy(tiles, tile, mask, depths);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -185,23 +185,28 @@ inline void coverPixels(DepthTiles& tiles, uint32_t tile, uint64_t mask, float z
     tiles.layer_mask[tile] = both;
 }
 
-/// Covers the pixels of a mask by a plane, each at its own depth: for tiles that get a block.
-inline void coverPixelsByPlane(DepthTiles& tiles, uint32_t tile, uint64_t mask, const BufferPlane& plane,
-                               uint32_t column, uint32_t row) {
+/// Raises the pixels of a mask, each to its own depth, in a tile that gets a block.
+inline void raiseBlockBy(DepthTiles& tiles, uint32_t tile, uint64_t mask, const float* depths) {
     const F16 d;
-    alignas(64) float depths[64];
-    planeDepths(planeInTile(plane, column, row), depths);
     float* block = layerBlock(tiles, tile);
     auto greatest = hn::Set(d, DepthTiles::kOpen);
     for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
         const auto old = hn::LoadU(d, block + i);
-        const auto raised = hn::IfThenElse(maskFromBits(d, mask >> i), hn::Max(old, hn::Load(d, depths + i)), old);
+        const auto raised = hn::IfThenElse(maskFromBits(d, mask >> i), hn::Max(old, hn::LoadU(d, depths + i)), old);
         hn::StoreU(raised, d, block + i);
         greatest = hn::Max(greatest, raised);
     }
     tiles.layer_mask[tile] |= mask;
     tiles.layer[tile] = hn::GetLane(hn::MaxOfLanes(d, greatest));
     if (tiles.layer_mask[tile] == ~uint64_t{0}) settleBlock(tiles, tile, block);
+}
+
+/// Covers the pixels of a mask by a plane, each at its own depth: for tiles that get a block.
+inline void coverPixelsByPlane(DepthTiles& tiles, uint32_t tile, uint64_t mask, const BufferPlane& plane,
+                               uint32_t column, uint32_t row) {
+    alignas(64) float depths[64];
+    planeDepths(planeInTile(plane, column, row), depths);
+    raiseBlockBy(tiles, tile, mask, depths);
 }
 
 /// The pixels of a tile, within the window, that it does not claim to be in front of a nearness; the base is known
