@@ -213,6 +213,26 @@ BoxAnswer projectBox(const Screen& object, const Box3f& box) {
     return answer;
 }
 
+namespace {
+
+/// The greatest of sign * (x.h - at * w.h) over a box. Where it is negative, so is sign * (pixel x - at) of all points
+/// before the eye, for their w is positive.
+double mostBeyond(const Screen& object, const Box3f& box, double at, double sign) {
+    const glm::dvec4 row = sign * (object.x - at * object.w);
+    double most = row.w, size = std::abs(object.x.w) + std::abs(at * object.w.w);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = box.min[axis], high = box.max[axis];
+        most += std::max(row[axis] * low, row[axis] * high);
+        size += (std::abs(object.x[axis]) + std::abs(at * object.w[axis])) * std::max(std::abs(low), std::abs(high));
+    }
+    return most + 0x1p-20 * size;  // bounds in float are wrong by 2^-23 of themselves
+}
+
+}  // namespace
+
+bool isLeftOf(const Screen& object, const Box3f& box, double x) { return mostBeyond(object, box, x, 1.0) < 0.0; }
+bool isRightOf(const Screen& object, const Box3f& box, double x) { return mostBeyond(object, box, x, -1.0) < 0.0; }
+
 OccluderInstance makeOccluderInstance(const Screen& screen, const Occluder& occluder, const glm::dmat4& transform) {
     OccluderInstance instance;
     instance.occluder = &occluder;

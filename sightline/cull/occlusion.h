@@ -30,6 +30,13 @@ struct BoxAnswer {
 };
 BoxAnswer projectBox(const Screen& object, const Box3f& box);
 
+/// Whether every drawn point of a box surely lies to the left of a column of pixels, or to the right of where it begins:
+/// also of a box that is in doubt.
+/// @param object  the map from the box's space
+/// @param x       the column's left border  [pixels]
+bool isLeftOf(const Screen& object, const Box3f& box, double x);
+bool isRightOf(const Screen& object, const Box3f& box, double x);
+
 /// An object whose occluder is being drawn: its place, and how exactly that place is known.
 struct OccluderInstance {
     const Occluder* occluder = nullptr;

@@ -155,10 +155,15 @@ Sight makeBoxFaces(const OccludeePlace& place, const Box3d& box, BoxFaces& out) 
 Sight askBox(DepthTiles& tiles, const OccludeePlace& place, const Box3d& box) {
     BoxFaces faces;
     const Sight sight = makeBoxFaces(place, box, faces);
-    if (sight != Sight::kOccluded || isHidden(tiles, faces.rect, Seams::kLeave)) return sight;
+    if (sight != Sight::kOccluded || !tiles.clip(faces.rect) || isHidden(tiles, faces.rect, Seams::kLeave))
+        return sight;
     uint32_t undecided = 0;
     bool in_view = false;
     for (int i = 0; i < faces.count; ++i) {
+        if (!tiles.clip(faces.faces[i].rect)) {
+            in_view = true;
+            continue;
+        }
         const Cover cover = lookAt(tiles, faces.faces[i]);
         if (cover == Cover::kOpen) return Sight::kVisible;
         if (cover == Cover::kUndecided) undecided |= 1u << i;

@@ -144,10 +144,10 @@ uint64_t gatherClusters(DepthTiles& tiles, const OccludeePlace& place, const Occ
     for (uint32_t c = 0; c < shape.clusters.size(); ++c) {
         ClusterLook look{c, std::numeric_limits<float>::infinity(), 0};
         if (shape.clusters.size() > 1) {
-            const BoxAnswer box = projectBox(place.screen, shape.clusters[c].bounds);
+            BoxAnswer box = projectBox(place.screen, shape.clusters[c].bounds);
             if (box.outside) continue;
             if (!box.doubt) {
-                if (isHidden(tiles, box.rect, Seams::kLeave)) {
+                if (!tiles.clip(box.rect) || isHidden(tiles, box.rect, Seams::kLeave)) {
                     in_view = true;
                     continue;
                 }
@@ -186,6 +186,10 @@ Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder
             const Sight made = walk.polygon(shape.polygons[walk.cluster.first_polygon + p], occludee);
             if (made == Sight::kVisible) return made;
             if (made == Sight::kOutside) continue;
+            if (!tiles.clip(occludee.rect)) {
+                in_view = true;
+                continue;
+            }
             const Cover cover = lookAt(tiles, occludee);
             in_view |= cover != Cover::kOutside;
             if (cover == Cover::kOpen) return Sight::kVisible;

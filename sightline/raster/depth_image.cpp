@@ -16,7 +16,7 @@ void readDepthImage(DepthTiles& tiles, Seams seams, std::span<float> nearness, s
     float nothing_is_nearer[64], claims[64];
     std::fill(std::begin(nothing_is_nearer), std::end(nothing_is_nearer), std::numeric_limits<float>::infinity());
     for (uint32_t row = 0; row < tiles.rows; ++row)
-        for (uint32_t column = 0; column < tiles.columns; ++column) {
+        for (uint32_t column = tiles.first_column; column < tiles.end_column; ++column) {
             const uint32_t tile = row * tiles.stride + column;
             if (seams == Seams::kResolve) openPixels(tiles, tile, ~uint64_t{0}, nothing_is_nearer, seams);
             readClaims(tiles, tile, claims);

@@ -10,7 +10,7 @@
 
 namespace sightline {
 
-/// Reads the whole buffer, row by row, the lowest row first. A pixel with depth d hides what is farther than d at all
+/// Reads the whole buffer, or the columns that matter, row by row, the lowest row first. A pixel with depth d hides what is farther than d at all
 /// of its points: isHidden() of that pixel alone is true for nearnesses below d, and false for d and above.
 /// @param seams     kResolve: all pixels that polygons share are resolved first, and stay so
 /// @param nearness  [size: width * height]

@@ -85,19 +85,20 @@ HWY_INLINE bool openColumns(Patch& patch) {
     return patch.open_high >= 0;
 }
 
-/// Lays out the scratch for the tiles that the extent meets; false if it misses the buffer.
+/// Lays out the scratch for the tiles that matter and that the extent meets; false if there are none.
 inline bool beginPatch(Patch& patch, const Extent& extent) {
     DepthTiles& tiles = patch.tiles;
     const double e = patch.reach;
-    if (!(extent.x1 + e >= 0 && extent.y1 + e >= 0 && extent.x0 - e < tiles.width && extent.y0 - e < tiles.height))
+    const double left = 8.0 * tiles.first_column, right = 8.0 * tiles.end_column;
+    if (!(extent.x1 + e >= left && extent.y1 + e >= 0 && extent.x0 - e < right && extent.y0 - e < tiles.height))
         return false;
-    const auto tileOf = [](double at, double size) {
-        return static_cast<int32_t>(std::clamp(at, 0.0, size - 1.0)) >> 3;
+    const auto tileOf = [](double at, double low, double high) {
+        return static_cast<int32_t>(std::clamp(at, low, high - 1.0)) >> 3;
     };
-    patch.column0 = tileOf(extent.x0 - e, tiles.width);
-    patch.row0 = tileOf(extent.y0 - e, tiles.height);
-    patch.columns = tileOf(extent.x1 + e, tiles.width) - patch.column0 + 1;
-    patch.rows = tileOf(extent.y1 + e, tiles.height) - patch.row0 + 1;
+    patch.column0 = tileOf(extent.x0 - e, left, right);
+    patch.row0 = tileOf(extent.y0 - e, 0, tiles.height);
+    patch.columns = tileOf(extent.x1 + e, left, right) - patch.column0 + 1;
+    patch.rows = tileOf(extent.y1 + e, 0, tiles.height) - patch.row0 + 1;
     patch.pitch = static_cast<uint32_t>(patch.columns + 15) / 16 * 16;
     patch.slots = 0;
     const double near = extent.nearest + std::abs(extent.nearest) * 0x1p-22 + patch.depth_error;
@@ -265,10 +266,21 @@ HWY_INLINE void addEdgeInRow(Patch& patch, const EdgeSetups& s, int i, int32_t r
     // What lies left of the columns that matter changes the winding number at their border; right of them nothing does.
     const int32_t first = scratch.first[static_cast<size_t>(row)], last = scratch.last[static_cast<size_t>(row)];
     if (!(low_all < static_cast<float>(8 * last + 8))) return;
+    const int32_t c0 = std::max(s.cross_first[i] - 8 * row, 0), c1 = std::min(s.cross_end[i] - 8 * row, 8);
+    if (high_all < static_cast<float>(8 * first)) {
+        if (c0 >= c1) return;
+        reserveSlots(patch, 1);
+        const uint32_t slot =
+            slotOf(patch, size_t{patch.pitch} * static_cast<size_t>(row) + static_cast<size_t>(first));
+        for (int32_t k = c0; k < c1; ++k) {
+            uint8_t& place = scratch.winding[64 * size_t{slot} + 8 * static_cast<size_t>(k)];
+            place = static_cast<uint8_t>(place + change);
+        }
+        return;
+    }
     const int32_t t0 = std::max(static_cast<int32_t>(std::max(low_all, 0.0f)) >> 3, first);
     const int32_t t1 = std::clamp(static_cast<int32_t>(std::max(high_all, 0.0f)) >> 3, first, last);
     const uint64_t rows_touched = bytesBetween(k0, k1);
-    const int32_t c0 = std::max(s.cross_first[i] - 8 * row, 0), c1 = std::min(s.cross_end[i] - 8 * row, 8);
     alignas(32) int32_t lows[8], highs[8], crossings[8];
     const auto zero = hn::Zero(d), beyond = hn::Set(d, static_cast<float>(width));
     const auto border = hn::Set(d, static_cast<float>(8 * first));

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/raster/tiles.h"
 
+#include <utility>
+
 namespace sightline {
 
 void DepthTiles::clear(uint32_t new_width, uint32_t new_height, Detail new_detail) {
@@ -10,6 +12,8 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height, Detail new_detai
     columns = (width + 7) / 8;
     rows = (height + 7) / 8;
     stride = (columns + 15) / 16 * 16;
+    first_column = 0;
+    end_column = columns;
     detail = new_detail;
     const size_t count = size_t{stride} * rows + kBeyond;
     base.assign(count, kOpen);
@@ -35,6 +39,17 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height, Detail new_detai
     polygons.clear();
     entries.clear();
     seam_pixels = 0;
+}
+
+void DepthTiles::keepColumns(uint32_t first, uint32_t end) {
+    first_column = first;
+    end_column = end;
+    for (size_t row = 0; row < rows; ++row)
+        for (const auto& [from, to] : {std::pair(0u, first), std::pair(end, columns)}) {
+            const size_t at = row * stride + from;
+            std::fill_n(base.data() + at, to - from, std::numeric_limits<float>::infinity());
+            std::fill_n(plane.data() + at, to - from, kNone);
+        }
 }
 
 }  // namespace sightline

@@ -4,6 +4,7 @@
 // Jon Hasselgren, Magnus Andersson, Tomas Akenine-Moller. Masked Software Occlusion Culling. 2016.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
@@ -100,10 +101,11 @@ struct DepthTiles {
     DepthTiles(const DepthTiles&) = delete;
     DepthTiles& operator=(const DepthTiles&) = delete;
 
-    Memory* const memory;            ///< of all arrays
-    uint32_t width = 0, height = 0;  ///< [pixels], multiples of 8
-    uint32_t columns = 0, rows = 0;  ///< [tiles]
-    uint32_t stride = 0;             ///< tiles from one row to the next: columns rounded up to 16
+    Memory* const memory;                       ///< of all arrays
+    uint32_t width = 0, height = 0;             ///< [pixels], multiples of 8
+    uint32_t columns = 0, rows = 0;             ///< [tiles]
+    uint32_t stride = 0;                        ///< tiles from one row to the next: columns rounded up to 16
+    uint32_t first_column = 0, end_column = 0;  ///< tiles beside these columns do not matter: keepColumns()
     Detail detail = Detail::kFull;
 
     // Per tile, side by side, so that sixteen tiles of a row are looked at together.
@@ -153,6 +155,17 @@ struct DepthTiles {
 
     /// Makes the buffer empty. Allocates only when it grows.
     void clear(uint32_t width, uint32_t height, Detail detail = Detail::kFull);
+
+    /// After clear(): tiles beside some columns claim to be nearer than anything, so that nothing is drawn there and
+    /// nothing is open there. What is drawn and asked has the same answers in these columns as without.
+    void keepColumns(uint32_t first, uint32_t end);
+
+    /// Makes a rectangle smaller by what lies beside the columns that matter; false if nothing is left.
+    bool clip(PixelRect& rect) const {
+        rect.x0 = std::max(rect.x0, static_cast<int32_t>(8 * first_column));
+        rect.x1 = std::min(rect.x1, static_cast<int32_t>(8 * end_column) - 1);
+        return rect.x0 <= rect.x1;
+    }
 };
 
 /// Draws one cluster of an occluder: covers the pixels that its polygons cover together, and keeps aside those that

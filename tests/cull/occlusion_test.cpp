@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/cull/occlusion.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "sightline/base/random.h"
@@ -23,6 +25,47 @@ Projected project(const Screen& screen, const glm::dvec3& p) {
 bool holds(const Screen& screen, const PixelRect& rect, const Projected& p) {
     if (p.x < 0 || p.y < 0 || p.x > screen.width || p.y > screen.height) return true;  // not seen at all
     return p.x >= rect.x0 && p.x <= rect.x1 + 1 && p.y >= rect.y0 && p.y <= rect.y1 + 1 && p.nearness <= rect.nearness;
+}
+
+TEST(Occlusion, BoxesBesideAColumnHaveNoPointThere) {
+    Random random(11);
+    int left = 0, right = 0, of_the_eye = 0;
+    for (int round = 0; round < 4000; ++round) {
+        View view;
+        view.view = lookAt({0, 0, 0}, {random.uniform(-1, 1), random.uniform(-1, 1), -1}, {0, 1, 0});
+        view.projection = round % 5 == 4 ? orthographic(random.uniform(1, 50), 1.8, 0.1, 500.0)
+                                         : perspective(glm::radians(random.uniform(1, 150)), 1.8, 0.1);
+        const Screen screen = makeScreen(view, 640);
+        Box3f box;
+        for (int axis = 0; axis < 3; ++axis) {
+            box.min[axis] = static_cast<float>(random.uniform(-30, 30));
+            box.max[axis] = box.min[axis] + static_cast<float>(random.uniform(0, 20));
+        }
+        const double x = random.uniform(0, screen.width);
+        const bool is_left = isLeftOf(screen, box, x), is_right = isRightOf(screen, box, x);
+        EXPECT_FALSE(is_left && is_right);
+        left += is_left;
+        right += is_right;
+        of_the_eye += (is_left || is_right) && projectBox(screen, box).doubt;
+        for (int i = 0; i < 64; ++i) {
+            glm::dvec4 h(1.0);
+            for (int axis = 0; axis < 3; ++axis) {
+                const double at = i < 8 ? i >> axis & 1 : random.uniform();
+                h[axis] = box.min[axis] + at * (double{box.max[axis]} - box.min[axis]);
+            }
+            const double w = glm::dot(screen.w, h);
+            if (!(w > 0.0)) continue;
+            const double px = glm::dot(screen.x, h) / w;
+            EXPECT_FALSE(is_left && px >= x) << "round " << round;
+            EXPECT_FALSE(is_right && px <= x) << "round " << round;
+        }
+    }
+    EXPECT_GT(left, 400);
+    EXPECT_GT(right, 400);
+    EXPECT_GT(of_the_eye, 50);
+    Box3f broken{glm::vec3(std::numeric_limits<float>::quiet_NaN()), glm::vec3(1)};
+    const Screen screen = makeScreen(View(), 640);
+    EXPECT_FALSE(isLeftOf(screen, broken, 5) || isRightOf(screen, broken, 5));
 }
 
 TEST(Occlusion, RectanglesHoldEveryPointOfTheirBoxes) {
