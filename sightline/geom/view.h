@@ -48,6 +48,11 @@ struct View {
     bool second_look = true;                 ///< and then by its own triangles: ObjectDef::shape
     uint32_t second_look_polygons = 1u << 16;  ///< work budget of that: polygons that may be asked  [limit]
     OcclusionDetail occlusion_detail = OcclusionDetail::kFull;
+    /// Strips side by side that the occlusion buffer is cut into, each with a walk of its own, so that several threads
+    /// can share a query: Query's jobs. An object is kept that one of them keeps. The answer depends on this number, a
+    /// little (no object is culled that is visible; work budgets hold for each strip), but not on who walks. One strip
+    /// costs least in all.  [limit: 1 to 16]
+    uint32_t bins = 1;
     bool time_stages = false;  ///< fill StageStats::nanoseconds (costs some time itself)
 };
 

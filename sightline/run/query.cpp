@@ -5,25 +5,25 @@
 #include <algorithm>
 #include <chrono>
 
-#include "sightline/raster/depth_image.h"
+#include "sightline/run/bins.h"
 #include "sightline/run/explain.h"
-#include "sightline/run/walk.h"
 
 namespace sightline {
 
 struct Query::Impl {
-    explicit Impl(Memory* from) : memory(from) { walk.remembers = true; }
+    Impl(Memory* from, Jobs* hook) : memory(from), jobs(hook) {}
 
     static constexpr uint32_t kTaken = 4;  ///< in `mark`, beside the eyes: it stands in `both`
 
     /// The objects of the last answer.
-    Array<Visible>& last() { return stereo ? both : walk.visible; }
+    Array<Visible>& last() { return stereo ? both : walk.visible(); }
     void mergeEyes();
 
     Memory* const memory;
+    Jobs* const jobs;
     Snapshot snapshot;                     ///< of the last answer
-    detail::Walk walk{memory};             ///< of the left eye, where there are two
-    Owned<detail::Walk> right;             ///< made when first needed
+    detail::BinnedWalk walk{memory};       ///< of the left eye, where there are two
+    Owned<detail::BinnedWalk> right;       ///< made when first needed
     bool stereo = false;                   ///< the last answer was visibleStereo()'s
     Array<Visible> both{memory};           ///< what either eye sees
     Array<uint8_t> eyes{memory};           ///< per object of `both`
@@ -35,22 +35,39 @@ struct Query::Impl {
     Array<uint32_t> mark{memory};  ///< per ObjectId::index: 1 + place in `before`, while changes() runs; else 0
 };
 
-Query::Query(Memory* memory) : impl_(makeOwned<Impl>(memory, memory)) {}
+Query::Query(Memory* memory, Jobs* jobs) : impl_(makeOwned<Impl>(memory, memory, jobs)) {}
 Query::~Query() = default;
 Query::Query(Query&&) noexcept = default;
 Query& Query::operator=(Query&&) noexcept = default;
 
 namespace {
 
-/// Walks, and takes the time.
-void answer(detail::Walk& walk, const Snapshot& now, const View& view) {
-    const auto start = std::chrono::steady_clock::now();
-    walk.run(now ? &now.state() : nullptr, view);
-    walk.stats.nanoseconds = static_cast<uint64_t>(
+uint64_t since(std::chrono::steady_clock::time_point start) {
+    return static_cast<uint64_t>(
         std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count());
-    if (view.time_stages && walk.uses(Stage::kOcclusion))
-        walk.of(Stage::kOcclusion).nanoseconds =
-            walk.stats.nanoseconds - walk.of(Stage::kFrustum).nanoseconds - walk.of(Stage::kVolumes).nanoseconds;
+}
+
+/// Walks for one eye or for both, and takes the time: of both together each has its share.
+void answer(std::span<detail::BinnedWalk* const> eyes, const Snapshot& now, std::span<const View* const> views,
+            Jobs* jobs) {
+    const auto start = std::chrono::steady_clock::now();
+    uint32_t bins = 0;
+    for (size_t eye = 0; eye < eyes.size(); ++eye) {
+        eyes[eye]->begin(now ? &now.state() : nullptr, *views[eye]);
+        bins += eyes[eye]->bins();
+    }
+    runJobs(jobs, bins, [&](uint32_t bin) {
+        const uint32_t first = eyes[0]->bins();
+        bin < first ? eyes[0]->run(bin) : eyes[1]->run(bin - first);
+    });
+    uint64_t busy = 0;
+    for (detail::BinnedWalk* eye : eyes) {
+        eye->finish();
+        busy += eye->stats.nanoseconds;
+    }
+    const double share = static_cast<double>(since(start)) / static_cast<double>(std::max<uint64_t>(busy, 1));
+    for (detail::BinnedWalk* eye : eyes)
+        eye->timed(static_cast<uint64_t>(share * static_cast<double>(eye->stats.nanoseconds)));
 }
 
 }  // namespace
@@ -60,8 +77,8 @@ VisibleSet Query::visible(const Snapshot& now, const View& view) {
     std::swap(impl.last(), impl.before);
     impl.stereo = false;
     impl.snapshot = now;
-    answer(impl.walk, now, view);
-    return {impl.walk.visible, impl.walk.stats};
+    answer({{&impl.walk}}, now, {{&view}}, impl.jobs);
+    return {impl.walk.visible(), impl.walk.stats};
 }
 
 StereoSet Query::visibleStereo(const Snapshot& now, const View& left, const View& right) {
@@ -69,12 +86,14 @@ StereoSet Query::visibleStereo(const Snapshot& now, const View& left, const View
     std::swap(impl.last(), impl.before);
     impl.stereo = true;
     impl.snapshot = now;
-    if (!impl.right) {
-        impl.right = makeOwned<detail::Walk>(impl.memory, impl.memory);
-        impl.right->remembers = true;
+    if (!impl.right) impl.right = makeOwned<detail::BinnedWalk>(impl.memory, impl.memory);
+    detail::BinnedWalk* const eyes[] = {&impl.walk, impl.right.get()};
+    const View* const views[] = {&left, &right};
+    if (impl.jobs) {
+        answer(eyes, now, views, impl.jobs);
+    } else {
+        for (size_t eye : {0, 1}) answer({&eyes[eye], 1}, now, {&views[eye], 1}, nullptr);
     }
-    answer(impl.walk, now, left);
-    answer(*impl.right, now, right);
     impl.mergeEyes();
     return {impl.both, impl.eyes, impl.walk.stats, impl.right->stats};
 }
@@ -82,11 +101,11 @@ StereoSet Query::visibleStereo(const Snapshot& now, const View& left, const View
 /// The left eye's objects in their order; what the right eye sees alone stands behind what it sees before it.
 void Query::Impl::mergeEyes() {
     uint32_t last = 0;
-    for (const auto* set : {&walk.visible, &right->visible})
+    for (const auto* set : {&walk.visible(), &right->visible()})
         for (const Visible& v : *set) last = std::max(last, v.id.index);
     if (mark.size() <= last) mark.resize(last + 1, 0);
-    for (const Visible& v : walk.visible) mark[v.id.index] = kLeftEye;
-    for (const Visible& v : right->visible) mark[v.id.index] |= kRightEye;
+    for (const Visible& v : walk.visible()) mark[v.id.index] = kLeftEye;
+    for (const Visible& v : right->visible()) mark[v.id.index] |= kRightEye;
     both.clear();
     eyes.clear();
     const auto take = [&](const Visible& v) {
@@ -94,7 +113,7 @@ void Query::Impl::mergeEyes() {
         eyes.push_back(static_cast<uint8_t>(mark[v.id.index]));
     };
     size_t at = 0;
-    for (const Visible& v : right->visible) {
+    for (const Visible& v : right->visible()) {
         if (mark[v.id.index] == kRightEye) {
             take(v);
             continue;
@@ -103,12 +122,12 @@ void Query::Impl::mergeEyes() {
         size_t end = at;
         if (mark[v.id.index] & kTaken) continue;
         do {
-            take(walk.visible[end]);
-            mark[walk.visible[end].id.index] |= kTaken;
-        } while (walk.visible[end++].id != v.id);
+            take(walk.visible()[end]);
+            mark[walk.visible()[end].id.index] |= kTaken;
+        } while (walk.visible()[end++].id != v.id);
         at = end;
     }
-    for (; at < walk.visible.size(); ++at) take(walk.visible[at]);
+    for (; at < walk.visible().size(); ++at) take(walk.visible()[at]);
     for (const Visible& v : both) mark[v.id.index] = 0;
 }
 
@@ -159,12 +178,12 @@ Explanation Query::explain(const Snapshot& now, const View& view, ObjectId id) c
 
 Query::DepthImage Query::depthImage(bool resolve_seams) {
     Impl& impl = *impl_;
-    DepthTiles& tiles = impl.walk.tiles;
-    const size_t pixels = size_t{tiles.width} * tiles.height;
+    const size_t pixels = size_t{impl.walk.width()} * impl.walk.height();
     impl.depth_image.resize(pixels);
     impl.depth_covered.resize(pixels);
-    readDepthImage(tiles, resolve_seams ? Seams::kResolve : Seams::kLeave, impl.depth_image, impl.depth_covered, 0.0f);
-    return {tiles.width, tiles.height, impl.walk.screen.perspective, impl.depth_image, impl.depth_covered};
+    impl.walk.depthImage(resolve_seams ? Seams::kResolve : Seams::kLeave, impl.depth_image, impl.depth_covered);
+    return {impl.walk.width(), impl.walk.height(), impl.walk.screen().perspective, impl.depth_image,
+            impl.depth_covered};
 }
 
 }  // namespace sightline

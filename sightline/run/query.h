@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 
+#include "sightline/base/jobs.h"
 #include "sightline/base/memory.h"
 #include "sightline/geom/view.h"
 #include "sightline/run/world.h"
@@ -22,6 +23,8 @@ struct StageStats {
     uint64_t nanoseconds = 0;  ///< only with View::time_stages
 };
 
+/// Of a view in bins: what was done, in all bins together. The counts of objects that were kept and culled are those of
+/// the answer; what faces and triangles cull there, several bins may count.
 struct QueryStats {
     StageStats stages[kStageCount];
     uint64_t objects = 0;  ///< in the snapshot, within View::layers
@@ -63,10 +66,16 @@ struct Explanation;
 
 /// Scratch of one thread; as many as there are threads. Allocates only when the world or the
 /// viewport has grown.
+///
+/// Several threads can share one query: they offer themselves through a job hook, and the view says in how many bins
+/// it is walked (View::bins). Then each bin, of stereo views each eye's, is a task. The answer is the same for any number of threads, in
+/// every respect but nanoseconds, and the same as without the hook.
 class Query {
 public:
-    /// @param memory  outlives the query; used by no other thread unless it is thread-safe
-    explicit Query(Memory* memory = defaultMemory());
+    /// @param memory  outlives the query; used by no other thread unless it is thread-safe, or the query has jobs:
+    ///                then it must be
+    /// @param jobs    where bins are offered; outlives the query. Null: they are walked one after the other, here
+    explicit Query(Memory* memory = defaultMemory(), Jobs* jobs = nullptr);
     ~Query();
     Query(Query&&) noexcept;
     Query& operator=(Query&&) noexcept;

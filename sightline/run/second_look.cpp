@@ -1,7 +1,5 @@
 // Closer looks at objects that their boxes' rectangles would keep: by the boxes' faces, and at the end by triangles.
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-
 #include "sightline/cull/shapes.h"
 #include "sightline/run/walk.h"
 
@@ -13,11 +11,12 @@ bool Walk::hasSecondLook(const ObjectRecord& object) const {
 }
 
 /// Culls an object by what a closer look found; returns whether it did. Without the frustum stage, what lies outside of
-/// the view is kept.
+/// the view is kept. What a bin finds outside may lie in another: to the bin it is hidden.
 bool Walk::settle(const Pending& entry, Look look, Sight sight, uint64_t& count) {
     if (sight == Sight::kVisible || (sight == Sight::kOutside && !uses(Stage::kFrustum))) return false;
     ++count;
-    cull(entry.first, entry.count, sight == Sight::kOutside ? Stage::kFrustum : Stage::kOcclusion, &entry.rect);
+    const bool outside = sight == Sight::kOutside && !isPart();
+    cull(entry.first, entry.count, outside ? Stage::kFrustum : Stage::kOcclusion, &entry.rect);
     if (record) {
         record->culls.back().look = look;
         record->culls.back().boxed = entry.testable;
@@ -61,7 +60,15 @@ void Walk::lookAgain() {
         }
         if (record && record->stopped) break;
     }
-    if (gone) std::erase_if(visible, [](const Visible& v) { return v.id == ObjectId(); });
+    if (!gone) return;
+    size_t left = 0;
+    for (size_t i = 0; i < visible.size(); ++i) {
+        if (visible[i].id == ObjectId()) continue;
+        if (isPart()) kept[left] = kept[i];
+        visible[left++] = visible[i];
+    }
+    visible.resize(left);
+    if (isPart()) kept.resize(left);
 }
 
 }  // namespace sightline::detail

@@ -30,8 +30,24 @@ LeafAnswer askLeaf(const SnapshotState& state, uint32_t place, const View& view,
 
 Verdict Trial::run(const SnapshotState& state, const View& view, uint32_t item) {
     record.stop_at = hierarchyPlace(state, item);
+    const uint32_t bins = record.stop_at == WalkRecord::kNowhere ? 1 : binCount(view);
+    if (bins == 1) return runBin(state, view, {});
+    for (uint32_t bin = 0; bin < bins; ++bin) {
+        runBin(state, view, {bin, bins});
+        for (const KeptObject& object : walk.kept)
+            if (object.place == record.stop_at) return Verdict::kVisible;
+    }
+    // The walk of the whole has all that hides it. Where it keeps the object, a bin's reason stands.
+    const WalkRecord::Cull of_a_bin = cull;
+    const Verdict verdict = runBin(state, view, {});
+    if (verdict != Verdict::kVisible) return verdict;
+    cull = of_a_bin;
+    return Verdict::kOccluded;
+}
+
+Verdict Trial::runBin(const SnapshotState& state, const View& view, const Bin& bin) {
     record.clear();  // a walk for a view that is not usable notes nothing
-    walk.run(&state, view);
+    walk.run(&state, view, bin);
     for (const WalkRecord::Cull& candidate : record.culls) {
         if (!record.stopsAt(candidate.first, candidate.count)) continue;
         cull = candidate;

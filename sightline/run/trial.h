@@ -27,7 +27,8 @@ struct LeafAnswer {
 };
 LeafAnswer askLeaf(const SnapshotState& state, uint32_t place, const View& view, const Screen& screen);
 
-/// A walk that stops where the object is decided. What it needs stays from trial to trial.
+/// A walk that stops where the object is decided; of a view in bins the one that keeps it, else that of the whole view.
+/// What it needs stays from trial to trial.
 struct Trial {
     explicit Trial(Memory* memory) : walk(memory), record(memory) { walk.record = &record; }
 
@@ -38,6 +39,9 @@ struct Trial {
     /// @param item  of the state; within View::layers
     /// @returns kVisible, kOutsideFrustum or kOccluded
     Verdict run(const SnapshotState& state, const View& view, uint32_t item);
+
+private:
+    Verdict runBin(const SnapshotState& state, const View& view, const Bin& bin);
 };
 
 /// The state of a world that holds only some of a snapshot's objects, as World::commit() would make it.

@@ -33,6 +33,8 @@ bool isSmall(const Screen& screen, const PixelRect& rect) {
 
 }  // namespace
 
+bool Walk::isHiddenHere(PixelRect rect, Seams seams) { return !tiles.clip(rect) || isHidden(tiles, rect, seams); }
+
 void Walk::push(Pending entry) {
     entry.serial = serial++;
     undecided += entry.kind != Pending::Kind::kCluster;
@@ -95,6 +97,7 @@ void Walk::begin(const SnapshotState* now, const View& new_view) {
     pending.clear();
     instances.clear();
     visible.clear();
+    kept.clear();
     culled.clear();
     second.clear();
     tiles.clear(0, 0);
@@ -105,13 +108,12 @@ void Walk::begin(const SnapshotState* now, const View& new_view) {
     if (!snapshot) return;
     every_layer = (state().common_layers & view.layers) != 0 || state().count == 0;
     stats.objects = state().count;
-    if (every_layer) return;
+    if (every_layer || bin.index > 0) return;
     stats.objects = 0;
     for (uint32_t item = 0; item < state().count; ++item)
         stats.objects += (state().object(item).layers & view.layers) != 0;
 }
 
-/// Keeps an object that no stage can look at.
 void Walk::keep(uint32_t item) {
     const ObjectRecord& object = state().object(item);
     if (!(object.layers & view.layers)) return;
@@ -164,6 +166,7 @@ void Walk::expand(const Visit& from) {
     }
     if (!left) return;
     const ScreenAnswer on_screen = projectBoxes(screen, boxes);
+    if (isPart()) left &= ~findBeside(on_screen, boxes, left);
     for (int slot = 0; slot < 8; ++slot) {
         if (!(left >> slot & 1)) continue;
         const uint8_t planes = uses(Stage::kFrustum) ? answer.planes[slot] : uint8_t{0};
@@ -220,7 +223,8 @@ void Walk::offerOccluder(uint32_t place, bool in_line) {
     const uint32_t clusters = static_cast<uint32_t>(occluder.clusters.size());
     for (uint32_t cluster = 0; cluster < clusters; ++cluster) {
         const BoxAnswer box = projectBox(instances[owner].screen, occluder.clusters[cluster].bounds);
-        if (box.outside) continue;
+        if (box.outside || (isPart() && isBeside(box, instances[owner].screen, occluder.clusters[cluster].bounds)))
+            continue;
         if (clusters == 1 && !in_line) {
             draw(instances[owner], cluster, box);
             continue;
@@ -253,16 +257,17 @@ void Walk::visit(const Pending& entry) {
         BoxAnswer box;
         box.rect = entry.rect;
         box.doubt = !entry.testable;
-        if (box.doubt || !isHidden(tiles, box.rect, Seams::kLeave)) draw(instances[entry.owner], entry.index, box);
+        if (box.doubt || !isHiddenHere(box.rect, Seams::kLeave)) draw(instances[entry.owner], entry.index, box);
         return;
     }
     // A node in doubt is opened: its children's smaller rectangles need fewer seams.
     const Seams seams = entry.kind == Pending::Kind::kNode ? Seams::kLeave : Seams::kResolve;
-    if (occlusion && entry.testable && isHidden(tiles, entry.rect, seams))
+    if (occlusion && entry.testable && isHiddenHere(entry.rect, seams))
         return cull(entry.first, entry.count, Stage::kOcclusion, &entry.rect);
     if (entry.kind == Pending::Kind::kNode) return expand({entry.index, entry.planes, entry.volumes});
     if (occlusion && lookCloser(entry)) return;
     report(entry.index, 1);
+    if (isPart() && kept.size() < visible.size()) kept.push_back({entry.index, entry.rect.nearness});
     const bool again = !second.empty() && second.back().entry.serial == entry.serial;
     if (record && !again) noteKept(entry, view.faces && entry.testable ? Look::kFaces : Look::kBox);
     // Where nothing else is left to ask it hides nothing.
@@ -303,7 +308,12 @@ void Walk::walk() {
     frustum = makeFrustum(view);
     screen = makeScreen(view, view.occlusion_size);
     if (uses(Stage::kOcclusion)) tiles.clear(screen.width, screen.height, view.occlusion_detail);
-    for (uint32_t item : state().unbounded) keep(item);
+    if (isPart()) {
+        const auto border = [&](uint64_t i) { return static_cast<uint32_t>(tiles.columns * i / bin.count); };
+        tiles.keepColumns(border(bin.index), border(bin.index + 1));
+    } else {
+        for (uint32_t item : state().unbounded) keep(item);
+    }
     if (state().bvh.nodes.empty()) return;
     const uint8_t planes = static_cast<uint8_t>(uses(Stage::kFrustum) ? (1u << frustum.count) - 1 : 0);
     if (uses(Stage::kVolumes)) chooseVolumes();
@@ -329,19 +339,21 @@ void Walk::walk() {
 }
 
 void Walk::finish() {
+    stats.seam_pixels = tiles.seam_pixels;
+    if (isPart()) return;
     uint64_t left = stats.objects;
     for (const Stage stage : {Stage::kFrustum, Stage::kVolumes, Stage::kOcclusion}) {
         of(stage).tested = uses(stage) ? left : 0;
         left -= of(stage).culled;
     }
     stats.visible = visible.size();
-    stats.seam_pixels = tiles.seam_pixels;
     uint64_t culled_objects = 0;
     for (const StageStats& stage : stats.stages) culled_objects += stage.culled;
     SIGHTLINE_ASSERT(stats.visible + culled_objects == stats.objects || (record && record->stopped));
 }
 
-void Walk::run(const SnapshotState* now, const View& new_view) {
+void Walk::run(const SnapshotState* now, const View& new_view, const Bin& part) {
+    bin = part;
     begin(now, new_view);
     if (!now) return;
     if (isUsable(view) && runsOutward(view)) walk();

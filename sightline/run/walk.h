@@ -55,6 +55,20 @@ struct SecondLook {
     uint32_t visible = 0;  ///< index into Walk::visible
 };
 
+/// Which part of a view is walked: the whole of it, or one of its bins.
+struct Bin {
+    uint32_t index = 0, count = 1;
+};
+
+/// How many bins a view is walked in: View::bins, or 1 where there is nothing to share out.
+uint32_t binCount(const View& view);
+
+/// An object that a bin keeps.
+struct KeptObject {
+    uint32_t place = 0;
+    float nearness = 0;  ///< by which it was in line
+};
+
 /// Objects that were culled together.
 struct CulledRange {
     uint32_t first = 0, count = 0;
@@ -103,13 +117,18 @@ struct WalkRecord {
     bool stopsAt(uint32_t first, uint32_t count) const { return stop_at >= first && stop_at - first < count; }
 };
 
-/// One answer in the making. What it needs stays from walk to walk.
+/// One answer in the making, or one bin's part of it. What it needs stays from walk to walk.
+///
+/// A bin's walk is that of the whole view, in a buffer of which all beside the bin's columns is hidden. What the
+/// frustum and the volumes decide about a node does not hang on the bin; nodes and objects that lie beside it are passed
+/// over without a word.
 struct Walk {
     explicit Walk(Memory* from) : memory(from) {}
 
     Memory* const memory;
     const SnapshotState* snapshot = nullptr;  ///< outlives the answer; null: there is none
     View view;
+    Bin bin;
     WalkRecord* record = nullptr;  ///< filled, if there is one
     bool every_layer = true;       ///< no object is outside the view's layers
     Frustum frustum;
@@ -122,6 +141,7 @@ struct Walk {
     Array<Visit> visits{memory};
     Array<OccluderInstance> instances{memory};
     Array<Visible> visible{memory};
+    Array<KeptObject> kept{memory};  ///< of a bin: who stands in `visible`, one by one
     Array<CulledRange> culled{memory};
     Array<SecondLook> second{memory};
     TriangleScratch looks{memory};
@@ -134,13 +154,23 @@ struct Walk {
     StageStats& of(Stage stage) { return stats.stages[static_cast<int>(stage)]; }
 
     /// The whole answer: `visible`, `culled` and `stats`, but for the time that it took.
-    void run(const SnapshotState* now, const View& new_view);
-    /// As Query::reasons().
+    void run(const SnapshotState* now, const View& new_view) { run(now, new_view, {}); }
+    /// The same of a bin, of which `stats` has what it did, but for the objects that its stages culled; and of objects
+    /// without bounds nothing.
+    void run(const SnapshotState* now, const View& new_view, const Bin& part);
+    /// As Query::reasons(), of the whole view.
     void reasons(std::span<uint8_t> reasons) const;
     /// How many objects of a range of places are within the view's layers.
     uint64_t inLayers(uint32_t first, uint32_t count) const;
+    /// Keeps an object that no stage can look at.
+    void keep(uint32_t item);
 
 private:
+    bool isPart() const { return bin.count > 1; }
+    bool liesBeside(const Screen& from, const Box3f& box) const;
+    bool isBeside(const BoxAnswer& on_screen, const Screen& from, const Box3f& box) const;
+    uint32_t findBeside(const ScreenAnswer& on_screen, const EyeBoxes& boxes, uint32_t of) const;
+    bool isHiddenHere(PixelRect rect, Seams seams);
     void begin(const SnapshotState* now, const View& new_view);
     void keepEverything();
     void walk();
@@ -150,7 +180,6 @@ private:
     VolumesAnswer askVolumes(const BvhNode& node, const EyeBoxes& boxes, VolumeRange range, uint32_t left);
     void meet(const BvhNode& node, int slot, const Visit& below, const ScreenAnswer& on_screen);
     void visit(const Pending& entry);
-    void keep(uint32_t item);
     bool lookCloser(const Pending& entry);
     void lookAgain();
     bool hasSecondLook(const ObjectRecord& object) const;

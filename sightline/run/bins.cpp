@@ -1,0 +1,181 @@
+// A view cut into bins, strips of the buffer side by side: a walk for each, by any thread, and one answer of them all.
+// SPDX-License-Identifier: MIT
+#include "sightline/run/bins.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <limits>
+
+#include "sightline/base/assert.h"
+#include "sightline/geom/depth_order.h"
+#include "sightline/raster/depth_image.h"
+
+namespace sightline::detail {
+namespace {
+
+constexpr uint32_t kMostBins = 16;
+
+/// Adds what another bin did.
+void addWork(const QueryStats& from, QueryStats& to) {
+    for (int stage = 0; stage < kStageCount; ++stage) to.stages[stage].nanoseconds += from.stages[stage].nanoseconds;
+    for (auto count : {&QueryStats::nodes_visited, &QueryStats::occluder_triangles, &QueryStats::seam_pixels,
+                       &QueryStats::faces_tested, &QueryStats::faces_culled, &QueryStats::second_looks,
+                       &QueryStats::second_look_culled, &QueryStats::second_look_polygons, &QueryStats::nanoseconds})
+        to.*count += from.*count;
+    to.budget_spent |= from.budget_spent;
+    to.second_look_spent |= from.second_look_spent;
+}
+
+}  // namespace
+
+uint32_t binCount(const View& view) {
+    const uint32_t both = stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion);
+    if (view.bins < 2 || (view.stages & both) != both || !isUsable(view) || !runsOutward(view)) return 1;
+    return std::clamp(makeScreen(view, view.occlusion_size).width / 8, 1u, std::min(view.bins, kMostBins));
+}
+
+/// Of a bin: whether a box surely lies beside it. The outermost bins reach beyond the buffer.
+bool Walk::liesBeside(const Screen& from, const Box3f& box) const {
+    const double left = 8.0 * tiles.first_column, right = 8.0 * tiles.end_column;
+    return (bin.index > 0 && isLeftOf(from, box, left)) || (bin.index + 1 < bin.count && isRightOf(from, box, right));
+}
+
+bool Walk::isBeside(const BoxAnswer& on_screen, const Screen& from, const Box3f& box) const {
+    if (on_screen.doubt) return liesBeside(from, box);
+    PixelRect rect = on_screen.rect;
+    return !tiles.clip(rect);
+}
+
+/// Of a bin: the children of a node that lie beside it.
+uint32_t Walk::findBeside(const ScreenAnswer& on_screen, const EyeBoxes& boxes, uint32_t of) const {
+    uint32_t beside = 0;
+    for (of &= ~on_screen.outside; of; of &= of - 1) {
+        const int slot = std::countr_zero(of);
+        Box3f box;
+        for (int axis = 0; axis < 3; ++axis) {
+            box.min[axis] = boxes.min[axis][slot];
+            box.max[axis] = boxes.max[axis][slot];
+        }
+        const BoxAnswer answer{on_screen.rects[slot], (on_screen.doubt >> slot & 1) != 0, false};
+        beside |= uint32_t{isBeside(answer, screen, box)} << slot;
+    }
+    return beside;
+}
+
+BinnedWalk::BinnedWalk(Memory* memory) : memory_(memory), walks_(memory), merged_(memory), met_(memory) { addWalk(); }
+
+void BinnedWalk::addWalk() {
+    walks_.push_back(makeOwned<Walk>(memory_, memory_));
+    walks_.back()->remembers = true;
+}
+
+void BinnedWalk::begin(const SnapshotState* now, const View& view) {
+    now_ = now;
+    view_ = view;
+    count_ = now ? binCount(view) : 1;
+    while (walks_.size() < count_) addWalk();
+    merged_.clear();
+}
+
+void BinnedWalk::run(uint32_t bin) {
+    const auto start = std::chrono::steady_clock::now();
+    walks_[bin]->run(now_, view_, {bin, count_});
+    walks_[bin]->stats.nanoseconds = static_cast<uint64_t>(
+        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count());
+}
+
+/// Notes a place; false if it has been in this answer.
+bool BinnedWalk::meet(uint32_t place) {
+    if (met_[place] == answer_) return false;
+    met_[place] = answer_;
+    return true;
+}
+
+/// Each object that a bin keeps, once.
+void BinnedWalk::mergeVisible() {
+    uint32_t at[kMostBins] = {};
+    for (;;) {
+        uint32_t best = count_;
+        for (uint32_t bin = 0; bin < count_; ++bin) {
+            if (at[bin] == walks_[bin]->kept.size()) continue;
+            if (best == count_) {
+                best = bin;
+                continue;
+            }
+            const KeptObject &here = walks_[bin]->kept[at[bin]], &there = walks_[best]->kept[at[best]];
+            if (here.nearness != there.nearness ? here.nearness > there.nearness : here.place < there.place) best = bin;
+        }
+        if (best == count_) return;
+        const Walk& walk = *walks_[best];
+        const uint32_t next = at[best]++;
+        if (!meet(walk.kept[next].place)) continue;
+        merged_.push_back(walk.visible[next]);
+        of(Stage::kOcclusion).doubt += walk.kept[next].nearness == std::numeric_limits<float>::infinity();
+    }
+}
+
+/// The nodes and objects that the frustum and the volumes cull are the same for all bins that meet them; the rest of
+/// what is not kept is occluded.
+void BinnedWalk::countCulled() {
+    for (uint32_t bin = 0; bin < count_; ++bin)
+        for (const CulledRange& range : walks_[bin]->culled)
+            if (range.stage != Stage::kOcclusion && meet(range.first))
+                of(range.stage).culled += walks_[bin]->inLayers(range.first, range.count);
+    uint64_t left = stats.objects;
+    for (const Stage stage : {Stage::kFrustum, Stage::kVolumes, Stage::kOcclusion}) {
+        if (stage == Stage::kOcclusion) of(stage).culled = left - stats.visible;
+        of(stage).tested = walks_[0]->uses(stage) ? left : 0;
+        left -= of(stage).culled;
+    }
+}
+
+void BinnedWalk::finish() {
+    stats = walks_[0]->stats;
+    if (count_ == 1) return;
+    of(Stage::kOcclusion).doubt = 0;
+    for (StageStats& stage : stats.stages) stage.culled = 0;
+    for (uint32_t bin = 1; bin < count_; ++bin) addWork(walks_[bin]->stats, stats);
+    if (met_.size() < now_->placed->size()) met_.resize(now_->placed->size(), 0);
+    if (++answer_ == 0) {
+        std::fill(met_.begin(), met_.end(), 0);
+        answer_ = 1;
+    }
+    for (const uint32_t item : now_->unbounded) {
+        const ObjectRecord& object = now_->object(item);
+        if (!(object.layers & view_.layers)) continue;
+        merged_.push_back({object.key, object.id});
+        ++of(Stage::kFrustum).doubt;
+    }
+    mergeVisible();
+    stats.visible = merged_.size();
+    countCulled();
+}
+
+void BinnedWalk::timed(uint64_t nanoseconds) {
+    if (view_.time_stages && walks_[0]->uses(Stage::kOcclusion))
+        of(Stage::kOcclusion).nanoseconds =
+            stats.nanoseconds - of(Stage::kFrustum).nanoseconds - of(Stage::kVolumes).nanoseconds;
+    stats.nanoseconds = nanoseconds;
+}
+
+void BinnedWalk::reasons(std::span<uint8_t> reasons) const {
+    if (count_ == 1) return walks_[0]->reasons(reasons);
+    SIGHTLINE_ASSERT(reasons.size() >= now_->count);
+    std::fill(reasons.begin(), reasons.end(), uint8_t{0});
+    const auto at = [&](uint32_t place) -> uint8_t& { return reasons[now_->itemOf(now_->bvh.order[place])]; };
+    for (uint32_t bin = 0; bin < count_; ++bin)
+        for (const CulledRange& range : walks_[bin]->culled)
+            for (uint32_t place = range.first; place < range.first + range.count; ++place)
+                at(place) = std::max(at(place), static_cast<uint8_t>(1 + static_cast<int>(range.stage)));
+    for (uint32_t bin = 0; bin < count_; ++bin)
+        for (const KeptObject& object : walks_[bin]->kept) at(object.place) = 0;
+    for (uint32_t item = 0; item < now_->count; ++item)
+        if (!(now_->object(item).layers & view_.layers)) reasons[item] = 255;
+}
+
+void BinnedWalk::depthImage(Seams seams, std::span<float> nearness, std::span<uint8_t> covered) {
+    for (uint32_t bin = 0; bin < count_; ++bin) readDepthImage(walks_[bin]->tiles, seams, nearness, covered, 0.0f);
+}
+
+}  // namespace sightline::detail
