@@ -208,8 +208,8 @@ TEST(Tiles, ResolveByPolygonsThatMakingMoreHasMoved) {
 }
 
 /// A sheet and a soup, drawn into some columns of tiles alone.
-TEST(Tiles, OfSomeColumnsClaimWhatTheWholeClaimsThere) {
-    uint64_t covered = 0, other = 0;
+TEST(Tiles, OfSomeColumnsCoverWhatTheWholeCoversThere) {
+    uint64_t covered = 0, other = 0, farther = 0;
     for (uint64_t seed = 1; seed <= 5; ++seed) {
         Random random(seed);
         std::vector<Solid> solids;
@@ -233,7 +233,8 @@ TEST(Tiles, OfSomeColumnsClaimWhatTheWholeClaimsThere) {
                     continue;
                 }
                 covered += whole.covered(x, y);
-                other += part.depth(x, y) != whole.depth(x, y);
+                other += part.covered(x, y) != whole.covered(x, y);
+                farther += whole.covered(x, y) && !(part.depth(x, y) >= 0.98f * whole.depth(x, y));
             }
         PixelRect beside{0, 0, static_cast<int32_t>(8 * first) - 1, 7, 1e9f};
         EXPECT_FALSE(part.tiles.clip(beside));
@@ -251,7 +252,9 @@ TEST(Tiles, OfSomeColumnsClaimWhatTheWholeClaimsThere) {
         ASSERT_EQ(findLeak(part, seed, 4), "");
     }
     EXPECT_GT(covered, 2000u);
-    EXPECT_LE(other, covered / 100);  // where rounding falls out otherwise
+    // Rounding may fall out otherwise; and of what is narrower there the depth is taken more coarsely.
+    EXPECT_LE(other, covered / 100);
+    EXPECT_LE(farther, covered / 50);
 }
 
 TEST(Tiles, AreTheSameOnEveryInstructionSet) {
