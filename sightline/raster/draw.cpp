@@ -15,6 +15,7 @@
 #include <hwy/highway.h>
 
 #include "sightline/raster/dense-inl.h"
+#include "sightline/raster/joined_outline-inl.h"
 #include "sightline/raster/loose-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -124,25 +125,35 @@ private:
     int leaves_[kMaxAtOnce], returns_[kMaxAtOnce];  ///< per polygon: on which edge
 };
 
+/// The corners of a polygon, as far as they lie before the near plane.
+Corners cornersBefore(const ClusterDraw& c, const Windings& windings, int p) {
+    return windings.place[p] == Place::kCut ? cutCorners(c, c.polygons[p]) : cornersOf(c, c.polygons[p]);
+}
+
+/// Draws the polygons that wind one way by their outline, if they look like the front of something convex.
+/// @param seams  whether some are left
+/// @returns false if they do not
+bool drawAsOutline(const ClusterDraw& c, const Windings& windings, const OpenEdges& open, int8_t turn, uint32_t source,
+                   bool& seams) {
+    JoinedOutline outline;
+    if ((turn > 0 ? windings.forward : windings.backward) > ConvexDepth::kMost || !outline.gather(open)) return false;
+    FrontPlanes planes;
+    for (int p = 0; p < windings.count; ++p) {
+        if (windings.turn[p] != turn) continue;
+        const Corners corners = cornersBefore(c, windings, p);
+        if (corners.count >= 3 && !planes.add(c, corners)) return false;
+    }
+    ConvexDepth depth;
+    if (!planes.finish(c.drawn.depth_error, depth)) return false;
+    seams = drawOutline(c, outline, depth, source);
+    return true;
+}
+
 /// Draws the polygons of a joined cluster that wind one way.
 /// @returns whether seams are left
 bool drawJoined(const ClusterDraw& c, const Projected& projected, const Windings& windings, const CutEdges* cuts,
                 int8_t turn, uint32_t source) {
-    Patch patch = makePatch(c);
-    Extent extent = projected.extent;
-    if (cuts)
-        for (int p = 0; p < windings.count; ++p) {
-            if (windings.turn[p] != turn || windings.place[p] != Place::kCut) continue;
-            const Corners corners = cutCorners(c, c.polygons[p]);
-            for (int i = 0; i < corners.count; ++i) extent.grow(corners.x[i], corners.y[i], corners.d[i]);
-        }
-    if (!beginPatch(patch, extent)) return false;
-    for (int p = 0; p < windings.count; ++p) {
-        if (windings.turn[p] != turn) continue;
-        const bool cut = windings.place[p] == Place::kCut;
-        const Corners corners = cut ? cutCorners(c, c.polygons[p]) : cornersOf(c, c.polygons[p]);
-        if (corners.count >= 3) addDepth(patch, corners, turn);
-    }
+    source |= SeamEntry::kAllPolygons;
     OpenEdges open;
     const OccluderEdge* edges = c.drawn.occluder->edges.data() + c.cluster.first_edge;
     for (uint32_t i = 0; i < c.cluster.edge_count; ++i) {
@@ -155,8 +166,23 @@ bool drawJoined(const ClusterDraw& c, const Projected& projected, const Windings
         open.add(ends[0], ends[1], ends[2], ends[3], change);
     }
     if (cuts) cuts->addPlaneSides(open, turn);
+    if (bool seams = false; drawAsOutline(c, windings, open, turn, source, seams)) return seams;
+    Patch patch = makePatch(c);
+    Extent extent = projected.extent;
+    if (cuts)
+        for (int p = 0; p < windings.count; ++p) {
+            if (windings.turn[p] != turn || windings.place[p] != Place::kCut) continue;
+            const Corners corners = cutCorners(c, c.polygons[p]);
+            for (int i = 0; i < corners.count; ++i) extent.grow(corners.x[i], corners.y[i], corners.d[i]);
+        }
+    if (!beginPatch(patch, extent)) return false;
+    for (int p = 0; p < windings.count; ++p) {
+        if (windings.turn[p] != turn) continue;
+        const Corners corners = cornersBefore(c, windings, p);
+        if (corners.count >= 3) addDepth(patch, corners, turn);
+    }
     addOpenEdges(patch, open);
-    return coverPatch(patch, source | SeamEntry::kAllPolygons);
+    return coverPatch(patch, source);
 }
 
 void drawClusterKernel(DepthTiles& tiles, const DrawnCluster& cluster, const Screen& object, bool flips) {

@@ -54,28 +54,35 @@ struct Patch {
     int32_t open_low = 0, open_high = 0, open_first = 0, open_last = 0;  ///< [tiles]
 };
 
+/// Finds the columns of a row of tiles between which something so near may lie in front of what they claim.
+/// @param base   of the first tile
+/// @param last  -1 if there are none
+HWY_INLINE void openInRow(const float* base, int32_t columns, float nearest, int32_t& first, int32_t& last) {
+    const F16 d;
+    first = columns;
+    last = -1;
+    for (int32_t i = 0; i < columns; i += static_cast<int32_t>(hn::Lanes(d))) {
+        const auto within = hn::FirstN(d, static_cast<size_t>(columns - i));
+        const auto open = hn::And(within, hn::Lt(hn::LoadU(d, base + i), hn::Set(d, nearest)));
+        const uint64_t bits = bitsFromMask(d, open);
+        if (!bits) continue;
+        if (last < 0) first = i + std::countr_zero(bits);
+        last = i + 63 - std::countl_zero(bits);
+    }
+}
+
 /// Finds in each row the columns between which the patch may lie in front of what the tiles claim; false if nowhere.
 HWY_INLINE bool openColumns(Patch& patch) {
     DepthTiles& tiles = patch.tiles;
-    const F16 d;
-    const auto nearest = hn::Set(d, patch.nearest);
     patch.open_low = patch.rows;
     patch.open_high = patch.open_last = -1;
     patch.open_first = patch.columns;
     for (int32_t row = 0; row < patch.rows; ++row) {
         const float* base = tiles.base.data() + size_t{static_cast<uint32_t>(patch.row0 + row)} * tiles.stride +
                             static_cast<size_t>(patch.column0);
-        int32_t first = patch.columns, last = -1;
-        for (int32_t i = 0; i < patch.columns; i += static_cast<int32_t>(hn::Lanes(d))) {
-            const auto within = hn::FirstN(d, static_cast<size_t>(patch.columns - i));
-            const auto open = hn::And(within, hn::Lt(hn::LoadU(d, base + i), nearest));
-            const uint64_t bits = bitsFromMask(d, open);
-            if (!bits) continue;
-            if (last < 0) first = i + std::countr_zero(bits);
-            last = i + 63 - std::countl_zero(bits);
-        }
-        tiles.scratch.first[static_cast<size_t>(row)] = first;
-        tiles.scratch.last[static_cast<size_t>(row)] = last;
+        int32_t &first = tiles.scratch.first[static_cast<size_t>(row)],
+                &last = tiles.scratch.last[static_cast<size_t>(row)];
+        openInRow(base, patch.columns, patch.nearest, first, last);
         if (last < 0) continue;
         patch.open_low = std::min(patch.open_low, row);
         patch.open_high = row;
@@ -150,7 +157,9 @@ struct Line {
     double x, y, height, slope;  ///< slope 0 if it is level
     double x_least, x_most;
     bool level;
+    bool down;  ///< it was given from its upper end to its lower one
 
+    Line() = default;
     HWY_INLINE Line(double ax, double ay, double bx, double by) {
         const bool up = ay <= by;
         x = up ? ax : bx;
@@ -159,6 +168,7 @@ struct Line {
         x_least = std::min(ax, bx);
         x_most = std::max(ax, bx);
         level = height < kLevel;
+        down = by < ay;
         slope = level ? 0.0 : ((up ? bx - ax : ax - bx) / height);
     }
     HWY_INLINE double at(double above) const { return x + above * slope; }
@@ -245,6 +255,30 @@ HWY_INLINE uint64_t bytesBetween(int32_t first, int32_t last) {
     return ~uint64_t{0} << (8 * std::max(first, 0)) & ~uint64_t{0} >> (56 - 8 * std::min(last, 7));
 }
 
+/// Changes the winding number of a tile where an edge crosses its rows of pixels.
+/// @param crossings  per row the pixel that it crosses; those outside the tile do not matter
+/// @param x          the tile's first
+HWY_INLINE void addCrossings(const int32_t* crossings, int32_t x, uint8_t change, uint8_t* winding) {
+#if HWY_TARGET == HWY_SCALAR
+    for (int32_t k = 0; k < 8; ++k)
+        if (const int32_t at = crossings[k] - x; at >= 0 && at < 8)
+            winding[8 * k + at] = static_cast<uint8_t>(winding[8 * k + at] + change);
+#else
+    const hn::CappedTag<uint64_t, 8> rows;
+    const hn::Rebind<int32_t, decltype(rows)> i32;
+    const hn::Rebind<int64_t, decltype(rows)> i64;
+    const hn::CappedTag<uint8_t, 8 * hn::MaxLanes(rows)> bytes;
+    for (size_t k = 0; k < 8; k += hn::Lanes(rows)) {
+        const auto at = hn::PromoteTo(i64, hn::Sub(hn::LoadU(i32, crossings + k), hn::Set(i32, x)));
+        const auto within = hn::And(hn::Gt(at, hn::Set(i64, -1)), hn::Lt(at, hn::Set(i64, 8)));
+        const auto bits = hn::BitCast(rows, hn::And(hn::ShiftLeft<3>(at), hn::Set(i64, 63)));
+        const auto word = hn::IfThenElseZero(hn::RebindMask(rows, within), hn::Shl(hn::Set(rows, change), bits));
+        uint8_t* eight = winding + 8 * k;
+        hn::StoreU(hn::Add(hn::LoadU(bytes, eight), hn::BitCast(bytes, word)), bytes, eight);
+    }
+#endif
+}
+
 /// Notes what an edge is to the tiles of one row: the pixels that it touches, and where the winding number changes.
 HWY_INLINE void addEdgeInRow(Patch& patch, const EdgeSetups& s, int i, int32_t row, uint8_t change) {
     DepthTiles::Scratch& scratch = patch.tiles.scratch;
@@ -294,13 +328,18 @@ HWY_INLINE void addEdgeInRow(Patch& patch, const EdgeSetups& s, int i, int32_t r
         hn::Store(hn::Sub(hn::ConvertTo(i32, hn::Min(hn::Max(hn::Add(high, hn::Set(d, 1.0f)), zero), beyond)),
                           hn::Set(i32, 1)),
                   i32, highs + k);
-        hn::Store(hn::ConvertTo(i32, hn::Min(hn::Max(crossing, border), beyond)), i32, crossings + k);
+        // Beyond all tiles in rows whose centres it does not cross.
+        const auto row_of_pixels = hn::Iota(i32, static_cast<int32_t>(k));
+        const auto crossed =
+            hn::And(hn::Gt(row_of_pixels, hn::Set(i32, c0 - 1)), hn::Lt(row_of_pixels, hn::Set(i32, c1)));
+        hn::Store(hn::IfThenElse(crossed, hn::ConvertTo(i32, hn::Min(hn::Max(crossing, border), beyond)),
+                                 hn::Set(i32, 1 << 20)),
+                  i32, crossings + k);
     }
     reserveSlots(patch, static_cast<uint32_t>(std::max(t1 - t0 + 1, 0)));
     for (int32_t t = t0; t <= t1; ++t) {
         const uint32_t slot = slotOf(patch, size_t{patch.pitch} * static_cast<size_t>(row) + static_cast<size_t>(t));
         alignas(8) uint8_t touched[8];
-        uint64_t here = 0;
         for (size_t k = 0; k < 8; k += hn::Lanes(d)) {
             const auto eight = hn::Set(i32, 8), none = hn::Zero(i32), ones = hn::Set(i32, 0xff);
             const auto low = hn::Sub(hn::Load(i32, lows + k), hn::Set(i32, 8 * t));
@@ -309,20 +348,11 @@ HWY_INLINE void addEdgeInRow(Patch& patch, const EdgeSetups& s, int i, int32_t r
                                               hn::Shr(ones, hn::Min(hn::Max(high, none), eight))),
                                       ones);
             hn::StoreU(hn::DemoteTo(u8, bits), u8, touched + k);
-            const auto at = hn::Sub(hn::Load(i32, crossings + k), hn::Set(i32, 8 * t));
-            here |= bitsFromMask(i32, hn::And(hn::Gt(at, hn::Set(i32, -1)), hn::Lt(at, eight))) << k;
         }
         uint64_t word;
         std::memcpy(&word, touched, sizeof word);
         scratch.touched[slot] |= word & rows_touched;
-        if (c0 >= c1) continue;
-        here &= (0xffu << c0) & (0xffu >> (8 - c1));
-        uint8_t* winding = scratch.winding.data() + 64 * size_t{slot};
-        for (; here; here &= here - 1) {
-            const int k = std::countr_zero(here);
-            uint8_t& place = winding[8 * k + (crossings[k] & 7)];
-            place = static_cast<uint8_t>(place + change);
-        }
+        if (c0 < c1) addCrossings(crossings, 8 * t, change, scratch.winding.data() + 64 * size_t{slot});
     }
 }
 
@@ -396,24 +426,25 @@ struct RowSpans {
     alignas(64) int32_t whole_first[kRows], whole_last[kRows];  ///< those that lie wholly inside it
 };
 
+/// The sides of a polygon as lines, and between which y it lies.
+struct Sides {
+    Line line[Corners::kMax];
+    int count;
+    double y_least, y_most;
+};
+
 /// @param turn  which way the polygon winds, if it is surely convex; else 0
-HWY_INLINE void spansOfRows(const Patch& patch, const Corners& c, int turn, int32_t row, RowSpans& out) {
+HWY_INLINE void spansOfRows(const Patch& patch, const Sides& sides, int turn, int32_t row, RowSpans& out) {
     const D8 d;
     const I8 i32;
     const double e = patch.reach, left = 8.0 * patch.column0, bottom = 8.0 * (patch.row0 + row);
     const auto far = hn::Set(d, 1e30), zero = hn::Zero(d), eight = hn::Set(d, 8.0);
-    double y_least = c.y[0], y_most = c.y[0];
-    for (int i = 1; i < c.count; ++i) {
-        y_least = std::min(y_least, c.y[i]);
-        y_most = std::max(y_most, c.y[i]);
-    }
     for (size_t k = 0; k < 8; k += hn::Lanes(d)) {
         const auto from = hn::Add(hn::Mul(hn::Iota(d, static_cast<double>(k)), eight), hn::Set(d, bottom - e));
         const auto to = hn::Add(from, hn::Set(d, 8.0 + 2.0 * e));
         auto low = far, high = hn::Neg(far), in_low = high, in_high = far;
-        for (int i = 0; i < c.count; ++i) {
-            const int j = i + 1 < c.count ? i + 1 : 0;
-            const Line line(c.x[i], c.y[i], c.x[j], c.y[j]);
+        for (int i = 0; i < sides.count; ++i) {
+            const Line& line = sides.line[i];
             const auto y = hn::Set(d, line.y), height = hn::Set(d, line.height), error = hn::Set(d, line.error());
             const auto ya = hn::Sub(from, y), yb = hn::Sub(to, y);
             const auto met = hn::And(hn::Le(ya, height), hn::Ge(yb, zero));
@@ -428,7 +459,7 @@ HWY_INLINE void spansOfRows(const Patch& patch, const Corners& c, int turn, int3
             low = hn::IfThenElse(met, hn::Min(low, hn::Sub(xa, error)), low);
             high = hn::IfThenElse(met, hn::Max(high, hn::Add(xb, error)), high);
             // Inside is on the left of a side that runs the polygon's way: the right of one that runs down.
-            const bool on_left = (c.y[j] < c.y[i]) == (turn > 0);
+            const bool on_left = line.down == (turn > 0);
             if (on_left) in_low = hn::IfThenElse(met, hn::Max(in_low, hn::Add(xb, error)), in_low);
             else in_high = hn::IfThenElse(met, hn::Min(in_high, hn::Sub(xa, error)), in_high);
         }
@@ -442,7 +473,8 @@ HWY_INLINE void spansOfRows(const Patch& patch, const Corners& c, int turn, int3
         };
         store(column(low, -e), out.first);
         store(hn::Add(column(high, e), one), out.last);
-        const auto tall = hn::And(hn::Gt(from, hn::Set(d, y_least + e)), hn::Lt(to, hn::Set(d, y_most - e)));
+        const auto tall =
+            hn::And(hn::Gt(from, hn::Set(d, sides.y_least + e)), hn::Lt(to, hn::Set(d, sides.y_most - e)));
         store(hn::IfThenElse(tall, hn::Ceil(column(in_low, e)), columns), out.whole_first);
         store(hn::IfThenElse(tall, column(in_high, -e), zero), out.whole_last);
     }
@@ -546,10 +578,18 @@ inline void addDepth(Patch& patch, const Corners& c, int turn) {
     patch.tiles.planes.push_back(plane);
     const bool large = c1 - c0 > 1 && r1 - r0 > 1;
     const int surely = large && isConvex(c, turn, patch.reach) ? turn : 0;
+    Sides sides;
+    sides.count = c.count;
+    sides.y_least = y0;
+    sides.y_most = y1;
+    for (int i = 0; i < c.count; ++i) {
+        const int j = i + 1 < c.count ? i + 1 : 0;
+        sides.line[i] = Line(c.x[i], c.y[i], c.x[j], c.y[j]);
+    }
     RowSpans spans;
     for (int32_t row = r0; row <= r1; ++row) {
         const int k = (row - r0) % RowSpans::kRows;
-        if (k == 0) spansOfRows(patch, c, surely, row, spans);
+        if (k == 0) spansOfRows(patch, sides, surely, row, spans);
         const int32_t first = std::max(spans.first[k], patch.tiles.scratch.first[static_cast<size_t>(row)]);
         const int32_t last = std::min(spans.last[k], patch.tiles.scratch.last[static_cast<size_t>(row)]);
         if (first <= last) lowerRow(patch, plane, index, row, first, last, spans.whole_first[k], spans.whole_last[k]);
