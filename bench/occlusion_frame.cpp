@@ -22,8 +22,6 @@ std::vector<Box3d> inDouble(std::span<const Box3f> boxes) {
     return out;
 }
 
-constexpr uint32_t kFirst = 0;
-
 std::vector<Box3f> batchBounds(const OcclusionScene& scene) {
     std::vector<Box3f> bounds;
     for (const OccluderBatch& batch : scene.batches) bounds.push_back(batch.bounds);
@@ -121,6 +119,12 @@ void OcclusionFrame::begin(const View& view) {
     std::stable_sort(batches_.begin(), batches_.end(),
                      [&](uint32_t a, uint32_t b) { return distance[a] < distance[b]; });
 
+    if (occluders_.size() < scene_.batches.size()) drawn_.assign(1, 0);
+    else drawn_ = batches_;
+    std::vector<Box3f> own;
+    for (uint32_t occluder : drawn_) own.push_back(own_bounds_[occluder]);
+    drawn_eights_ = inEights(own);
+
     const size_t boxes = cullFrustum(frustum, flat_boxes_.arrays, flat_boxes_.kept);
     boxes_.clear();
     std::vector<Box3f> members, groups;
@@ -137,19 +141,21 @@ void OcclusionFrame::begin(const View& view) {
 uint64_t OcclusionFrame::rasterize(DepthTiles& tiles, SelfTest self_test, OcclusionDetail detail) const {
     tiles.clear(screen_.width, screen_.height, detail);
     uint64_t offered = 0;
-    const Screen object = objectScreen(screen_, identity_);
     const auto covered = [&](const BoxAnswer& box) {
         return self_test == SelfTest::kYes && !box.doubt && isHidden(tiles, box.rect, Seams::kLeave);
     };
-    const bool joined = occluders_.size() < scene_.batches.size();
-    for (uint32_t batch : joined ? std::span<const uint32_t>(&kFirst, 1) : std::span<const uint32_t>(batches_)) {
-        const Occluder& occluder = occluders_[batch];
-        if (const BoxAnswer box = projectBox(object, own_bounds_[batch]); box.outside || covered(box)) continue;
-        const OccluderInstance instance = makeOccluderInstance(screen_, occluder, identity_);
-        for (uint32_t cluster = 0; cluster < occluder.clusters.size(); ++cluster) {
-            const BoxAnswer box = projectBox(instance.screen, occluder.clusters[cluster].bounds);
-            if (box.outside || (occluder.clusters.size() > 1 && covered(box))) continue;
-            offered += drawOccluder(tiles, instance, cluster, box);
+    for (size_t i = 0; i < drawn_.size(); i += 8) {
+        const ScreenAnswer own = projectBoxes(screen_, eyeBoxes(drawn_eights_[i / 8], -screen_.eye));
+        for (size_t k = 0; k < 8 && i + k < drawn_.size(); ++k) {
+            if (own.outside >> k & 1) continue;
+            if (covered({own.rects[k], (own.doubt >> k & 1) != 0, false})) continue;
+            const Occluder& occluder = occluders_[drawn_[i + k]];
+            const OccluderInstance instance = makeOccluderInstance(screen_, occluder, identity_);
+            for (uint32_t cluster = 0; cluster < occluder.clusters.size(); ++cluster) {
+                const BoxAnswer box = projectBox(instance.screen, occluder.clusters[cluster].bounds);
+                if (box.outside || (occluder.clusters.size() > 1 && covered(box))) continue;
+                offered += drawOccluder(tiles, instance, cluster, box);
+            }
         }
     }
     return offered;

@@ -62,8 +62,10 @@ private:
     std::vector<uint32_t> morton_;
     FlatBoxes flat_batches_, flat_boxes_;
     std::vector<uint32_t> batches_, boxes_;
-    std::vector<BvhNode> eights_;  ///< boxes_, eight by eight, relative to nothing
-    std::vector<BvhNode> groups_;  ///< their groups, eight by eight
+    std::vector<uint32_t> drawn_;        ///< occluders in view, nearest first
+    std::vector<BvhNode> drawn_eights_;  ///< their own bounds, eight by eight
+    std::vector<BvhNode> eights_;        ///< boxes_, eight by eight, relative to nothing
+    std::vector<BvhNode> groups_;        ///< their groups, eight by eight
     Screen screen_;
     uint64_t triangles_ = 0;
     glm::dmat4 identity_{1.0};

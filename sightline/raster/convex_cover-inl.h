@@ -30,7 +30,7 @@ struct MaskedTiles {
           layer(from.layer.data()),
           layer_mask(from.layer_mask.data()),
           block(from.block.data()),
-          blocks(!from.blocks.empty()) {}
+          blocks(from.block_count != 0) {}
 
     /// coverPixels() for tiles that are not to have blocks, without a jump that depends on depths: those are as random
     /// as the polygons' order. The layer lies in front of the base, or there is none.
@@ -144,15 +144,15 @@ struct ConvexCover {
 /// Covers pixels of a tile each at its own depth.
 inline void ConvexCover::coverByPlanes(uint32_t tile, uint64_t mask, int alone) {
     const F16 d;
-    alignas(64) float depths[64], other[64];
     const uint32_t column = tile % tiles.stride, row = tile / tiles.stride;
-    planeDepths(planeInTile(depth.plane[std::max(alone, 0)], column, row), depths);
-    for (int k = 1; alone < 0 && k < depth.count; ++k) {
-        planeDepths(planeInTile(depth.plane[k], column, row), other);
-        for (size_t i = 0; i < 64; i += hn::Lanes(d))
-            hn::Store(hn::Min(hn::Load(d, depths + i), hn::Load(d, other + i)), d, depths + i);
-    }
-    raiseBlockBy(tiles, tile, mask, depths);
+    TilePlane planes[ConvexDepth::kMost] = {planeInTile(depth.plane[std::max(alone, 0)], column, row)};
+    const int count = alone < 0 ? depth.count : 1;
+    for (int k = 1; k < count; ++k) planes[k] = planeInTile(depth.plane[k], column, row);
+    raiseBlockTo(tiles, tile, mask, [&](size_t i) HWY_ATTR {
+        auto depths = planeDepths(d, planes[0], i);
+        for (int k = 1; k < count; ++k) depths = hn::Min(depths, planeDepths(d, planes[k], i));
+        return depths;
+    });
 }
 
 template <bool kSeams>

@@ -67,14 +67,22 @@ HWY_INLINE Vec planeDepth(D d, const TilePlane& plane, int row, Vec x) {
     return hn::Max(hn::Add(base, hn::Mul(hn::Set(d, plane.dx), x)), hn::Set(d, plane.floor));
 }
 
+/// A plane's depths at the pixels of a tile from the i-th on.
+template <class D>
+HWY_INLINE hn::Vec<D> planeDepths(D d, const TilePlane& plane, size_t i) {
+    alignas(64) static constexpr float kColumn[16] = {-3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f,
+                                                      -3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f};
+    alignas(64) static constexpr float kRow[16] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1};
+    const auto column = hn::Load(d, kColumn + i % 16);
+    const auto row = hn::Add(hn::Load(d, kRow + i % 16), hn::Set(d, static_cast<float>(i / 16 * 2) - 3.5f));
+    const auto base = hn::Add(hn::Set(d, plane.d), hn::Mul(hn::Set(d, plane.dy), row));
+    return hn::Max(hn::Add(base, hn::Mul(hn::Set(d, plane.dx), column)), hn::Set(d, plane.floor));
+}
+
 /// Writes a plane's depths at all pixels of a tile.
 HWY_INLINE void planeDepths(const TilePlane& plane, float* depths) {
-    const F8 d;
-    const auto offset = hn::Iota(d, -3.5f);
-    for (int row = 0; row < 8; ++row)
-        for (size_t h = 0; h < 8; h += hn::Lanes(d))
-            hn::StoreU(planeDepth(d, plane, row, hn::Add(offset, hn::Set(d, static_cast<float>(h)))), d,
-                       depths + 8 * row + h);
+    const F16 d;
+    for (size_t i = 0; i < 64; i += hn::Lanes(d)) hn::StoreU(planeDepths(d, plane, i), d, depths + i);
 }
 
 /// Which of 64 depths are greater than a nearness.
@@ -96,22 +104,26 @@ HWY_INLINE uint64_t windowBits(int32_t x0, int32_t y0, int32_t x1, int32_t y1, i
     return columns * 0x0101010101010101ull & rows;
 }
 
-/// Gives a tile a depth per pixel for its layer, if it has none yet.
-inline float* layerBlock(DepthTiles& tiles, uint32_t tile) {
-    const bool has_layer = tiles.layer[tile] > DepthTiles::kOpen;
-    if (has_layer && tiles.block[tile] != DepthTiles::kNone)
-        return tiles.blocks.data() + 64 * size_t{tiles.block[tile]};
-    const F16 d;
-    const uint32_t block = static_cast<uint32_t>(tiles.blocks.size() / 64);
-    tiles.blocks.resize(tiles.blocks.size() + 64);
-    float* depths = tiles.blocks.data() + 64 * size_t{block};
-    const uint64_t mask = has_layer ? tiles.layer_mask[tile] : 0;
-    const auto open = hn::Set(d, DepthTiles::kOpen), layer = hn::Set(d, tiles.layer[tile]);
-    for (size_t i = 0; i < 64; i += hn::Lanes(d))
-        hn::StoreU(hn::IfThenElse(maskFromBits(d, mask >> i), layer, open), d, depths + i);
-    tiles.block[tile] = block;
-    tiles.layer_mask[tile] = mask;
-    return depths;
+/// Gives a tile a block, in which nothing is written yet.
+inline float* newBlock(DepthTiles& tiles, uint32_t tile) {
+    const size_t first = 64 * size_t{tiles.block_count};
+    if (tiles.blocks.size() < first + 64) tiles.blocks.resize(2 * first + 64 * size_t{64});
+    tiles.block[tile] = tiles.block_count++;
+    return tiles.blocks.data() + first;
+}
+
+/// A tile's block, or null.
+HWY_INLINE float* blockOf(DepthTiles& tiles, uint32_t tile) {
+    if (!(tiles.layer[tile] > DepthTiles::kOpen) || tiles.block[tile] == DepthTiles::kNone) return nullptr;
+    return tiles.blocks.data() + 64 * size_t{tiles.block[tile]};
+}
+
+/// What a tile's layer claims at the pixels from the i-th on, if it has no block.
+template <class D>
+HWY_INLINE hn::Vec<D> flatLayer(D d, const DepthTiles& tiles, uint32_t tile, size_t i) {
+    const float layer = tiles.layer[tile];
+    const uint64_t mask = layer > DepthTiles::kOpen ? tiles.layer_mask[tile] : 0;
+    return hn::IfThenElse(maskFromBits(d, mask >> i), hn::Set(d, layer), hn::Set(d, DepthTiles::kOpen));
 }
 
 /// Brings a tile's base up to its block, once all pixels of the block are covered.
@@ -125,18 +137,33 @@ HWY_INLINE void settleBlock(DepthTiles& tiles, uint32_t tile, const float* depth
     tiles.plane[tile] = DepthTiles::kNone;
 }
 
-/// Raises the pixels of a mask in a tile whose layer is a block.
-HWY_INLINE void raiseBlock(DepthTiles& tiles, uint32_t tile, uint64_t mask, float z) {
+/// Raises the pixels of a mask, each to its own depth, in a tile that gets a block.
+/// @param depthOf  a vector of depths, of the pixels from the i-th on
+template <class DepthOf>
+HWY_INLINE void raiseBlockTo(DepthTiles& tiles, uint32_t tile, uint64_t mask, const DepthOf& depthOf) {
     const F16 d;
-    float* depths = layerBlock(tiles, tile);
-    const auto depth = hn::Set(d, z);
+    const bool layered = tiles.layer[tile] > DepthTiles::kOpen, old_block = blockOf(tiles, tile) != nullptr;
+    float* const block = old_block ? blockOf(tiles, tile) : newBlock(tiles, tile);
+    auto greatest = hn::Set(d, DepthTiles::kOpen);
     for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
-        const auto old = hn::LoadU(d, depths + i);
-        hn::StoreU(hn::IfThenElse(maskFromBits(d, mask >> i), hn::Max(old, depth), old), d, depths + i);
+        const auto old = old_block ? hn::LoadU(d, block + i) : flatLayer(d, tiles, tile, i);
+        const auto raised = hn::IfThenElse(maskFromBits(d, mask >> i), hn::Max(old, depthOf(i)), old);
+        hn::StoreU(raised, d, block + i);
+        greatest = hn::Max(greatest, raised);
     }
-    tiles.layer_mask[tile] |= mask;
-    tiles.layer[tile] = std::max(tiles.layer[tile], z);
-    if (tiles.layer_mask[tile] == ~uint64_t{0}) settleBlock(tiles, tile, depths);
+    tiles.layer_mask[tile] = mask | (layered ? tiles.layer_mask[tile] : 0);
+    tiles.layer[tile] = hn::GetLane(hn::MaxOfLanes(d, greatest));
+    if (tiles.layer_mask[tile] == ~uint64_t{0}) settleBlock(tiles, tile, block);
+}
+
+/// Raises the pixels of a mask in a tile that gets a block.
+HWY_INLINE void raiseBlock(DepthTiles& tiles, uint32_t tile, uint64_t mask, float z) {
+    raiseBlockTo(tiles, tile, mask, [&](size_t) HWY_ATTR { return hn::Set(F16(), z); });
+}
+
+/// The same by depths in memory.
+HWY_INLINE void raiseBlockBy(DepthTiles& tiles, uint32_t tile, uint64_t mask, const float* depths) {
+    raiseBlockTo(tiles, tile, mask, [&](size_t i) HWY_ATTR { return hn::LoadU(F16(), depths + i); });
 }
 
 /// Covers a whole tile.
@@ -185,28 +212,11 @@ inline void coverPixels(DepthTiles& tiles, uint32_t tile, uint64_t mask, float z
     tiles.layer_mask[tile] = both;
 }
 
-/// Raises the pixels of a mask, each to its own depth, in a tile that gets a block.
-inline void raiseBlockBy(DepthTiles& tiles, uint32_t tile, uint64_t mask, const float* depths) {
-    const F16 d;
-    float* block = layerBlock(tiles, tile);
-    auto greatest = hn::Set(d, DepthTiles::kOpen);
-    for (size_t i = 0; i < 64; i += hn::Lanes(d)) {
-        const auto old = hn::LoadU(d, block + i);
-        const auto raised = hn::IfThenElse(maskFromBits(d, mask >> i), hn::Max(old, hn::LoadU(d, depths + i)), old);
-        hn::StoreU(raised, d, block + i);
-        greatest = hn::Max(greatest, raised);
-    }
-    tiles.layer_mask[tile] |= mask;
-    tiles.layer[tile] = hn::GetLane(hn::MaxOfLanes(d, greatest));
-    if (tiles.layer_mask[tile] == ~uint64_t{0}) settleBlock(tiles, tile, block);
-}
-
 /// Covers the pixels of a mask by a plane, each at its own depth: for tiles that get a block.
 inline void coverPixelsByPlane(DepthTiles& tiles, uint32_t tile, uint64_t mask, const BufferPlane& plane,
                                uint32_t column, uint32_t row) {
-    alignas(64) float depths[64];
-    planeDepths(planeInTile(plane, column, row), depths);
-    raiseBlockBy(tiles, tile, mask, depths);
+    const TilePlane here = planeInTile(plane, column, row);
+    raiseBlockTo(tiles, tile, mask, [&](size_t i) HWY_ATTR { return planeDepths(F16(), here, i); });
 }
 
 /// The pixels of a tile, within the window, that it does not claim to be in front of a nearness; the base is known

@@ -29,7 +29,7 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height, Detail new_detai
         paired_mask.resize(count);
     }
     planes.clear();
-    blocks.clear();
+    block_count = 0;
     px.clear();
     py.clear();
     pd.clear();

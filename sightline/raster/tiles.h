@@ -122,6 +122,7 @@ struct DepthTiles {
 
     Array<BufferPlane> planes{memory};
     Array<float> blocks{memory};  ///< 64 each; kOpen where the layer claims nothing
+    uint32_t block_count = 0;     ///< in use
     Array<double> px{memory}, py{memory},
         pd{memory};                     ///< the frame's projected vertices; px is NaN before the near plane
     Array<DrawnCluster> drawn{memory};  ///< those that left seams
