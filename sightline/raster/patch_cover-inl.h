@@ -7,7 +7,8 @@
 #define SIGHTLINE_RASTER_PATCH_COVER_INL_H
 #endif
 
-#include "sightline/raster/patch-inl.h"
+#include "sightline/raster/open_edges-inl.h"
+#include "sightline/raster/patch_depth-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline {

@@ -7,7 +7,7 @@
 #define SIGHTLINE_RASTER_SMALL_EDGES_INL_H
 #endif
 
-#include "sightline/raster/patch-inl.h"
+#include "sightline/raster/open_edges-inl.h"
 #include "sightline/raster/small_polygons-inl.h"
 
 HWY_BEFORE_NAMESPACE();
