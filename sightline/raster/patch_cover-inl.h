@@ -36,13 +36,24 @@ HWY_INLINE void coverRun(DepthTiles& tiles, uint32_t tile, size_t at, uint32_t c
 }
 
 /// Names a patch as one of those that share pixels of a tile.
-HWY_INLINE void addSeam(DepthTiles& tiles, uint32_t tile, uint64_t mask, uint32_t source) {
-    if (tiles.seams[tile] == DepthTiles::kNone) {
-        tiles.seam_mask[tile] = tiles.tried[tile] = tiles.paired_mask[tile] = 0;
-        tiles.paired[tile] = DepthTiles::kNone;
+HWY_INLINE void addSeam(DepthTiles& tiles, uint32_t tile, uint64_t mask, uint32_t source, float nearest) {
+    uint32_t& last = tiles.seams[tile];
+    if (last == DepthTiles::kNone) {
+        tiles.seam_mask[tile] = tiles.tried[tile] = 0;
+        tiles.paired[tile] = 0;
     }
-    tiles.entries.push_back({mask, source, tiles.seams[tile]});
-    tiles.seams[tile] = static_cast<uint32_t>(tiles.entries.size() - 1);
+    if (last == DepthTiles::kNone || tiles.chunks[last].count == SeamChunk::kMost) {
+        const uint32_t before = last == DepthTiles::kNone ? 0 : tiles.chunks[last].before + SeamChunk::kMost;
+        SeamChunk& chunk = tiles.chunks.emplace_back();
+        chunk.next = last;
+        chunk.before = before;
+        last = static_cast<uint32_t>(tiles.chunks.size() - 1);
+    }
+    SeamChunk& chunk = tiles.chunks[last];
+    chunk.mask[chunk.count] = mask;
+    chunk.source[chunk.count] = source;
+    chunk.nearest[chunk.count++] = nearest;
+    tiles.lid_mask[tile] = 0;
     tiles.seam_mask[tile] |= mask;
     tiles.tried[tile] &= ~mask;
 }
@@ -191,7 +202,7 @@ inline bool coverPatch(Patch& patch, uint32_t source) {
                 }
                 if (!touched) continue;
                 if (const uint64_t seam = notYetNearer(tiles, tile, touched, patch.nearest)) {
-                    addSeam(tiles, tile, seam, source);
+                    addSeam(tiles, tile, seam, source, patch.nearest);
                     seams = true;
                 }
             }

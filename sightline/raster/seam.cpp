@@ -1,7 +1,8 @@
-// Covers a pixel by the triangles that share it, joined where their edges are identical in world space.
+// Covers a pixel by the polygons that share it: by their union; or joined where their edges are identical in world space.
 // SPDX-License-Identifier: MIT
 //
-// The argument. Let F be a set of triangles, w(p) the number of those with counter-clockwise images that hold the
+// The union is subtracted from the pixel exactly (union.cpp); what has no certain winding does not enter it.
+// The argument for joining. Let F be a set of triangles, w(p) the number of those with counter-clockwise images that hold the
 // image point p less the clockwise ones. Crossing an edge changes w unless another triangle of F has the same edge
 // the other way round. So if every edge of F that meets the pixel is paired off like that, w is the same all over
 // the pixel; and if it is 1 or more at one point, each ray through the pixel meets a counter-clockwise, that is a
@@ -19,11 +20,11 @@
 namespace sightline {
 namespace {
 
-constexpr int kMaxTriangles = 192;   // work cap: a pixel with more of them stays open
+constexpr int kMaxPolygons = 192;    // work cap: a pixel with more of them stays open
 constexpr double kMargin = 0x1p-15;  // [pixels]: above all rounding of edge functions here
 
 struct Point {
-    float x, y, z;  // no initial values: a resolver is made for each pixel
+    float x, y, z;  // no initial values: a joiner is made for each pixel
     bool operator==(const Point&) const = default;
 };
 
@@ -148,10 +149,19 @@ bool areOpposite(const DepthTiles& tiles, const SeamPolygon& a, int side_a, cons
     return from_a == to_b && to_a == from_b && sameTransform(tiles.drawn[a.drawn], tiles.drawn[b.drawn]);
 }
 
-struct Resolver {
-    Piece pieces[kMaxTriangles];
-    Side sides[4 * kMaxTriangles];
-    int partner[4 * kMaxTriangles];
+/// No point of the polygon inside the pixel is farther.
+double farthestIn(const RasterPolygon& polygon, double x, double y) {
+    if (!polygon.planar) return polygon.farthest;
+    const double tilt = std::abs(polygon.dx) + std::abs(polygon.dy);
+    const double d = polygon.d0 + polygon.dx * x + polygon.dy * y;
+    return std::max<double>(polygon.farthest, d - 0.5 * tilt - polygon.depth_error - std::abs(d) * 0x1p-40);
+}
+
+/// Joins pieces along identical edges.
+struct Joiner {
+    Piece pieces[kMaxPolygons];
+    Side sides[4 * kMaxPolygons];
+    int partner[4 * kMaxPolygons];
     int piece_count = 0, side_count = 0;
 
     /// Lists the sides that meet the pixel. A piece with an open one there cannot help.
@@ -231,40 +241,6 @@ struct Resolver {
         return false;
     }
 
-    /// No point of the piece inside the pixel is farther.
-    static double farthestIn(const Piece& piece, double x, double y) {
-        const RasterPolygon& polygon = piece.polygon->raster;
-        if (!polygon.planar) return polygon.farthest;
-        const double tilt = std::abs(polygon.dx) + std::abs(polygon.dy);
-        const double d = polygon.d0 + polygon.dx * x + polygon.dy * y;
-        return std::max<double>(polygon.farthest, d - 0.5 * tilt - polygon.depth_error - std::abs(d) * 0x1p-40);
-    }
-
-    /// The depth at which the pieces' union leaves nothing of the pixel; -infinity if it does leave something. Takes
-    /// in what no shared side joins: T-junctions, and surfaces that overlap.
-    double resolveByUnion(const DepthTiles& tiles, double x, double y) const {
-        constexpr int kMaxPieces = 24;  // work cap
-        UnionPiece found[kMaxPieces];
-        const SeamPolygon* source[kMaxPieces];
-        int count = 0;
-        for (int p = 0; p < piece_count && count < kMaxPieces; ++p) {
-            const SeamPolygon& polygon = *pieces[p].polygon;
-            if (!polygon.raster.complete) continue;
-            source[count] = &polygon;
-            found[count++] = {&polygon.raster, 0, farthestIn(pieces[p], x, y)};
-        }
-        for (int i = 0; i < count; ++i)
-            for (int j = i + 1; j < count; ++j) {
-                int side_i, side_j;
-                if (!findSharedSide(tiles, *source[i], *source[j], side_i, side_j)) continue;
-                found[i].shared |= 1u << side_i;
-                found[j].shared |= 1u << side_j;
-            }
-        std::sort(found, found + count,
-                  [](const UnionPiece& a, const UnionPiece& b) { return a.farthest > b.farthest; });
-        return subtractFromPixel(x, y, found, count);
-    }
-
     /// The best depth of any group that covers the pixel; -infinity if none does.
     double resolve(const DepthTiles& tiles, double x, double y) {
         collectSides(x, y);
@@ -275,7 +251,8 @@ struct Resolver {
             if (!pieces[g].alive || rootOf(g) != g || !holdsPixel(g, x, y)) continue;
             double farthest = std::numeric_limits<double>::infinity();
             for (int p = 0; p < piece_count; ++p)
-                if (pieces[p].alive && rootOf(p) == g) farthest = std::min(farthest, farthestIn(pieces[p], x, y));
+                if (pieces[p].alive && rootOf(p) == g)
+                    farthest = std::min(farthest, farthestIn(pieces[p].polygon->raster, x, y));
             best = std::max(best, farthest);
         }
         return best;
@@ -297,14 +274,127 @@ bool mayTouch(const RasterPolygon& polygon, double x, double y) {
     return true;
 }
 
+/// Which corners of a pixel a polygon may hold, a bit each: those that are not surely outside.
+uint32_t cornersHeld(const RasterPolygon& polygon, double x, double y) {
+    uint32_t held = 15;
+    for (int e = 0; e < polygon.edges; ++e) {
+        const EdgeFunction& edge = polygon.edge[e];
+        const double center = edge.at(x, y) + static_cast<double>(polygon.slack);
+        const double across = 0.5 * edge.a, along = 0.5 * edge.b;
+        held &= static_cast<uint32_t>(center - across - along >= 0) |
+                static_cast<uint32_t>(center + across - along >= 0) << 1 |
+                static_cast<uint32_t>(center - across + along >= 0) << 2 |
+                static_cast<uint32_t>(center + across + along >= 0) << 3;
+    }
+    return held;
+}
+
+/// What the corners of a pixel tell.
+enum class Corners {
+    kOpenNow,  ///< one is open to the nearness wanted
+    kOpen,     ///< one is open to whatever the pixel does not hide yet
+    kHeld,
+};
+
+/// A pixel that polygons share.
+class PixelSeam {
+public:
+    /// @param before  what the pixel claims already
+    PixelSeam(DepthTiles& tiles, uint32_t tile, int bit, float before)
+        : tiles_(tiles),
+          tile_(tile),
+          pixel_(uint64_t{1} << bit),
+          x_(8.0 * (tile % tiles.stride) + (bit & 7) + 0.5),
+          y_(8.0 * (tile / tiles.stride) + (bit >> 3) + 0.5),
+          before_(before) {}
+
+    /// Finds the polygons that may lie in front of what the pixel claims.
+    Corners gather(float wanted) {
+        const float x = static_cast<float>(x_), y = static_cast<float>(y_);
+        uint32_t held = 0, held_now = wanted < std::numeric_limits<float>::infinity() ? 0 : 15;
+        forSeamEntries(tiles_, tile_, [&](const SeamEntry& entry) {
+            if (!(entry.mask & pixel_) || !(entry.nearest > before_)) return;
+            forSeamPolygons(tiles_, entry, {x - 0.5f, y - 0.5f, x + 0.5f, y + 0.5f}, [&](uint32_t i) {
+                const RasterPolygon& raster = tiles_.polygons[i].raster;
+                if (!(raster.nearest > before_) || !mayTouch(raster, x_, y_)) return;
+                const uint32_t corners = cornersHeld(raster, x_, y_);
+                held |= corners;
+                if (raster.nearest > wanted) held_now |= corners;
+                if (count_ < kMaxPolygons) found_[count_] = i;
+                ++count_;
+            });
+        });
+        return count_ < 2 || count_ > kMaxPolygons || held != 15 ? Corners::kOpen
+               : held_now != 15                                  ? Corners::kOpenNow
+                                                                 : Corners::kHeld;
+    }
+
+    /// The nearness of what covers the pixel; -infinity if it is open.
+    double resolve() const {
+        bool all = true;
+        const double nearness = uniteAll(all);
+        return all ? nearness : std::max(nearness, joinAll());
+    }
+
+private:
+    /// @param all  cleared if some polygon could not enter the union, or the work was cut short
+    double uniteAll(bool& all) const {
+        constexpr int kMost = 32;  // work cap: of more polygons the nearest are united
+        struct Ranked {
+            double farthest;
+            int place;  ///< decides between equals
+            const SeamPolygon* polygon;
+        } ranked[kMaxPolygons];
+        int count = 0;
+        for (int i = 0; i < count_; ++i) {
+            const SeamPolygon& polygon = tiles_.polygons[found_[i]];
+            const double farthest = farthestIn(polygon.raster, x_, y_);
+            all &= polygon.raster.complete && polygon.clipped == SeamPolygon::kWhole;
+            if (polygon.raster.complete && farthest > before_) ranked[count++] = {farthest, i, &polygon};
+        }
+        std::sort(ranked, ranked + count, [](const Ranked& a, const Ranked& b) {
+            return a.farthest != b.farthest ? a.farthest > b.farthest : a.place < b.place;
+        });
+        if (count > kMost) {
+            count = kMost;
+            all = false;
+        }
+        UnionPiece pieces[kMost];
+        for (int i = 0; i < count; ++i) pieces[i] = {&ranked[i].polygon->raster, 0, ranked[i].farthest};
+        for (int i = 0; i < count; ++i)
+            for (int j = i + 1; j < count; ++j) {
+                int side_i, side_j;
+                if (!findSharedSide(tiles_, *ranked[i].polygon, *ranked[j].polygon, side_i, side_j)) continue;
+                pieces[i].shared |= 1u << side_i;
+                pieces[j].shared |= 1u << side_j;
+            }
+        return subtractFromPixel(x_, y_, pieces, count, all);
+    }
+
+    double joinAll() const {
+        Joiner joiner;
+        for (; joiner.piece_count < count_; ++joiner.piece_count) {
+            SeamPolygon& polygon = tiles_.polygons[found_[joiner.piece_count]];
+            setSideKeys(tiles_, polygon);
+            loadPiece(tiles_, polygon, joiner.pieces[joiner.piece_count]);
+        }
+        return joiner.resolve(tiles_, x_, y_);
+    }
+
+    DepthTiles& tiles_;
+    const uint32_t tile_;
+    const uint64_t pixel_;
+    const double x_, y_;
+    const float before_;
+    uint32_t found_[kMaxPolygons];  // not yet their places: making the next one may move them all
+    int count_ = 0;
+};
+
 }  // namespace
 
 void setSideKeys(const DepthTiles& tiles, SeamPolygon& polygon) {
     if (polygon.keyed) return;
     polygon.keyed = true;
-    if (polygon.clipped != SeamPolygon::kWhole)
-        for (int i = 0; i < polygon.corners; ++i)
-            if (tiles.clipped[polygon.clipped].open[i]) polygon.open |= static_cast<uint8_t>(1u << i);
     for (int i = 0; i < polygon.corners; ++i) {
         if (polygon.open >> i & 1) continue;
         Point from, to;
@@ -313,18 +403,19 @@ void setSideKeys(const DepthTiles& tiles, SeamPolygon& polygon) {
         if (forward) polygon.forward |= static_cast<uint8_t>(1u << i);
         else std::swap(from, to);
         polygon.side_key[i] = hashPoint(to, hashPoint(from, tiles.drawn[polygon.drawn].transform_hash));
-        polygon.key_bits |= uint64_t{1} << (polygon.side_key[i] & 63);
     }
 }
 
 bool findSharedSide(const DepthTiles& tiles, const SeamPolygon& a, const SeamPolygon& b, int& side_a, int& side_b) {
-    if (!(a.key_bits & b.key_bits)) return false;
-    for (int i = 0; i < a.corners; ++i) {
+    if (!(a.edge_bits & b.edge_bits)) return false;
+    for (int i = 0; i < a.raster.edges; ++i) {
         if (a.open >> i & 1) continue;
-        for (int j = 0; j < b.corners; ++j) {
-            if (a.side_key[i] != b.side_key[j] || (b.open >> j & 1) || (a.forward >> i & 1) == (b.forward >> j & 1))
+        const EdgeFunction& one = a.raster.edge[i];
+        for (int j = 0; j < b.raster.edges; ++j) {
+            const EdgeFunction& other = b.raster.edge[j];
+            if (a.edge_key[i] != b.edge_key[j] || (b.open >> j & 1)) continue;
+            if (one.a != -other.a || one.b != -other.b || one.c != -other.c || !areOpposite(tiles, a, i, b, j))
                 continue;
-            if (!areOpposite(tiles, a, i, b, j)) continue;
             side_a = i;
             side_b = j;
             return true;
@@ -338,39 +429,19 @@ bool resolveSeam(DepthTiles& tiles, uint32_t tile, int bit, float wanted) {
     float claims[64];
     readClaims(tiles, tile, claims);
     const float before = claims[bit];
-    const bool covered = before > DepthTiles::kOpen;
-    if (tiles.seams[tile] == DepthTiles::kNone || !(tiles.seam_mask[tile] & ~tiles.tried[tile] & pixel)) return covered;
+    if (before > wanted) return true;
+    if (tiles.seams[tile] == DepthTiles::kNone || !(tiles.seam_mask[tile] & ~tiles.tried[tile] & pixel)) return false;
+    PixelSeam seam(tiles, tile, bit, before);
+    const Corners corners = seam.gather(wanted);
+    if (corners == Corners::kOpenNow) return false;
     tiles.tried[tile] |= pixel;
+    if (corners == Corners::kOpen) return false;
     ++tiles.seam_pixels;
-    const double x = 8.0 * (tile % tiles.stride) + (bit & 7) + 0.5;
-    const double y = 8.0 * (tile / tiles.stride) + (bit >> 3) + 0.5;
-    uint32_t found[kMaxTriangles];  // not yet their places: making the next entry's polygons may move them all
-    int found_count = 0;
-    for (uint32_t at = tiles.seams[tile]; at != DepthTiles::kNone; at = tiles.entries[at].next) {
-        const SeamEntry entry = tiles.entries[at];
-        if (!(entry.mask & pixel)) continue;
-        uint32_t first, count;
-        seamPolygons(tiles, entry, first, count);
-        for (uint32_t i = first; i < first + count; ++i) {
-            const RasterPolygon& raster = tiles.polygons[i].raster;
-            if (!mayTouch(raster, x, y) || raster.nearest <= before) continue;
-            if (found_count == kMaxTriangles) return covered;
-            found[found_count++] = i;
-        }
-    }
-    if (found_count < 2) return covered;
-    Resolver resolver;
-    for (; resolver.piece_count < found_count; ++resolver.piece_count) {
-        SeamPolygon& polygon = tiles.polygons[found[resolver.piece_count]];
-        setSideKeys(tiles, polygon);
-        loadPiece(tiles, polygon, resolver.pieces[resolver.piece_count]);
-    }
-    double nearness = resolver.resolve(tiles, x, y);
-    if (!(nearness > wanted)) nearness = std::max(nearness, resolver.resolveByUnion(tiles, x, y));
-    if (!(nearness > before)) return covered;
+    const double nearness = seam.resolve();
+    if (!(nearness > before)) return false;
     claims[bit] = roundFarther(nearness);
     raiseClaims(tiles, tile, pixel, claims);
-    return true;
+    return claims[bit] > wanted;
 }
 
 }  // namespace sightline

@@ -26,7 +26,8 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height, Detail new_detai
         seam_mask.resize(count);
         tried.resize(count);
         paired.resize(count);
-        paired_mask.resize(count);
+        lid.resize(count);
+        lid_mask.resize(count);
     }
     planes.clear();
     block_count = 0;
@@ -37,7 +38,9 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height, Detail new_detai
     objects.clear();
     clipped.clear();
     polygons.clear();
-    entries.clear();
+    made.clear();
+    boxes.clear();
+    chunks.clear();
     seam_pixels = 0;
 }
 

@@ -31,10 +31,11 @@ struct DrawnCluster {
     uint32_t first_vertex = 0;  ///< in DepthTiles::px, py, pd
     uint32_t object = ~0u;      ///< in DepthTiles::objects, if vertices lie before the near plane
     uint32_t cluster = 0;
-    uint32_t first_polygon = ~0u, polygon_count = 0;  ///< in DepthTiles::polygons, once a seam has asked for them
-    double position_error = 0;                        ///< bound on the error of a projected vertex  [pixels]
-    double depth_error = 0;                           ///< bound on the error of a vertex's nearness
-    bool clips = true;                                ///< the near plane's place is known well enough to clip at it
+    uint32_t made = ~0u;   ///< in DepthTiles::made, one for each of its own polygons, once a seam has asked for one
+    uint32_t boxes = ~0u;  ///< in DepthTiles::boxes, once a seam has asked which polygons lie in a tile
+    double position_error = 0;  ///< bound on the error of a projected vertex  [pixels]
+    double depth_error = 0;     ///< bound on the error of a vertex's nearness
+    bool clips = true;          ///< the near plane's place is known well enough to clip at it
 };
 
 /// A polygon clipped at the near plane: its corners, and for each side the mesh vertices that its edge lies between
@@ -52,9 +53,10 @@ struct SeamPolygon {
     static constexpr uint32_t kWhole = ~0u;
 
     RasterPolygon raster;
+    uint32_t edge_key[4] = {};  ///< where it is complete: per side a hash of its edge function, the same for both signs
+    uint64_t edge_bits = 0;     ///< bit (key mod 64) of each side: polygons without a common bit share no side
     uint64_t side_key[4] = {};  ///< per side a hash of its edge in world space, the same for both directions;
                                 ///< set by setSideKeys(), when first needed
-    uint64_t key_bits = 0;      ///< bit (key mod 64) of each side: polygons without a common bit share no side
     bool keyed = false;
     uint32_t drawn = 0;         ///< index into DepthTiles::drawn
     uint32_t clipped = kWhole;  ///< index into DepthTiles::clipped, or kWhole
@@ -71,9 +73,23 @@ struct SeamEntry {
 
     uint64_t mask = 0;
     uint32_t source = 0;  ///< 256 * index into DepthTiles::drawn + the polygon of the cluster, or kAllPolygons
-    uint32_t next = ~0u;  ///< the next entry of the tile
+    float nearest = 0;    ///< no point of what it names is nearer
     uint32_t drawn() const { return source >> 8; }
     uint32_t polygon() const { return source & 255; }
+};
+
+/// Some of a tile's entries, in two lines of the cache.
+struct alignas(64) SeamChunk {
+    static constexpr uint32_t kMost = 7;
+
+    uint64_t mask[kMost];  ///< no initial values
+    uint32_t source[kMost];
+    float nearest[kMost];
+    uint32_t next = ~0u;  ///< of the entries before these
+    uint32_t count = 0;
+    uint32_t before = 0;  ///< how many those are
+
+    SeamEntry entry(uint32_t i) const { return {mask[i], source[i], nearest[i]}; }
 };
 
 /// The depth of a plane: nearness at buffer point (x, y) is no less than max(floor, d0 + dx x + dy y) - error.
@@ -109,16 +125,17 @@ struct DepthTiles {
     Detail detail = Detail::kFull;
 
     // Per tile, side by side, so that sixteen tiles of a row are looked at together.
-    Array<float> base{memory};            ///< no pixel of the tile claims less; kOpen unless all is covered
-    Array<float> layer{memory};           ///< kOpen: there is no layer. Else its depth, or the greatest in the block
-    Array<uint32_t> seams{memory};        ///< first SeamEntry, or kNone
-    Array<uint32_t> plane{memory};        ///< where base > kOpen: index into planes, or kNone
-    Array<uint64_t> layer_mask{memory};   ///< with a layer: its pixels, bit 8 * row + column
-    Array<uint32_t> block{memory};        ///< with a layer: index into blocks, or kNone
-    Array<uint64_t> seam_mask{memory};    ///< with seams: pixels that some SeamEntry of the tile names
-    Array<uint64_t> tried{memory};        ///< with seams: pixels whose present entries have been resolved
-    Array<uint32_t> paired{memory};       ///< with seams: the first SeamEntry when pairSeams() last looked
-    Array<uint64_t> paired_mask{memory};  ///< with seams: pixels that it has looked at since that was the first
+    Array<float> base{memory};           ///< no pixel of the tile claims less; kOpen unless all is covered
+    Array<float> layer{memory};          ///< kOpen: there is no layer. Else its depth, or the greatest in the block
+    Array<uint32_t> seams{memory};       ///< its last SeamChunk, or kNone
+    Array<uint32_t> plane{memory};       ///< where base > kOpen: index into planes, or kNone
+    Array<uint64_t> layer_mask{memory};  ///< with a layer: its pixels, bit 8 * row + column
+    Array<uint32_t> block{memory};       ///< with a layer: index into blocks, or kNone
+    Array<uint64_t> seam_mask{memory};   ///< with seams: pixels that some SeamEntry of the tile names
+    Array<uint64_t> tried{memory};       ///< with seams: pixels whose present entries have been resolved
+    Array<uint32_t> paired{memory};      ///< with seams: how many entries there were when pairSeams() last looked
+    Array<float> lid{memory};            ///< with seams: the pixels of lid_mask are surely open to this nearness, and
+    Array<uint64_t> lid_mask{memory};    ///< to greater ones, if the tile does not claim more
 
     Array<BufferPlane> planes{memory};
     Array<float> blocks{memory};  ///< 64 each; kOpen where the layer claims nothing
@@ -129,7 +146,9 @@ struct DepthTiles {
     Array<Screen> objects{memory};
     Array<ClippedPolygon> clipped{memory};
     Array<SeamPolygon> polygons{memory};
-    Array<SeamEntry> entries{memory};
+    Array<uint32_t> made{memory};  ///< per polygon of a drawn cluster: 4 * its first SeamPolygon + how many, or kNone
+    Array<float> boxes{memory};  ///< per sixteen polygons of one: 16 least x, 16 least y, 16 greatest x, 16 greatest y
+    Array<SeamChunk> chunks{memory};
 
     /// What drawing a cluster needs meanwhile: the tiles of its rectangle.
     struct Scratch {
@@ -202,13 +221,12 @@ void readClaims(const DepthTiles& tiles, uint32_t tile, float (&claims)[64]);
 /// @param depths  per pixel, read where the mask has a bit
 void raiseClaims(DepthTiles& tiles, uint32_t tile, uint64_t mask, const float (&depths)[64]);
 
-/// Covers the pixels of a tile that two polygons with a shared side cover between them, for all pairs at once.
-/// @param pixels  which pixels matter; others may be covered too
-void pairSeams(DepthTiles& tiles, uint32_t tile, uint64_t pixels);
+/// Covers the pixels of a tile that two polygons of patches with a shared side cover between them, for all pairs at once.
+void pairSeams(DepthTiles& tiles, uint32_t tile);
 
-/// Tries to cover one pixel by the polygons that share it; true if it is covered now.
-/// @param bit     which pixel of the tile, 0 to 63
-/// @param wanted  the nearness that would do: the dearer methods are tried only if the cheaper ones fall short of it
+/// Tries to cover one pixel by the polygons that share it; true if it claims more than the nearness wanted now. What
+/// else was asked before does not change the answer.
+/// @param bit  which pixel of the tile, 0 to 63
 bool resolveSeam(DepthTiles& tiles, uint32_t tile, int bit, float wanted);
 
 }  // namespace sightline

@@ -10,6 +10,8 @@ namespace {
 
 constexpr int kMaxCorners = 12;
 constexpr int kMaxRegions = 24;  // work cap
+/// Of a shared side: more than the rounding of where a region was cut along it, less than what is known of where it lies.
+constexpr double kShared = -0x1p-40;  // [pixels]
 
 /// A convex region, counter-clockwise, relative to the pixel's centre.
 struct Region {
@@ -70,7 +72,7 @@ bool subtract(const Region& region, const UnionPiece& piece, double x, double y,
     const int before = out.count;
     for (int k = 0; k < polygon.edges; ++k) {
         const EdgeFunction& edge = polygon.edge[k];
-        const double margin = piece.shared >> k & 1 ? 0.0 : static_cast<double>(polygon.slack);
+        const double margin = piece.shared >> k & 1 ? kShared : static_cast<double>(polygon.slack);
         Region& inside = rest == &parts[0] ? parts[1] : parts[0];
         const Place place = split(*rest, edge.a, edge.b, edge.at(x, y) - margin, inside, outside);
         if (place == Place::kInside) continue;
@@ -88,7 +90,7 @@ bool subtract(const Region& region, const UnionPiece& piece, double x, double y,
 
 }  // namespace
 
-double subtractFromPixel(double x, double y, const UnionPiece* pieces, int count) {
+double subtractFromPixel(double x, double y, const UnionPiece* pieces, int count, bool& whole) {
     constexpr double kNothing = -std::numeric_limits<double>::infinity();
     Remainder lists[2], *left = &lists[0], *next = &lists[1];
     Region square;
@@ -104,7 +106,10 @@ double subtractFromPixel(double x, double y, const UnionPiece* pieces, int count
         bool used = false;
         next->count = 0;
         for (int r = 0; r < left->count; ++r)
-            if (!subtract(left->regions[r], pieces[p], x, y, *next, used)) return kNothing;
+            if (!subtract(left->regions[r], pieces[p], x, y, *next, used)) {
+                whole = false;
+                return kNothing;
+            }
         if (used) farthest = std::min(farthest, pieces[p].farthest);
         std::swap(left, next);
     }

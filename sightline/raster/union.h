@@ -22,8 +22,8 @@ struct UnionPiece {
 /// Certain: an edge that is not shared is moved inward by more than rounding; at a shared one both sides are covered
 /// within rounding, and the two polygons have the same edge function but for its sign, so that nothing is lost between.
 ///
-/// @returns the least `farthest` of the pieces that were needed; -infinity if something is left, or if the work
-///          cap (regions) is met
-double subtractFromPixel(double x, double y, const UnionPiece* pieces, int count);
+/// @param whole  cleared if the work cap (regions) is met
+/// @returns the least `farthest` of the pieces that were needed; -infinity if something is left, or if the cap is met
+double subtractFromPixel(double x, double y, const UnionPiece* pieces, int count, bool& whole);
 
 }  // namespace sightline

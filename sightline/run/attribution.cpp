@@ -30,7 +30,7 @@ PixelRect drawAlone(const Walk& walk, const WalkRecord& record, std::span<const 
 
 /// Covers what can be covered of the pixels that polygons of the instance share.
 void resolveTile(DepthTiles& tiles, uint32_t tile, uint64_t window) {
-    pairSeams(tiles, tile, window & ~tiles.coveredBits(tile));
+    if (window & tiles.seamBits(tile) & ~tiles.coveredBits(tile)) pairSeams(tiles, tile);
     for (uint64_t open = window & tiles.seamBits(tile) & ~tiles.coveredBits(tile); open; open &= open - 1)
         resolveSeam(tiles, tile, std::countr_zero(open), kFarthest);
 }
