@@ -31,6 +31,18 @@ constexpr uint32_t kMostThreads = 1024;
 
 Error usage(const std::string& message) { return {Error::Kind::kUsage, message}; }
 
+/// Reads what stands after --close-gaps, if anything does.
+void readGap(const std::string& text, RunOptions& options) {
+    if (text.empty() || text == "true" || text == "{}") {
+        options.close_gaps = 1.0 / 1024.0;
+        return;
+    }
+    double gap = 0;
+    if (!CLI::detail::lexical_cast(text, gap) || !(gap > 0.0 && gap <= 1.0 / 16.0))
+        throw CLI::ValidationError("--close-gaps", "wants pixels, above 0 and up to 0.0625, not '" + text + "'");
+    options.close_gaps = gap;
+}
+
 /// Reads a whole number that is all of the text.
 template <class T>
 bool readWhole(std::string_view text, T& out) {
@@ -122,6 +134,13 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
         ->group("Culling");
     verb.add_flag("--masked", options.masked,
                   "let a tile of the occlusion buffer remember two depths and a mask, not a depth per pixel")
+        ->group("Culling");
+    verb.add_option_function<std::string>(
+            "--close-gaps", [&options](const std::string& text) { readGap(text, options); },
+            "close gaps between occluders that are narrower than TAU pixels of the "
+            "occlusion buffer [1/1024]; what is seen through them alone may be culled")
+        ->expected(0, 1)
+        ->type_name("TAU")
         ->group("Culling");
     verb.add_flag("--no-faces", options.no_faces,
                   "ask an object by the rectangle around its box, not by the box's faces")

@@ -38,6 +38,7 @@ struct RunOptions {
     bool no_faces = false, no_second_look = false;
     uint32_t second_look_polygons = View().second_look_polygons;
     bool masked = false;
+    double close_gaps = 0;
     uint64_t rays = 1000000;
     std::string json;      ///< file, `-`, or empty
     std::string report;    ///< directory, or empty

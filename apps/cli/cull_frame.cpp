@@ -18,6 +18,7 @@ QueryStats sumOf(const StereoSet& set) {
     sum.budget_spent |= set.right.budget_spent;
     sum.nodes_visited += set.right.nodes_visited;
     sum.seam_pixels += set.right.seam_pixels;
+    sum.closed_gaps += set.right.closed_gaps;
     sum.faces_tested += set.right.faces_tested;
     sum.faces_culled += set.right.faces_culled;
     sum.second_looks += set.right.second_looks;
@@ -41,6 +42,7 @@ View viewOf(const CameraFrame& camera, const CullRun& run) {
     view.stages = run.stages;
     view.occluder_triangles = run.occluder_triangles;
     view.occlusion_detail = run.masked ? OcclusionDetail::kMasked : OcclusionDetail::kFull;
+    view.close_gaps = run.close_gaps;
     view.faces = run.faces;
     view.second_look = run.second_look;
     view.second_look_polygons = run.second_look_polygons;
@@ -67,6 +69,7 @@ void cullFrame(const Snapshot& now, const CullRun& run, const CameraFrame* befor
     frame.budget_spent = stats.budget_spent;
     frame.nodes_visited = stats.nodes_visited;
     frame.seam_pixels = stats.seam_pixels;
+    frame.closed_gaps = stats.closed_gaps;
     frame.faces_tested = stats.faces_tested;
     frame.faces_culled = stats.faces_culled;
     frame.second_looks = stats.second_looks;

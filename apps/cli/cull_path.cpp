@@ -128,6 +128,7 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
     if (run.last_visible_first) command += " --last-visible-first";
     if (run.masked) command += " --masked";
+    if (run.close_gaps > 0) command += fmt::format(" --close-gaps {:g}", run.close_gaps);
     if (!run.faces) command += " --no-faces";
     if (!run.second_look) command += " --no-second-look";
     if (run.second_look_polygons != View().second_look_polygons)
@@ -166,6 +167,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.stereo = options.stereo;
     run.last_visible_first = options.last_visible_first;
     run.masked = options.masked;
+    run.close_gaps = options.close_gaps;
     run.faces = !options.no_faces;
     run.second_look = !options.no_second_look;
     run.second_look_polygons = options.second_look_polygons;

@@ -122,6 +122,7 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     if (options.stereo > 0) command += fmt::format(" --stereo {}", options.stereo);
     if (options.last_visible_first) command += " --last-visible-first";
     if (options.masked) command += " --masked";
+    if (options.close_gaps > 0) command += fmt::format(" --close-gaps {:g}", options.close_gaps);
     if (options.no_faces) command += " --no-faces";
     if (options.no_second_look) command += " --no-second-look";
     if (options.second_look_polygons != View().second_look_polygons)

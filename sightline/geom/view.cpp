@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/geom/view.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sightline {
@@ -72,6 +73,11 @@ View shiftedEye(const View& view, double right) {
 bool isOrthographic(const View& view) {
     const glm::dmat4& p = view.projection;
     return p[0][3] == 0.0 && p[1][3] == 0.0 && p[2][3] == 0.0;
+}
+
+double closedGap(const View& view) {
+    if (!(view.close_gaps > 0.0)) return 0.0;  // nor where it is not a number
+    return std::floor(std::min(view.close_gaps, 1.0 / 16.0) * kGapSteps) / kGapSteps;
 }
 
 bool isUsable(const View& view) {

@@ -48,6 +48,9 @@ struct View {
     bool second_look = true;                 ///< and then by its own triangles: ObjectDef::shape
     uint32_t second_look_polygons = 1u << 16;  ///< work budget of that: polygons that may be asked  [limit]
     OcclusionDetail occlusion_detail = OcclusionDetail::kFull;
+    /// Gaps between occluders that are narrower than this count as closed: see closedGap(). Off at 0. What is seen through
+    /// such gaps alone may then be culled.  [pixels of the occlusion buffer, limit: 0 to 1/16]
+    double close_gaps = 0.0;
     /// Strips side by side that the occlusion buffer is cut into, each with a walk of its own, so that several threads
     /// can share a query: Query's jobs. An object is kept that one of them keeps. The answer depends on this number, a
     /// little (no object is culled that is visible; work budgets hold for each strip), but not on who walks. One strip
@@ -82,5 +85,11 @@ bool isOrthographic(const View& view);
 /// True if all matrices are finite, the viewport has pixels, the jitter is in its range, and the projection can be
 /// inverted.
 bool isUsable(const View& view);
+
+/// Steps of View::close_gaps in a pixel.
+inline constexpr double kGapSteps = 0x1p20;
+
+/// View::close_gaps as it is used: between 0 and 1/16, and whole steps.
+double closedGap(const View& view);
 
 }  // namespace sightline

@@ -148,7 +148,7 @@ inline Corners cutCorners(const ClusterDraw& c, const OccluderPolygon& polygon) 
 }
 
 inline Patch makePatch(const ClusterDraw& c) {
-    return {c.tiles, c.drawn.position_error + kEvaluation, c.drawn.position_error, c.drawn.depth_error};
+    return {c.tiles, c.drawn.position_error + kEvaluation + c.tiles.gap, c.drawn.position_error, c.drawn.depth_error};
 }
 
 /// Keeps what seams need of a cluster's polygons that wind one way.

@@ -76,7 +76,7 @@ struct ConvexOutline {
 inline bool ConvexOutline::place(const DepthTiles& tiles, double x0, double y0, double x1, double y1,
                                  double position_error) {
     const double far = std::max(std::max(std::abs(x0), std::abs(x1)), std::max(std::abs(y0), std::abs(y1)));
-    const double e = reach = position_error + kEvaluation + far * 0x1p-48;
+    const double e = reach = position_error + kEvaluation + tiles.gap + far * 0x1p-48;
     if (!(x1 + e >= 0 && y1 + e >= 0 && x0 - e < tiles.width && y0 - e < tiles.height)) return false;
     const auto tileOf = [](double at, double size) {
         return static_cast<int32_t>(std::clamp(at, 0.0, size - 1.0)) >> 3;

@@ -88,6 +88,10 @@ bool makeRasterPolygon(const double* x, const double* y, const double* d, int co
     // triangle that made the plane, which is kLeastHeight or more: nine such terms, doubled for a quadrangle.
     double depth_error_sum = corner_error + 18.0 / kLeastHeight * position_error * (d_max - d_min);
     out.slack = static_cast<float>(slack);
+    // An edge function's coefficients are right to a few steps, and its value is the sum of terms no greater than these.
+    const double extent =
+        std::max(std::max(std::abs(x_min), std::abs(x_max)), std::max(std::abs(y_min), std::abs(y_max)));
+    out.error = position_error + 0x1p-30 + 0x1p-48 * extent;
 
     out.edges = 0;
     out.covers = x_max - x_min >= 1.0 - slack && y_max - y_min >= 1.0 - slack;

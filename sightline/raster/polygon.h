@@ -26,7 +26,8 @@ struct RasterPolygon {
     bool planar = false;
     float farthest = 0, nearest = 0;           ///< least and greatest nearness of the corners, rounded outward
     float depth_error = 0;                     ///< bound on the error of the plane, inside the polygon
-    float slack = 0;                           ///< bound on the error of an edge function  [pixels]
+    float slack = 0;                           ///< bound on the error of an edge function in float  [pixels]
+    double error = 0;                          ///< bound on the error of an edge function in double [pixels]
     int32_t x0 = 0, y0 = 0, x1 = -1, y1 = -1;  ///< pixels that it may touch, inclusive, inside the buffer
 };
 

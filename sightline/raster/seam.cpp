@@ -149,12 +149,12 @@ bool areOpposite(const DepthTiles& tiles, const SeamPolygon& a, int side_a, cons
     return from_a == to_b && to_a == from_b && sameTransform(tiles.drawn[a.drawn], tiles.drawn[b.drawn]);
 }
 
-/// No point of the polygon inside the pixel is farther.
-double farthestIn(const RasterPolygon& polygon, double x, double y) {
+/// No point of the polygon inside the pixel, or less than the gap beside it, is farther.
+double farthestIn(const RasterPolygon& polygon, double x, double y, double gap = 0) {
     if (!polygon.planar) return polygon.farthest;
     const double tilt = std::abs(polygon.dx) + std::abs(polygon.dy);
     const double d = polygon.d0 + polygon.dx * x + polygon.dy * y;
-    return std::max<double>(polygon.farthest, d - 0.5 * tilt - polygon.depth_error - std::abs(d) * 0x1p-40);
+    return std::max<double>(polygon.farthest, d - (0.5 + gap) * tilt - polygon.depth_error - std::abs(d) * 0x1p-40);
 }
 
 /// Joins pieces along identical edges.
@@ -265,21 +265,23 @@ float roundFarther(double nearness) {
     return f > nearness ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
 }
 
-/// False only if the polygon surely misses the pixel whose centre is given.
-bool mayTouch(const RasterPolygon& polygon, double x, double y) {
-    if (x + 0.5 < polygon.x0 || x - 0.5 > polygon.x1 + 1.0 || y + 0.5 < polygon.y0 || y - 0.5 > polygon.y1 + 1.0)
+/// False only if the polygon surely misses the pixel whose centre is given, and what lies less than the gap beside it.
+bool mayTouch(const RasterPolygon& polygon, double x, double y, double gap) {
+    const double reach = 0.5 + gap;
+    if (x + reach < polygon.x0 || x - reach > polygon.x1 + 1.0 || y + reach < polygon.y0 ||
+        y - reach > polygon.y1 + 1.0)
         return false;
     for (int e = 0; e < polygon.edges; ++e)
-        if (polygon.edge[e].at(x, y) < -0.5 - static_cast<double>(polygon.slack)) return false;
+        if (polygon.edge[e].at(x, y) < -reach - static_cast<double>(polygon.slack)) return false;
     return true;
 }
 
-/// Which corners of a pixel a polygon may hold, a bit each: those that are not surely outside.
-uint32_t cornersHeld(const RasterPolygon& polygon, double x, double y) {
+/// Which corners of a pixel a polygon may hold, a bit each: those that do not surely lie the gap or more outside.
+uint32_t cornersHeld(const RasterPolygon& polygon, double x, double y, double gap) {
     uint32_t held = 15;
     for (int e = 0; e < polygon.edges; ++e) {
         const EdgeFunction& edge = polygon.edge[e];
-        const double center = edge.at(x, y) + static_cast<double>(polygon.slack);
+        const double center = edge.at(x, y) + static_cast<double>(polygon.slack) + gap;
         const double across = 0.5 * edge.a, along = 0.5 * edge.b;
         held &= static_cast<uint32_t>(center - across - along >= 0) |
                 static_cast<uint32_t>(center + across - along >= 0) << 1 |
@@ -310,27 +312,30 @@ public:
 
     /// Finds the polygons that may lie in front of what the pixel claims.
     Corners gather(float wanted) {
-        const float x = static_cast<float>(x_), y = static_cast<float>(y_);
+        const float x = static_cast<float>(x_), y = static_cast<float>(y_), reach = tiles_.gap > 0 ? 0.75f : 0.5f;
         uint32_t held = 0, held_now = wanted < std::numeric_limits<float>::infinity() ? 0 : 15;
         forSeamEntries(tiles_, tile_, [&](const SeamEntry& entry) {
             if (!(entry.mask & pixel_) || !(entry.nearest > before_)) return;
-            forSeamPolygons(tiles_, entry, {x - 0.5f, y - 0.5f, x + 0.5f, y + 0.5f}, [&](uint32_t i) {
+            forSeamPolygons(tiles_, entry, {x - reach, y - reach, x + reach, y + reach}, [&](uint32_t i) {
                 const RasterPolygon& raster = tiles_.polygons[i].raster;
-                if (!(raster.nearest > before_) || !mayTouch(raster, x_, y_)) return;
-                const uint32_t corners = cornersHeld(raster, x_, y_);
+                if (!(raster.nearest > before_) || !mayTouch(raster, x_, y_, tiles_.gap)) return;
+                const uint32_t corners = cornersHeld(raster, x_, y_, tiles_.gap);
                 held |= corners;
                 if (raster.nearest > wanted) held_now |= corners;
-                if (count_ < kMaxPolygons) found_[count_] = i;
+                if (count_ < kMaxPolygons) {
+                    found_[count_] = i;
+                    lone_[count_] = entry.polygon() != SeamEntry::kAllPolygons;
+                }
                 ++count_;
             });
         });
-        return count_ < 2 || count_ > kMaxPolygons || held != 15 ? Corners::kOpen
-               : held_now != 15                                  ? Corners::kOpenNow
-                                                                 : Corners::kHeld;
+        return count_ > kMaxPolygons || held != 15 ? Corners::kOpen
+               : held_now != 15                    ? Corners::kOpenNow
+                                                   : Corners::kHeld;
     }
 
     /// The nearness of what covers the pixel; -infinity if it is open.
-    double resolve() const {
+    double resolve() {
         bool all = true;
         const double nearness = uniteAll(all);
         return all ? nearness : std::max(nearness, joinAll());
@@ -338,7 +343,7 @@ public:
 
 private:
     /// @param all  cleared if some polygon could not enter the union, or the work was cut short
-    double uniteAll(bool& all) const {
+    double uniteAll(bool& all) {
         constexpr int kMost = 32;  // work cap: of more polygons the nearest are united
         struct Ranked {
             double farthest;
@@ -348,7 +353,7 @@ private:
         int count = 0;
         for (int i = 0; i < count_; ++i) {
             const SeamPolygon& polygon = tiles_.polygons[found_[i]];
-            const double farthest = farthestIn(polygon.raster, x_, y_);
+            const double farthest = farthestIn(polygon.raster, x_, y_, tiles_.gap);
             all &= polygon.raster.complete && polygon.clipped == SeamPolygon::kWhole;
             if (polygon.raster.complete && farthest > before_) ranked[count++] = {farthest, i, &polygon};
         }
@@ -368,7 +373,29 @@ private:
                 pieces[i].shared |= 1u << side_i;
                 pieces[j].shared |= 1u << side_j;
             }
-        return subtractFromPixel(x_, y_, pieces, count, all);
+        GapPolygon near[kMost];
+        if (tiles_.gap > 0)
+            for (int i = 0; i < count; ++i) near[i] = nearPixel(*ranked[i].polygon);
+        const PixelUnion united = subtractFromPixel(x_, y_, pieces, count, tiles_.gap, near);
+        all &= united.whole;
+        // What one polygon alone covers was covered when it was drawn: lookAtSeams() counts on that.
+        if (united.used == 1 && tiles_.gap == 0 && united.nearness > before_ && lone_[ranked[united.last].place])
+            return -std::numeric_limits<double>::infinity();
+        tiles_.closed_gaps += united.bridged;
+        return united.nearness;
+    }
+
+    GapPolygon nearPixel(const SeamPolygon& polygon) const {
+        Piece piece;
+        loadPiece(tiles_, polygon, piece);
+        GapPolygon out;
+        out.count = piece.count;
+        out.error = polygon.raster.error;
+        for (int i = 0; i < piece.count; ++i) {
+            out.x[i] = piece.x[i] - x_;
+            out.y[i] = piece.y[i] - y_;
+        }
+        return out;
     }
 
     double joinAll() const {
@@ -387,6 +414,7 @@ private:
     const double x_, y_;
     const float before_;
     uint32_t found_[kMaxPolygons];  // not yet their places: making the next one may move them all
+    bool lone_[kMaxPolygons];       // named one by one, not with all polygons of a patch
     int count_ = 0;
 };
 

@@ -40,7 +40,9 @@ uint64_t polygonsInKernel(const float* boxes, uint32_t count, const SeamRect& re
 
 /// Covers the pixels that two polygons with a shared side cover between them. A point of a pixel lies on one side or
 /// the other of the shared edge; if the pixel is inside all their other sides, the point is inside that polygon.
-void coverPair(DepthTiles& tiles, uint32_t tile, const SeamPolygon& a, int side_a, const SeamPolygon& b, int side_b) {
+/// @param pixels  those that matter; nothing is done about others, so that it does not matter when this is done
+void coverPair(DepthTiles& tiles, uint32_t tile, uint64_t pixels, const SeamPolygon& a, int side_a,
+               const SeamPolygon& b, int side_b) {
     const double x = 8.0 * (tile % tiles.stride) + 4.0, y = 8.0 * (tile / tiles.stride) + 4.0;
     struct Line {
         float a, b, c;
@@ -86,6 +88,7 @@ void coverPair(DepthTiles& tiles, uint32_t tile, const SeamPolygon& a, int side_
             covered |= bitsFromMask(half, hn::Ge(least, limit)) << (8 * row + static_cast<int>(h));
         }
     }
+    covered &= pixels;
     if (covered) raiseClaims(tiles, tile, covered, depth);
 }
 
@@ -139,13 +142,13 @@ void pairSeams(DepthTiles& tiles, uint32_t tile) {
             if (!findSharedSide(tiles, a, b, side_a, side_b)) continue;
             // Where the side does not meet the tile, one of them is alone there.
             if (std::abs(a.raster.edge[side_a].at(left + 4.0, bottom + 4.0)) > 4.0 + a.raster.slack) continue;
-            HWY_DYNAMIC_DISPATCH(coverPair)(tiles, tile, a, side_a, b, side_b);
+            HWY_DYNAMIC_DISPATCH(coverPair)(tiles, tile, masks[i] & masks[j], a, side_a, b, side_b);
         }
 }
 
 /// A corner of a pixel is covered by an entry only if the entry touches, or something covers, all four pixels that meet
-/// there; of those that lie in the next tile nothing is known. Below two polygons nothing is covered that one alone
-/// does not cover when it is drawn.
+/// there; of those that lie in the next tile nothing is known. One polygon alone covers what it covers when it is drawn,
+/// and no more, but where gaps are closed: it is drawn a little smaller there.
 SeamMasks lookAtSeams(DepthTiles& tiles, uint32_t tile, uint64_t pixels, float wanted) {
     constexpr uint64_t kFirst = 0x0101010101010101ull, kLast = kFirst << 7, kLow = 0xff, kHigh = kLow << 56;
     const uint64_t covered = tiles.coveredBits(tile);
@@ -165,6 +168,7 @@ SeamMasks lookAtSeams(DepthTiles& tiles, uint32_t tile, uint64_t pixels, float w
         corners[3] |= mask & right & (right >> 8 | kHigh);
     });
     tiles.lid[tile] = wanted;
+    if (tiles.gap > 0) twice = once;
     tiles.lid_mask[tile] = ~(twice & corners[0] & corners[1] & corners[2] & corners[3]);
     return {pixels & tiles.lid_mask[tile], ~more};
 }

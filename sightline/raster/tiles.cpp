@@ -41,7 +41,8 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height, Detail new_detai
     made.clear();
     boxes.clear();
     chunks.clear();
-    seam_pixels = 0;
+    seam_pixels = closed_gaps = 0;
+    gap = 0;
 }
 
 void DepthTiles::keepColumns(uint32_t first, uint32_t end) {

@@ -162,7 +162,11 @@ struct DepthTiles {
         Array<uint8_t> winding;      ///< per slot, 64: change of the winding number from the pixel to the left
     } scratch{memory};
 
+    /// Gaps narrower than this between occluders are closed; set after clear(), which makes it 0  [pixels]
+    double gap = 0;
+
     uint64_t seam_pixels = 0;  ///< resolved since the clear
+    uint64_t closed_gaps = 0;  ///< of those, pixels that are covered because gaps in them were closed
     TileLog* log = nullptr;    ///< raster/tile_log.h: takes down what is asked and answered, if there is one
 
     /// Pixels of a tile that claim a depth.

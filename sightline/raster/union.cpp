@@ -3,6 +3,7 @@
 #include "sightline/raster/union.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace sightline {
@@ -64,20 +65,18 @@ struct Remainder {
     }
 };
 
-/// Takes a piece away from a region; what is left goes to `out`. `used` tells whether anything was taken.
-bool subtract(const Region& region, const UnionPiece& piece, double x, double y, Remainder& out, bool& used) {
-    const RasterPolygon& polygon = *piece.polygon;
+/// Takes what lies inside of some lines away from a region; what is left goes to `out`. `used` tells whether anything
+/// was taken.
+bool subtract(const Region& region, const EdgeFunction* lines, int count, Remainder& out, bool& used) {
     Region parts[2], outside;
-    const Region* rest = &region;  // what is inside the edges so far
+    const Region* rest = &region;  // what is inside the lines so far
     const int before = out.count;
-    for (int k = 0; k < polygon.edges; ++k) {
-        const EdgeFunction& edge = polygon.edge[k];
-        const double margin = piece.shared >> k & 1 ? kShared : static_cast<double>(polygon.slack);
+    for (int k = 0; k < count; ++k) {
         Region& inside = rest == &parts[0] ? parts[1] : parts[0];
-        const Place place = split(*rest, edge.a, edge.b, edge.at(x, y) - margin, inside, outside);
+        const Place place = split(*rest, lines[k].a, lines[k].b, lines[k].c, inside, outside);
         if (place == Place::kInside) continue;
         if (place == Place::kTooManyCorners) return false;
-        if (place == Place::kOutside || inside.count < 3) {  // the piece misses the region
+        if (place == Place::kOutside || inside.count < 3) {  // all of it misses the region
             out.count = before;
             return out.add(region);
         }
@@ -88,32 +87,103 @@ bool subtract(const Region& region, const UnionPiece& piece, double x, double y,
     return true;
 }
 
-}  // namespace
-
-double subtractFromPixel(double x, double y, const UnionPiece* pieces, int count, bool& whole) {
-    constexpr double kNothing = -std::numeric_limits<double>::infinity();
+/// What is left of a pixel.
+struct PixelRest {
     Remainder lists[2], *left = &lists[0], *next = &lists[1];
-    Region square;
-    // A little larger than the pixel, so that the rounding of its own corners does not count.
-    constexpr double kHalf = 0.5 + 0x1p-30;
-    square.add(-kHalf, -kHalf);
-    square.add(kHalf, -kHalf);
-    square.add(kHalf, kHalf);
-    square.add(-kHalf, kHalf);
-    left->add(square);
-    double farthest = std::numeric_limits<double>::infinity();
-    for (int p = 0; p < count && left->count > 0; ++p) {
-        bool used = false;
+
+    PixelRest() {
+        Region square;
+        // A little larger than the pixel, so that the rounding of its own corners does not count.
+        constexpr double kHalf = 0.5 + 0x1p-30;
+        square.add(-kHalf, -kHalf);
+        square.add(kHalf, -kHalf);
+        square.add(kHalf, kHalf);
+        square.add(-kHalf, kHalf);
+        left->add(square);
+    }
+    PixelRest(const PixelRest&) = delete;
+    PixelRest& operator=(const PixelRest&) = delete;
+
+    bool empty() const { return left->count == 0; }
+
+    /// False if a work cap is met.
+    bool take(const EdgeFunction* lines, int count, bool& used) {
         next->count = 0;
         for (int r = 0; r < left->count; ++r)
-            if (!subtract(left->regions[r], pieces[p], x, y, *next, used)) {
-                whole = false;
-                return kNothing;
-            }
-        if (used) farthest = std::min(farthest, pieces[p].farthest);
+            if (!subtract(left->regions[r], lines, count, *next, used)) return false;
         std::swap(left, next);
+        return true;
     }
-    return left->count == 0 ? farthest : kNothing;
+
+    /// Whether no region is surely wider than a gap.
+    bool isThin(double gap) const {
+        for (int r = 0; r < left->count; ++r) {
+            const Region& region = left->regions[r];
+            double area2 = 0, around = 0;
+            for (int i = 0; i < region.count; ++i) {
+                const int j = i + 1 < region.count ? i + 1 : 0;
+                area2 += region.x[i] * region.y[j] - region.x[j] * region.y[i];
+                around += std::abs(region.x[j] - region.x[i]) + std::abs(region.y[j] - region.y[i]);
+            }
+            if (area2 > gap * around) return false;
+        }
+        return true;
+    }
+};
+
+/// Whether bridges between the pieces close what they leave.
+bool closeGaps(const PixelRest& rest, const GapPolygon* near, int count, double gap) {
+    constexpr int kMostBridges = 160, kMostPieces = 12;  // work caps
+    if (count > kMostPieces || !rest.isThin(gap)) return false;
+    Bridge bridges[kMostBridges];
+    const int made = makeBridges(near, count, gap, bridges, kMostBridges);
+    PixelRest trial;
+    *trial.left = *rest.left;
+    bool used = false;
+    for (int i = 0; i < made && !trial.empty(); ++i)  // one that would make too many regions is left out
+        trial.take(bridges[i].edge, bridges[i].edges, used);
+    double error = 0;
+    for (int p = 0; p < count; ++p) error = std::max(error, near[p].error);
+    return trial.isThin(8.0 * error);  // slivers where bridges meet
+}
+
+}  // namespace
+
+PixelUnion subtractFromPixel(double x, double y, const UnionPiece* pieces, int count, double gap,
+                             const GapPolygon* near) {
+    PixelUnion out;
+    out.nearness = -std::numeric_limits<double>::infinity();
+    PixelRest rest;
+    double farthest = std::numeric_limits<double>::infinity();
+    for (int p = 0; p < count; ++p) {
+        const RasterPolygon& polygon = *pieces[p].polygon;
+        EdgeFunction lines[4];
+        for (int k = 0; k < polygon.edges; ++k) {
+            const EdgeFunction& edge = polygon.edge[k];
+            const double margin = pieces[p].shared >> k & 1 ? kShared : polygon.error;
+            lines[k] = {edge.a, edge.b, edge.at(x, y) - margin};
+        }
+        bool used = false;
+        if (!rest.take(lines, polygon.edges, used)) {
+            out.whole = false;
+            return out;
+        }
+        if (used) {
+            farthest = std::min(farthest, pieces[p].farthest);
+            ++out.used;
+            out.last = p;
+        }
+        if (rest.empty()) {
+            out.nearness = farthest;
+            return out;
+        }
+        if (gap > 0 && p > 0 && closeGaps(rest, near, p + 1, gap)) {
+            out.nearness = pieces[p].farthest;
+            out.bridged = true;
+            return out;
+        }
+    }
+    return out;
 }
 
 }  // namespace sightline

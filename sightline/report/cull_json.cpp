@@ -53,6 +53,7 @@ Json frameJson(const FrameResult& frame, const CullRun& run, const Scene& scene)
     out["occluder_triangles"] = frame.occluder_triangles;
     out["nodes_visited"] = frame.nodes_visited;
     out["seam_pixels"] = frame.seam_pixels;
+    if (frame.closed_gaps > 0) out["closed_gaps"] = frame.closed_gaps;
     out["budget_spent"] = frame.budget_spent;
     out["faces_tested"] = frame.faces_tested;
     out["faces_culled"] = frame.faces_culled;
@@ -86,6 +87,7 @@ Json headJson(const CullRun& run, const Scene& scene) {
     if (run.last_visible_first) head["last_visible_first"] = true;
     head["faces"] = run.faces;
     if (run.masked) head["masked"] = true;
+    if (run.close_gaps > 0) head["close_gaps"] = run.close_gaps;
     head["second_look"] = run.second_look;
     head["second_look_polygons_limit"] = run.second_look_polygons;
     head["repeat"] = run.repeat;

@@ -63,7 +63,7 @@ struct FrameResult {
     uint64_t occluder_triangles = 0;  ///< rasterized by the query
     bool budget_spent = false;
     double query_microseconds = 0;                ///< median over the repeats
-    uint64_t nodes_visited = 0, seam_pixels = 0;  ///< QueryStats
+    uint64_t nodes_visited = 0, seam_pixels = 0, closed_gaps = 0;  ///< QueryStats
     uint64_t faces_tested = 0, faces_culled = 0;  ///< the same, and what follows
     uint64_t second_looks = 0, second_look_culled = 0, second_look_polygons = 0;
     bool second_look_spent = false;
@@ -88,6 +88,7 @@ struct CullRun {
     double stereo = 0;                      ///< distance of the two eyes  [world units]; 0: there is one
     bool last_visible_first = false;        ///< each frame drew first what the one before it kept
     bool masked = false;                    ///< View::occlusion_detail
+    double close_gaps = 0;                  ///< of View
     bool faces = true, second_look = true;  ///< View
     uint32_t second_look_polygons = View().second_look_polygons;
     int repeat = 1;

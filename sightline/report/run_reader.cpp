@@ -184,6 +184,7 @@ void readFrame(const At& at, CullRun& run, uint32_t& stages, FrameResult& frame,
     count("occluder_triangles", frame.occluder_triangles);
     count("nodes_visited", frame.nodes_visited);
     count("seam_pixels", frame.seam_pixels);
+    count("closed_gaps", frame.closed_gaps);
     if (const auto spent = at.maybe("budget_spent")) frame.budget_spent = spent->flag();
     count("faces_tested", frame.faces_tested);
     count("faces_culled", frame.faces_culled);
@@ -248,6 +249,7 @@ RunFile readHead(const At& head) {
         run.occluder_triangles = static_cast<uint32_t>(limit->whole(0, ~uint32_t{0}));
     if (const auto faces = head.maybe("faces")) run.faces = faces->flag();
     if (const auto masked = head.maybe("masked")) run.masked = masked->flag();
+    if (const auto gaps = head.maybe("close_gaps")) run.close_gaps = gaps->positive();
     if (const auto look = head.maybe("second_look")) run.second_look = look->flag();
     if (const auto limit = head.maybe("second_look_polygons_limit"))
         run.second_look_polygons = static_cast<uint32_t>(limit->whole(0, ~uint32_t{0}));

@@ -15,6 +15,7 @@ constexpr float kFarthest = -std::numeric_limits<float>::infinity();
 /// their depths.
 PixelRect drawAlone(const Walk& walk, const WalkRecord& record, std::span<const uint32_t> draws, DepthTiles& tiles) {
     tiles.clear(walk.screen.width, walk.screen.height);
+    tiles.gap = walk.tiles.gap;
     const PixelRect everywhere{0, 0, static_cast<int32_t>(tiles.width) - 1, static_cast<int32_t>(tiles.height) - 1,
                                std::numeric_limits<float>::infinity()};
     PixelRect region{everywhere.x1, everywhere.y1, 0, 0, kFarthest};

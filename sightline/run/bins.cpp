@@ -19,9 +19,10 @@ constexpr uint32_t kMostBins = 16;
 /// Adds what another bin did.
 void addWork(const QueryStats& from, QueryStats& to) {
     for (int stage = 0; stage < kStageCount; ++stage) to.stages[stage].nanoseconds += from.stages[stage].nanoseconds;
-    for (auto count : {&QueryStats::nodes_visited, &QueryStats::occluder_triangles, &QueryStats::seam_pixels,
-                       &QueryStats::faces_tested, &QueryStats::faces_culled, &QueryStats::second_looks,
-                       &QueryStats::second_look_culled, &QueryStats::second_look_polygons, &QueryStats::nanoseconds})
+    for (auto count :
+         {&QueryStats::nodes_visited, &QueryStats::occluder_triangles, &QueryStats::seam_pixels,
+          &QueryStats::closed_gaps, &QueryStats::faces_tested, &QueryStats::faces_culled, &QueryStats::second_looks,
+          &QueryStats::second_look_culled, &QueryStats::second_look_polygons, &QueryStats::nanoseconds})
         to.*count += from.*count;
     to.budget_spent |= from.budget_spent;
     to.second_look_spent |= from.second_look_spent;

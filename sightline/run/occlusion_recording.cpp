@@ -157,6 +157,7 @@ Result<OcclusionRecording> recordOcclusion(const Snapshot& now, const View& view
     out.view.jitter = view.jitter;
     out.view.occlusion_size = std::clamp(view.occlusion_size, 1u, 8192u);
     out.view.occlusion_detail = view.occlusion_detail;
+    out.view.close_gaps = closedGap(view);
     detail::Walk walk(memory);
     detail::WalkRecord record(memory);
     record.log = &out.asked;
@@ -181,7 +182,8 @@ Array<char> recordingBytes(const OcclusionRecording& recording, Memory* memory) 
     view.put(recording.view.height);
     view.put(recording.view.jitter);
     view.put(recording.view.occlusion_size);
-    view.put(static_cast<uint32_t>(recording.view.occlusion_detail));
+    view.put(static_cast<uint32_t>(recording.view.occlusion_detail) |
+             static_cast<uint32_t>(recording.view.close_gaps * kGapSteps) << 8);
     putOccluders(sections, recording);
     for (const auto& instance : recording.instances) {
         instances.put(instance.occluder);

@@ -111,9 +111,12 @@ private:
         if (out_.view.occlusion_size < 1 || out_.view.occlusion_size > 8192)
             return (void)wrong("a buffer of no pixels, or of more than 8192 in a row", at_size);
         const uint64_t at_detail = from.at();
-        const uint32_t detail = from.take<uint32_t>();
+        const uint32_t how = from.take<uint32_t>(), detail = how & 255;
         if (detail > static_cast<uint32_t>(OcclusionDetail::kFull))
             return (void)wrong("a detail of the buffer that is not known", at_detail);
+        out_.view.close_gaps = (how >> 8) / kGapSteps;
+        if (closedGap(out_.view) != out_.view.close_gaps)
+            return (void)wrong("gaps that are too wide to be closed", at_detail);
         out_.view.occlusion_detail = static_cast<OcclusionDetail>(detail);
     }
 

@@ -40,6 +40,11 @@ OcclusionReplay::OcclusionReplay(const OcclusionRecording& recording, Memory* me
     }
 }
 
+void OcclusionReplay::clearTiles() {
+    tiles_.clear(screen_.width, screen_.height, recording_.view.occlusion_detail);
+    tiles_.gap = recording_.view.close_gaps;
+}
+
 void OcclusionReplay::drawOne(uint64_t index, ReplayAnswer& answer) {
     const auto& draw = recording_.draws[index];
     if (boxes_[index].outside) return;
@@ -56,7 +61,7 @@ ReplayAnswer OcclusionReplay::run() {
         if (answer.differences++ == 0) answer.different = call;
     };
     const auto start = Clock::now();
-    tiles_.clear(screen_.width, screen_.height, recording_.view.occlusion_detail);
+    clearTiles();
     for (uint64_t call = 0; call < asked.calls.size(); ++call) {
         if (asked.calls[call] == TileLog::Call::kDraw) {
             drawOne(draw++, answer);
@@ -80,7 +85,7 @@ ReplayAnswer OcclusionReplay::run() {
 uint64_t OcclusionReplay::draw() {
     ReplayAnswer ignored;
     const auto start = Clock::now();
-    tiles_.clear(screen_.width, screen_.height, recording_.view.occlusion_detail);
+    clearTiles();
     for (uint64_t index = 0; index < recording_.draws.size(); ++index) drawOne(index, ignored);
     return since(start);
 }

@@ -40,6 +40,7 @@ public:
     const Screen& screen() const { return screen_; }
 
 private:
+    void clearTiles();
     void drawOne(uint64_t index, ReplayAnswer& answer);
 
     const OcclusionRecording& recording_;

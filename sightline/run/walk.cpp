@@ -307,7 +307,10 @@ void Walk::chooseVolumes() {
 void Walk::walk() {
     frustum = makeFrustum(view);
     screen = makeScreen(view, view.occlusion_size);
-    if (uses(Stage::kOcclusion)) tiles.clear(screen.width, screen.height, view.occlusion_detail);
+    if (uses(Stage::kOcclusion)) {
+        tiles.clear(screen.width, screen.height, view.occlusion_detail);
+        tiles.gap = closedGap(view);
+    }
     if (isPart()) {
         const auto border = [&](uint64_t i) { return static_cast<uint32_t>(tiles.columns * i / bin.count); };
         tiles.keepColumns(border(bin.index), border(bin.index + 1));
@@ -340,6 +343,7 @@ void Walk::walk() {
 
 void Walk::finish() {
     stats.seam_pixels = tiles.seam_pixels;
+    stats.closed_gaps = tiles.closed_gaps;
     if (isPart()) return;
     uint64_t left = stats.objects;
     for (const Stage stage : {Stage::kFrustum, Stage::kVolumes, Stage::kOcclusion}) {
