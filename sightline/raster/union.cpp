@@ -115,17 +115,19 @@ struct PixelRest {
         return true;
     }
 
-    /// Whether no region is surely wider than a gap.
-    bool isThin(double gap) const {
+    /// Whether all regions are thin, or so small that they are holes between what is closed: inside the pixel, so that
+    /// all around them is known.
+    bool isThin(double gap, double hole) const {
         for (int r = 0; r < left->count; ++r) {
             const Region& region = left->regions[r];
-            double area2 = 0, around = 0;
+            double area2 = 0, around = 0, beyond = 0;
             for (int i = 0; i < region.count; ++i) {
                 const int j = i + 1 < region.count ? i + 1 : 0;
                 area2 += region.x[i] * region.y[j] - region.x[j] * region.y[i];
                 around += std::abs(region.x[j] - region.x[i]) + std::abs(region.y[j] - region.y[i]);
+                beyond = std::max(beyond, std::max(std::abs(region.x[i]), std::abs(region.y[i])));
             }
-            if (area2 > gap * around) return false;
+            if (area2 > gap * around && !(around < hole && beyond < 0.5 - hole)) return false;
         }
         return true;
     }
@@ -134,7 +136,7 @@ struct PixelRest {
 /// Whether bridges between the pieces close what they leave.
 bool closeGaps(const PixelRest& rest, const GapPolygon* near, int count, double gap) {
     constexpr int kMostBridges = 160, kMostPieces = 12;  // work caps
-    if (count > kMostPieces || !rest.isThin(gap)) return false;
+    if (count > kMostPieces || !rest.isThin(gap, 0)) return false;
     Bridge bridges[kMostBridges];
     const int made = makeBridges(near, count, gap, bridges, kMostBridges);
     PixelRest trial;
@@ -144,7 +146,7 @@ bool closeGaps(const PixelRest& rest, const GapPolygon* near, int count, double 
         trial.take(bridges[i].edge, bridges[i].edges, used);
     double error = 0;
     for (int p = 0; p < count; ++p) error = std::max(error, near[p].error);
-    return trial.isThin(8.0 * error);  // slivers where bridges meet
+    return trial.isThin(8.0 * error, 0x1p-8 * gap);  // what is left where bridges meet
 }
 
 }  // namespace
