@@ -1,9 +1,9 @@
-// Covers a pixel by the polygons that share it: by their union; or joined where their edges are identical in world space.
+// Covers a pixel by the polygons that share it: by their union, or joined where their edges are identical.
 // SPDX-License-Identifier: MIT
 //
 // The union is subtracted from the pixel exactly (union.cpp); what has no certain winding does not enter it.
-// The argument for joining. Let F be a set of triangles, w(p) the number of those with counter-clockwise images that hold the
-// image point p less the clockwise ones. Crossing an edge changes w unless another triangle of F has the same edge
+// The argument for joining. Let F be a set of triangles, w(p) the number of those with counter-clockwise images that
+// hold the image point p less the clockwise ones. Crossing an edge changes w unless another triangle of F has the same edge
 // the other way round. So if every edge of F that meets the pixel is paired off like that, w is the same all over
 // the pixel; and if it is 1 or more at one point, each ray through the pixel meets a counter-clockwise, that is a
 // front-facing triangle of F, no farther than the farthest point of F in the pixel. Which edges meet the pixel, and

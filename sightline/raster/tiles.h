@@ -225,7 +225,7 @@ void readClaims(const DepthTiles& tiles, uint32_t tile, float (&claims)[64]);
 /// @param depths  per pixel, read where the mask has a bit
 void raiseClaims(DepthTiles& tiles, uint32_t tile, uint64_t mask, const float (&depths)[64]);
 
-/// Covers the pixels of a tile that two polygons of patches with a shared side cover between them, for all pairs at once.
+/// Covers the pixels of a tile that two polygons of patches with a shared side cover between them, all pairs at once.
 void pairSeams(DepthTiles& tiles, uint32_t tile);
 
 /// Tries to cover one pixel by the polygons that share it; true if it claims more than the nearness wanted now. What

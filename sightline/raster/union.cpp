@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxCorners = 12;
 constexpr int kMaxRegions = 24;  // work cap
-/// Of a shared side: more than the rounding of where a region was cut along it, less than what is known of where it lies.
+/// Of a shared side: more than the rounding of where a region was cut along it, less than what is known of its place.
 constexpr double kShared = -0x1p-40;  // [pixels]
 
 /// A convex region, counter-clockwise, relative to the pixel's centre.

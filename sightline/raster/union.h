@@ -27,7 +27,7 @@ struct PixelUnion {
     int last = -1;         ///< the last of them
 };
 
-/// Subtracts the pieces from the square of the pixel whose centre is given, in their order, which goes away from the eye.
+/// Subtracts the pieces from the square of the pixel whose centre is given, in their order: away from the eye.
 ///
 /// Certain: an edge that is not shared is moved inward by more than rounding; at a shared one both sides are covered
 /// within rounding, and the two polygons have the same edge function but for its sign, so that nothing is lost between.

@@ -30,14 +30,14 @@ struct QueryStats {
     uint64_t objects = 0;  ///< in the snapshot, within View::layers
     uint64_t visible = 0;  ///< = objects - the sum of culled
     uint64_t nodes_visited = 0;
-    uint64_t occluder_triangles = 0;    ///< offered to the rasterizer
-    uint64_t seam_pixels = 0;           ///< resolved: by the union of the polygons that share them
-    uint64_t closed_gaps = 0;           ///< of those, pixels that are covered because View::close_gaps closed gaps there
-    bool budget_spent = false;          ///< some visible occluders were not rasterized
-    uint64_t faces_tested = 0;          ///< objects asked by their boxes' faces
-    uint64_t faces_culled = 0;          ///< of these: by the occlusion stage or, out of the view, by the frustum's
-    uint64_t second_looks = 0;          ///< objects asked by their own triangles
-    uint64_t second_look_culled = 0;    ///< the same of these
+    uint64_t occluder_triangles = 0;  ///< offered to the rasterizer
+    uint64_t seam_pixels = 0;         ///< resolved: by the union of the polygons that share them
+    uint64_t closed_gaps = 0;         ///< of those, pixels that are covered because View::close_gaps closed gaps there
+    bool budget_spent = false;        ///< some visible occluders were not rasterized
+    uint64_t faces_tested = 0;        ///< objects asked by their boxes' faces
+    uint64_t faces_culled = 0;        ///< of these: by the occlusion stage or, out of the view, by the frustum's
+    uint64_t second_looks = 0;        ///< objects asked by their own triangles
+    uint64_t second_look_culled = 0;  ///< the same of these
     uint64_t second_look_polygons = 0;  ///< that they were asked by
     bool second_look_spent = false;     ///< View::second_look_polygons kept an object from being asked to the end
     uint64_t nanoseconds = 0;           ///< the whole query
