@@ -67,4 +67,18 @@ struct Occluder {
     }
 };
 
+/// A simpler occluder in the place of another one; prepare/inner.h makes it. What it hides from an eye outside of
+/// `outside`, the other one hides from there, too.
+struct InnerOccluder {
+    Occluder occluder;
+    Box3f outside;    ///< holds all that is drawn of the solids that it stands for
+    float error = 0;  ///< how much less it hides: how far inside it lies, about  [units of the positions]
+
+    /// Every vertex lies a whole number of steps from the origin, 0 to 65,535 along each axis; no step: they need not.
+    glm::vec3 origin{0.0f};
+    float step = 0;
+
+    explicit InnerOccluder(Memory* memory = defaultMemory()) : occluder(memory) {}
+};
+
 }  // namespace sightline

@@ -10,8 +10,8 @@ namespace sightline {
 
 /// Components that do not overlap, smallest first. Exact as long as nothing overflows or underflows.
 struct Expansion {
-    static constexpr int kMaxParts =
-        24;  ///< terms that may be added in all: a product of two counts as two, of three as four
+    /// Terms that may be added in all: a product of two counts as two, of three as four. 6 products of three sums of two:
+    static constexpr int kMaxParts = 192;
 
     double parts[kMaxParts];
     int count = 0;

@@ -32,15 +32,26 @@ bool isStraight(double ax, double ay, double bx, double by, double cx, double cy
     return sum.sign() == 0;
 }
 
-/// The difference of two floats, and whether a double holds it.
-bool subtract(const glm::vec3& a, const glm::vec3& b, glm::dvec3& difference) {
-    bool exact = true;
-    for (int i = 0; i < 3; ++i) {
-        const double p = a[i], q = b[i], d = p - q, back = p - d;
-        difference[i] = d;
-        exact &= (p - (d + back)) + (back - q) == 0.0;
+/// The difference of two points in doubles, and what they leave: together exact.
+struct Difference {
+    glm::dvec3 whole, rest;
+
+    Difference(const glm::vec3& a, const glm::vec3& b) {
+        for (int i = 0; i < 3; ++i) {
+            const double p = a[i], q = b[i], d = p - q, back = p - d;
+            whole[i] = d;
+            rest[i] = (p - (d + back)) + (back - q);
+        }
     }
-    return exact;
+};
+
+/// Adds a product of one coordinate of each of three differences, or takes it away.
+void addProduct(Expansion& sum, double sign, const Difference& u, int i, const Difference& v, int j,
+                const Difference& w, int k) {
+    for (const double a : {u.whole[i], u.rest[i]})
+        for (const double b : {v.whole[j], v.rest[j]})
+            for (const double c : {w.whole[k], w.rest[k]})
+                if (a != 0 && b != 0 && c != 0) sum.addProduct(sign * a, b, c);
 }
 
 }  // namespace
@@ -62,21 +73,26 @@ bool liesBetween(const glm::vec3& point, const glm::vec3& a, const glm::vec3& b)
 bool areCoplanar(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
     for (int i = 0; i < 3; ++i)
         if (a[i] == b[i] && a[i] == c[i] && a[i] == d[i]) return true;
-    glm::dvec3 u, v, w;
-    if (!subtract(b, a, u) || !subtract(c, a, v) || !subtract(d, a, w)) return false;
+    return sideOf(d, a, b, c) == Side::kOn;
+}
+
+Side sideOf(const glm::vec3& point, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    const Difference du(b, a), dv(c, a), dw(point, a);
+    const glm::dvec3 &u = du.whole, &v = dv.whole, &w = dw.whole;
     const double terms[6] = {u.x * v.y * w.z, u.y * v.z * w.x, u.z * v.x * w.y,
                              u.x * v.z * w.y, u.y * v.x * w.z, u.z * v.y * w.x};
     double size = 0;
     for (double term : terms) size += std::abs(term);
-    if (std::abs((terms[0] + terms[1] + terms[2]) - (terms[3] + terms[4] + terms[5])) > kSure * size) return false;
+    const double volume = (terms[0] + terms[1] + terms[2]) - (terms[3] + terms[4] + terms[5]);
+    if (!std::isfinite(size)) return Side::kUnsure;
+    if (std::abs(volume) > kSure * size) return volume > 0 ? Side::kBefore : Side::kBehind;
     Expansion sum;
-    sum.addProduct(u.x, v.y, w.z);
-    sum.addProduct(u.y, v.z, w.x);
-    sum.addProduct(u.z, v.x, w.y);
-    sum.addProduct(-u.x, v.z, w.y);
-    sum.addProduct(-u.y, v.x, w.z);
-    sum.addProduct(-u.z, v.y, w.x);
-    return sum.sign() == 0;
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        addProduct(sum, 1, du, i, dv, j, dw, k);
+        addProduct(sum, -1, du, i, dv, k, dw, j);
+    }
+    return static_cast<Side>(sum.sign());
 }
 
 }  // namespace sightline

@@ -33,6 +33,8 @@ Prepared prepare(std::span<const OccluderSource> sources, const OccluderSettings
     limits.reach_across = settings.rings;
     limits.most_joined = std::clamp(settings.own_polygons, 3u, OccluderCluster::kMaxOwn);
     limits.most_folded = std::clamp(settings.folded_polygons, 3u, limits.most_joined);
+    limits.few = settings.few;
+    limits.most_of_few = std::clamp(settings.polygons_of_few, 3u, limits.most_folded);
     limits.most_loose = OccluderCluster::kMaxLoose;
     limits.most_vertices = OccluderCluster::kMaxVertices - (settings.rings ? kRoomForRing : 0);
     out.runs = sortIntoRuns(out.patchwork, limits);
