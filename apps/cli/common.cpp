@@ -25,7 +25,8 @@
 namespace sightline::cli {
 namespace {
 
-constexpr uint32_t kLargestSide = 16384;  // [pixels]
+constexpr uint32_t kLargestSide = 16384;   // [pixels]
+constexpr uint32_t kLargestBuffer = 8192;  // View::occlusion_size  [pixels]
 constexpr uint32_t kMostFrames = 1000000;
 constexpr uint32_t kMostThreads = 1024;
 
@@ -48,16 +49,6 @@ template <class T>
 bool readWhole(std::string_view text, T& out) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
     return error == std::errc() && end == text.data() + text.size();
-}
-
-Status readSize(RunOptions& options) {
-    const std::string_view text = options.size;
-    const size_t cross = text.find('x');
-    const bool good = cross != std::string_view::npos && readWhole(text.substr(0, cross), options.width) &&
-                      readWhole(text.substr(cross + 1), options.height) && options.width >= 1 && options.height >= 1 &&
-                      options.width <= kLargestSide && options.height <= kLargestSide;
-    if (good) return success();
-    return usage(fmt::format("--size {}: not WxH with sides from 1 to {}", options.size, kLargestSide));
 }
 
 std::string stageNames() {
@@ -85,6 +76,24 @@ bool isCity(const std::string& scene, uint64_t& seed) {
 }
 
 }  // namespace
+
+Status readSize(const std::string& option, const std::string& text, uint32_t& width, uint32_t& height) {
+    const std::string_view size = text;
+    const size_t cross = size.find('x');
+    const bool good = cross != std::string_view::npos && readWhole(size.substr(0, cross), width) &&
+                      readWhole(size.substr(cross + 1), height) && width >= 1 && height >= 1 && width <= kLargestSide &&
+                      height <= kLargestSide;
+    if (good) return success();
+    return usage(fmt::format("{} {}: not WxH with sides from 1 to {}", option, text, kLargestSide));
+}
+
+void addOcclusionSize(CLI::App& verb, uint32_t& size) {
+    verb.add_option("--occlusion-size", size,
+                    "longer side of the occlusion buffer; a smaller viewport gets its own [pixels]")
+        ->check(CLI::Range(1u, kLargestBuffer))
+        ->type_name("N")
+        ->group("Culling");
+}
 
 void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& shared) {
     addSceneChoice(verb, options.scene);
@@ -132,6 +141,8 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
         ->type_name("N")
         ->capture_default_str()
         ->group("Culling");
+    addOcclusionSize(verb, options.occlusion_size);
+    verb.get_option("--occlusion-size")->capture_default_str();
     verb.add_flag("--masked", options.masked,
                   "let a tile of the occlusion buffer remember two depths and a mask, not a depth per pixel")
         ->group("Culling");
@@ -171,7 +182,7 @@ void addQueryOptions(CLI::App& verb, RunOptions& options) {
 }
 
 Status finish(const CLI::App& verb, RunOptions& options) {
-    if (Status size = readSize(options); !size) return size;
+    if (Status size = readSize("--size", options.size, options.width, options.height); !size) return size;
     if (std::isnan(options.jitter)) return usage("--jitter: not a number");  // no range leaves it out
     if (std::isnan(options.stereo)) return usage("--stereo: not a number");
     const Result<uint32_t> use = readStages("--use", options.use), skip = readStages("--skip", options.skip);

@@ -39,6 +39,7 @@ struct RunOptions {
     uint32_t second_look_polygons = View().second_look_polygons;
     bool masked = false;
     double close_gaps = 0;
+    uint32_t occlusion_size = View().occlusion_size;
     uint64_t rays = 1000000;
     std::string json;      ///< file, `-`, or empty
     std::string report;    ///< directory, or empty
@@ -48,12 +49,18 @@ struct RunOptions {
 /// The scene, its cameras, the size, threads and JSON: what every verb has that looks at a scene.
 /// @param shared  what the threads share: "the frames"
 void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& shared);
+/// --occlusion-size, as cull and others have it.
+void addOcclusionSize(CLI::App& verb, uint32_t& size);
 /// These, and what culling needs.
 void addSceneOptions(CLI::App& verb, RunOptions& options);
 /// And what cull and verify may ask a query for besides: two eyes, what was visible last first.
 void addQueryOptions(CLI::App& verb, RunOptions& options);
 /// Checks what single options cannot: sizes, stage names. Errors are kUsage.
 Status finish(const CLI::App& verb, RunOptions& options);
+
+/// Reads "1920x1080".  [1 to 16384]
+/// @param option  what an error, kUsage, calls it
+Status readSize(const std::string& option, const std::string& text, uint32_t& width, uint32_t& height);
 
 /// Which path: --cameras; --frames and --seed; a city's streets for --frames alone; the scene's own; 16 seeded.
 Result<CameraPath> loadPath(const Scene& scene, const RunOptions& options);

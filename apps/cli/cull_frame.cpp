@@ -43,6 +43,7 @@ View viewOf(const CameraFrame& camera, const CullRun& run) {
     view.occluder_triangles = run.occluder_triangles;
     view.occlusion_detail = run.masked ? OcclusionDetail::kMasked : OcclusionDetail::kFull;
     view.close_gaps = run.close_gaps;
+    view.occlusion_size = run.occlusion_size;
     view.faces = run.faces;
     view.second_look = run.second_look;
     view.second_look_polygons = run.second_look_polygons;

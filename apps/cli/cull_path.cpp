@@ -127,6 +127,8 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
         command += fmt::format(" --occluder-triangles {}", run.occluder_triangles);
     if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
     if (run.last_visible_first) command += " --last-visible-first";
+    if (run.occlusion_size != View().occlusion_size)
+        command += fmt::format(" --occlusion-size {}", run.occlusion_size);
     if (run.masked) command += " --masked";
     if (run.close_gaps > 0) command += fmt::format(" --close-gaps {:g}", run.close_gaps);
     if (!run.faces) command += " --no-faces";
@@ -168,6 +170,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.last_visible_first = options.last_visible_first;
     run.masked = options.masked;
     run.close_gaps = options.close_gaps;
+    run.occlusion_size = options.occlusion_size;
     run.faces = !options.no_faces;
     run.second_look = !options.no_second_look;
     run.second_look_polygons = options.second_look_polygons;

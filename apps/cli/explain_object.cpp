@@ -103,6 +103,7 @@ View viewOfFrame(const CameraFrame& camera, const RunOptions& options) {
     view.occluder_triangles = options.occluder_triangles;
     view.occlusion_detail = options.masked ? OcclusionDetail::kMasked : OcclusionDetail::kFull;
     view.close_gaps = options.close_gaps;
+    view.occlusion_size = options.occlusion_size;
     view.faces = !options.no_faces;
     view.second_look = !options.no_second_look;
     view.second_look_polygons = options.second_look_polygons;

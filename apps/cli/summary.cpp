@@ -121,6 +121,8 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
         command += fmt::format(" --occluder-triangles {}", options.occluder_triangles);
     if (options.stereo > 0) command += fmt::format(" --stereo {}", options.stereo);
     if (options.last_visible_first) command += " --last-visible-first";
+    if (options.occlusion_size != View().occlusion_size)
+        command += fmt::format(" --occlusion-size {}", options.occlusion_size);
     if (options.masked) command += " --masked";
     if (options.close_gaps > 0) command += fmt::format(" --close-gaps {:g}", options.close_gaps);
     if (options.no_faces) command += " --no-faces";

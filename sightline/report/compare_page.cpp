@@ -85,6 +85,7 @@ std::string sides(const RunComparison& c, const RunFile& a, const RunFile& b) {
     row("frames without a partner", number(c.unpaired_a), number(c.unpaired_b));
     both("viewport", [](const CullRun& run) { return fmt::format("{} × {}", run.width, run.height); });
     both("image shift, pixels", [](const CullRun& run) { return fmt::format("{}", run.jitter); });
+    both("occlusion buffer, longer side at most", [](const CullRun& run) { return number(run.occlusion_size); });
     both("queries a frame", [](const CullRun& run) { return fmt::format("{}", run.repeat); });
     row("query, median µs", readable(c.median_a), readable(c.median_b));
     const double pairs = std::max<double>(1, static_cast<double>(c.pairs.size()));

@@ -85,6 +85,7 @@ Json headJson(const CullRun& run, const Scene& scene) {
     head["occluder_triangles_limit"] = run.occluder_triangles;
     if (run.stereo > 0) head["stereo"] = run.stereo;
     if (run.last_visible_first) head["last_visible_first"] = true;
+    head["occlusion_size"] = run.occlusion_size;
     head["faces"] = run.faces;
     if (run.masked) head["masked"] = true;
     if (run.close_gaps > 0) head["close_gaps"] = run.close_gaps;

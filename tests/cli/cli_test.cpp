@@ -107,6 +107,20 @@ TEST_F(Cli, StagesNarrow) {
     }
 }
 
+// The smaller the buffer, the more of its pixels meet an edge.
+TEST_F(Cli, TheOcclusionBuffersSizeIsAskedForAndNamed) {
+    const std::string common = "city:1:2000 --frames 2 --size 640x360 --repeat 1 --jitter 0 --no-second-look ";
+    const json small = cull(common + "--occlusion-size 64"), usual = cull(common);
+    EXPECT_EQ(small["occlusion_size"], 64);
+    EXPECT_EQ(usual["occlusion_size"], 640);
+    for (size_t i = 0; i < 2; ++i)
+        EXPECT_GT(small["frames"][i]["visible"].size(), usual["frames"][i]["visible"].size());
+    EXPECT_EQ(run("verify city:1:2000 --frames 1 --size 64x36 --rays 5000 --occlusion-size 8").exit_code, 0);
+    EXPECT_EQ(run("explain city:1:200 --frames 1 --size 64x36 --object 7 --occlusion-size 8").exit_code, 0);
+    for (const char* size : {"0", "8193", "-1", "many", "1.5"})
+        expectError("cull city:1:10 --occlusion-size " + std::string(size), 2, "--occlusion-size");
+}
+
 TEST_F(Cli, CamerasOfOneRunReplayInAnother) {
     const json first = cull("city:1:500 --frames 2 --seed 9 --size 200x100 --repeat 1");
     json path;

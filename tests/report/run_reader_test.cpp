@@ -25,6 +25,7 @@ TEST(RunReader, ReadsBackWhatWasWritten) {
     CullRun run = madeRun(scene, 3);
     run.interrupted = true;
     run.frames_wanted = 9;
+    run.occlusion_size = 96;
     run.frames[1].nodes_visited = 77;
     run.frames[1].thread = 3;
     run.frames[2].verification->kept_unseen = {0};
@@ -37,6 +38,7 @@ TEST(RunReader, ReadsBackWhatWasWritten) {
     EXPECT_EQ(read->run.scene, run.scene);
     EXPECT_EQ(read->run.objects, run.objects);
     EXPECT_EQ(read->run.frames_wanted, 9u);
+    EXPECT_EQ(read->run.occlusion_size, 96u);
     EXPECT_TRUE(read->run.interrupted);
     ASSERT_EQ(read->run.frames.size(), 3u);
     for (size_t i = 0; i < 3; ++i) {
