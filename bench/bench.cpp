@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "bench/cases.h"
+#include "bench/occlusion_scenes.h"
 #include "sightline/report/output_file.h"
 
 namespace sightline::bench {
@@ -31,15 +32,19 @@ std::vector<std::string> names() {
     return names;
 }
 
-Status run(const Options& options) {
+std::vector<std::string> sceneNames() { return occlusionSceneNames(); }
+
+Result<bool> run(const Options& options) {
     for (const Case& c : kCases) {
         if (options.name != c.name) continue;
         const Table table = c.measure(options);
         const bool json_to_output = options.json == "-";
         std::fputs(toText(table).c_str(), json_to_output ? stderr : stdout);
         if (json_to_output) std::fputs(toJson(table).c_str(), stdout);
-        else if (!options.json.empty()) return writeFileAside(options.json, toJson(table));
-        return success();
+        else if (!options.json.empty())
+            if (Status written = writeFileAside(options.json, toJson(table)); !written) return written.error();
+        for (const std::string& fault : table.faults) std::fputs((fault + "\n").c_str(), stderr);
+        return table.faults.empty();
     }
     return Error{Error::Kind::kUsage, "bench: there is no case \"" + options.name + "\""};
 }

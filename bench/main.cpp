@@ -8,7 +8,7 @@ int main() {
     for (const std::string& name : sightline::bench::names()) {
         sightline::bench::Options options;
         options.name = name;
-        if (const sightline::Status done = sightline::bench::run(options); !done) {
+        if (const sightline::Result<bool> done = sightline::bench::run(options); !done) {
             std::fprintf(stderr, "%s\n", done.error().message.c_str());
             return 1;
         }

@@ -6,6 +6,7 @@
 #include "bench/exact_boxes.h"
 #include "bench/flat_boxes.h"
 #include "bench/occlusion_core.h"
+#include "bench/occlusion_proof.h"
 #include "bench/small_polygons.h"
 #include "bench/stopwatch.h"
 #include "sightline/load/load_world.h"
@@ -26,14 +27,20 @@ struct PathCost {
     double visible = 0;
 };
 
-PathCost measurePath(const Scene& scene, const CameraPath& path, int repeat) {
+View viewOf(const CameraFrame& frame, const Options& options) {
+    View view = makeView(frame, kWidth, kHeight);
+    if (options.occlusion_size > 0) view.occlusion_size = options.occlusion_size;
+    return view;
+}
+
+PathCost measurePath(const Scene& scene, const CameraPath& path, const Options& options, int repeat) {
     LoadedWorld loaded = loadWorld(scene);
     const Snapshot now = loaded.world.commit();
     FlatBoxes flat(objectBoxes(scene));
     Query query;
     PathCost sum;
     for (const CameraFrame& frame : path.frames) {
-        const View view = makeView(frame, kWidth, kHeight);
+        const View view = viewOf(frame, options);
         VisibleSet set;
         size_t kept = 0;
         const std::vector<double> times =
@@ -54,7 +61,8 @@ PathCost measurePath(const Scene& scene, const CameraPath& path, int repeat) {
 }
 
 /// Objects kept, beside what the same box test keeps on an exact z-buffer and what a 4x4 id-buffer shows.
-void measureTightness(const Scene& scene, const CameraPath& path, const std::string& where, Table& table) {
+void measureTightness(const Scene& scene, const CameraPath& path, const Options& options, const std::string& where,
+                      Table& table) {
     LoadedWorld loaded = loadWorld(scene);
     const Snapshot now = loaded.world.commit();
     const ExactBoxes exact(scene);
@@ -62,7 +70,7 @@ void measureTightness(const Scene& scene, const CameraPath& path, const std::str
     std::vector<uint8_t> reasons(scene.objects.size());
     double kept = 0, exactly_kept = 0, seen = 0;
     for (const CameraFrame& frame : path.frames) {
-        const View view = makeView(frame, kWidth, kHeight);
+        const View view = viewOf(frame, options);
         kept += static_cast<double>(query.visible(now, view).objects.size());
         query.reasons(reasons);
         const ExactBoxes::Answer answer = exact.test(view, 4);
@@ -81,31 +89,36 @@ void measureTightness(const Scene& scene, const CameraPath& path, const std::str
 
 Table benchOcclusion(const Options& options) {
     Table table{"occlusion", {}};
+    if (options.proof.wanted) {
+        addProofs(options, table);
+        return table;
+    }
     const int repeat = options.repeat ? options.repeat : 15;
     if (options.scene) {
         const CameraPath path = seededCameras(*options.scene, 16, kSeed);
-        const PathCost cost = measurePath(*options.scene, path, repeat);
+        const PathCost cost = measurePath(*options.scene, path, options, repeat);
         const std::string& where = options.scene->name;
         table.rows.push_back({where, "whole query", cost.query, "us", "flat frustum, SIMD", cost.flat});
         table.rows.push_back({where, "triangles submitted", cost.query_triangles, "triangles", "after flat frustum",
                               cost.flat_triangles});
-        measureTightness(*options.scene, path, where, table);
+        measureTightness(*options.scene, path, options, where, table);
         return table;
     }
-    measureSmallPolygons(options, table);
+    if (options.only.empty()) measureSmallPolygons(options, table);
     measureOcclusionCore(options, table);
+    if (!options.only.empty()) return table;
     const CameraPath path = cityStreetPath(kSeed, 16);
     double smallest = 0;
     for (uint32_t objects : {1000u, 10000u, 100000u, 1000000u}) {
         const Scene scene = makeCity(kSeed, objects);
-        const PathCost cost = measurePath(scene, path, repeat);
+        const PathCost cost = measurePath(scene, path, options, repeat);
         if (objects == 1000) smallest = cost.query;
         const std::string where = fmt::format("city:{}:{}", kSeed, objects);
         table.rows.push_back({where, "whole query", cost.query, "us", "flat frustum, SIMD", cost.flat});
         table.rows.push_back({where, "whole query", cost.query, "us", "city of 1000 objects", smallest});
         table.rows.push_back({where, "triangles submitted", cost.query_triangles, "triangles", "after flat frustum",
                               cost.flat_triangles});
-        if (objects == 10000) measureTightness(scene, path, where, table);
+        if (objects == 10000) measureTightness(scene, path, options, where, table);
     }
     return table;
 }

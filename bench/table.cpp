@@ -34,15 +34,16 @@ std::string toText(const Table& table) {
     }
     std::string text = fmt::format("bench {} on {}\n", table.name, machineName());
     for (const Row& row : table.rows)
-        text += fmt::format("{:<{}}  {:<{}}  {:>12.4g} {:<14} {:>7.3f}x of {:.4g}, {}\n", row.where, where, row.what,
-                            what, row.value, row.unit, row.ratio(), row.baseline_value, row.baseline);
+        text += fmt::format("{:<{}}  {:<{}}  {:>12.4g} {:<14} {:>7.3f}x of {:.4g}, {}{}\n", row.where, where, row.what,
+                            what, row.value, row.unit, row.ratio(), row.baseline_value, row.baseline,
+                            row.note.empty() ? "" : "; " + row.note);
     return text;
 }
 
 std::string toJson(const Table& table) {
     nlohmann::ordered_json json{{"schema", "sightline.bench/1"}, {"name", table.name}, {"machine", machineName()}};
     json["rows"] = nlohmann::ordered_json::array();
-    for (const Row& row : table.rows)
+    for (const Row& row : table.rows) {
         json["rows"].push_back({{"case", row.where},
                                 {"what", row.what},
                                 {"value", row.value},
@@ -50,6 +51,9 @@ std::string toJson(const Table& table) {
                                 {"baseline", row.baseline},
                                 {"baseline_value", row.baseline_value},
                                 {"ratio", row.ratio()}});
+        if (!row.note.empty()) json["rows"].back()["note"] = row.note;
+    }
+    if (!table.faults.empty()) json["faults"] = table.faults;
     return json.dump(2) + "\n";
 }
 

@@ -16,6 +16,7 @@ struct Row {
     std::string unit;
     std::string baseline;  ///< what it is compared with
     double baseline_value = 0;
+    std::string note = {};  ///< printed behind it; may be empty
 
     double ratio() const { return baseline_value != 0 ? value / baseline_value : 0; }
 };
@@ -23,6 +24,7 @@ struct Row {
 struct Table {
     std::string name;
     std::vector<Row> rows;
+    std::vector<std::string> faults = {};  ///< of a proof that was asked for, a line each; none: it holds
 };
 
 /// Aligned columns for a reader.

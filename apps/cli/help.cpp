@@ -88,7 +88,7 @@ constexpr Example kExamples[] = {
      {"sightline render model.glb --frame 3 -o picture.png --heat-map heat.png", "a picture and its depth complexity"}},
     {"info", {"sightline info model.glb", "what it holds"}},
     {"info", {"sightline info part-1.obj part-2.stl --json -", "what two files hold together, as JSON"}},
-    {"bench", {"sightline bench rasterize", "the rasterizer beside its baseline"}},
+    {"bench", {"sightline bench occlusion", "the occlusion buffer beside its baselines"}},
     {"explain",
      {"sightline explain model.glb --object 42 --frame 3 -o why.png",
       "why object 42 is kept or culled in frame 3, and a picture of it"}},

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "bench/occlusion_truth.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include <gtest/gtest.h>
 
 #include "bench/occlusion_frame.h"
+#include "sightline/base/random.h"
 
 namespace sightline::bench {
 namespace {
@@ -53,6 +55,79 @@ TEST(BoxTruth, DoesNotDependOnBands) {
     bands.band_samples = 160 * 4 * 50;
     EXPECT_EQ(boxesInSight(scene, frame.batches(), frame.boxes(), view, {}),
               boxesInSight(scene, frame.batches(), frame.boxes(), view, bands));
+}
+
+// Most boxes are passed over by the farthest depths of the picture's parts. The plain way is to draw each of them.
+TEST(BoxTruth, SeesWhatAPlainZBufferShowsAndSaysWhere) {
+    static constexpr uint32_t kSides[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                            2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+    static constexpr uint8_t kNeverWrites[12] = {};
+    const OcclusionScene scene = makeOcclusionScene("city");
+    OcclusionFrame frame(scene);
+    const View view = occlusionView(scene, scene.cameras.size() - 1, 320, 180);  // from above
+    frame.begin(view);
+    std::vector<glm::vec3> corners;
+    for (uint32_t number : frame.boxes()) {
+        const Box3f& box = scene.boxes[number];
+        for (int k = 0; k < 8; ++k)
+            corners.emplace_back(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y,
+                                 k & 4 ? box.max.z : box.min.z);
+    }
+    std::vector<DrawItem> items;
+    for (uint32_t batch : frame.batches()) items.emplace_back().mesh = scene.batches[batch].mesh();
+    for (size_t i = 0; i < frame.boxes().size(); ++i) {
+        DrawItem& item = items.emplace_back();
+        item.mesh = {std::span(corners).subspan(8 * i, 8), kSides};
+        item.writes_depth = kNeverWrites;
+        item.id = static_cast<uint32_t>(i) + 1;
+    }
+    BoxTruthSettings settings;
+    settings.supersampling = 2;
+    ZBufferSettings plain;
+    plain.samples = 2;
+    Random random(settings.seed);
+    plain.offset.x = random.uniform(-0.5, 0.5) / 2;
+    plain.offset.y = random.uniform(-0.5, 0.5) / 2;
+    const ZBufferImage image = renderZBuffer(items, view, plain);
+    const std::vector<BoxSighting> seen = sightBoxes(scene, frame.batches(), frame.boxes(), view, settings);
+    size_t count = 0;
+    for (size_t i = 0; i < seen.size(); ++i) {
+        ASSERT_EQ(seen[i].seen, image.seen[i + 1] != 0) << frame.boxes()[i];
+        if (!seen[i].seen) continue;
+        ++count;
+        // The line of sight through that place meets the box.
+        const Box3f& box = scene.boxes[frame.boxes()[i]];
+        const glm::dvec2 clip = 2.0 * seen[i].pixel / glm::dvec2(320, 180) - 1.0;
+        const glm::dvec4 far = glm::inverse(view.projection * view.view) * glm::dvec4(clip, 0.5, 1.0);
+        const glm::dvec3 eye = eyePosition(view), direction = glm::dvec3(far) / far.w - eye;
+        double from = 0, to = 1e9;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double a = (box.min[axis] - eye[axis]) / direction[axis];
+            const double b = (box.max[axis] - eye[axis]) / direction[axis];
+            from = std::max(from, std::min(a, b));
+            to = std::min(to, std::max(a, b));
+        }
+        ASSERT_LE(from, to + 1e-9) << frame.boxes()[i];
+    }
+    EXPECT_GT(count, 100u);
+    EXPECT_LT(count, seen.size() / 2);
+}
+
+TEST(BoxTruth, IsTheSameForAnyNumberOfThreads) {
+    const OcclusionScene scene = makeOcclusionWall(WallBond::kTilted, 0.1);
+    OcclusionFrame frame(scene);
+    const View view = occlusionView(scene, 1, 160, 90);
+    frame.begin(view);
+    BoxTruthSettings settings;
+    settings.jitters = 5;
+    settings.band_samples = 640 * 100;
+    const std::vector<BoxSighting> one = sightBoxes(scene, frame.batches(), frame.boxes(), view, settings);
+    settings.threads = 3;
+    const std::vector<BoxSighting> three = sightBoxes(scene, frame.batches(), frame.boxes(), view, settings);
+    for (size_t i = 0; i < one.size(); ++i) {
+        ASSERT_EQ(one[i].seen, three[i].seen);
+        ASSERT_EQ(one[i].pixel, three[i].pixel);
+    }
 }
 
 // The reason for more samples and for jitter: at pixel centres a slit of a tenth of a pixel is seen by chance alone.
