@@ -25,18 +25,19 @@ constexpr int kBaselineEvery = 8;  ///< rounds for one of the baseline, which is
 struct Figures {
     double draw = 0, draw_all = 0, draw_plain = 0, draw_masked = 0;  ///< [microseconds]
     double flat = 0, grouped = 0, plain = 0, masked = 0;             ///< all boxes [microseconds]
+    double draw_centers = 0, centers = 0;                            ///< drawing, and all boxes [microseconds]
     double triangles = 0, offered = 0, boxes = 0, resolved = 0, aside = 0;
-    double kept = 0, kept_exactly = 0, kept_masked = 0;
+    double kept = 0, kept_exactly = 0, kept_masked = 0, kept_centers = 0;
     double truths = 0, kept_of_truths = 0, seen = 0, false_culls = 0, false_culls_exactly = 0;
 
     void add(const Figures& f) {
-        for (auto member : {&Figures::draw,         &Figures::draw_all,    &Figures::draw_plain,
-                            &Figures::draw_masked,  &Figures::masked,      &Figures::kept_masked,
-                            &Figures::flat,         &Figures::grouped,     &Figures::plain,
-                            &Figures::triangles,    &Figures::offered,     &Figures::boxes,
-                            &Figures::resolved,     &Figures::aside,       &Figures::kept,
-                            &Figures::kept_exactly, &Figures::truths,      &Figures::kept_of_truths,
-                            &Figures::seen,         &Figures::false_culls, &Figures::false_culls_exactly})
+        for (auto member :
+             {&Figures::draw,           &Figures::draw_all,    &Figures::draw_plain,   &Figures::draw_masked,
+              &Figures::masked,         &Figures::kept_masked, &Figures::draw_centers, &Figures::centers,
+              &Figures::kept_centers,   &Figures::flat,        &Figures::grouped,      &Figures::plain,
+              &Figures::triangles,      &Figures::offered,     &Figures::boxes,        &Figures::resolved,
+              &Figures::aside,          &Figures::kept,        &Figures::kept_exactly, &Figures::truths,
+              &Figures::kept_of_truths, &Figures::seen,        &Figures::false_culls,  &Figures::false_culls_exactly})
             this->*member += f.*member;
     }
 };
@@ -72,15 +73,17 @@ public:
         flat_.resize(frame.boxes().size());
         grouped_.resize(frame.boxes().size());
         masked_.resize(frame.boxes().size());
+        centers_.resize(frame.boxes().size());
         exact_.resize(frame.boxes().size());
     }
 
     /// Each round draws anew before it asks, so that seams are resolved in each of them.
     void time(int repeat) {
-        std::vector<double> draw, draw_all, draw_plain, draw_masked, flat, grouped, plain, masked;
+        std::vector<double> draw, draw_all, draw_plain, draw_masked, draw_centers, flat, grouped, plain, masked,
+            centers;
         for (int round = -1; round < repeat; ++round) {
             if (round == 0)
-                for (auto* times : {&draw, &draw_all, &draw_masked, &flat, &grouped, &masked})
+                for (auto* times : {&draw, &draw_all, &draw_masked, &draw_centers, &flat, &grouped, &masked, &centers})
                     times->clear();  // the first was to warm up
             clockJob(draw_all, [&] { frame_.rasterize(tiles_, OcclusionFrame::SelfTest::kNo); });
             clockJob(draw, [&] { frame_.rasterize(tiles_); });
@@ -92,6 +95,11 @@ public:
             clockJob(draw_masked,
                      [&] { frame_.rasterize(tiles_, OcclusionFrame::SelfTest::kYes, OcclusionDetail::kMasked); });
             clockJob(masked, [&] { frame_.testGrouped(tiles_, masked_); });
+            clockJob(draw_centers, [&] {
+                frame_.rasterize(tiles_, OcclusionFrame::SelfTest::kYes, OcclusionDetail::kFull,
+                                 OcclusionFrame::Coverage::kCenters);
+            });
+            clockJob(centers, [&] { frame_.testGrouped(tiles_, centers_); });
             if (round < 0 || round % kBaselineEvery) continue;
             ZBufferImage image;
             clockJob(draw_plain, [&] { image = drawBatches(scene_, frame_.batches(), view_); });
@@ -102,6 +110,8 @@ public:
         figures_.draw_plain = median(draw_plain);
         figures_.draw_masked = median(draw_masked);
         figures_.masked = median(masked);
+        figures_.draw_centers = median(draw_centers);
+        figures_.centers = median(centers);
         figures_.flat = median(flat);
         figures_.grouped = median(grouped);
         figures_.plain = median(plain);
@@ -109,6 +119,7 @@ public:
             figures_.kept += !flat_[i];
             figures_.kept_exactly += !exact_[i];
             figures_.kept_masked += !masked_[i];
+            figures_.kept_centers += !centers_[i];
         }
     }
 
@@ -137,7 +148,7 @@ private:
     OcclusionFrame& frame_;
     const View view_;
     DepthTiles tiles_;
-    std::vector<uint8_t> flat_, grouped_, masked_, exact_;  ///< per box in view: hidden
+    std::vector<uint8_t> flat_, grouped_, masked_, centers_, exact_;  ///< per box in view: hidden
     Figures figures_;
 };
 
@@ -149,6 +160,11 @@ void addRows(const std::string& where, const Figures& sum, double views, Table& 
     add("rasterize", sum.draw / views * 1e-3, "ms", "scalar z-buffer in double", sum.draw_plain / views * 1e-3);
     add("rasterize", sum.draw / views * 1e-3, "ms", "without self-test", sum.draw_all / views * 1e-3);
     add("rasterize, masked", sum.draw_masked / views * 1e-3, "ms", "a depth per pixel", sum.draw / views * 1e-3);
+    add("draw and ask all boxes, whole pixels", (sum.draw + sum.grouped) / views * 1e-3, "ms",
+        "pixels' centres, not sound", (sum.draw_centers + sum.centers) / views * 1e-3);
+    add("rasterize, whole pixels", sum.draw / views * 1e-3, "ms", "pixels' centres, not sound",
+        sum.draw_centers / views * 1e-3);
+    add("boxes kept, whole pixels", sum.kept / views, "boxes", "pixels' centres, not sound", sum.kept_centers / views);
     add("triangles rasterized", sum.offered / views, "triangles", "in the frustum", sum.triangles / views);
     add("triangles in the frustum a second", sum.triangles / sum.draw, "million/s", "scalar z-buffer in double",
         sum.triangles / sum.draw_plain);
@@ -168,7 +184,7 @@ void addRows(const std::string& where, const Figures& sum, double views, Table& 
 
 void measureOcclusionCore(const Options& options, Table& table) {
     const int repeat = options.repeat ? options.repeat : 24;
-    const std::vector<std::string> names = occlusionSceneNames();
+    const std::vector<std::string> names = options.only.empty() ? occlusionSceneNames() : options.only;
     size_t done = 0;
     for (const std::string& name : names) {
         const OcclusionScene scene = makeOcclusionScene(name);
@@ -176,7 +192,9 @@ void measureOcclusionCore(const Options& options, Table& table) {
         for (const Size& size : kSizes) {
             Figures sum;
             for (size_t camera = 0; camera < scene.cameras.size(); ++camera) {
-                ViewMeasurement view(scene, frame, occlusionView(scene, camera, size.width, size.height));
+                View asked = occlusionView(scene, camera, size.width, size.height);
+                if (options.occlusion_size > 0) asked.occlusion_size = options.occlusion_size;
+                ViewMeasurement view(scene, frame, asked);
                 view.time(repeat);
                 if (camera < size.truths) view.judge();
                 sum.add(view.figures());

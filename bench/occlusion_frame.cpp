@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "bench/center_draw.h"
 #include "sightline/prepare/occluder.h"
 
 namespace sightline::bench {
@@ -61,6 +62,14 @@ std::vector<BvhNode> inEights(std::span<const Box3f> boxes) {
         }
     }
     return nodes;
+}
+
+/// As drawOccluder().
+uint32_t drawByCenters(DepthTiles& tiles, const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box) {
+    DrawnCluster drawn;
+    if (!placeCluster(instance, cluster, box, drawn)) return 0;
+    drawClusterByCenters(tiles, drawn, instance.screen, instance.flips);
+    return instance.occluder->clusters[cluster].triangle_count;
 }
 
 }  // namespace
@@ -138,7 +147,8 @@ void OcclusionFrame::begin(const View& view) {
     groups_ = inEights(groups);
 }
 
-uint64_t OcclusionFrame::rasterize(DepthTiles& tiles, SelfTest self_test, OcclusionDetail detail) const {
+uint64_t OcclusionFrame::rasterize(DepthTiles& tiles, SelfTest self_test, OcclusionDetail detail,
+                                   Coverage coverage) const {
     tiles.clear(screen_.width, screen_.height, detail);
     uint64_t offered = 0;
     const auto covered = [&](const BoxAnswer& box) {
@@ -154,7 +164,8 @@ uint64_t OcclusionFrame::rasterize(DepthTiles& tiles, SelfTest self_test, Occlus
             for (uint32_t cluster = 0; cluster < occluder.clusters.size(); ++cluster) {
                 const BoxAnswer box = projectBox(instance.screen, occluder.clusters[cluster].bounds);
                 if (box.outside || (occluder.clusters.size() > 1 && covered(box))) continue;
-                offered += drawOccluder(tiles, instance, cluster, box);
+                offered += coverage == Coverage::kCenters ? drawByCenters(tiles, instance, cluster, box)
+                                                          : drawOccluder(tiles, instance, cluster, box);
             }
         }
     }

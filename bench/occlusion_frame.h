@@ -34,9 +34,13 @@ public:
     /// Takes up a view: finds the batches in its frustum, nearest first, and the boxes.
     void begin(const View& view);
 
+    /// What makes a pixel covered. Centres are for a measurement: they hide what can be seen.
+    enum class Coverage { kWholePixels, kCenters };
+
     /// Clears the tiles and draws. Returns the triangles that were offered to the rasterizer.
     uint64_t rasterize(DepthTiles& tiles, SelfTest self_test = SelfTest::kYes,
-                       OcclusionDetail detail = OcclusionDetail::kFull) const;
+                       OcclusionDetail detail = OcclusionDetail::kFull,
+                       Coverage coverage = Coverage::kWholePixels) const;
 
     /// Asks every box in view; hidden[i] answers for boxes()[i]. A box outside the buffer counts as hidden.
     /// @param hidden  [size: boxes().size()]

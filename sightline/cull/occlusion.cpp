@@ -261,12 +261,11 @@ OccluderInstance makeOccluderInstance(const Screen& screen, const Occluder& occl
     return instance;
 }
 
-uint32_t drawOccluder(DepthTiles& tiles, const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box) {
+bool placeCluster(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box, DrawnCluster& drawn) {
     const Screen& screen = instance.screen;
     double w = screen.near_w;
     if (screen.perspective && !box.doubt) w = std::max(w, 1.0 / box.rect.nearness);
-    if (!(w > 0.0)) return 0;
-    DrawnCluster drawn;
+    if (!(w > 0.0)) return false;
     drawn.occluder = instance.occluder;
     drawn.transform = instance.transform;
     drawn.transform_hash = instance.transform_hash;
@@ -274,8 +273,13 @@ uint32_t drawOccluder(DepthTiles& tiles, const OccluderInstance& instance, uint3
     drawn.position_error = 0x1p-36 + instance.pixel_error / w;
     drawn.depth_error = screen.perspective ? instance.depth_error / (w * w) : instance.depth_error;
     drawn.clips = instance.clips;
-    if (!(drawn.position_error < kWorstPosition)) return 0;
-    drawCluster(tiles, drawn, screen, instance.flips);
+    return drawn.position_error < kWorstPosition;
+}
+
+uint32_t drawOccluder(DepthTiles& tiles, const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box) {
+    DrawnCluster drawn;
+    if (!placeCluster(instance, cluster, box, drawn)) return 0;
+    drawCluster(tiles, drawn, instance.screen, instance.flips);
     return instance.occluder->clusters[cluster].triangle_count;
 }
 

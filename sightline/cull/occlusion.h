@@ -51,6 +51,10 @@ struct OccluderInstance {
 
 OccluderInstance makeOccluderInstance(const Screen& screen, const Occluder& occluder, const glm::dmat4& transform);
 
+/// What drawCluster() is to be given of a cluster; false if its place is known too badly to be sound.
+/// @param box  projectBox() of the cluster's bounds
+bool placeCluster(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box, DrawnCluster& drawn);
+
 /// Draws one cluster, unless its place is known too badly to be sound.
 /// @param box  projectBox() of the cluster's bounds
 /// @returns triangles offered to the rasterizer

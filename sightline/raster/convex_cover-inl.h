@@ -169,7 +169,7 @@ HWY_INLINE void ConvexCover::coverTile(int32_t column, int32_t row, uint32_t til
         else if (tiles.detail == Detail::kMasked) MaskedTiles(tiles).cover(tile, covered, z);
         else coverPixels(tiles, tile, covered, z);
     }
-    if (!kSeams) return;
+    if (!kSeams || kCentersOnly) return;
     const uint64_t touched = outer.inTile(column) & out_rows & ~covered;
     if (const uint64_t seam = touched ? notYetNearer(tiles, tile, touched, depth.nearest) : 0) {
         addSeam(tiles, tile, seam, source, depth.nearest);

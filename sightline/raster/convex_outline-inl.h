@@ -18,6 +18,8 @@ HWY_BEFORE_NAMESPACE();
 namespace sightline {
 namespace HWY_NAMESPACE {
 
+constexpr double kToCenters = -0.5;  // [pixels]: a reach that leaves of a pixel its centre
+
 /// The spans of a row of tiles: per row of pixels the first one and the one after the last.
 struct PixelSpans {
     alignas(32) int32_t first[8], end[8];
@@ -76,7 +78,8 @@ struct ConvexOutline {
 inline bool ConvexOutline::place(const DepthTiles& tiles, double x0, double y0, double x1, double y1,
                                  double position_error) {
     const double far = std::max(std::max(std::abs(x0), std::abs(x1)), std::max(std::abs(y0), std::abs(y1)));
-    const double e = reach = position_error + kEvaluation + tiles.gap + far * 0x1p-48;
+    const double e = position_error + kEvaluation + tiles.gap + far * 0x1p-48;
+    reach = kCentersOnly ? kToCenters : e;
     if (!(x1 + e >= 0 && y1 + e >= 0 && x0 - e < tiles.width && y0 - e < tiles.height)) return false;
     const auto tileOf = [](double at, double size) {
         return static_cast<int32_t>(std::clamp(at, 0.0, size - 1.0)) >> 3;

@@ -73,7 +73,8 @@ inline bool drawMiddle(DepthTiles& tiles, const SmallPolygonsTask& task, const O
     const int32_t width = static_cast<int32_t>(8 * task.columns), height = static_cast<int32_t>(8 * task.rows);
     if (x1 < 0 || y1 < 0 || x0 >= 256 * width || y0 >= 256 * height) return true;  // no pixel inside it
     ConvexOutline p;
-    p.reach = double{task.slack} + 0x1p-9;
+    const double slack = double{task.slack} + 0x1p-9;
+    p.reach = kCentersOnly ? kToCenters : slack;
     p.column0 = std::max(x0, 0) >> 11;
     p.row0 = std::max(y0, 0) >> 11;
     p.columns = (std::min(x1 >> 8, width - 1) >> 3) - p.column0 + 1;
@@ -95,7 +96,7 @@ inline bool drawMiddle(DepthTiles& tiles, const SmallPolygonsTask& task, const O
         plane.floor = depth.floor;
         // A point of the triangle mixes its corners, at each of which the plane is wrong by no more than this.
         const double tilt = std::abs(plane.dx) + std::abs(plane.dy);
-        const double error = tilt * p.reach + rounding + range * 0x1p-30 + std::abs(plane.d0) * 0x1p-46;
+        const double error = tilt * slack + rounding + range * 0x1p-30 + std::abs(plane.d0) * 0x1p-46;
         plane.error = static_cast<float>(error * (1.0 + 0x1p-20));
         depth.add(plane);
     }

@@ -124,13 +124,14 @@ HWY_INLINE void addEdgeInRow(Patch& patch, const EdgeSetups& s, int i, int32_t r
     const float slope = static_cast<float>(s.slope[i]), x = static_cast<float>(start);
     // Float adds its own: a few steps of what is computed here.
     const float reach = static_cast<float>(s.reach[i]) + 0x1p-20f * (std::abs(x) + 8.0f * std::abs(slope));
-    const float half = std::abs(slope) * (0.5f + static_cast<float>(patch.reach)) + reach;
+    const float half = kCentersOnly ? 1.0f : std::abs(slope) * (0.5f + static_cast<float>(patch.reach)) + reach;
     const float edge = 0x1p-20f * static_cast<float>(width);
     const float least = static_cast<float>(std::max(s.x_least[i], -1.0)) - edge;
     const float most = static_cast<float>(std::min(s.x_most[i], width + 1.0)) + edge;
     const int32_t k0 = std::max(s.first[i] - 8 * row, 0), k1 = std::min(s.last[i] - 8 * row, 7);
     const float xa = x + slope * static_cast<float>(k0), xb = x + slope * static_cast<float>(k1);
-    const float low_all = std::max(std::min(xa, xb) - half, least), high_all = std::min(std::max(xa, xb) + half, most);
+    const float low_all = std::max(std::min(xa, xb) - half, least),
+                high_all = std::min(std::max(xa, xb) + half, most + (kCentersOnly ? 0.5f : 0.0f));
     // What lies left of the columns that matter changes the winding number at their border; right of them nothing does.
     const int32_t first = scratch.first[static_cast<size_t>(row)], last = scratch.last[static_cast<size_t>(row)];
     if (!(low_all < static_cast<float>(8 * last + 8))) return;
@@ -156,7 +157,8 @@ HWY_INLINE void addEdgeInRow(Patch& patch, const EdgeSetups& s, int i, int32_t r
         const auto at = hn::Add(hn::Set(d, x), hn::Mul(hn::Set(d, slope), hn::Iota(d, static_cast<float>(k))));
         const auto low = hn::Max(hn::Sub(at, hn::Set(d, half)), hn::Set(d, least));
         const auto high = hn::Min(hn::Add(at, hn::Set(d, half)), hn::Set(d, most));
-        const auto crossing = hn::Min(hn::Max(at, hn::Set(d, least)), hn::Set(d, most));
+        auto crossing = hn::Min(hn::Max(at, hn::Set(d, least)), hn::Set(d, most));
+        if constexpr (kCentersOnly) crossing = hn::Add(crossing, hn::Set(d, 0.5f));
         hn::Store(hn::ConvertTo(i32, hn::Min(hn::Max(low, zero), beyond)), i32, lows + k);
         // Truncation is the floor but between -1 and 0: there, one less.
         hn::Store(hn::Sub(hn::ConvertTo(i32, hn::Min(hn::Max(hn::Add(high, hn::Set(d, 1.0f)), zero), beyond)),
@@ -185,7 +187,7 @@ HWY_INLINE void addEdgeInRow(Patch& patch, const EdgeSetups& s, int i, int32_t r
         }
         uint64_t word;
         std::memcpy(&word, touched, sizeof word);
-        scratch.touched[slot] |= word & rows_touched;
+        if constexpr (!kCentersOnly) scratch.touched[slot] |= word & rows_touched;
         if (c0 < c1) addCrossings(crossings, 8 * t, change, scratch.winding.data() + 64 * size_t{slot});
     }
 }

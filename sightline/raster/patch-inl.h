@@ -17,6 +17,7 @@
 
 #include <bit>
 
+#include "sightline/raster/centers.h"
 #include "sightline/raster/tile_ops-inl.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -40,7 +40,8 @@ HWY_INLINE uint32_t scanEdges(const Patch& patch, const SmallEdges& edges, uint3
     const VI x_high = hn::Sub(hn::IfThenElse(upward, bx, ax), corner_x);
     const VI zero = hn::Zero(i), one = hn::Set(i, 1);
     const VI steps = hn::Set(i, static_cast<int32_t>(std::ceil(patch.reach * 256.0)) + 1);
-    const VI left = hn::ShiftRight<11>(hn::Sub(x0, steps)), right = hn::ShiftRight<11>(hn::Add(x1, steps));
+    const VI beyond = kCentersOnly ? hn::Add(steps, hn::Set(i, 128)) : steps;
+    const VI left = hn::ShiftRight<11>(hn::Sub(x0, steps)), right = hn::ShiftRight<11>(hn::Add(x1, beyond));
     const VI low = hn::ShiftRight<8>(hn::Sub(y0, steps)), high = hn::ShiftRight<8>(hn::Add(y1, steps));
     const VI columns = hn::Set(i, patch.columns), rows = hn::Set(i, 8 * patch.rows);
     const MI there = hn::Lt(hn::Iota(i, static_cast<int32_t>(h)), hn::Set(i, static_cast<int32_t>(batch.count)));
@@ -86,12 +87,17 @@ HWY_INLINE uint32_t scanEdges(const Patch& patch, const SmallEdges& edges, uint3
         const VF to = hn::Max(hn::Min(hn::Add(at, half), most), hn::Zero(d));
         const VU touched = hn::AndNot(hn::Shl(all_but_one, column(to)), hn::Shl(ones, column(from)));
         const MI met = hn::Gt(rows_drawn, hn::Set(i, static_cast<int32_t>(row)));
-        hn::Store(hn::IfThenElseZero(hn::RebindMask(u, met), touched), u, batch.rows[1][row] + h);
+        if constexpr (!kCentersOnly)
+            hn::Store(hn::IfThenElseZero(hn::RebindMask(u, met), touched), u, batch.rows[1][row] + h);
         // The same test of both ends for all edges: where one ends the next begins.
         const VI center = hn::Set(i, static_cast<int32_t>(256 * row + 128));
         const MI crossed = hn::And(met, hn::AndNot(hn::Gt(y_low, center), hn::Gt(y_high, center)));
-        const VU crossing = hn::Shl(single, column(hn::Min(hn::Max(at, least), most)));
-        hn::Store(hn::IfThenElseZero(hn::RebindMask(u, crossed), crossing), u, batch.rows[0][row] + h);
+        const VF place = hn::Min(hn::Max(at, least), most);
+        const VU crossing = hn::Shl(
+            single, column(kCentersOnly ? hn::Min(hn::Add(place, hn::Set(d, 0.5f)), hn::Set(d, 31.0f)) : place));
+        const VU change = hn::IfThenElseZero(hn::RebindMask(u, crossed), crossing);
+        hn::Store(change, u, batch.rows[0][row] + h);
+        if constexpr (kCentersOnly) hn::Store(change, u, batch.rows[1][row] + h);
     }
     const VI tile = hn::Add(hn::Mul(hn::ShiftRight<3>(low), hn::Set(i, static_cast<int32_t>(patch.pitch))), left);
     notePlaces(hn::Iota(u, static_cast<uint32_t>(h)), hn::BitCast(u, tile),
@@ -151,7 +157,7 @@ inline void addSmallEdges(Patch& patch, SmallEdges& edges, OpenEdges& large) {
         reserveSlots(patch, records.count);
         for (uint32_t r = 0; r < records.count; ++r) {
             const uint32_t slot = slotOf(patch, records.tile(r)), k = records.polygon(r);
-            scratch.touched[slot] |= records.outer[r];
+            if constexpr (!kCentersOnly) scratch.touched[slot] |= records.outer[r];
             if (!records.inner[r]) continue;
             addToBytes(scratch.winding.data() + 64 * size_t{slot}, records.inner[r],
                        ((backward ^ upward) >> k & 1) != 0 ? 0xff : 0x01);

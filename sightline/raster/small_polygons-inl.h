@@ -209,7 +209,7 @@ HWY_INLINE void scanPolygons(const SmallPolygonsTask& task, const Parts& parts, 
     };
     const VI x_first = hn::Sub(left, hn::ShiftLeft<3>(tile_x)), x_last = hn::Sub(right, hn::ShiftLeft<3>(tile_x));
     const BoxRows box{hn::AndNot(hn::Add(bits(x_last), bits(x_last)), bits(x_first)), hn::BitCast(u, rows_drawn)};
-    const float reach = 0.5f + task.slack + kRounding;
+    const float reach = kCentersOnly ? 0.0f : 0.5f + task.slack + kRounding;
     if constexpr (kQuads) {
         const MF turn = hn::RebindMask(d, shape.backward);
         exchange(turn, c.x[1], c.x[3]);

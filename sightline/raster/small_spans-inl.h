@@ -16,6 +16,7 @@
 
 #include <hwy/highway.h>
 
+#include "sightline/raster/centers.h"
 #include "sightline/raster/small_polygons.h"
 
 HWY_BEFORE_NAMESPACE();
