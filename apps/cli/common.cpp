@@ -170,12 +170,23 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
         ->group("Culling");
 }
 
-void addQueryOptions(CLI::App& verb, RunOptions& options) {
+void addStereoOption(CLI::App& verb, RunOptions& options) {
+    constexpr double kLeast = 1e-9, kMost = 1e9;
+    const auto check = [](const std::string& text) -> std::string {
+        double value = 0;
+        if (!CLI::detail::lexical_cast(text, value)) return "\"" + text + "\" is not a number";
+        if (value >= kLeast && value <= kMost) return {};
+        return text + " is not a distance between the eyes, from 1e-9 to 1e9; for one eye leave it out";
+    };
     verb.add_option("--stereo", options.stereo,
                     "two eyes so far apart [world units], each with a buffer of its own; pictures are the left one's")
-        ->check(CLI::Range(1e-9, 1e9))
+        ->check(CLI::Validator(check, "", "distance"))
         ->type_name("IPD")
         ->group("Culling");
+}
+
+void addQueryOptions(CLI::App& verb, RunOptions& options) {
+    addStereoOption(verb, options);
     verb.add_flag("--last-visible-first", options.last_visible_first,
                   "begin with what the frame before kept, which is asked each time for that")
         ->group("Culling");

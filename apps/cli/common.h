@@ -53,6 +53,8 @@ void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& sh
 void addOcclusionSize(CLI::App& verb, uint32_t& size);
 /// These, and what culling needs.
 void addSceneOptions(CLI::App& verb, RunOptions& options);
+/// --stereo.
+void addStereoOption(CLI::App& verb, RunOptions& options);
 /// And what cull and verify may ask a query for besides: two eyes, what was visible last first.
 void addQueryOptions(CLI::App& verb, RunOptions& options);
 /// Checks what single options cannot: sizes, stage names. Errors are kUsage.

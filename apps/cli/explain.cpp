@@ -17,6 +17,7 @@
 #include "sightline/report/explain_picture.h"
 #include "sightline/report/explain_text.h"
 #include "sightline/report/output_file.h"
+#include "sightline/run/query.h"
 #include "sightline/scene/one_line.h"
 
 namespace sightline::cli {
@@ -107,17 +108,18 @@ Status writePicture(const ExplainOptions& options, const AskedScene& asked, cons
 Status explainInFrame(const ExplainOptions& options, const AskedScene& asked, const CameraFrame& camera,
                       const std::vector<uint32_t>& objects, Json& body) {
     constexpr size_t kMost = 5;  // of those that share a key
-    const View view = viewOfFrame(camera, options);
-    Explainer explainer(asked.now, view);
-    for (size_t i = 0; i < std::min(objects.size(), kMost); ++i) {
-        const uint32_t object = objects[i];
-        ObjectAnswer answer{options.first_frame, object, explainer.explain(asked.loaded.ids[object]), {}};
-        if (answer.why.verdict == Verdict::kVisible && isUsable(view))
-            answer.sighting = lookFor(asked.scene, view, object, options);
-        fmt::print(readerOf(options), "{}", answerText(asked, answer));
-        body["answers"].push_back(answerJson(asked, answer));
-        if (i == 0)
-            if (Status drawn = writePicture(options, asked, view, answer); !drawn) return drawn;
+    for (const EyeView& eye : eyesOfFrame(camera, options)) {
+        Explainer explainer(asked.now, eye.view);
+        for (size_t i = 0; i < std::min(objects.size(), kMost); ++i) {
+            const uint32_t object = objects[i];
+            ObjectAnswer answer{options.first_frame, object, explainer.explain(asked.loaded.ids[object]), {}, eye.eye};
+            if (answer.why.verdict == Verdict::kVisible && isUsable(eye.view))
+                answer.sighting = lookFor(asked.scene, eye.view, object, options);
+            fmt::print(readerOf(options), "{}", answerText(asked, answer));
+            body["answers"].push_back(answerJson(asked, answer));
+            if (i == 0 && eye.eye != kRightEye)
+                if (Status drawn = writePicture(options, asked, eye.view, answer); !drawn) return drawn;
+        }
     }
     if (objects.size() > kMost)
         fmt::print(readerOf(options), "and {} more objects with the key {}\n", objects.size() - kMost,
@@ -125,7 +127,7 @@ Status explainInFrame(const ExplainOptions& options, const AskedScene& asked, co
     return success();
 }
 
-/// One line a frame. Of objects that share a key: the first, and how many there are.
+/// One line a frame and eye. Of objects that share a key: the first, and how many there are.
 /// @returns the exit code
 int explainInAll(const ExplainOptions& options, const AskedScene& asked, const CameraPath& path,
                  const std::vector<uint32_t>& objects, Json& body) {
@@ -135,10 +137,13 @@ int explainInAll(const ExplainOptions& options, const AskedScene& asked, const C
     stopGently();
     uint32_t done = 0;
     for (; done < path.frames.size() && !interrupted(); ++done) {
-        Explainer explainer(asked.now, viewOfFrame(path.frames[done], options));
-        const ObjectAnswer answer{done, object, explainer.explain(asked.loaded.ids[object], {true, false}), {}};
-        fmt::print(readerOf(options), "{}", answerLine(asked, answer));
-        body["answers"].push_back(answerJson(asked, answer));
+        for (const EyeView& eye : eyesOfFrame(path.frames[done], options)) {
+            Explainer explainer(asked.now, eye.view);
+            const ObjectAnswer answer{
+                done, object, explainer.explain(asked.loaded.ids[object], {true, false}), {}, eye.eye};
+            fmt::print(readerOf(options), "{}", answerLine(asked, answer));
+            body["answers"].push_back(answerJson(asked, answer));
+        }
     }
     if (done == path.frames.size()) return kDone;
     return reportInterruption(fmt::format("{} of {} frames", done, path.frames.size()), done > 0);
@@ -161,7 +166,7 @@ Status explainPixel(const ExplainOptions& options, const AskedScene& asked, cons
     for (size_t i = 1; i < layers.size(); ++i) {
         const uint32_t object = layers[i].object;
         const ObjectAnswer answer{
-            options.first_frame, object, explainer.explain(asked.loaded.ids[object], {true, false}), {}};
+            options.first_frame, object, explainer.explain(asked.loaded.ids[object], {true, false}), {}, 0};
         const std::string line =
             fmt::format("{:>10.4g} units  {:<10} {}", layers[i].depth,
                         answer.why.verdict == Verdict::kVisible ? "kept" : verdictName(answer.why.verdict),
@@ -219,6 +224,7 @@ void addExplain(CLI::App& tool, int& exit_code) {
     const auto options = std::make_shared<ExplainOptions>();
     options->repeat = 1;
     addSceneOptions(*verb, *options);
+    addStereoOption(*verb, *options);
     verb->add_option("--object", options->object,
                      "its key, its name or path, or a part that only it has; without: what the whole path tells")
         ->type_name("K");

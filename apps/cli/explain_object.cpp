@@ -9,6 +9,7 @@
 
 #include "apps/cli/progress.h"
 #include "sightline/report/explain_text.h"
+#include "sightline/run/query.h"
 #include "sightline/scene/one_line.h"
 #include "sightline/truth/verify.h"
 
@@ -35,6 +36,11 @@ Json hidersJson(const AskedScene& asked, const Array<Hider>& hiders) {
     return list;
 }
 
+/// What of an object was asked when its fate was decided.
+const char* askedName(bool by_faces, bool by_triangles) {
+    return by_triangles ? "triangles" : by_faces ? "faces" : "rectangle";
+}
+
 Json frustumJson(const FrustumReason& reason) {
     Json out;
     out["plane"] = kPlaneNames[reason.plane];
@@ -43,6 +49,8 @@ Json frustumJson(const FrustumReason& reason) {
         if (reason.outside[plane] != FrustumReason::kNoPlane)
             out["outside"][kPlaneNames[plane]] = reason.outside[plane];
     out["by_rectangle"] = reason.by_rectangle;
+    out["by_faces"] = reason.by_faces;
+    out["by_triangles"] = reason.by_triangles;
     return out;
 }
 
@@ -50,6 +58,7 @@ Json occlusionJson(const AskedScene& asked, const OcclusionReason& reason) {
     constexpr const char* kWithout[] = {"not asked", "visible", "occluded", "outside frustum"};
     Json out;
     out["occluders"] = hidersJson(asked, reason.hiders);
+    if (reason.stage == Stage::kOcclusion) out["asked"] = askedName(reason.by_faces, reason.by_triangles);
     out["sufficient"] = reason.sufficient;
     out["outside_too"] = reason.outside_too;
     out["without"] = kWithout[static_cast<int>(reason.without)];
@@ -61,7 +70,10 @@ Json keptJson(const AskedScene& asked, const VisibleReason& reason) {
     Json out;
     out["because"] = keptBecauseName(reason.because);
     if (reason.because == KeptBecause::kStageOff) out["stage"] = kStageNames[static_cast<int>(reason.stage)];
+    if (reason.because == KeptBecause::kBudgetSpent)
+        out["budget"] = reason.second_look_spent ? "second-look-polygons" : "occluder-triangles";
     if (reason.because != KeptBecause::kOpenPixel) return out;
+    out["asked"] = askedName(reason.by_faces, reason.by_triangles);
     out["pixel"] = {reason.x, reason.y};
     out["open_pixels"] = reason.open_pixels;
     out["pixels"] = reason.pixels;
@@ -78,9 +90,15 @@ std::string sightingText(const ObjectAnswer& answer) {
                            sighting.witness == "rays" ? "a ray meets it" : "the id-buffer has it", sighting.x,
                            sighting.y);
     std::string text = fmt::format("No witness saw it, by {} rays and an id-buffer", grouped(sighting.rays));
-    if (answer.why.visible.because == KeptBecause::kOpenPixel)
-        text += ": it is kept because its box is larger than it is";
+    const VisibleReason& kept = answer.why.visible;
+    if (kept.because == KeptBecause::kOpenPixel)
+        text += kept.by_triangles ? ": it is kept because pixels of the occlusion buffer say less than rays"
+                                  : ": it is kept because its box is larger than it is";
     return text + ".";
+}
+
+std::string eyeText(const ObjectAnswer& answer) {
+    return answer.eye == 0 ? "" : answer.eye == kLeftEye ? "left eye:  " : "right eye: ";
 }
 
 }  // namespace
@@ -110,6 +128,12 @@ View viewOfFrame(const CameraFrame& camera, const RunOptions& options) {
     return options.stereo > 0 ? shiftedEye(view, -0.5 * options.stereo) : view;
 }
 
+std::vector<EyeView> eyesOfFrame(const CameraFrame& camera, const RunOptions& options) {
+    const View first = viewOfFrame(camera, options);
+    if (!(options.stereo > 0)) return {{first, 0}};
+    return {{first, kLeftEye}, {shiftedEye(first, options.stereo), kRightEye}};
+}
+
 Sighting lookFor(const Scene& scene, const View& view, uint32_t object, const RunOptions& options) {
     // Witnesses tell where they saw what was culled: so this object, and no other, is called culled.
     std::vector<uint8_t> culled(scene.objects.size(), 0);
@@ -132,7 +156,7 @@ Sighting lookFor(const Scene& scene, const View& view, uint32_t object, const Ru
 
 std::string answerText(const AskedScene& asked, const ObjectAnswer& answer) {
     const auto name = [&](ObjectId id) { return asked.nameOf(id); };
-    std::string text = explanationText(answer.why, titleOf(asked.scene, answer.object), name);
+    std::string text = eyeText(answer) + explanationText(answer.why, titleOf(asked.scene, answer.object), name);
     if (answer.sighting) text += " " + sightingText(answer);
     return wrapped(text, kColumns, "  ") + "\n";
 }
@@ -148,7 +172,7 @@ std::string answerLine(const AskedScene& asked, const ObjectAnswer& answer) {
             std::string call = asked.nameOf(id);
             return call.size() > most && call.front() == '\'' ? "'" + oneLine(call.substr(1), most - 1) : call;
         };
-        line = fmt::format("frame {:>4}  {:<10} {}", answer.frame, stage.empty() ? "kept" : stage,
+        line = fmt::format("frame {:>4}  {}{:<10} {}", answer.frame, eyeText(answer), stage.empty() ? "kept" : stage,
                            explanationClause(answer.why, name, occluders));
     }
     return shortened(line, kColumns) + "\n";
@@ -158,6 +182,7 @@ Json answerJson(const AskedScene& asked, const ObjectAnswer& answer) {
     const Explanation& why = answer.why;
     Json out;
     out["frame"] = answer.frame;
+    if (answer.eye) out["eye"] = answer.eye == kLeftEye ? "left" : "right";
     out.update(objectJson(asked.scene, answer.object));
     out["verdict"] = verdictName(why.verdict);
     out["stage"] = stageOf(why).empty() ? Json(nullptr) : Json(stageOf(why));

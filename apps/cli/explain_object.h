@@ -40,6 +40,7 @@ struct ObjectAnswer {
     uint32_t object = 0;  ///< index into Scene::objects
     Explanation why;
     std::optional<Sighting> sighting;
+    uint8_t eye = 0;  ///< of two, kLeftEye or kRightEye; 0: there is one
 };
 
 /// The scene as a world that can be asked.
@@ -58,6 +59,14 @@ struct AskedScene {
 
 /// With two eyes the left one's.
 View viewOfFrame(const CameraFrame& camera, const RunOptions& options);
+
+/// A view, and whose it is: ObjectAnswer::eye.
+struct EyeView {
+    View view;
+    uint8_t eye = 0;
+};
+/// Both eyes', the left one's first; or the only one's.
+std::vector<EyeView> eyesOfFrame(const CameraFrame& camera, const RunOptions& options);
 
 /// Lets the witnesses look for an object that is kept.
 Sighting lookFor(const Scene& scene, const View& view, uint32_t object, const RunOptions& options);

@@ -64,8 +64,9 @@ std::string rectangleText(const Explanation& why) {
 
 /// "beyond the left plane by 3.2 units".
 std::string planeText(const FrustumReason& reason) {
-    if (reason.by_triangles) return "in view with its box alone: none of its triangles that would be drawn is";
-    if (reason.by_faces) return "in view with the box along the axes alone, not with its own";
+    if (reason.by_triangles)
+        return "out of view: its box reaches into it, but none of its triangles that would be drawn";
+    if (reason.by_faces) return "out of view: the box along the axes reaches into it, but not its own, which is turned";
     return fmt::format("beyond the {} plane by {} units", kPlaneNames[reason.plane], units(reason.distance()));
 }
 
@@ -98,6 +99,13 @@ std::string withoutText(const OcclusionReason& reason, const NameOfObject& name)
     return "; " + who + " it would still be hidden, by " + listOf(reason.others, name);
 }
 
+/// What was asked where the rectangle around its box was open.
+std::string askedText(const OcclusionReason& reason) {
+    if (reason.by_triangles) return " Its box is not hidden all over; its own triangles are.";
+    if (reason.by_faces) return " The rectangle around its box is not hidden all over; the faces of the box are.";
+    return "";
+}
+
 std::string occlusionText(const Explanation& why, const std::string& subject, const NameOfObject& name) {
     const OcclusionReason& reason = why.occlusion;
     if (reason.hiders.empty()) return fmt::format("culled by occlusion: {}.", subject) + rectangleText(why);
@@ -116,8 +124,8 @@ std::string occlusionText(const Explanation& why, const std::string& subject, co
             fmt::format("culled by occlusion: {} lies behind {}, and is hidden only with the rest of the world there",
                         subject, hiders);
     text += withoutText(reason, name) + ".";
-    return reason.outside_too && reason.stage == Stage::kOcclusion ? text
-                                                                   : text + togetherText(why) + rectangleText(why);
+    if (reason.outside_too && reason.stage == Stage::kOcclusion) return text;
+    return text + askedText(reason) + togetherText(why) + rectangleText(why);
 }
 
 std::string keptText(const Explanation& why, const NameOfObject& name) {
@@ -140,14 +148,25 @@ std::string keptText(const Explanation& why, const NameOfObject& name) {
                 return fmt::format("the frustum stage is off; it lies {}", planeText(why.frustum));
             return "the occlusion stage is off, and it is in the frustum";
         case KeptBecause::kBudgetSpent:
-            return "in doubt: the budget of occluder triangles was spent before what would hide it was drawn";
+            return reason.second_look_spent
+                       ? "in doubt: the budget of polygons for a second look (--second-look-polygons) was spent before "
+                         "its triangles were asked, which are hidden"
+                       : "in doubt: the budget of occluder triangles (--occluder-triangles) was spent before what "
+                         "would "
+                         "hide it was drawn";
     }
     std::string where = fmt::format("nothing hides pixel ({:.1f}, {:.1f})", reason.x, reason.y);
     if (reason.covered)
-        where += fmt::format(": {} covers it, but not in front of the nearest point of its box",
-                             reason.cover == ObjectId() ? "something" : name(reason.cover));
+        where += fmt::format(": {} covers it, but not in front of the nearest point of {}",
+                             reason.cover == ObjectId() ? "something" : name(reason.cover),
+                             reason.by_triangles ? "its triangles there"
+                             : reason.by_faces   ? "its box's faces there"
+                                                 : "its box");
     const double part = reason.pixels ? double(reason.open_pixels) / double(reason.pixels) : 0.0;
-    return where + fmt::format("; {} of its rectangle is open", percent(part));
+    return where + fmt::format("; {} of {} is open", percent(part),
+                               reason.by_triangles ? "what its own triangles touch"
+                               : reason.by_faces   ? "what its box's faces touch"
+                                                   : "its rectangle");
 }
 
 }  // namespace
@@ -177,7 +196,8 @@ std::string explanationClause(const Explanation& why, const NameOfObject& name, 
         case Verdict::kOutsideFrustum:
             return planeText(why.frustum);
         case Verdict::kOccluded:
-            return "behind " + listOf(why.occlusion.hiders, name, most);
+            return "behind " + listOf(why.occlusion.hiders, name, most) +
+                   (why.occlusion.by_triangles ? ", by its triangles" : "");
         case Verdict::kVisible:
             break;
     }

@@ -122,10 +122,13 @@ void Explainer::Impl::explainVisible(uint32_t item, Explanation& out) {
     } else {
         explainOpenPixel(out);
         if (!trial.walk.stats.budget_spent && !trial.walk.stats.second_look_spent) return;
+        const bool looks_spent = trial.walk.stats.second_look_spent;
         View generous = view;
         generous.second_look_polygons = ~0u;
+        why.second_look_spent = looks_spent && trial.run(state, generous, item) == Verdict::kOccluded;
         generous.occluder_triangles = ~0u;
-        if (trial.run(state, generous, item) == Verdict::kOccluded) why.because = KeptBecause::kBudgetSpent;
+        if (why.second_look_spent || trial.run(state, generous, item) == Verdict::kOccluded)
+            why.because = KeptBecause::kBudgetSpent;
     }
 }
 
@@ -151,6 +154,8 @@ void Explainer::Impl::explainOpenPixel(Explanation& out) {
     const SnapshotState& state = snapshot.state();
     DepthTiles& tiles = trial.walk.tiles;
     open.run(tiles, asked);
+    why.by_faces = trial.record.kept.look == detail::Look::kFaces;
+    why.by_triangles = trial.record.kept.look == detail::Look::kTriangles;
     why.pixels = open.pixels;
     why.open_pixels = open.open;
     const PixelRect pixel{open.x, open.y, open.x, open.y, 0};

@@ -96,8 +96,11 @@ struct VisibleReason {
     /// [viewport pixels from the left and the top]
     double x = 0, y = 0;
     uint64_t open_pixels = 0, pixels = 0;  ///< that it was asked at  [pixels of the occlusion buffer]
-    bool covered = false;                  ///< that pixel is covered, but not in front of the object's nearest point
-    ObjectId cover;                        ///< by this object; null: by several together
+    /// Those pixels are of the faces of its box, or of its own triangles; else of its box's rectangle.
+    bool by_faces = false, by_triangles = false;
+    bool second_look_spent = false;  ///< of kBudgetSpent: View::second_look_polygons alone was too small
+    bool covered = false;            ///< that pixel is covered, but not in front of the object's nearest point
+    ObjectId cover;                  ///< by this object; null: by several together
     uint64_t cover_key = 0;
 };
 

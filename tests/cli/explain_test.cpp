@@ -74,6 +74,28 @@ TEST_F(ExplainVerb, SaysWhatCullSays) {
     }
 }
 
+TEST_F(ExplainVerb, AnswersForEachOfTwoEyes) {
+    const json both = answersOf("made:walls --object 3 --stereo 0.06");
+    ASSERT_EQ(both.size(), 2u);
+    EXPECT_EQ(both[0]["eye"], "left");
+    EXPECT_EQ(both[1]["eye"], "right");
+    const Outcome text = run("explain made:walls --object 3 --stereo 0.06");
+    EXPECT_NE(text.out.find("left eye: "), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("right eye: "), std::string::npos) << text.out;
+    expectNarrow(text.out);
+    // So far apart that each sees past the walls what the other does not.
+    const Outcome culled = run("cull city:1:400 --frames 2 --stereo 8 --json -");
+    const json frame = json::parse(culled.out)["frames"][1];
+    for (size_t i = 0; i < frame["visible"].size(); i += 7) {
+        const json answers = answersOf("city:1:400 --frames 2 --frame 1 --rays 1000 --stereo 8 --object " +
+                                       std::to_string(frame["visible"][i].get<int>()));
+        const int eyes = frame["eyes"][i];
+        EXPECT_EQ(answers[0]["verdict"] == "visible", (eyes & 1) != 0) << frame["visible"][i];
+        EXPECT_EQ(answers[1]["verdict"] == "visible", (eyes & 2) != 0) << frame["visible"][i];
+    }
+    EXPECT_EQ(answersOf("city:1:50 --frames 3 --object 7 --frame all --stereo 2").size(), 6u);
+}
+
 TEST_F(ExplainVerb, LooksThroughAPixel) {
     const json answers = answersOf("made:walls --at 640,360");
     ASSERT_EQ(answers.size(), 8u);

@@ -54,6 +54,50 @@ TEST(ExplainText, NamesTheOccludersAndWhatWouldBeWithoutThem) {
         "lies beyond the right plane by 3.25 units, out of view; without that one the frustum would cull it.");
 }
 
+TEST(ExplainText, SaysWhatOfAnObjectWasAsked) {
+    Explanation why = occluded();
+    why.occlusion.by_faces = true;
+    EXPECT_EQ(explanationText(why, "it", nameOf),
+              "culled by occlusion: it lies behind 'B' (71 %) and 'C' (29 %); without these two it would be kept. The "
+              "rectangle around its box is not hidden all over; the faces of the box are.");
+    why.occlusion.by_faces = false;
+    why.occlusion.by_triangles = true;
+    EXPECT_NE(explanationText(why, "it", nameOf).find(" Its box is not hidden all over; its own triangles are."),
+              std::string::npos);
+    EXPECT_EQ(explanationClause(why, nameOf), "behind 'B' (71 %) and 'C' (29 %), by its triangles");
+    why.verdict = Verdict::kOutsideFrustum;
+    why.frustum.by_triangles = true;
+    EXPECT_EQ(
+        explanationText(why, "it", nameOf),
+        "culled by frustum: it lies out of view: its box reaches into it, but none of its triangles that would be "
+        "drawn.");
+    why.frustum.by_triangles = false;
+    why.frustum.by_faces = true;
+    EXPECT_EQ(explanationClause(why, nameOf),
+              "out of view: the box along the axes reaches into it, but not its own, which is turned");
+    why.verdict = Verdict::kVisible;
+    why.visible.covered = true;
+    why.visible.open_pixels = 1;
+    why.visible.pixels = 2;
+    why.visible.by_faces = true;
+    EXPECT_NE(
+        explanationText(why, "it", nameOf)
+            .find("not in front of the nearest point of its box's faces there; 50 % of what its box's faces touch "
+                  "is open"),
+        std::string::npos);
+    why.visible.by_faces = false;
+    why.visible.by_triangles = true;
+    EXPECT_NE(
+        explanationText(why, "it", nameOf)
+            .find("not in front of the nearest point of its triangles there; 50 % of what its own triangles touch "
+                  "is open"),
+        std::string::npos);
+    why.visible.because = KeptBecause::kBudgetSpent;
+    EXPECT_NE(explanationText(why, "it", nameOf).find("--occluder-triangles"), std::string::npos);
+    why.visible.second_look_spent = true;
+    EXPECT_NE(explanationText(why, "it", nameOf).find("--second-look-polygons"), std::string::npos);
+}
+
 TEST(ExplainText, ShortensLongLists) {
     Explanation why = occluded();
     why.occlusion.hiders.clear();
