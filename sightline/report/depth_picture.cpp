@@ -32,4 +32,19 @@ Image<Rgb> depthPicture(const DepthClaims& claims) {
     return image;
 }
 
+Image<Rgb> viewportPart(const Image<Rgb>& buffer, const glm::dvec2& viewport, double jitter, uint32_t width,
+                        uint32_t height) {
+    const auto from = [&](uint32_t at, uint32_t count, double pixels, uint32_t side) {
+        const double place = ((at + 0.5) / count * pixels + jitter) / (pixels + 2.0 * jitter) * side;
+        return std::min(static_cast<uint32_t>(std::max(place, 0.0)), side - 1);
+    };
+    Image<Rgb> out(width, height, kOpenPixel);
+    if (buffer.width == 0 || buffer.height == 0) return out;
+    for (uint32_t y = 0; y < height; ++y)
+        for (uint32_t x = 0; x < width; ++x)
+            out.at(x, y) =
+                buffer.at(from(x, width, viewport.x, buffer.width), from(y, height, viewport.y, buffer.height));
+    return out;
+}
+
 }  // namespace sightline

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include <glm/glm.hpp>
+
 #include "sightline/report/png.h"
 
 namespace sightline {
@@ -20,6 +22,13 @@ struct DepthClaims {
 /// Grey by the logarithm of the distance, from the nearest claim (light) to the farthest (dark); open pixels are blue.
 /// In parallel views the distance itself is taken: it may be zero, or behind the eye.
 Image<Rgb> depthPicture(const DepthClaims& claims);
+
+/// The part of a buffer's picture that is the viewport, at another size, each pixel as the nearest one of the buffer: the
+/// buffer holds the viewport widened by the jitter, in whole tiles, so that its pixels are not quite square.
+/// @param viewport  [pixels]
+/// @param jitter    that the buffer was drawn for  [viewport pixels]
+Image<Rgb> viewportPart(const Image<Rgb>& buffer, const glm::dvec2& viewport, double jitter, uint32_t width,
+                        uint32_t height);
 
 /// What open pixels are painted with.
 inline constexpr Rgb kOpenPixel{36, 84, 164};

@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "sightline/report/depth_picture.h"
 #include "sightline/report/picture.h"
 #include "sightline/report/plan.h"
 
@@ -82,7 +83,8 @@ Film drawFilm(const Scene& scene, const CullRun& run, const PageSettings& settin
                        {"plan", encodePalettePng(above)},
                        {"section", encodePalettePng(side)}};
         if (settings.buffer) {
-            const Image<Rgb> buffer = settings.buffer(chosen[i]);
+            const Image<Rgb> buffer = viewportPart(settings.buffer(chosen[i]), glm::dvec2(run.width, run.height),
+                                                   run.jitter, views[i].width, views[i].height);
             shot.images.push_back({"buffer", encodeJpeg(buffer, kJpegQuality)});
             save("buffer", chosen[i], buffer);
         }

@@ -45,6 +45,10 @@ function showPicture(f) {
 function showLook() {
   const layers = {objects: look === 'objects', culled: look === 'culled', buffer: look === 'buffer'};
   for (const [id, on] of Object.entries(layers)) if (at(id)) at(id).hidden = !on;
+  if (at('buffer-text')) {
+    at('buffer-text').hidden = look !== 'buffer';
+    at('same').hidden = look === 'buffer';
+  }
   const screen = document.querySelector('.screen');
   if (screen) screen.classList.toggle('through', look === 'culled');
 }

@@ -141,7 +141,15 @@ std::string filmSection(const CullRun& run, const Film& film) {
         picture +=
             "<img id=\"buffer\" hidden alt=\"What the occlusion buffer claims: light is near, dark is far, blue is "
             "open\">";
-    picture += "<span id=\"stale\" hidden></span></div><figcaption><span id=\"same\"></span></figcaption></figure>";
+    picture += "<span id=\"stale\" hidden></span></div><figcaption><span id=\"same\"></span>";
+    if (has("buffer"))
+        picture += fmt::format(
+            "<span id=\"buffer-text\" hidden>What each pixel of the occlusion buffer hides, once all was drawn: what "
+            "is "
+            "farther than its grey, from light for the nearest claim to dark for the farthest. Blue hides nothing. The "
+            "buffer’s longer side has at most {} pixels.</span>",
+            run.occlusion_size);
+    picture += "</figcaption></figure>";
     std::string plans;
     if (has("plan"))
         plans += figureOf("plan", "The scene from above, objects coloured by what culled them",

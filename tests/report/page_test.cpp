@@ -55,7 +55,7 @@ TEST(Page, HoldsItsDataAsJson) {
         EXPECT_EQ(data["pictures"][0]["images"][id].get<std::string>().substr(0, 11), "data:image/") << id;
         EXPECT_TRUE(contains(page, "id=\"" + std::string(id) + "\"")) << id;
     }
-    EXPECT_FALSE(contains(page, "value=\"buffer\""));
+    EXPECT_FALSE(contains(page, "value=\"buffer\"") || contains(page, "id=\"buffer-text\""));
     EXPECT_EQ(data["frame"]["kept"], nlohmann::json::parse("[2, 2, 2]"));
     EXPECT_EQ(data["frame"]["exact"][1], 2);
     EXPECT_EQ(data["frame"]["stages"][1]["culled"][0], 1);
@@ -75,6 +75,7 @@ TEST(Page, ShowsTheOcclusionBufferWhereItIsDrawn) {
     settings.save = [&](const std::string& name, const std::string&) { saved.insert(name); };
     const std::string page = reportPage(scene, madeRun(scene, 2), settings);
     EXPECT_TRUE(contains(page, "value=\"buffer\"") && contains(page, "id=\"buffer\""));
+    EXPECT_TRUE(contains(page, "id=\"buffer-text\"") && contains(page, "has at most 640 pixels"));
     const auto data = dataOf(page);
     EXPECT_EQ(data["pictures"][1]["images"]["buffer"].get<std::string>().substr(0, 11), "data:image/");
     EXPECT_EQ(saved.count("frames/buffer-0001.png"), 1u);
