@@ -58,6 +58,25 @@ std::string explained(const CLI::App& tool, const CLI::ParseError& error) {
     return fmt::format("{}{} (see {} --help)", error.what(), meant, verbOf(tool));
 }
 
+/// A word that gives a flag a value, which the parser would take: "--masked=3". Empty: there is none.
+std::string flagWithValue(const CLI::App& tool, int count, char** words) {
+    const CLI::App* app = &tool;
+    for (int i = 1; i < count; ++i) {
+        const std::string word = words[i];
+        if (word == "--") break;
+        if (word.substr(0, 1) != "-") {
+            for (const CLI::App* verb : app == &tool ? verbsOf(tool) : std::vector<const CLI::App*>())
+                if (verb->get_name() == word) app = verb;
+            continue;
+        }
+        const size_t equals = word.find('=');
+        if (equals == std::string::npos) continue;
+        const CLI::Option* option = app->get_option_no_throw(word.substr(0, equals));
+        if (option && option->get_type_size() == 0) return word;
+    }
+    return "";
+}
+
 /// All that happens between the command line and the verb.
 void beginVerb(CLI::App& tool, SessionOptions& session, const std::string& command) {
     CLI::App& verb = *tool.get_subcommands().front();
@@ -113,6 +132,9 @@ int runTool(int count, char** words) {
     if (first.substr(0, 1) != "-" && std::find(names.begin(), names.end(), first) == names.end())
         return report({Error::Kind::kUsage, fmt::format("there is no verb \"{}\"{} (see sightline --help)", first,
                                                         suggestion(first, names))});
+    if (const std::string word = flagWithValue(tool, count, words); !word.empty())
+        return report(
+            {Error::Kind::kUsage, fmt::format("{}: {} takes no value", word, word.substr(0, word.find('=')))});
     try {
         tool.parse(count, words);
     } catch (const CLI::RuntimeError& error) { return error.get_exit_code(); } catch (const CLI::ParseError& error) {
