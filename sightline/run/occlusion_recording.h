@@ -60,7 +60,7 @@ namespace recording_file {
 /// The file: magic, version, number of sections, contentHash() of all that follows; the sizes of the sections in their
 /// order; the sections. Numbers are little-endian, sizes have 64 bits.
 inline constexpr char kMagic[16] = {'s', 'i', 'g', 'h', 't', 'l', 'i', 'n', 'e', ' ', 'f', 'r', 'a', 'm', 'e', '\n'};
-inline constexpr uint32_t kVersion = 1;
+inline constexpr uint32_t kVersion = 2;  ///< 1 had no detail of the buffer in its view
 inline constexpr size_t kHashAt = 24;    ///< [bytes]
 inline constexpr size_t kHashedAt = 32;  ///< what the hash is over begins here  [bytes]
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 #include "sightline/base/bytes.h"
 #include "sightline/raster/screen.h"
@@ -31,11 +32,11 @@ public:
     }
 
 private:
-    bool good() const { return fault_ == nullptr; }
+    bool good() const { return fault_.empty(); }
     /// @return false, so that whoever finds a fault may return it
-    bool wrong(const char* what, uint64_t at) {
+    bool wrong(std::string what, uint64_t at) {
         if (good()) {
-            fault_ = what;
+            fault_ = std::move(what);
             fault_at_ = at;
         }
         return false;
@@ -48,7 +49,10 @@ private:
             if (head.take<char>() != letter) return (void)wrong("not a recording of occlusion calls", 0);
         constexpr size_t kSizesEnd = kHashedAt + 8 * kSectionCount;
         if (bytes_.size() < kHashedAt) return (void)wrong("the file ends within its head", bytes_.size());
-        if (head.take<uint32_t>() != kVersion) return (void)wrong("a version of the format that is not known", 16);
+        if (const uint32_t version = head.take<uint32_t>(); version != kVersion)
+            return (void)wrong("a recording of version " + std::to_string(version) + ", where version " +
+                                   std::to_string(kVersion) + " is read",
+                               16);
         if (head.take<uint32_t>() != kSectionCount) return (void)wrong("not the sections of this version", 20);
         const uint64_t hash = head.take<uint64_t>();
         if (bytes_.size() < kSizesEnd) return (void)wrong("the file ends within its head", bytes_.size());
@@ -313,7 +317,7 @@ private:
     std::span<const char> bytes_;
     std::string_view file_;
     OcclusionRecording& out_;
-    const char* fault_ = nullptr;
+    std::string fault_;
     uint64_t fault_at_ = 0;
     ByteCursor sections_[kSectionCount];
     uint64_t counts_[kSectionCount] = {};  ///< of the occluder at hand

@@ -144,7 +144,8 @@ TEST(OcclusionRecording, SaysInOneLineWhatIsWrongAndWhere) {
     expect("not a recording of occlusion calls", 0, [](auto& b) { b.clear(); });
     expect("the file ends within its head", 20, [](auto& b) { b.resize(20); });
     expect("the file ends within its head", 100, [](auto& b) { b.resize(100); });
-    expect("a version of the format that is not known", 16, [](auto& b) { b[16] = 9; });
+    expect("a recording of version 9, where version 2 is read", 16, [](auto& b) { b[16] = 9; });
+    expect("a recording of version 1, where version 2 is read", 16, [](auto& b) { b[16] = 1; });
     expect("bytes after the last section", good.size(), [](auto& b) { b.push_back(0); });
     expect(
         "the content does not have the hash that it says", 24, [&](auto& b) { b[in(kVertices, 5)] ^= 1; }, false);
