@@ -127,8 +127,7 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
         command += fmt::format(" --occluder-triangles {}", run.occluder_triangles);
     if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
     if (run.last_visible_first) command += " --last-visible-first";
-    if (run.occlusion_size != View().occlusion_size)
-        command += fmt::format(" --occlusion-size {}", run.occlusion_size);
+    if (run.occlusion_size != View().occlusion_size) command += fmt::format(" --occlusion-size {}", run.occlusion_size);
     if (run.masked) command += " --masked";
     if (run.close_gaps > 0) command += fmt::format(" --close-gaps {:g}", run.close_gaps);
     if (!run.faces) command += " --no-faces";

@@ -85,8 +85,8 @@ struct CullRun {
     double jitter = 0;                                        ///< [pixels]
     uint32_t occluder_triangles = View().occluder_triangles;  ///< that a query drew at most
     uint32_t stages = kDefaultStages;                         ///< bits of Stage in use
-    double stereo = 0;                      ///< distance of the two eyes  [world units]; 0: there is one
-    bool last_visible_first = false;        ///< each frame drew first what the one before it kept
+    double stereo = 0;                ///< distance of the two eyes  [world units]; 0: there is one
+    bool last_visible_first = false;  ///< each frame drew first what the one before it kept
     uint32_t occlusion_size = View().occlusion_size;
     bool masked = false;                    ///< View::occlusion_detail
     double close_gaps = 0;                  ///< of View
