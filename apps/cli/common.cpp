@@ -187,6 +187,17 @@ void addStereoOption(CLI::App& verb, RunOptions& options) {
 
 void addQueryOptions(CLI::App& verb, RunOptions& options) {
     addStereoOption(verb, options);
+    verb.add_option("--bins", options.bins,
+                    "strips of the occlusion buffer, each with a walk of its own, that threads can share")
+        ->check(CLI::Range(1, 16))
+        ->type_name("K")
+        ->capture_default_str()
+        ->group("Culling");
+    verb.add_option("--query-threads", options.query_threads, "share the bins of each query among so many threads")
+        ->check(CLI::Range(1u, kMostThreads))
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Culling");
     verb.add_flag("--last-visible-first", options.last_visible_first,
                   "begin with what the frame before kept, which is asked each time for that")
         ->group("Culling");
@@ -196,6 +207,8 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     if (Status size = readSize("--size", options.size, options.width, options.height); !size) return size;
     if (std::isnan(options.jitter)) return usage("--jitter: not a number");  // no range leaves it out
     if (std::isnan(options.stereo)) return usage("--stereo: not a number");
+    if (options.query_threads > 1 && options.bins == 1 && options.stereo == 0)
+        return usage("--query-threads: one bin has nothing to share; see --bins");
     const Result<uint32_t> use = readStages("--use", options.use), skip = readStages("--skip", options.skip);
     if (!use) return use.error();
     if (!skip) return skip.error();

@@ -40,6 +40,8 @@ struct RunOptions {
     bool masked = false;
     double close_gaps = 0;
     uint32_t occlusion_size = View().occlusion_size;
+    uint32_t bins = 1;           ///< View::bins
+    uint32_t query_threads = 1;  ///< that share one query's bins
     uint64_t rays = 1000000;
     std::string json;      ///< file, `-`, or empty
     std::string report;    ///< directory, or empty
