@@ -62,7 +62,7 @@ std::vector<Answer> measure(const Snapshot& now, const CameraPath& path, const s
 
 /// The stage alone and before the tiles, and then with more and fewer volumes.
 void measureScene(const Scene& scene, const CameraPath& path, const std::string& where, int repeat, Table& table) {
-    LoadedWorld loaded = loadWorld(scene, {}, true);
+    LoadedWorld loaded = loadWorld(scene, {}, loadSettings(true, 0));
     const Snapshot now = loaded.world.commit();
     const uint32_t frustum = stageBit(Stage::kFrustum), volumes = stageBit(Stage::kVolumes),
                    tiles = stageBit(Stage::kOcclusion);

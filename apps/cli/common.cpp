@@ -143,6 +143,14 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
         ->group("Culling");
     addOcclusionSize(verb, options.occlusion_size);
     verb.get_option("--occlusion-size")->capture_default_str();
+    verb.add_option(
+            "--occluder-error", options.occluder_error,
+            "prepare simpler occluders inside of dense solids, and draw them where they err by so much at most, in "
+            "pixels of the occlusion buffer; 0: none")
+        ->check(CLI::Range(0.0, 1024.0))
+        ->type_name("PX")
+        ->capture_default_str()
+        ->group("Culling");
     verb.add_flag("--masked", options.masked,
                   "let a tile of the occlusion buffer remember two depths and a mask, not a depth per pixel")
         ->group("Culling");

@@ -33,7 +33,8 @@ struct RunOptions {
     uint32_t stages = 0;  ///< from `use` and `skip`
     double jitter = 0.5;
     uint32_t occluder_triangles = View().occluder_triangles;
-    double stereo = 0;  ///< distance of the eyes  [world units]; 0: one eye
+    double occluder_error = 0;  ///< View::occluder_error; 0: no simpler occluders are prepared
+    double stereo = 0;          ///< distance of the eyes  [world units]; 0: one eye
     bool last_visible_first = false;
     bool no_faces = false, no_second_look = false;
     uint32_t second_look_polygons = View().second_look_polygons;

@@ -41,6 +41,7 @@ View viewOf(const CameraFrame& camera, const CullRun& run) {
     view.jitter = run.jitter;
     view.stages = run.stages;
     view.occluder_triangles = run.occluder_triangles;
+    view.occluder_error = run.occluder_error;
     view.occlusion_detail = run.masked ? OcclusionDetail::kMasked : OcclusionDetail::kFull;
     view.close_gaps = run.close_gaps;
     view.occlusion_size = run.occlusion_size;

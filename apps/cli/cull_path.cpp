@@ -129,6 +129,7 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     if (run.jitter != View().jitter) command += fmt::format(" --jitter {}", run.jitter);
     if (run.occluder_triangles != View().occluder_triangles)
         command += fmt::format(" --occluder-triangles {}", run.occluder_triangles);
+    if (run.occluder_error > 0) command += fmt::format(" --occluder-error {}", run.occluder_error);
     if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
     if (run.last_visible_first) command += " --last-visible-first";
     if (run.occlusion_size != View().occlusion_size) command += fmt::format(" --occlusion-size {}", run.occlusion_size);
@@ -170,6 +171,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.jitter = options.jitter;
     run.stages = options.stages;
     run.occluder_triangles = options.occluder_triangles;
+    run.occluder_error = options.occluder_error;
     run.stereo = options.stereo;
     run.last_visible_first = options.last_visible_first;
     run.masked = options.masked;
@@ -186,7 +188,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
         Progress progress("preparing", "meshes", scene.meshes.size());
         return loadWorld(
             scene, [&](size_t done, size_t total) { progress.set(done, total); },
-            options.stages & stageBit(Stage::kVolumes));
+            loadSettings((options.stages & stageBit(Stage::kVolumes)) != 0, options.occluder_error));
     }();
     const Snapshot now = loaded.world.commit();
 

@@ -103,10 +103,10 @@ std::string eyeText(const ObjectAnswer& answer) {
 
 }  // namespace
 
-AskedScene::AskedScene(const Scene& from) : scene(from) {
+AskedScene::AskedScene(const Scene& from, double occluder_error) : scene(from) {
     Progress progress("preparing", "meshes", scene.meshes.size());
     loaded = loadWorld(
-        scene, [&](size_t done, size_t total) { progress.set(done, total); }, true);
+        scene, [&](size_t done, size_t total) { progress.set(done, total); }, loadSettings(true, occluder_error));
     now = loaded.world.commit();
 }
 
@@ -119,6 +119,7 @@ View viewOfFrame(const CameraFrame& camera, const RunOptions& options) {
     view.jitter = options.jitter;
     view.stages = options.stages;
     view.occluder_triangles = options.occluder_triangles;
+    view.occluder_error = options.occluder_error;
     view.occlusion_detail = options.masked ? OcclusionDetail::kMasked : OcclusionDetail::kFull;
     view.close_gaps = options.close_gaps;
     view.occlusion_size = options.occlusion_size;

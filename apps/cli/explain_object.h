@@ -49,7 +49,8 @@ struct AskedScene {
     LoadedWorld loaded;
     Snapshot now;
 
-    explicit AskedScene(const Scene& scene);
+    /// @param occluder_error  as loadSettings()
+    AskedScene(const Scene& scene, double occluder_error);
     /// @param loaded  of this scene
     AskedScene(const Scene& scene, LoadedWorld loaded);
     /// Scene::objects' index of an object of the world.

@@ -119,6 +119,7 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     if (options.jitter != View().jitter) command += fmt::format(" --jitter {}", options.jitter);
     if (options.occluder_triangles != View().occluder_triangles)
         command += fmt::format(" --occluder-triangles {}", options.occluder_triangles);
+    if (options.occluder_error > 0) command += fmt::format(" --occluder-error {}", options.occluder_error);
     if (options.stereo > 0) command += fmt::format(" --stereo {}", options.stereo);
     if (options.last_visible_first) command += " --last-visible-first";
     if (options.occlusion_size != View().occlusion_size)

@@ -43,6 +43,8 @@ struct View {
     uint32_t occluder_triangles = 1u << 17;  ///< work budget: triangles that may be rasterized, nearest first  [limit]
     uint32_t occlusion_size = 640;           ///< longer side of the occlusion buffer; a viewport that is smaller
                                              ///< gets its own size  [pixels, limit: 1 to 8192]
+    double occluder_error = 2.0;             ///< of the simpler occluders that may be drawn: prepareInner()
+                                             ///< [pixels of the occlusion buffer; 0: none]
     bool last_visible_first = false;         ///< draw first what the query's last answer kept; see Query::visible()
     bool faces = true;                       ///< what its box's rectangle would keep is asked by the box's faces
     bool second_look = true;                 ///< and then by its own triangles: ObjectDef::shape

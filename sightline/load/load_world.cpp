@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "sightline/prepare/occluder.h"
-
 namespace sightline {
 namespace {
+
+constexpr size_t kDense = 200;  // triangles: below that a simpler occluder is no cheaper
 
 /// What a mesh hides with, and what it is asked about.
 struct Forms {
@@ -15,7 +15,7 @@ struct Forms {
 };
 
 /// The occluder holds the triangles whose material hides, the shape all; one record serves both where they are equal.
-Forms formsOf(const Scene& scene, const Mesh& mesh, World& world) {
+Forms formsOf(const Scene& scene, const Mesh& mesh, const LoadSettings& settings, World& world) {
     if (mesh.deforms) return {};
     std::vector<uint8_t> hides(mesh.triangles(), 0), double_sided(mesh.triangles(), 0);
     for (const Primitive& primitive : mesh.primitives) {
@@ -29,8 +29,11 @@ Forms formsOf(const Scene& scene, const Mesh& mesh, World& world) {
     const size_t hiding = static_cast<size_t>(std::count(hides.begin(), hides.end(), 1));
     Forms forms;
     if (hiding > 0) {
-        const Occluder occluder = prepareOccluder(view, hides, double_sided);
-        if (occluder.triangleCount() > 0) forms.occluder = world.addOccluder(occluder);
+        const Occluder occluder = prepareOccluder(view, hides, double_sided, settings.occluders);
+        std::vector<InnerOccluder> inner;
+        if (settings.inner && hiding >= kDense)
+            inner = prepareInner(view, hides, double_sided, settings.occluders, settings.inner_occluders);
+        if (occluder.triangleCount() > 0) forms.occluder = world.addOccluder(occluder, inner);
     }
     if (hiding == hides.size()) forms.shape = forms.occluder;
     else forms.shape = world.addShape(prepareOccluder(view, {}, double_sided));
@@ -39,13 +42,21 @@ Forms formsOf(const Scene& scene, const Mesh& mesh, World& world) {
 
 }  // namespace
 
-LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_t)>& progress, bool volumes) {
+LoadSettings loadSettings(bool volumes, double occluder_error) {
+    LoadSettings settings;
+    settings.volumes = volumes;
+    settings.inner = occluder_error > 0;
+    return settings;
+}
+
+LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_t)>& progress,
+                      const LoadSettings& settings) {
     WorldDef world;
-    world.volumes = volumes;
+    world.volumes = settings.volumes;
     LoadedWorld loaded{World::create(world), {}};
     std::vector<Forms> forms(scene.meshes.size());
     for (size_t i = 0; i < scene.meshes.size(); ++i) {
-        forms[i] = formsOf(scene, scene.meshes[i], loaded.world);
+        forms[i] = formsOf(scene, scene.meshes[i], settings, loaded.world);
         if (progress && (i % 64 == 63 || i + 1 == scene.meshes.size())) progress(i + 1, scene.meshes.size());
     }
     loaded.ids.reserve(scene.objects.size());

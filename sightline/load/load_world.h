@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "sightline/prepare/inner.h"
 #include "sightline/run/world.h"
 #include "sightline/scene/scene.h"
 
@@ -15,10 +16,21 @@ struct LoadedWorld {
     std::vector<ObjectId> ids;  ///< [size: scene.objects; the same order]
 };
 
+struct LoadSettings {
+    bool volumes = false;  ///< WorldDef::volumes
+    /// How each mesh is prepared. Buildings have many walls of some tens of large polygons: `few` is 64.
+    OccluderSettings occluders = {.few = 64};
+    bool inner = false;  ///< prepare simpler occluders for dense meshes, too: prepareInner()
+    InnerSettings inner_occluders;
+};
+
+/// What the tool loads with.
+/// @param occluder_error  View::occluder_error of the queries to come; 0: no simpler occluders are prepared
+LoadSettings loadSettings(bool volumes, double occluder_error);
+
 /// Deforming meshes and materials that do not hide give no occluder triangles.
 /// @param progress  called with (done, total) meshes now and then; may be empty
-/// @param volumes   WorldDef::volumes
 LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_t)>& progress = {},
-                      bool volumes = false);
+                      const LoadSettings& settings = {});
 
 }  // namespace sightline

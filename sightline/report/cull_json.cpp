@@ -83,6 +83,7 @@ Json headJson(const CullRun& run, const Scene& scene) {
     head["height"] = run.height;
     head["jitter"] = run.jitter;
     head["occluder_triangles_limit"] = run.occluder_triangles;
+    if (run.occluder_error > 0) head["occluder_error"] = run.occluder_error;
     if (run.stereo > 0) head["stereo"] = run.stereo;
     if (run.last_visible_first) head["last_visible_first"] = true;
     head["occlusion_size"] = run.occlusion_size;

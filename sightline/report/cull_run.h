@@ -84,6 +84,7 @@ struct CullRun {
     uint32_t width = 0, height = 0;
     double jitter = 0;                                        ///< [pixels]
     uint32_t occluder_triangles = View().occluder_triangles;  ///< that a query drew at most
+    double occluder_error = 0;                                ///< View::occluder_error; 0: none were prepared
     uint32_t stages = kDefaultStages;                         ///< bits of Stage in use
     double stereo = 0;                ///< distance of the two eyes  [world units]; 0: there is one
     bool last_visible_first = false;  ///< each frame drew first what the one before it kept

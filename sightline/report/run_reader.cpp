@@ -249,6 +249,7 @@ RunFile readHead(const At& head) {
         run.occluder_triangles = static_cast<uint32_t>(limit->whole(0, ~uint32_t{0}));
     if (const auto size = head.maybe("occlusion_size"))
         run.occlusion_size = static_cast<uint32_t>(size->whole(1, 8192));
+    if (const auto error = head.maybe("occluder_error")) run.occluder_error = error->positive();
     if (const auto faces = head.maybe("faces")) run.faces = faces->flag();
     if (const auto masked = head.maybe("masked")) run.masked = masked->flag();
     if (const auto gaps = head.maybe("close_gaps")) run.close_gaps = gaps->positive();

@@ -8,6 +8,7 @@
 
 #include "sightline/base/assert.h"
 #include "sightline/geom/depth_order.h"
+#include "sightline/run/occluder_form.h"
 
 namespace sightline::detail {
 namespace {
@@ -216,9 +217,11 @@ void Walk::offerVisible(uint32_t place) {
 void Walk::offerOccluder(uint32_t place, bool in_line) {
     const PlacedObject& placed = (*state().placed)[place];
     if (placed.occluder.index == 0 || !(placed.layers & view.layers)) return;
-    const Occluder& occluder = *state().occluders[placed.occluder.index];
+    const glm::dmat4& transform = state().objectAt(place).transform;
+    const Occluder& occluder =
+        formFor(*state().occluders[placed.occluder.index], screen, transform, view.occluder_error);
     const uint32_t owner = static_cast<uint32_t>(instances.size());
-    instances.push_back(makeOccluderInstance(screen, occluder, state().objectAt(place).transform));
+    instances.push_back(makeOccluderInstance(screen, occluder, transform));
     if (record) record->owners.push_back(place);
     const uint32_t clusters = static_cast<uint32_t>(occluder.clusters.size());
     for (uint32_t cluster = 0; cluster < clusters; ++cluster) {

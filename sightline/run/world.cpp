@@ -167,9 +167,9 @@ World& World::operator=(World&&) noexcept = default;
 
 uint32_t Snapshot::objectCount() const { return state_ ? state_->count : 0; }
 
-OccluderId World::addOccluder(const Occluder& occluder) {
+OccluderId World::addOccluder(const Occluder& occluder, std::span<const InnerOccluder> inner) {
     state_->occluders.push_back(
-        makeShared<detail::HeldOccluder>(state_->memory, occluder, state_->volumes, state_->memory));
+        makeShared<detail::HeldOccluder>(state_->memory, occluder, inner, state_->volumes, state_->memory));
     state_->rebuild = true;
     return {static_cast<uint32_t>(state_->occluders.size() - 1)};
 }

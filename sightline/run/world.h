@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include <glm/glm.hpp>
 
@@ -80,7 +81,11 @@ public:
     World& operator=(World&&) noexcept;
 
     /// Copies the occluder; many objects may share it. It lives as long as the world and its snapshots.
-    OccluderId addOccluder(const Occluder& occluder);
+    ///
+    /// @param inner  simpler ones for it, finest first: prepareInner(). A query draws one instead where nothing of its
+    ///               solids lies before the near plane, so that no eye and no cut is inside of them, and where its error
+    ///               is no more than View::occluder_error
+    OccluderId addOccluder(const Occluder& occluder, std::span<const InnerOccluder> inner = {});
 
     /// The same for ObjectDef::shape; the ids are of one kind. prepareOccluder(mesh, {}, double_sided) makes it.
     OccluderId addShape(const Occluder& shape) { return addOccluder(shape); }

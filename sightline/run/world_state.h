@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "sightline/base/memory.h"
 #include "sightline/cull/volume_parts.h"
@@ -53,12 +54,21 @@ struct PlacedObject {
     OccluderId shape;
 };
 
-/// An occluder, and what of it hides by itself.
+/// An occluder, simpler ones in its place, and what of it hides by itself.
 struct HeldOccluder : Occluder {
-    VolumeParts parts;  ///< none unless WorldDef::volumes
+    Array<InnerOccluder> inner;  ///< finest first
+    VolumeParts parts;           ///< none unless WorldDef::volumes
 
-    HeldOccluder(const Occluder& from, bool volumes, Memory* memory) : Occluder(memory), parts(memory) {
+    HeldOccluder(const Occluder& from, std::span<const InnerOccluder> levels, bool volumes, Memory* memory)
+        : Occluder(memory), inner(memory), parts(memory) {
         Occluder::operator=(from);
+        inner.reserve(levels.size());
+        for (const InnerOccluder& level : levels) {
+            InnerOccluder& held = inner.emplace_back(memory);
+            held.occluder = level.occluder;
+            held.outside = level.outside;
+            held.error = level.error;
+        }
         if (volumes) parts = findVolumeParts(from, memory);
     }
 };

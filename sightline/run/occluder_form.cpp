@@ -1,0 +1,27 @@
+// Which form of an occluder a view draws: the mesh's own polygons, or simpler ones inside of its solids.
+// SPDX-License-Identifier: MIT
+#include "sightline/run/occluder_form.h"
+
+#include "sightline/cull/occlusion.h"
+
+namespace sightline::detail {
+
+const Occluder& formFor(const HeldOccluder& occluder, const Screen& screen, const glm::dmat4& transform,
+                        double most_error) {
+    if (occluder.inner.empty() || !(most_error > 0)) return occluder;
+    Screen object = objectScreen(screen, transform);
+    object.near.w -= 2.0 * object.near_guard;
+    const BoxAnswer box = projectBox(object, occluder.inner.front().outside);
+    if (box.doubt) return occluder;
+    // How far a step of one unit goes on the screen at most, about.
+    const double stretch = glm::length(transform[0]) + glm::length(transform[1]) + glm::length(transform[2]);
+    const glm::dvec3 across = glm::dvec3(screen.x) - 0.5 * screen.width * glm::dvec3(screen.w);
+    const double w = screen.perspective ? 1.0 / static_cast<double>(box.rect.nearness) : screen.w.w;
+    const double pixels = glm::length(across) * stretch / (1.75 * w);
+    const Occluder* form = &occluder;
+    for (const InnerOccluder& inner : occluder.inner)
+        if (inner.error * pixels <= most_error) form = &inner.occluder;
+    return *form;
+}
+
+}  // namespace sightline::detail
