@@ -72,7 +72,7 @@ std::string flagWithValue(const CLI::App& tool, int count, char** words) {
         const size_t equals = word.find('=');
         if (equals == std::string::npos) continue;
         const CLI::Option* option = app->get_option_no_throw(word.substr(0, equals));
-        if (option && option->get_type_size() == 0) return word;
+        if (option && option->get_items_expected_max() == 0) return word;
     }
     return "";
 }
