@@ -81,6 +81,8 @@ struct ClusterWalk {
         return true;
     }
 
+    /// Whether a polygon surely lies beside the columns that matter.
+    bool liesBeside(const DepthTiles& tiles, const OccluderPolygon& polygon) const;
     Sight polygon(const OccluderPolygon& polygon, OccludeePolygon& out) const;
 
 private:
@@ -120,6 +122,18 @@ Sight ClusterWalk::clipped(const OccluderPolygon& polygon, bool both, OccludeePo
     if (!clipAtNear(place.screen, corner, count, corners)) return Sight::kVisible;
     if (corners.count < 3) return Sight::kOutside;
     return make(corners.x, corners.y, corners.d, corners.count, both, out);
+}
+
+bool ClusterWalk::liesBeside(const DepthTiles& tiles, const OccluderPolygon& polygon) const {
+    const double reach = position_error + 1.0;  // far more than what makeOccludeePolygon() adds
+    const double left = 8.0 * tiles.first_column - reach, right = 8.0 * tiles.end_column + reach;
+    bool all_left = true, all_right = true;  // neither where a corner has no image
+    for (int k = 0; k < polygon.corners(); ++k) {
+        const double x = vertices.x[polygon.vertex[k]];
+        all_left &= x < left;
+        all_right &= x > right;
+    }
+    return all_left || all_right;
 }
 
 Sight ClusterWalk::polygon(const OccluderPolygon& polygon, OccludeePolygon& out) const {
@@ -175,6 +189,7 @@ Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder
     if (look.spent) return Sight::kVisible;
     scratch.undecided.clear();
     scratch.names.clear();
+    const bool part = tiles.end_column - tiles.first_column < tiles.columns;
     OccludeePolygon occludee;
     for (const ClusterLook& next : scratch.clusters) {
         look.open.cluster = next.cluster;
@@ -183,7 +198,12 @@ Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder
         for (uint32_t p = 0; p < walk.cluster.polygon_count; ++p) {
             look.open.polygon = p;
             ++look.polygons;
-            const Sight made = walk.polygon(shape.polygons[walk.cluster.first_polygon + p], occludee);
+            const OccluderPolygon& polygon = shape.polygons[walk.cluster.first_polygon + p];
+            if (part && walk.liesBeside(tiles, polygon)) {
+                in_view = true;
+                continue;
+            }
+            const Sight made = walk.polygon(polygon, occludee);
             if (made == Sight::kVisible) return made;
             if (made == Sight::kOutside) continue;
             if (!tiles.clip(occludee.rect)) {

@@ -56,6 +56,9 @@ struct View {
     /// little (no object is culled that is visible; work budgets hold for each strip), but not on who walks. One strip
     /// costs least in all.  [limit: 1 to 16]
     uint32_t bins = 1;
+    /// Cut the bins where the query's last answer had equal shares of work, instead of at equal widths. Work is counted,
+    /// not timed: so the same calls give the same answers.
+    bool balance_bins = false;
     bool time_stages = false;  ///< fill StageStats::nanoseconds (costs some time itself)
 };
 

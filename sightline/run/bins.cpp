@@ -14,8 +14,6 @@
 namespace sightline::detail {
 namespace {
 
-constexpr uint32_t kMostBins = 16;
-
 /// Adds what another bin did.
 void addWork(const QueryStats& from, QueryStats& to) {
     for (int stage = 0; stage < kStageCount; ++stage) to.stages[stage].nanoseconds += from.stages[stage].nanoseconds;
@@ -34,6 +32,20 @@ uint32_t binCount(const View& view) {
     const uint32_t both = stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion);
     if (view.bins < 2 || (view.stages & both) != both || !isUsable(view) || !runsOutward(view)) return 1;
     return std::clamp(makeScreen(view, view.occlusion_size).width / 8, 1u, std::min(view.bins, kMostBins));
+}
+
+Bin binOf(uint32_t index, uint32_t count, uint32_t columns) {
+    const auto border = [&](uint64_t i) { return static_cast<uint32_t>(columns * i / count); };
+    return {index, count, border(index), border(index + 1)};
+}
+
+/// Spreads work evenly over the columns of a rectangle; of what has none, over all that are walked.
+void Walk::countWork(PixelRect rect, bool on_screen, double cost) {
+    if (!on_screen) rect = {0, 0, static_cast<int32_t>(8 * tiles.columns) - 1, 0, 0};
+    if (!tiles.clip(rect)) return;
+    const uint32_t first = static_cast<uint32_t>(rect.x0) / 8, end = static_cast<uint32_t>(rect.x1) / 8 + 1;
+    work[first] += cost / (end - first);
+    work[end] -= cost / (end - first);
 }
 
 /// Of a bin: whether a box surely lies beside it. The outermost bins reach beyond the buffer.
@@ -64,7 +76,9 @@ uint32_t Walk::findBeside(const ScreenAnswer& on_screen, const EyeBoxes& boxes, 
     return beside;
 }
 
-BinnedWalk::BinnedWalk(Memory* memory) : memory_(memory), walks_(memory), merged_(memory), met_(memory) { addWalk(); }
+BinnedWalk::BinnedWalk(Memory* memory) : memory_(memory), walks_(memory), work_(memory), merged_(memory), met_(memory) {
+    addWalk();
+}
 
 void BinnedWalk::addWalk() {
     walks_.push_back(makeOwned<Walk>(memory_, memory_));
@@ -77,11 +91,44 @@ void BinnedWalk::begin(const SnapshotState* now, const View& view) {
     count_ = now ? binCount(view) : 1;
     while (walks_.size() < count_) addWalk();
     merged_.clear();
+    if (count_ == 1) return;
+    const uint32_t columns = makeScreen(view, view.occlusion_size).width / 8;
+    for (uint32_t bin = 0; bin < count_; ++bin) cuts_[bin] = binOf(bin, count_, columns);
+    if (view.balance_bins && work_.size() == columns) balance();
+}
+
+/// Cuts where the work so far is in equal shares. No bin is less than a column wide, or much wider than it would be.
+void BinnedWalk::balance() {
+    double all = 0, sum = 0;
+    for (const double work : work_) all += work;
+    const uint32_t columns = static_cast<uint32_t>(work_.size());
+    if (!(all > 0)) return;
+    for (uint32_t column = 0, bin = 0; column < columns && bin + 1 < count_; ++column) {
+        sum += work_[column];
+        const uint32_t left = columns - (column + 1);  // beyond the cut, at least one for each further bin
+        const bool full = sum * count_ >= all * (bin + 1) - 0.5 * work_[column] * count_;
+        if (!full && left >= count_ - bin) continue;
+        cuts_[bin].end_column = cuts_[bin + 1].first_column = column + 1;
+        ++bin;
+    }
+}
+
+/// Adds up what the bins did, column by column.
+void BinnedWalk::gatherWork() {
+    const Walk& first = *walks_[0];
+    work_.assign(first.tiles.columns, 0.0);
+    for (uint32_t bin = 0; bin < count_; ++bin) {
+        double here = 0;
+        for (uint32_t column = 0; column < first.tiles.columns; ++column) {
+            here += walks_[bin]->work[column];
+            work_[column] += std::max(here, 0.0);
+        }
+    }
 }
 
 void BinnedWalk::run(uint32_t bin) {
     const auto start = std::chrono::steady_clock::now();
-    walks_[bin]->run(now_, view_, {bin, count_});
+    walks_[bin]->run(now_, view_, count_ == 1 ? Bin() : cuts_[bin]);
     walks_[bin]->stats.nanoseconds = static_cast<uint64_t>(
         std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count());
 }
@@ -134,6 +181,7 @@ void BinnedWalk::countCulled() {
 void BinnedWalk::finish() {
     stats = walks_[0]->stats;
     if (count_ == 1) return;
+    if (view_.balance_bins) gatherWork();
     of(Stage::kOcclusion).doubt = 0;
     for (StageStats& stage : stats.stages) stage.culled = 0;
     for (uint32_t bin = 1; bin < count_; ++bin) addWork(walks_[bin]->stats, stats);

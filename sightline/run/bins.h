@@ -43,6 +43,8 @@ public:
 private:
     StageStats& of(Stage stage) { return stats.stages[static_cast<int>(stage)]; }
     void addWalk();
+    void balance();
+    void gatherWork();
     bool meet(uint32_t place);
     void mergeVisible();
     void countCulled();
@@ -50,6 +52,8 @@ private:
     Memory* const memory_;
     Array<Owned<Walk>> walks_;
     uint32_t count_ = 1;
+    Bin cuts_[kMostBins];  ///< of count_ bins, if there are several
+    Array<double> work_;   ///< of the last answer of several bins, with View::balance_bins: per column
     const SnapshotState* now_ = nullptr;
     View view_;
     Array<Visible> merged_;

@@ -69,8 +69,8 @@ struct Explanation;
 /// viewport has grown.
 ///
 /// Several threads can share one query: they offer themselves through a job hook, and the view says in how many bins
-/// it is walked (View::bins). Then each bin, of stereo views each eye's, is a task. The answer is the same for any number of threads, in
-/// every respect but nanoseconds, and the same as without the hook.
+/// it is walked (View::bins). Then each bin, of stereo views each eye's, is a task. The answer is the same for any number
+/// of threads, in every respect but nanoseconds, and the same as without the hook.
 class Query {
 public:
     /// @param memory  outlives the query; used by no other thread unless it is thread-safe, or the query has jobs:
@@ -90,7 +90,7 @@ public:
     ///
     /// With View::last_visible_first the occluders that the last answer kept are drawn before anything is asked. The
     /// answer is conservative in the same way, and may be another one than without: it depends on the calls before it,
-    /// and is the same for the same calls.
+    /// and is the same for the same calls. The same holds of View::balance_bins.
     VisibleSet visible(const Snapshot& now, const View& view);
 
     /// The objects that may be visible from either of two views, as the eyes of a headset: for each eye exactly what
@@ -113,7 +113,7 @@ public:
     void reasons(std::span<uint8_t> reasons, uint8_t eye) const;
 
     /// Why visible(now, view) has the object in its answer or not; see run/explain.h. The last answer stays as it is.
-    /// For many objects of one answer make an Explainer, which does what they share once.
+    /// For many objects of one answer make an Explainer, which does what they share once. Bins are taken at equal widths.
     Explanation explain(const Snapshot& now, const View& view, ObjectId id) const;
 
     /// The occlusion buffer after the last answer, for pictures: nearness per buffer pixel, row 0 at the bottom, 0

@@ -30,6 +30,7 @@ bool Walk::lookCloser(const Pending& entry) {
     if (view.faces && (object.layers & view.layers)) {
         const OccludeePlace place = makeOccludeePlace(screen, object.transform, object.bounds);
         ++stats.faces_tested;
+        if (view.balance_bins) countWork(entry.rect, entry.testable, 800.0);
         if (settle(entry, Look::kFaces, askBox(tiles, place, object.bounds), stats.faces_culled)) return true;
     }
     // Its triangles are asked once all is drawn: an object whose box is near may well be hidden by what is met later.
@@ -51,6 +52,7 @@ void Walk::lookAgain() {
         ++stats.second_looks;
         const Sight sight = askTriangles(tiles, place, *state().occluders[object.shape.index], looks, look);
         stats.second_look_polygons += look.polygons;
+        if (view.balance_bins) countWork(next.entry.rect, next.entry.testable, 300.0 + 100.0 * look.polygons);
         stats.second_look_spent |= look.spent;
         if (settle(next.entry, Look::kTriangles, sight, stats.second_look_culled)) {
             visible[next.visible].id = ObjectId();

@@ -32,8 +32,9 @@ Verdict Trial::run(const SnapshotState& state, const View& view, uint32_t item) 
     record.stop_at = hierarchyPlace(state, item);
     const uint32_t bins = record.stop_at == WalkRecord::kNowhere ? 1 : binCount(view);
     if (bins == 1) return runBin(state, view, {});
+    const uint32_t columns = makeScreen(view, view.occlusion_size).width / 8;
     for (uint32_t bin = 0; bin < bins; ++bin) {
-        runBin(state, view, {bin, bins});
+        runBin(state, view, binOf(bin, bins, columns));
         for (const KeptObject& object : walk.kept)
             if (object.place == record.stop_at) return Verdict::kVisible;
     }

@@ -248,6 +248,7 @@ void Walk::draw(const OccluderInstance& instance, uint32_t cluster, const BoxAns
     }
     const uint32_t triangles = drawOccluder(tiles, instance, cluster, box);
     stats.occluder_triangles += triangles;
+    if (view.balance_bins) countWork(box.rect, !box.doubt, 300.0 + 15.0 * triangles);
     if (record) noteDraw(instance, cluster, box, triangles);
 }
 
@@ -311,9 +312,9 @@ void Walk::walk() {
         tiles.clear(screen.width, screen.height, view.occlusion_detail);
         tiles.gap = closedGap(view);
     }
+    if (view.balance_bins) work.assign(tiles.columns + 1, 0.0);
     if (isPart()) {
-        const auto border = [&](uint64_t i) { return static_cast<uint32_t>(tiles.columns * i / bin.count); };
-        tiles.keepColumns(border(bin.index), border(bin.index + 1));
+        tiles.keepColumns(bin.first_column, bin.end_column);
     } else {
         for (uint32_t item : state().unbounded) keep(item);
     }
@@ -329,7 +330,10 @@ void Walk::walk() {
         const Pending entry = pending.back();
         pending.pop_back();
         undecided -= entry.kind != Pending::Kind::kCluster;
+        const uint64_t seams = tiles.seam_pixels;
         visit(entry);
+        if (view.balance_bins)
+            countWork(entry.rect, entry.testable, 200.0 + 1000.0 * static_cast<double>(tiles.seam_pixels - seams));
     }
     if (record && record->stopped) return;
     // The closer looks ask a buffer in which all is drawn that was found: their answers do not hang on when the last

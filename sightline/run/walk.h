@@ -58,7 +58,14 @@ struct SecondLook {
 /// Which part of a view is walked: the whole of it, or one of its bins.
 struct Bin {
     uint32_t index = 0, count = 1;
+    uint32_t first_column = 0, end_column = 0;  ///< of tiles; not used of the whole
 };
+
+inline constexpr uint32_t kMostBins = 16;
+
+/// A bin of equal widths.
+/// @param columns  of the buffer  [tiles]
+Bin binOf(uint32_t index, uint32_t count, uint32_t columns);
 
 /// How many bins a view is walked in: View::bins, or 1 where there is nothing to share out.
 uint32_t binCount(const View& view);
@@ -142,6 +149,8 @@ struct Walk {
     Array<OccluderInstance> instances{memory};
     Array<Visible> visible{memory};
     Array<KeptObject> kept{memory};  ///< of a bin: who stands in `visible`, one by one
+    Array<double> work{memory};      ///< with View::balance_bins: per column of tiles what was done there, less what
+                                     ///< was done in the one before  [nanoseconds, or so]
     Array<CulledRange> culled{memory};
     Array<SecondLook> second{memory};
     TriangleScratch looks{memory};
@@ -171,6 +180,7 @@ private:
     bool isBeside(const BoxAnswer& on_screen, const Screen& from, const Box3f& box) const;
     uint32_t findBeside(const ScreenAnswer& on_screen, const EyeBoxes& boxes, uint32_t of) const;
     bool isHiddenHere(PixelRect rect, Seams seams);
+    void countWork(PixelRect rect, bool on_screen, double cost);
     void begin(const SnapshotState* now, const View& new_view);
     void keepEverything();
     void walk();

@@ -94,6 +94,7 @@ TEST(Bins, GiveTheSameAnswerForAnyWorkersInAnyOrder) {
         for (int frame = 0; frame < 8; ++frame) {
             View view = randomView(random, 2 + static_cast<uint32_t>(frame));
             view.last_visible_first = frame % 3 == 2;
+            view.balance_bins = frame % 4 > 1;
             if (frame == 5) view.stages = kAllStages;
             if (frame == 6) view.occluder_triangles = 60;
             const Told expected(alone, now, view);
@@ -112,7 +113,8 @@ TEST(Bins, AreSoundAndAsTightAsTheWhole) {
         Random random(100 + seed);
         std::vector<uint8_t> reasons(now.objectCount()), whole_reasons(now.objectCount());
         for (int frame = 0; frame < 6; ++frame) {
-            const View view = randomView(random, static_cast<uint32_t>(2 + frame));
+            View view = randomView(random, static_cast<uint32_t>(2 + frame));
+            view.balance_bins = frame % 2;
             const VisibleSet set = query.visible(now, view);
             query.reasons(reasons);
             View in_one = view;
