@@ -6,6 +6,7 @@
 #include "bench/exact_boxes.h"
 #include "bench/flat_boxes.h"
 #include "bench/occlusion_core.h"
+#include "bench/query_threads.h"
 #include "bench/small_polygons.h"
 #include "bench/stopwatch.h"
 #include "sightline/load/load_world.h"
@@ -89,6 +90,7 @@ Table benchOcclusion(const Options& options) {
         table.rows.push_back({where, "whole query", cost.query, "us", "flat frustum, SIMD", cost.flat});
         table.rows.push_back({where, "triangles submitted", cost.query_triangles, "triangles", "after flat frustum",
                               cost.flat_triangles});
+        measureQueryThreads(*options.scene, path, where, repeat, table);
         measureTightness(*options.scene, path, where, table);
         return table;
     }
@@ -105,7 +107,9 @@ Table benchOcclusion(const Options& options) {
         table.rows.push_back({where, "whole query", cost.query, "us", "city of 1000 objects", smallest});
         table.rows.push_back({where, "triangles submitted", cost.query_triangles, "triangles", "after flat frustum",
                               cost.flat_triangles});
-        if (objects == 10000) measureTightness(scene, path, where, table);
+        if (objects != 10000) continue;
+        measureQueryThreads(scene, path, where, repeat, table);
+        measureTightness(scene, path, where, table);
     }
     return table;
 }
