@@ -165,6 +165,17 @@ void addQueryOptions(CLI::App& verb, RunOptions& options) {
         ->check(CLI::Range(1e-9, 1e9))
         ->type_name("IPD")
         ->group("Culling");
+    verb.add_option("--bins", options.bins,
+                    "strips of the occlusion buffer, each with a walk of its own, that threads can share")
+        ->check(CLI::Range(1, 16))
+        ->type_name("K")
+        ->capture_default_str()
+        ->group("Culling");
+    verb.add_option("--query-threads", options.query_threads, "share the bins of each query among so many threads")
+        ->check(CLI::Range(1u, kMostThreads))
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Culling");
     verb.add_flag("--last-visible-first", options.last_visible_first,
                   "begin with what the frame before kept, which is asked each time for that")
         ->group("Culling");
@@ -174,6 +185,8 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     if (Status size = readSize(options); !size) return size;
     if (std::isnan(options.jitter)) return usage("--jitter: not a number");  // no range leaves it out
     if (std::isnan(options.stereo)) return usage("--stereo: not a number");
+    if (options.query_threads > 1 && options.bins == 1 && options.stereo == 0)
+        return usage("--query-threads: one bin has nothing to share; see --bins");
     const Result<uint32_t> use = readStages("--use", options.use), skip = readStages("--skip", options.skip);
     if (!use) return use.error();
     if (!skip) return skip.error();

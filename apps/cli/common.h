@@ -39,6 +39,8 @@ struct RunOptions {
     uint32_t second_look_polygons = View().second_look_polygons;
     bool masked = false;
     double close_gaps = 0;
+    uint32_t bins = 1;           ///< View::bins
+    uint32_t query_threads = 1;  ///< that share one query's bins
     uint64_t rays = 1000000;
     std::string json;      ///< file, `-`, or empty
     std::string report;    ///< directory, or empty

@@ -46,6 +46,7 @@ View viewOf(const CameraFrame& camera, const CullRun& run) {
     view.faces = run.faces;
     view.second_look = run.second_look;
     view.second_look_polygons = run.second_look_polygons;
+    view.bins = run.bins;
     return run.stereo > 0 ? shiftedEye(view, -0.5 * run.stereo) : view;
 }
 

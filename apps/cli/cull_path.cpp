@@ -19,6 +19,7 @@
 #include "apps/cli/progress.h"
 #include "apps/cli/session.h"
 #include "apps/cli/verbs.h"
+#include "sightline/base/thread_pool.h"
 #include "sightline/hidden/threads.h"
 #include "sightline/report/output_file.h"
 #include "sightline/run/credits.h"
@@ -31,7 +32,10 @@ namespace {
 
 /// What a thread answers frames with.
 struct Answerer {
-    Query query;
+    explicit Answerer(uint32_t threads) : pool(threads) {}
+
+    ThreadPool pool;  ///< that shares each query
+    Query query{defaultMemory(), pool.workers() > 1 ? &pool : nullptr};
     std::optional<CreditBook> book;  ///< if credits were asked for
 };
 
@@ -133,6 +137,7 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     if (!run.second_look) command += " --no-second-look";
     if (run.second_look_polygons != View().second_look_polygons)
         command += fmt::format(" --second-look-polygons {}", run.second_look_polygons);
+    if (run.bins != View().bins) command += fmt::format(" --bins {}", run.bins);
     std::string used, skipped;
     for (int stage = 0; stage < kStageCount; ++stage) {
         const bool uses = run.stages >> stage & 1;
@@ -171,6 +176,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.faces = !options.no_faces;
     run.second_look = !options.no_second_look;
     run.second_look_polygons = options.second_look_polygons;
+    run.bins = options.bins;
     run.repeat = options.repeat;
     run.frames.resize(path.frames.size());
 
@@ -194,7 +200,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
         return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
     };
     const size_t done = shareOut(path.frames.size(), options.threads, interrupted, [&](uint32_t thread) {
-        const auto answerer = std::make_shared<Answerer>();
+        const auto answerer = std::make_shared<Answerer>(options.query_threads);
         if (options.credits) answerer->book.emplace(now, weights);
         return [&, thread, answerer](size_t i) {
             FrameResult& frame = run.frames[i];

@@ -106,6 +106,7 @@ View viewOfFrame(const CameraFrame& camera, const RunOptions& options) {
     view.faces = !options.no_faces;
     view.second_look = !options.no_second_look;
     view.second_look_polygons = options.second_look_polygons;
+    view.bins = options.bins;
     return options.stereo > 0 ? shiftedEye(view, -0.5 * options.stereo) : view;
 }
 

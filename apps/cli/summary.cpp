@@ -127,6 +127,7 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     if (options.no_second_look) command += " --no-second-look";
     if (options.second_look_polygons != View().second_look_polygons)
         command += fmt::format(" --second-look-polygons {}", options.second_look_polygons);
+    if (options.bins != View().bins) command += fmt::format(" --bins {}", options.bins);
     if (verify) command += fmt::format(" --verify --rays {}", options.rays);
     return command;
 }

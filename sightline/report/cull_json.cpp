@@ -90,6 +90,7 @@ Json headJson(const CullRun& run, const Scene& scene) {
     if (run.close_gaps > 0) head["close_gaps"] = run.close_gaps;
     head["second_look"] = run.second_look;
     head["second_look_polygons_limit"] = run.second_look_polygons;
+    if (run.bins != View().bins) head["bins"] = run.bins;
     head["repeat"] = run.repeat;
     if (run.interrupted) {
         head["interrupted"] = true;

@@ -62,9 +62,9 @@ struct FrameResult {
     uint64_t triangles = 0;           ///< of the visible objects: what a renderer would submit
     uint64_t occluder_triangles = 0;  ///< rasterized by the query
     bool budget_spent = false;
-    double query_microseconds = 0;                ///< median over the repeats
+    double query_microseconds = 0;                                 ///< median over the repeats
     uint64_t nodes_visited = 0, seam_pixels = 0, closed_gaps = 0;  ///< QueryStats
-    uint64_t faces_tested = 0, faces_culled = 0;  ///< the same, and what follows
+    uint64_t faces_tested = 0, faces_culled = 0;                   ///< the same, and what follows
     uint64_t second_looks = 0, second_look_culled = 0, second_look_polygons = 0;
     bool second_look_spent = false;
     std::vector<OccluderCredit> credits;  ///< of all that were rasterized, by object; empty unless asked for
@@ -91,6 +91,7 @@ struct CullRun {
     double close_gaps = 0;                  ///< of View
     bool faces = true, second_look = true;  ///< View
     uint32_t second_look_polygons = View().second_look_polygons;
+    uint32_t bins = View().bins;
     int repeat = 1;
     bool interrupted = false;    ///< the frames after the last one here were not begun, or not finished
     uint64_t frames_wanted = 0;  ///< of the path; 0: as many as there are here

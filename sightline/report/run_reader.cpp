@@ -253,6 +253,7 @@ RunFile readHead(const At& head) {
     if (const auto look = head.maybe("second_look")) run.second_look = look->flag();
     if (const auto limit = head.maybe("second_look_polygons_limit"))
         run.second_look_polygons = static_cast<uint32_t>(limit->whole(0, ~uint32_t{0}));
+    if (const auto bins = head.maybe("bins")) run.bins = static_cast<uint32_t>(bins->whole(1, 16));
     if (const auto repeat = head.maybe("repeat")) run.repeat = static_cast<int>(repeat->whole(1, 1000000));
     if (const auto interrupted = head.maybe("interrupted")) run.interrupted = interrupted->flag();
     if (const auto wanted = head.maybe("frames_wanted")) run.frames_wanted = wanted->whole();

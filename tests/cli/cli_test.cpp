@@ -91,6 +91,19 @@ TEST_F(Cli, ThreadsDoNotChangeTheAnswer) {
     EXPECT_EQ(one, timeless(cull(common + "7")));
 }
 
+TEST_F(Cli, ThreadsShareAQueryAndDoNotChangeItsAnswer) {
+    const std::string common = "city:1:2000 --frames 4 --size 320x180 --repeat 1 --threads 1 --bins 4 ";
+    const json one = timeless(cull(common));
+    EXPECT_EQ(one["bins"], 4);
+    EXPECT_EQ(one, timeless(cull(common + "--query-threads 2")));
+    EXPECT_EQ(one, timeless(cull(common + "--query-threads 5")));
+    const std::string eyes = "city:1:500 --frames 2 --size 320x180 --repeat 1 --stereo 0.06 ";
+    EXPECT_EQ(timeless(cull(eyes)), timeless(cull(eyes + "--query-threads 2")));
+    expectError("cull city:1:10 --query-threads 2", 2, "--bins");
+    expectError("cull city:1:10 --bins 0", 2, "--bins");
+    expectError("verify city:1:10 --bins 17", 2, "--bins");
+}
+
 TEST_F(Cli, StagesNarrow) {
     const std::string common = "city:1:2000 --frames 2 --size 320x180 --repeat 1 ";
     const json none = cull(common + "--skip frustum,occlusion");
