@@ -107,6 +107,11 @@ inline bool projectSnapped(F f, const Screen& object, const Occluder& occluder, 
 
 /// Carries classified polygons into the tiles.
 inline void coverSmall(DepthTiles& tiles, const SmallPolygons& small) {
+    if (tiles.detail == Detail::kFull) {
+        for (uint32_t r = 0; r < small.count; ++r)
+            if (small.inner[r]) coverPixels(tiles, small.tile(r), small.inner[r], small.farthest[small.polygon(r)]);
+        return;
+    }
     const MaskedTiles masked(tiles);
     for (uint32_t r = 0; r < small.count; ++r)
         masked.cover(small.tile(r), small.inner[r], small.farthest[small.polygon(r)]);
@@ -131,7 +136,8 @@ struct LoneList {
     }
 };
 
-/// Draws the polygons of a loose cluster that leave no seams; the others remain in `small.large`.
+/// Draws the polygons of a loose cluster that leave no seams; the others remain in `small.large`: those of more than a few
+/// tiles, and in full detail all but the smallest, which hide most of what their seams would.
 inline void drawSmall(DepthTiles& tiles, const DrawnCluster& cluster, const Screen& object, bool reverse,
                       SmallPolygons& small) {
     const OccluderCluster& source = cluster.occluder->clusters[cluster.cluster];
@@ -158,7 +164,8 @@ inline void drawSmall(DepthTiles& tiles, const DrawnCluster& cluster, const Scre
     coverSmall(tiles, small);
     uint32_t left = 0;
     for (uint32_t i = 0; i < small.large_count; ++i)
-        if (!drawMiddle(tiles, task, task.polygons[small.large[i]])) small.large[left++] = small.large[i];
+        if (tiles.detail == Detail::kFull || !drawMiddle(tiles, task, task.polygons[small.large[i]]))
+            small.large[left++] = small.large[i];
     small.large_count = left;
 }
 
@@ -167,7 +174,7 @@ inline void drawLooseCluster(DepthTiles& tiles, const DrawnCluster& cluster, con
     const OccluderCluster& source = cluster.occluder->clusters[cluster.cluster];
     const int8_t front = flips != object.mirrored ? -1 : 1;
     const uint32_t polygons = source.polygon_count + source.ring_count;
-    const bool panels = tiles.detail == Detail::kFull || polygons <= kPanels || source.ring_count > 0;
+    const bool panels = polygons <= kPanels || source.ring_count > 0;
     SmallPolygons small;
     const bool together = !panels && polygons <= OccluderCluster::kMaxLoose;
     if (together) {
@@ -202,7 +209,8 @@ inline void drawLooseCluster(DepthTiles& tiles, const DrawnCluster& cluster, con
             if (list.turn[i] != turn) continue;
             const OccluderPolygon& polygon = c.polygons[list.polygon[i]];
             const Corners corners = list.cut[i] ? cutCorners(c, polygon) : cornersOf(c, polygon);
-            if (corners.count >= 3) seams |= drawLone(c, corners, turn, panels, name | list.polygon[i]);
+            if (corners.count >= 3)
+                seams |= drawLone(c, corners, turn, panels || tiles.detail == Detail::kFull, name | list.polygon[i]);
         }
         if (!seams) continue;
         keepDrawn(c, turn, first, projected.regular);
