@@ -57,6 +57,9 @@ void forSeamPolygons(DepthTiles& tiles, const SeamEntry& entry, const SeamRect& 
 /// Fills in the keys of a seam polygon's sides.
 void setSideKeys(const DepthTiles& tiles, SeamPolygon& polygon);
 
+/// Whether two sides are the same edge run through in opposite directions: exactly, in world space.
+bool areOpposite(const DepthTiles& tiles, const SeamPolygon& a, int side_a, const SeamPolygon& b, int side_b);
+
 /// Finds a side that two polygons share: the same edge of the world, exactly, run through in opposite directions.
 bool findSharedSide(const DepthTiles& tiles, const SeamPolygon& a, const SeamPolygon& b, int& side_a, int& side_b);
 
