@@ -215,6 +215,7 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     if (Status size = readSize("--size", options.size, options.width, options.height); !size) return size;
     if (std::isnan(options.jitter)) return usage("--jitter: not a number");  // no range leaves it out
     if (std::isnan(options.stereo)) return usage("--stereo: not a number");
+    if (std::isnan(options.occluder_error)) return usage("--occluder-error: not a number");
     if (options.query_threads > 1 && options.bins == 1 && options.stereo == 0)
         return usage("--query-threads: one bin has nothing to share; see --bins");
     const Result<uint32_t> use = readStages("--use", options.use), skip = readStages("--skip", options.skip);

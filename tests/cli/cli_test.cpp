@@ -74,6 +74,7 @@ TEST_F(Cli, FlagsTakeNoValue) {
     EXPECT_EQ(run("cull city:1:10 --frames=1 --size=32x18 --masked --repeat=1").exit_code, 0);
     expectError("cull city:1:10 --stereo 0", 2, "--stereo: 0 is not a distance between the eyes");
     expectError("cull city:1:10 --stereo wide", 2, "--stereo");
+    expectError("cull city:1:10 --occluder-error nan", 2, "--occluder-error: not a number");
 }
 
 TEST_F(Cli, ProvesTheOcclusionScenes) {
