@@ -8,6 +8,7 @@
 #endif
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -174,6 +175,19 @@ HWY_INLINE void coverWhole(DepthTiles& tiles, uint32_t tile, float z, uint32_t p
     if (tiles.layer[tile] <= z) tiles.layer[tile] = DepthTiles::kOpen;
 }
 
+/// Lays two layers together where there is room for one, neither of which says it all: at the farther of their depths,
+/// or, where less is lost so, without the farther one. What is lost at a pixel counts as nearness lost, down to the base.
+HWY_INLINE void mergeLayers(DepthTiles& tiles, uint32_t tile, uint64_t near_mask, float near, uint64_t far_mask,
+                            float far) {
+    // An open pixel is as good as one at infinity, where nearness is 1/w; else it is worse than any.
+    const float ground = std::max(tiles.base[tile], far > 0.0f ? 0.0f : DepthTiles::kOpen);
+    const float by_merging = (near - far) * static_cast<float>(std::popcount(near_mask));
+    const float by_dropping = (far - ground) * static_cast<float>(std::popcount(far_mask & ~near_mask));
+    const bool merge = by_merging <= by_dropping;
+    tiles.layer[tile] = merge ? far : near;
+    tiles.layer_mask[tile] = merge ? near_mask | far_mask : near_mask;
+}
+
 /// Covers the pixels of a mask, which is not empty, at one depth; rounding has been taken into it.
 ///
 /// What two layers claim together is what each of them claims, at the farther of their depths.
@@ -208,8 +222,8 @@ inline void coverPixels(DepthTiles& tiles, uint32_t tile, uint64_t mask, float z
         }
     }
     if (tiles.detail == Detail::kFull) return raiseBlock(tiles, tile, mask, z);
-    tiles.layer[tile] = std::min(layer, z);
-    tiles.layer_mask[tile] = both;
+    if (z > layer) mergeLayers(tiles, tile, mask, z, old, layer);
+    else mergeLayers(tiles, tile, old, layer, mask, z);
 }
 
 /// Covers the pixels of a mask by a plane, each at its own depth: for tiles that get a block.

@@ -257,6 +257,43 @@ TEST(Tiles, OfSomeColumnsCoverWhatTheWholeCoversThere) {
     EXPECT_LE(farther, covered / 50);
 }
 
+View viewWithoutJitter() {
+    View view = smallView();
+    view.jitter = 0;  // so that pixels of the view are those of the buffer
+    return view;
+}
+
+/// A sheet that faces the eye, between places in pixels from the middle of the view.
+Solid sheetOfPixels(double x0, double y0, double x1, double y1, double distance) {
+    Random random(1);
+    const double pixel = 2.0 * std::tan(0.5) * distance / 64.0;
+    return makeSheet(random, 4, 4, glm::vec3(x0 * pixel, y0 * pixel, -distance),
+                     glm::vec3(x1 * pixel, y1 * pixel, -distance), 0.0f);
+}
+
+TEST(Tiles, WithOneLayerKeepTheOneThatSaysMore) {
+    for (const bool far_first : {false, true}) {
+        Drawing drawing(viewWithoutJitter());
+        drawing.tiles.clear(drawing.screen.width, drawing.screen.height, Detail::kMasked);
+        const Solid near = sheetOfPixels(-10, -10, 18, 6.5, 2), far = sheetOfPixels(-10, -10, 2.5, 7.5, 50);
+        if (far_first) drawing.draw({far, near});
+        else drawing.draw({near, far});
+        // Of the tile right of the middle and above it, the near sheet covers six rows, the far one two more pixels.
+        for (uint32_t x = 48; x < 56; ++x)
+            EXPECT_GT(drawing.depth(x, 34), 0.49f) << x << (far_first ? ", far first" : "");
+        EXPECT_FALSE(drawing.covered(50, 39));
+    }
+}
+
+TEST(Tiles, WithOneLayerKeepBothWhereTheyAreAlike) {
+    Drawing drawing(viewWithoutJitter());
+    drawing.tiles.clear(drawing.screen.width, drawing.screen.height, Detail::kMasked);
+    drawing.draw({sheetOfPixels(-10, -10, 18, 3.5, 2), sheetOfPixels(-10, -10, 4.5, 6.5, 2.1)});
+    EXPECT_GT(drawing.depth(54, 33), 0.47f);
+    EXPECT_GT(drawing.depth(50, 37), 0.47f);
+    EXPECT_FALSE(drawing.covered(54, 37));
+}
+
 TEST(Tiles, AreTheSameOnEveryInstructionSet) {
     std::vector<float> expected;
     const int targets = forEachTarget([&](const std::string& target) {
