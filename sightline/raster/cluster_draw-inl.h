@@ -71,6 +71,14 @@ inline Projected projectVertices(const Screen& object, const Occluder& occluder,
     return out;
 }
 
+/// Makes room for a cluster's vertices behind those that are kept: where they begin in DepthTiles::px, py, pd.
+inline size_t roomForVertices(DepthTiles& tiles, const OccluderCluster& cluster) {
+    const size_t first = tiles.vertex_count, end = first + (cluster.vertex_count + 7u) / 8 * 8;
+    if (tiles.px.size() < end)
+        for (Array<double>* array : {&tiles.px, &tiles.py, &tiles.pd}) array->resize(2 * end);
+    return first;
+}
+
 /// A cluster on its way to the tiles.
 struct ClusterDraw {
     DepthTiles& tiles;
@@ -151,12 +159,13 @@ inline Patch makePatch(const ClusterDraw& c) {
     return {c.tiles, c.drawn.position_error + kEvaluation + c.tiles.gap, c.drawn.position_error, c.drawn.depth_error};
 }
 
-/// Keeps what seams need of a cluster's polygons that wind one way.
-/// @param first  its vertices in DepthTiles::px, py, pd
+/// Keeps what seams need of a cluster's polygons that wind one way, its vertices with them.
+/// @param first  roomForVertices()
 inline void keepDrawn(const ClusterDraw& c, int8_t turn, size_t first, bool regular) {
     DrawnCluster& record = c.tiles.drawn.emplace_back(c.drawn);
     record.first_vertex = static_cast<uint32_t>(first);
     record.clockwise = turn < 0;
+    c.tiles.vertex_count = first + (c.cluster.vertex_count + 7u) / 8 * 8;
     if (regular) return;
     record.object = static_cast<uint32_t>(c.tiles.objects.size());
     c.tiles.objects.push_back(c.object);

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
@@ -189,10 +188,7 @@ void drawClusterKernel(DepthTiles& tiles, const DrawnCluster& cluster, const Scr
     const OccluderCluster& source = cluster.occluder->clusters[cluster.cluster];
     if (source.edge_count == 0 || source.edge_count + kMaxAtOnce > OpenEdges::kMost)
         return drawLooseCluster(tiles, cluster, object, flips);
-    const size_t first = tiles.px.size(), padded = (source.vertex_count + 7u) / 8 * 8;
-    tiles.px.resize(first + padded);
-    tiles.py.resize(first + padded);
-    tiles.pd.resize(first + padded);
+    const size_t first = roomForVertices(tiles, source);
     const Projected projected = projectVertices(object, *cluster.occluder, source, tiles.px.data() + first,
                                                 tiles.py.data() + first, tiles.pd.data() + first);
     const ClusterDraw c{tiles,
@@ -204,12 +200,10 @@ void drawClusterKernel(DepthTiles& tiles, const DrawnCluster& cluster, const Scr
                         tiles.py.data() + first,
                         tiles.pd.data() + first,
                         static_cast<int8_t>(flips != object.mirrored ? -1 : 1)};
-    bool kept = false;
-    // Draws those of one winding, and keeps a record if seams are left.
+    // Draws those of one winding.
     const auto drawTurn = [&](int8_t turn, auto draw) {
         if (!draw(turn, static_cast<uint32_t>(tiles.drawn.size()) << 8)) return;
         keepDrawn(c, turn, first, projected.regular);
-        kept = true;
     };
     const int8_t back = static_cast<int8_t>(-c.front);
     if (projected.regular && isDense(c, projected.extent)) {
@@ -221,19 +215,21 @@ void drawClusterKernel(DepthTiles& tiles, const DrawnCluster& cluster, const Scr
     } else {
         Windings windings;
         windPolygons(c, projected.regular, windings);
-        std::optional<CutEdges> cuts;
-        if (!projected.regular) cuts.emplace(c, windings);
-        const auto draw = [&](int8_t turn, uint32_t name) {
-            if ((turn > 0 ? windings.forward : windings.backward) == 0) return false;
-            return drawJoined(c, projected, windings, cuts ? &*cuts : nullptr, turn, name);
+        const auto drawBoth = [&](const CutEdges* cuts) {
+            const auto draw = [&](int8_t turn, uint32_t name) {
+                if ((turn > 0 ? windings.forward : windings.backward) == 0) return false;
+                return drawJoined(c, projected, windings, cuts, turn, name);
+            };
+            drawTurn(c.front, draw);
+            drawTurn(back, draw);
         };
-        drawTurn(c.front, draw);
-        drawTurn(back, draw);
+        if (projected.regular) {
+            drawBoth(nullptr);
+        } else if (windings.forward + windings.backward > 0) {
+            const CutEdges cuts(c, windings);
+            drawBoth(&cuts);
+        }
     }
-    if (kept) return;
-    tiles.px.resize(first);
-    tiles.py.resize(first);
-    tiles.pd.resize(first);
 }
 
 }  // namespace HWY_NAMESPACE

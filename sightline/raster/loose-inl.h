@@ -181,10 +181,7 @@ inline void drawLooseCluster(DepthTiles& tiles, const DrawnCluster& cluster, con
         drawSmall(tiles, cluster, object, front < 0, small);
         if (small.large_count == 0) return;
     }
-    const size_t first = tiles.px.size(), padded = (source.vertex_count + 7u) / 8 * 8;
-    tiles.px.resize(first + padded);
-    tiles.py.resize(first + padded);
-    tiles.pd.resize(first + padded);
+    const size_t first = roomForVertices(tiles, source);
     const Projected projected = projectVertices(object, *cluster.occluder, source, tiles.px.data() + first,
                                                 tiles.py.data() + first, tiles.pd.data() + first);
     const ClusterDraw c{tiles,
@@ -201,7 +198,6 @@ inline void drawLooseCluster(DepthTiles& tiles, const DrawnCluster& cluster, con
         for (uint32_t i = 0; i < small.large_count; ++i) list.add(c, projected.regular, small.large[i]);
     else
         for (uint32_t p = 0; p < polygons; ++p) list.add(c, projected.regular, p);
-    bool kept = false;
     for (const int8_t turn : {front, static_cast<int8_t>(-front)}) {
         const uint32_t name = static_cast<uint32_t>(tiles.drawn.size()) << 8;
         bool seams = false;
@@ -214,12 +210,7 @@ inline void drawLooseCluster(DepthTiles& tiles, const DrawnCluster& cluster, con
         }
         if (!seams) continue;
         keepDrawn(c, turn, first, projected.regular);
-        kept = true;
     }
-    if (kept) return;
-    tiles.px.resize(first);
-    tiles.py.resize(first);
-    tiles.pd.resize(first);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -136,18 +136,22 @@ void projectOccludeeKernel(const Screen& object, const float* xs, const float* y
         return hn::Add(hn::Add(hn::Mul(hn::Set(d, r.x), x), hn::Mul(hn::Set(d, r.y), y)),
                        hn::Add(hn::Mul(hn::Set(d, r.z), z), hn::Set(d, r.w)));
     };
-    const auto behind = hn::Set(d, std::numeric_limits<double>::quiet_NaN());
+    const auto none = hn::Set(d, std::numeric_limits<double>::quiet_NaN());
+    const auto behind = hn::Set(d, OccludeeVertices::kBehind);
     const auto guard = hn::Set(d, object.near_guard);
     for (size_t i = 0; i < count; i += hn::Lanes(d)) {
         const auto x = hn::PromoteTo(d, hn::LoadU(f, xs + i));
         const auto y = hn::PromoteTo(d, hn::LoadU(f, ys + i));
         const auto z = hn::PromoteTo(d, hn::LoadU(f, zs + i));
         const auto w = row(object.w, x, y, z);
-        const auto drawn = hn::And(hn::Ge(row(object.near, x, y, z), guard), hn::Gt(w, hn::Zero(d)));
+        const auto near = row(object.near, x, y, z);
+        const auto drawn = hn::And(hn::Ge(near, guard), hn::Gt(w, hn::Zero(d)));
         const auto inverse = hn::Div(hn::Set(d, 1.0), w);
-        hn::StoreU(hn::IfThenElse(drawn, hn::Mul(row(object.x, x, y, z), inverse), behind), d, out.x + i);
+        const auto nearness = hn::Mul(row(object.d, x, y, z), inverse);
+        hn::StoreU(hn::IfThenElse(drawn, hn::Mul(row(object.x, x, y, z), inverse), none), d, out.x + i);
         hn::StoreU(hn::Mul(row(object.y, x, y, z), inverse), d, out.y + i);
-        hn::StoreU(hn::Mul(row(object.d, x, y, z), inverse), d, out.d + i);
+        const auto undrawn = hn::IfThenElse(hn::Lt(near, hn::Neg(guard)), behind, none);
+        hn::StoreU(hn::IfThenElse(drawn, nearness, undrawn), d, out.d + i);
     }
 }
 

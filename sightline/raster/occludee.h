@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "sightline/raster/tiles.h"
 
@@ -64,8 +65,9 @@ bool isPolygonHidden(DepthTiles& tiles, const OccludeePolygon& polygon);
 /// The second half of isPolygonHidden(), for a polygon that lookAt() left undecided.
 bool resolveHidden(DepthTiles& tiles, const OccludeePolygon& polygon);
 
-/// Where the vertices of a cluster lie; before the near plane x is NaN.
+/// Where the vertices of a cluster lie. Before the near plane x is NaN; and d is kBehind, where that is sure.
 struct OccludeeVertices {
+    static constexpr double kBehind = -std::numeric_limits<double>::infinity();
     static constexpr size_t kMost = (OccluderCluster::kMaxVertices + 7) / 8 * 8;
     double x[kMost], y[kMost], d[kMost];
 };

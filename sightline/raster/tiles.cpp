@@ -31,9 +31,7 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height, Detail new_detai
     }
     planes.clear();
     block_count = 0;
-    px.clear();
-    py.clear();
-    pd.clear();
+    vertex_count = 0;
     drawn.clear();
     objects.clear();
     clipped.clear();

@@ -138,11 +138,11 @@ struct DepthTiles {
     Array<uint64_t> lid_mask{memory};    ///< to greater ones, if the tile does not claim more
 
     Array<BufferPlane> planes{memory};
-    Array<float> blocks{memory};  ///< 64 each; kOpen where the layer claims nothing
-    uint32_t block_count = 0;     ///< in use
-    Array<double> px{memory}, py{memory},
-        pd{memory};                     ///< the frame's projected vertices; px is NaN before the near plane
-    Array<DrawnCluster> drawn{memory};  ///< those that left seams
+    Array<float> blocks{memory};                       ///< 64 each; kOpen where the layer claims nothing
+    uint32_t block_count = 0;                          ///< in use
+    Array<double> px{memory}, py{memory}, pd{memory};  ///< projected vertices that seams need: px is NaN before the
+    size_t vertex_count = 0;                           ///< near plane; so many are in use
+    Array<DrawnCluster> drawn{memory};                 ///< those that left seams
     Array<Screen> objects{memory};
     Array<ClippedPolygon> clipped{memory};
     Array<SeamPolygon> polygons{memory};
