@@ -158,11 +158,14 @@ uint64_t OcclusionFrame::rasterize(DepthTiles& tiles, SelfTest self_test, Occlus
         const ScreenAnswer own = projectBoxes(screen_, eyeBoxes(drawn_eights_[i / 8], -screen_.eye));
         for (size_t k = 0; k < 8 && i + k < drawn_.size(); ++k) {
             if (own.outside >> k & 1) continue;
-            if (covered({own.rects[k], (own.doubt >> k & 1) != 0, false})) continue;
+            if (covered(BoxAnswer(own, static_cast<int>(k)))) continue;
             const Occluder& occluder = occluders_[drawn_[i + k]];
             const OccluderInstance instance = makeOccluderInstance(screen_, occluder, identity_);
-            for (uint32_t cluster = 0; cluster < occluder.clusters.size(); ++cluster) {
-                const BoxAnswer box = projectBox(instance.screen, occluder.clusters[cluster].bounds);
+            const uint32_t clusters = static_cast<uint32_t>(occluder.clusters.size());
+            ScreenAnswer eight;
+            for (uint32_t cluster = 0; cluster < clusters; ++cluster) {
+                if (cluster % 8 == 0) eight = projectClusters(instance.screen, occluder, cluster);
+                const BoxAnswer box(eight, static_cast<int>(cluster % 8));
                 if (box.outside || (occluder.clusters.size() > 1 && covered(box))) continue;
                 offered += coverage == Coverage::kCenters ? drawByCenters(tiles, instance, cluster, box)
                                                           : drawOccluder(tiles, instance, cluster, box);
@@ -185,7 +188,7 @@ std::vector<BoxAnswer> OcclusionFrame::project() const {
     for (size_t i = 0; i < out.size(); i += 8) {
         const ScreenAnswer answer = projectBoxes(screen_, eyeBoxes(eights_[i / 8], -screen_.eye));
         for (size_t k = 0; k < 8 && i + k < out.size(); ++k)
-            out[i + k] = {answer.rects[k], (answer.doubt >> k & 1) != 0, (answer.outside >> k & 1) != 0};
+            out[i + k] = BoxAnswer(answer, static_cast<int>(k));
     }
     return out;
 }

@@ -3,6 +3,7 @@
 #include "sightline/cull/occlusion.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -15,6 +16,12 @@ namespace {
 /// What the corners of a box are on the screen: bounds, and the sizes of the terms that they come from.
 struct CornerBounds {
     double x0, y0, x1, y1, w_least, near_least, d_most, w_size, near_size, d_size;
+};
+
+/// What eight boxes are on the screen, before they are rounded to whole pixels.
+struct BoxBounds {
+    alignas(64) float x0[8], y0[8], x1[8], y1[8], nearness[8];
+    uint32_t doubt, outside;  ///< bit per box: it cannot be projected; no point of it is drawn, it has no bounds
 };
 
 }  // namespace
@@ -69,16 +76,40 @@ HWY_INLINE V greatest(const RowTerms& t) {
                    hn::Add(hn::Max(t.low[2], t.high[2]), t.constant));
 }
 
-/// Bounds of projected boxes in pixels and nearness, before they are rounded to whole pixels: x0, y0, x1, y1,
-/// nearness. Returns a bit per box that cannot be projected.
-uint32_t projectBoxesKernel(const Screen& screen, const EyeBoxes& boxes, float (*out)[8]) {
+/// Which boxes have no point before the eye on the near side of a border of the buffer: neither pixel >= 0 nor, with the
+/// other row, pixel <= size. w is positive there, so that x.h and size * w.h - x.h tell.
+HWY_INLINE hn::Mask<F8> missesBorders(F8 d, const RowTerms& across, const RowTerms& w, double size) {
+    const V pixels = hn::Set(d, static_cast<float>(size)), zero = hn::Zero(d);
+    const auto below = hn::Lt(hn::Add(greatest(across), across.error), zero);
+    V most = hn::Sub(hn::Mul(pixels, w.constant), across.constant);
+    for (int axis = 0; axis < 3; ++axis)
+        most = hn::Add(most, hn::Max(hn::Sub(hn::Mul(pixels, w.low[axis]), across.low[axis]),
+                                     hn::Sub(hn::Mul(pixels, w.high[axis]), across.high[axis])));
+    return hn::Or(below, hn::Lt(hn::Add(most, hn::Add(across.error, hn::Mul(pixels, w.error))), zero));
+}
+
+HWY_INLINE uint32_t maskBits(F8 d, hn::Mask<F8> mask) {
+    uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, mask, bits);
+    return bits[0] & ((1u << hn::Lanes(d)) - 1);
+}
+
+void projectBoxesKernel(const Screen& screen, const EyeBoxes& boxes, BoxBounds& out) {
     const F8 d;
-    uint32_t doubt = 0;
+    out.doubt = out.outside = 0;
     for (size_t i = 0; i < 8; i += hn::Lanes(d)) {
         const RowTerms x = rowTerms(d, screen.x, boxes, i), y = rowTerms(d, screen.y, boxes, i);
         const RowTerms w = rowTerms(d, screen.w, boxes, i), near = rowTerms(d, screen.near, boxes, i);
         const V w_least = hn::Sub(least(w), w.error);
         const auto sure = hn::And(hn::Gt(least(near), near.error), hn::Gt(w_least, hn::Zero(d)));
+        if (!hn::AllTrue(d, sure)) {
+            const auto before = hn::Lt(hn::Add(greatest(near), near.error), hn::Zero(d));
+            const auto misses =
+                hn::Or(hn::Or(before, missesBorders(d, x, w, screen.width)), missesBorders(d, y, w, screen.height));
+            out.doubt |= maskBits(d, hn::Not(hn::Or(sure, misses))) << i;
+            out.outside |= maskBits(d, hn::AndNot(sure, misses)) << i;
+            if (hn::AllFalse(d, sure)) continue;
+        }
         V x0 = hn::Set(d, 3e38f), y0 = x0, x1 = hn::Neg(x0), y1 = x1;
         for (int which = 0; which < 8; ++which) {
             const V inverse = hn::Div(hn::Set(d, 1.0f), corner(w, which));
@@ -94,21 +125,17 @@ uint32_t projectBoxesKernel(const Screen& screen, const EyeBoxes& boxes, float (
         const V tiny = hn::Set(d, 0x1p-22f);
         const V grow_x = hn::Add(hn::Mul(hn::Add(x.error, hn::Mul(wx, w.error)), over), hn::Mul(wx, tiny));
         const V grow_y = hn::Add(hn::Mul(hn::Add(y.error, hn::Mul(wy, w.error)), over), hn::Mul(wy, tiny));
-        hn::Store(hn::Sub(x0, grow_x), d, out[0] + i);
-        hn::Store(hn::Sub(y0, grow_y), d, out[1] + i);
-        hn::Store(hn::Add(x1, grow_x), d, out[2] + i);
-        hn::Store(hn::Add(y1, grow_y), d, out[3] + i);
+        hn::Store(hn::Sub(x0, grow_x), d, out.x0 + i);
+        hn::Store(hn::Sub(y0, grow_y), d, out.y0 + i);
+        hn::Store(hn::Add(x1, grow_x), d, out.x1 + i);
+        hn::Store(hn::Add(y1, grow_y), d, out.y1 + i);
         if (screen.perspective) {
-            hn::Store(over, d, out[4] + i);
+            hn::Store(over, d, out.nearness + i);
         } else {
             const RowTerms depth = rowTerms(d, screen.d, boxes, i);
-            hn::Store(hn::Add(greatest(depth), depth.error), d, out[4] + i);
+            hn::Store(hn::Add(greatest(depth), depth.error), d, out.nearness + i);
         }
-        uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, sure, bits);
-        doubt |= (~uint32_t{bits[0]} & ((1u << hn::Lanes(d)) - 1)) << i;
     }
-    return doubt;
 }
 
 /// All eight corners side by side.
@@ -181,17 +208,66 @@ HWY_EXPORT(projectBoxesKernel);
 HWY_EXPORT(projectCornersKernel);
 
 ScreenAnswer projectBoxes(const Screen& screen, const EyeBoxes& boxes) {
-    alignas(64) float bounds[5][8];
+    BoxBounds bounds;
     ScreenAnswer answer;
-    answer.doubt = HWY_DYNAMIC_DISPATCH(projectBoxesKernel)(screen, boxes, bounds);
-    for (int i = 0; i < 8; ++i) {
-        if (answer.doubt >> i & 1) continue;
-        const Fit fit = toPixels(screen, bounds[0][i], bounds[1][i], bounds[2][i], bounds[3][i], answer.rects[i]);
-        answer.rects[i].nearness = bounds[4][i];
-        if (fit == Fit::kDoubt || std::isnan(bounds[4][i])) answer.doubt |= 1u << i;
+    HWY_DYNAMIC_DISPATCH(projectBoxesKernel)(screen, boxes, bounds);
+    answer.doubt = bounds.doubt;
+    answer.outside = bounds.outside;
+    for (uint32_t left = 255u & ~(answer.doubt | answer.outside); left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        const Fit fit = toPixels(screen, bounds.x0[i], bounds.y0[i], bounds.x1[i], bounds.y1[i], answer.rects[i]);
+        answer.rects[i].nearness = bounds.nearness[i];
+        if (fit == Fit::kDoubt || std::isnan(bounds.nearness[i])) answer.doubt |= 1u << i;
         else if (fit == Fit::kOutside) answer.outside |= 1u << i;
     }
     return answer;
+}
+
+ScreenAnswer projectClusters(const Screen& object, const Occluder& occluder, uint32_t first) {
+    const size_t last = occluder.clusters.size() - 1;
+    EyeBoxes boxes;
+    for (size_t i = 0; i < 8; ++i) {
+        const Box3f& box = occluder.clusters[std::min(first + i, last)].bounds;
+        for (int axis = 0; axis < 3; ++axis) {
+            boxes.min[axis][i] = box.min[axis];
+            boxes.max[axis][i] = box.max[axis];
+        }
+    }
+    return projectBoxes(object, boxes);
+}
+
+namespace {
+
+/// The greatest that a row of the screen map comes to over a box.
+/// @param size  of the terms that the row was computed from
+double mostOver(const Box3f& box, const glm::dvec4& row, const glm::dvec4& size) {
+    double most = row.w, terms = size.w;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = box.min[axis], high = box.max[axis];
+        most += std::max(row[axis] * low, row[axis] * high);
+        terms += size[axis] * std::max(std::abs(low), std::abs(high));
+    }
+    return most + 0x1p-20 * terms;  // bounds in float are wrong by 2^-23 of themselves
+}
+
+/// Whether sign * (pixel - at) is negative for all points of a box before the eye. So it is where sign * (across.h -
+/// at * w.h) is, for their w is positive.
+bool liesBeyond(const Box3f& box, const glm::dvec4& across, const glm::dvec4& w, double at, double sign) {
+    return mostOver(box, sign * (across - at * w), glm::abs(across) + std::abs(at) * glm::abs(w)) < 0.0;
+}
+
+/// Whether no point of a box is drawn in the buffer: also of a box that has no rectangle.
+bool missesBuffer(const Screen& object, const Box3f& box) {
+    return mostOver(box, object.near, glm::abs(object.near)) < 0.0 || isLeftOf(object, box, 0.0) ||
+           isRightOf(object, box, object.width) || liesBeyond(box, object.y, object.w, 0.0, 1.0) ||
+           liesBeyond(box, object.y, object.w, object.height, -1.0);
+}
+
+}  // namespace
+
+bool isLeftOf(const Screen& object, const Box3f& box, double x) { return liesBeyond(box, object.x, object.w, x, 1.0); }
+bool isRightOf(const Screen& object, const Box3f& box, double x) {
+    return liesBeyond(box, object.x, object.w, x, -1.0);
 }
 
 BoxAnswer projectBox(const Screen& object, const Box3f& box) {
@@ -202,7 +278,8 @@ BoxAnswer projectBox(const Screen& object, const Box3f& box) {
     // Doubles: a millionth of a pixel is far above the rounding of any place inside the buffer.
     constexpr double kSlack = 1e-6;
     if (!(c.near_least > kRounding * c.near_size && c.w_least > kRounding * c.w_size)) {
-        answer.doubt = true;
+        answer.outside = missesBuffer(object, box);
+        answer.doubt = !answer.outside;
         return answer;
     }
     const Fit fit = toPixels(object, c.x0 - kSlack, c.y0 - kSlack, c.x1 + kSlack, c.y1 + kSlack, answer.rect);
@@ -212,26 +289,6 @@ BoxAnswer projectBox(const Screen& object, const Box3f& box) {
     answer.rect.nearness = static_cast<float>(nearness + std::abs(nearness) * 0x1p-22 + 0x1p-40 * c.d_size);
     return answer;
 }
-
-namespace {
-
-/// The greatest of sign * (x.h - at * w.h) over a box. Where it is negative, so is sign * (pixel x - at) of all points
-/// before the eye, for their w is positive.
-double mostBeyond(const Screen& object, const Box3f& box, double at, double sign) {
-    const glm::dvec4 row = sign * (object.x - at * object.w);
-    double most = row.w, size = std::abs(object.x.w) + std::abs(at * object.w.w);
-    for (int axis = 0; axis < 3; ++axis) {
-        const double low = box.min[axis], high = box.max[axis];
-        most += std::max(row[axis] * low, row[axis] * high);
-        size += (std::abs(object.x[axis]) + std::abs(at * object.w[axis])) * std::max(std::abs(low), std::abs(high));
-    }
-    return most + 0x1p-20 * size;  // bounds in float are wrong by 2^-23 of themselves
-}
-
-}  // namespace
-
-bool isLeftOf(const Screen& object, const Box3f& box, double x) { return mostBeyond(object, box, x, 1.0) < 0.0; }
-bool isRightOf(const Screen& object, const Box3f& box, double x) { return mostBeyond(object, box, x, -1.0) < 0.0; }
 
 OccluderInstance makeOccluderInstance(const Screen& screen, const Occluder& occluder, const glm::dmat4& transform) {
     OccluderInstance instance;

@@ -14,19 +14,29 @@ namespace sightline {
 /// What eight boxes are to an occlusion buffer.
 struct ScreenAnswer {
     PixelRect rects[8];
-    uint32_t doubt = 0;    ///< bit per box: touches the near plane or cannot be projected; it is visible
+    uint32_t doubt = 0;    ///< bit per box: touches the near plane or cannot be projected; it may be visible
     uint32_t outside = 0;  ///< bit per box: surely misses the buffer, and with it the widened viewport
 };
 
 /// Projects boxes to the smallest rectangles of whole pixels, with the nearest depth of each box; both are moved
-/// to the safe side by more than rounding could have moved them.
+/// to the safe side by more than rounding could have moved them. A box is outside, too, if all of it lies before the near
+/// plane or on one side of the view, wherever its other parts lie.
 ScreenAnswer projectBoxes(const Screen& screen, const EyeBoxes& boxes);
+
+/// The bounds of up to eight clusters from one on, in the same way.
+/// @param object  objectScreen(screen, transform)
+/// @param first   [limit: < occluder.clusters.size()]
+ScreenAnswer projectClusters(const Screen& object, const Occluder& occluder, uint32_t first);
 
 /// One box in object space, in double, in the same way.
 /// @param object  objectScreen(screen, transform)
 struct BoxAnswer {
-    PixelRect rect;
+    PixelRect rect;  ///< of a box that is neither in doubt nor outside
     bool doubt = false, outside = false;
+
+    BoxAnswer() = default;
+    BoxAnswer(const ScreenAnswer& of, int which)
+        : rect(of.rects[which]), doubt(of.doubt >> which & 1), outside(of.outside >> which & 1) {}
 };
 BoxAnswer projectBox(const Screen& object, const Box3f& box);
 
@@ -52,11 +62,11 @@ struct OccluderInstance {
 OccluderInstance makeOccluderInstance(const Screen& screen, const Occluder& occluder, const glm::dmat4& transform);
 
 /// What drawCluster() is to be given of a cluster; false if its place is known too badly to be sound.
-/// @param box  projectBox() of the cluster's bounds
+/// @param box  projectClusters() or projectBox() of the cluster's bounds
 bool placeCluster(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box, DrawnCluster& drawn);
 
 /// Draws one cluster, unless its place is known too badly to be sound.
-/// @param box  projectBox() of the cluster's bounds
+/// @param box  projectClusters() or projectBox() of the cluster's bounds
 /// @returns triangles offered to the rasterizer
 uint32_t drawOccluder(DepthTiles& tiles, const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box);
 

@@ -139,13 +139,15 @@ bool ClusterWalk::liesBeside(const DepthTiles& tiles, const OccluderPolygon& pol
 Sight ClusterWalk::polygon(const OccluderPolygon& polygon, OccludeePolygon& out) const {
     double x[4], y[4], d[4];
     const int count = polygon.corners();
-    int before = 0;
+    int before = 0, behind = 0;
     for (int k = 0; k < count; ++k) {
         x[k] = vertices.x[polygon.vertex[k]];
         y[k] = vertices.y[polygon.vertex[k]];
         d[k] = vertices.d[polygon.vertex[k]];
         before += std::isnan(x[k]);
+        behind += d[k] == OccludeeVertices::kBehind;
     }
+    if (behind == count) return Sight::kOutside;
     return before ? clipped(polygon, polygon.double_sided, out) : make(x, y, d, count, polygon.double_sided, out);
 }
 
@@ -155,10 +157,13 @@ uint64_t gatherClusters(DepthTiles& tiles, const OccludeePlace& place, const Occ
                         Array<ClusterLook>& clusters, bool& in_view) {
     uint64_t polygons = 0;
     clusters.clear();
-    for (uint32_t c = 0; c < shape.clusters.size(); ++c) {
+    const uint32_t count = static_cast<uint32_t>(shape.clusters.size());
+    ScreenAnswer eight;
+    for (uint32_t c = 0; c < count; ++c) {
         ClusterLook look{c, std::numeric_limits<float>::infinity(), 0};
-        if (shape.clusters.size() > 1) {
-            BoxAnswer box = projectBox(place.screen, shape.clusters[c].bounds);
+        if (count > 1) {
+            if (c % 8 == 0) eight = projectClusters(place.screen, shape, c);
+            BoxAnswer box(eight, static_cast<int>(c % 8));
             if (box.outside) continue;
             if (!box.doubt) {
                 if (!tiles.clip(box.rect) || isHidden(tiles, box.rect, Seams::kLeave)) {

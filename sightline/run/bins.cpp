@@ -70,8 +70,7 @@ uint32_t Walk::findBeside(const ScreenAnswer& on_screen, const EyeBoxes& boxes, 
             box.min[axis] = boxes.min[axis][slot];
             box.max[axis] = boxes.max[axis][slot];
         }
-        const BoxAnswer answer{on_screen.rects[slot], (on_screen.doubt >> slot & 1) != 0, false};
-        beside |= uint32_t{isBeside(answer, screen, box)} << slot;
+        beside |= uint32_t{isBeside(BoxAnswer(on_screen, slot), screen, box)} << slot;
     }
     return beside;
 }

@@ -12,7 +12,7 @@ const Occluder& formFor(const HeldOccluder& occluder, const Screen& screen, cons
     Screen object = objectScreen(screen, transform);
     object.near.w -= 2.0 * object.near_guard;
     const BoxAnswer box = projectBox(object, occluder.inner.front().outside);
-    if (box.doubt) return occluder;
+    if (box.doubt || box.outside) return occluder;
     // How far a step of one unit goes on the screen at most, about.
     const double stretch = glm::length(transform[0]) + glm::length(transform[1]) + glm::length(transform[2]);
     const glm::dvec3 across = glm::dvec3(screen.x) - 0.5 * screen.width * glm::dvec3(screen.w);

@@ -36,7 +36,8 @@ OcclusionReplay::OcclusionReplay(const OcclusionRecording& recording, Memory* me
     boxes_.reserve(recording.draws.size());
     for (const auto& draw : recording.draws) {
         const OccluderInstance& instance = instances_[draw.instance];
-        boxes_.push_back(projectBox(instance.screen, instance.occluder->clusters[draw.cluster].bounds));
+        const ScreenAnswer eight = projectClusters(instance.screen, *instance.occluder, draw.cluster);
+        boxes_.emplace_back(eight, 0);
     }
 }
 

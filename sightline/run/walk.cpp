@@ -36,11 +36,9 @@ bool isSmall(const Screen& screen, const PixelRect& rect) {
 
 bool Walk::isHiddenHere(PixelRect rect, Seams seams) { return !tiles.clip(rect) || isHidden(tiles, rect, seams); }
 
-void Walk::push(Pending entry) {
-    entry.serial = serial++;
+void Walk::push(const Pending& entry) {
     undecided += entry.kind != Pending::Kind::kCluster;
-    pending.push_back(entry);
-    std::push_heap(pending.begin(), pending.end());
+    pending.push(entry);
 }
 
 /// How many objects of a range of places are within the view's layers.
@@ -94,7 +92,7 @@ void Walk::begin(const SnapshotState* now, const View& new_view) {
     snapshot = now;
     view = new_view;
     stats = {};
-    serial = undecided = 0;
+    undecided = 0;
     pending.clear();
     instances.clear();
     visible.clear();
@@ -199,12 +197,7 @@ void Walk::meet(const BvhNode& node, int slot, const Visit& below, const ScreenA
 /// Draws what the last answer drew, nearest first, before anything is asked.
 void Walk::drawLast() {
     for (const uint32_t place : last.places()) offerOccluder(place, true);
-    while (!pending.empty()) {
-        std::pop_heap(pending.begin(), pending.end());
-        const Pending entry = pending.back();
-        pending.pop_back();
-        visit(entry);
-    }
+    while (!pending.empty()) visit(pending.pop());
 }
 
 void Walk::offerVisible(uint32_t place) {
@@ -224,8 +217,10 @@ void Walk::offerOccluder(uint32_t place, bool in_line) {
     instances.push_back(makeOccluderInstance(screen, occluder, transform));
     if (record) record->owners.push_back(place);
     const uint32_t clusters = static_cast<uint32_t>(occluder.clusters.size());
+    ScreenAnswer eight;
     for (uint32_t cluster = 0; cluster < clusters; ++cluster) {
-        const BoxAnswer box = projectBox(instances[owner].screen, occluder.clusters[cluster].bounds);
+        if (cluster % 8 == 0) eight = projectClusters(instances[owner].screen, occluder, cluster);
+        const BoxAnswer box(eight, static_cast<int>(cluster % 8));
         if (box.outside || (isPart() && isBeside(box, instances[owner].screen, occluder.clusters[cluster].bounds)))
             continue;
         if (clusters == 1 && !in_line) {
@@ -329,9 +324,7 @@ void Walk::walk() {
     drawLast();
     expand(root);
     while (undecided > 0) {
-        std::pop_heap(pending.begin(), pending.end());
-        const Pending entry = pending.back();
-        pending.pop_back();
+        const Pending entry = pending.pop();
         undecided -= entry.kind != Pending::Kind::kCluster;
         const uint64_t seams = tiles.seam_pixels;
         visit(entry);
@@ -341,10 +334,7 @@ void Walk::walk() {
     if (record && record->stopped) return;
     // The closer looks ask a buffer in which all is drawn that was found: their answers do not hang on when the last
     // object was decided.
-    for (; !second.empty() && !pending.empty(); pending.pop_back()) {
-        std::pop_heap(pending.begin(), pending.end());
-        visit(Pending(pending.back()));
-    }
+    while (!second.empty() && !pending.empty()) visit(pending.pop());
     lookAgain();
 }
 

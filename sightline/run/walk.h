@@ -11,29 +11,12 @@
 #include "sightline/cull/triangles.h"
 #include "sightline/raster/tile_log.h"
 #include "sightline/run/last_drawn.h"
+#include "sightline/run/pending.h"
 #include "sightline/run/query.h"
 #include "sightline/run/volumes.h"
 #include "sightline/run/world_state.h"
 
 namespace sightline::detail {
-
-/// Something that the walk has met and not yet looked at. Nearest first; ties in the order of meeting.
-struct Pending {
-    enum class Kind : uint8_t { kNode, kObject, kCluster };
-    PixelRect rect;
-    uint32_t serial = 0;
-    uint32_t index = 0;             ///< node; place of the object; or cluster
-    uint32_t owner = 0;             ///< of a cluster: index into Walk::instances
-    uint32_t first = 0, count = 1;  ///< places of the objects below
-    uint8_t planes = 0;             ///< of a node: frustum planes that it is not inside of
-    Kind kind = Kind::kNode;
-    VolumeRange volumes;    ///< of a node: volumes that it crosses
-    bool testable = false;  ///< the rectangle stands for the bound; else it is in doubt, or outside and kept
-
-    bool operator<(const Pending& other) const {  // std heaps keep the largest at the front
-        return rect.nearness != other.rect.nearness ? rect.nearness < other.rect.nearness : serial > other.serial;
-    }
-};
 
 /// A node on the way down, and the frustum planes that it is not inside of.
 struct Visit {
@@ -144,7 +127,7 @@ struct Walk {
     DepthTiles tiles{memory};
     bool remembers = false;  ///< `last` is kept from answer to answer: of a query, not of those who ask why
     LastDrawn last{memory};
-    Array<Pending> pending{memory};
+    PendingQueue pending{memory};
     Array<Visit> visits{memory};
     Array<OccluderInstance> instances{memory};
     Array<Visible> visible{memory};
@@ -155,7 +138,6 @@ struct Walk {
     Array<SecondLook> second{memory};
     TriangleScratch looks{memory};
     QueryStats stats;
-    uint32_t serial = 0;
     uint32_t undecided = 0;  ///< nodes and objects in line; without any, nothing is left to hide
 
     const SnapshotState& state() const { return *snapshot; }
@@ -201,7 +183,7 @@ private:
     void draw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box);
     void cull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect,
               uint32_t hider = WalkRecord::kNowhere);
-    void push(Pending entry);
+    void push(const Pending& entry);
     void finish();
     void noteDraw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box, uint32_t triangles);
     void noteCull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect, uint32_t hider);

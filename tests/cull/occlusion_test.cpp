@@ -142,8 +142,41 @@ TEST(Occlusion, ABoxThatHoldsTheEyeOrMeetsTheNearPlaneIsInDoubt) {
             node.min[axis][i] = boxes[i % 3].min[axis];
             node.max[axis][i] = boxes[i % 3].max[axis];
         }
-    EXPECT_EQ(projectBoxes(screen, eyeBoxes(node, {0, 0, 0})).doubt, 255u);
-    for (const Box3f& box : boxes) EXPECT_TRUE(projectBox(screen, box).doubt);
+    const ScreenAnswer answer = projectBoxes(screen, eyeBoxes(node, {0, 0, 0}));
+    EXPECT_EQ(answer.doubt, 0b01101101u);
+    EXPECT_EQ(answer.outside, 0b10010010u);
+    EXPECT_TRUE(projectBox(screen, boxes[0]).doubt);
+    EXPECT_TRUE(projectBox(screen, boxes[2]).doubt);
+    EXPECT_TRUE(projectBox(screen, boxes[1]).outside) << "all of it lies before the near plane";
+}
+
+TEST(Occlusion, ABoxBesideTheEyeIsOutside) {
+    View view;
+    view.projection = perspective(1.0, 1.0, 0.125);
+    const Screen screen = makeScreen(view, 1280);
+    const Box3f boxes[8] = {{{-9, -9, 1}, {9, 9, 20}},      // behind
+                            {{-9, -1, -1}, {-2, 1, 5}},     // on the left
+                            {{2, -1, -1}, {9, 1, 5}},       // on the right
+                            {{-1, -9, -1}, {1, -2, 5}},     // below
+                            {{-1, 2, -1}, {1, 9, 5}},       // above
+                            {{-9, -1, -20}, {-2, 1, 5}},    // on the left, but its far end is in the view
+                            {{-9, -9, -20}, {9, 9, 5}},     // all around
+                            {{-1, -1, -20}, {1, 1, -10}}};  // in front
+    BvhNode node{};
+    for (int i = 0; i < 8; ++i) {
+        for (int axis = 0; axis < 3; ++axis) {
+            node.min[axis][i] = boxes[i].min[axis];
+            node.max[axis][i] = boxes[i].max[axis];
+        }
+        const BoxAnswer answer = projectBox(screen, boxes[i]);
+        EXPECT_EQ(answer.outside, i < 5) << i;
+        EXPECT_EQ(answer.doubt, i == 5 || i == 6) << i;
+    }
+    test::forEachTarget([&](const std::string& target) {
+        const ScreenAnswer answer = projectBoxes(screen, eyeBoxes(node, {0, 0, 0}));
+        EXPECT_EQ(answer.outside, 0b00011111u) << target;
+        EXPECT_EQ(answer.doubt, 0b01100000u) << target;
+    });
 }
 
 }  // namespace
