@@ -187,8 +187,7 @@ std::vector<BoxAnswer> OcclusionFrame::project() const {
     std::vector<BoxAnswer> out(boxes_.size());
     for (size_t i = 0; i < out.size(); i += 8) {
         const ScreenAnswer answer = projectBoxes(screen_, eyeBoxes(eights_[i / 8], -screen_.eye));
-        for (size_t k = 0; k < 8 && i + k < out.size(); ++k)
-            out[i + k] = BoxAnswer(answer, static_cast<int>(k));
+        for (size_t k = 0; k < 8 && i + k < out.size(); ++k) out[i + k] = BoxAnswer(answer, static_cast<int>(k));
     }
     return out;
 }
