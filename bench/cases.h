@@ -28,6 +28,9 @@ Table benchGl(const Options& options);
 /// Every hidden-surface method on one view, and then all of benchClipping, benchOrder, benchBsp, benchDepth and benchGl.
 Table benchHidden(const Options& options);
 
+/// A field of dense statues: simpler occluders inside of them beside their own polygons, by the error allowed.
+Table benchInner(const Options& options);
+
 /// The occlusion buffer by itself on scenes made for it; then the whole query while a city grows, beside flat
 /// frustum culling, and how tight its answer is.
 Table benchOcclusion(const Options& options);
