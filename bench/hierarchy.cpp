@@ -1,0 +1,176 @@
+// Hierarchies that live beside ones that are built anew, and beside the flat list.
+// SPDX-License-Identifier: MIT
+#include <glm/gtc/constants.hpp>
+
+#include "bench/cases.h"
+#include "bench/flat_boxes.h"
+#include "bench/stopwatch.h"
+#include "sightline/base/random.h"
+#include "sightline/cull/hierarchy.h"
+
+namespace sightline::bench {
+namespace {
+
+constexpr double kWorld = 1000.0;
+constexpr int kFrames = 10;
+
+/// Boxes of which every tenth is under way.
+struct Swarm {
+    std::vector<Box3d> boxes;
+    std::vector<glm::dvec3> velocity;  ///< per mover  [world units a frame]
+    uint32_t every = 10;
+
+    Swarm(uint32_t count, uint64_t seed) {
+        Random random(seed);
+        const auto point = [&](double by) {
+            const double x = random.uniform(-by, by), y = random.uniform(-by, by);
+            return glm::dvec3(x, y, random.uniform(-by, by));
+        };
+        for (uint32_t i = 0; i < count; ++i) {
+            const glm::dvec3 at = point(kWorld);
+            const double x = random.uniform(0.5, 4), y = random.uniform(0.5, 4);
+            boxes.push_back({at, at + glm::dvec3(x, y, random.uniform(0.5, 4))});
+            if (i % every == 0) velocity.push_back(point(2.0));
+        }
+    }
+    uint32_t movers() const { return static_cast<uint32_t>(velocity.size()); }
+    uint32_t mover(uint32_t i) const { return i * every; }
+    void step() {
+        for (uint32_t i = 0; i < movers(); ++i) {
+            Box3d& box = boxes[mover(i)];
+            for (int axis = 0; axis < 3; ++axis)
+                if (box.min[axis] + velocity[i][axis] < -kWorld || box.max[axis] + velocity[i][axis] > kWorld)
+                    velocity[i][axis] = -velocity[i][axis];
+            box.min += velocity[i];
+            box.max += velocity[i];
+        }
+    }
+};
+
+Frustum frustumFrom(double z_far) {
+    View view;
+    view.view = lookAt(glm::dvec3(0.0), glm::dvec3(1, 0.1, 0.3), {0, 1, 0});
+    view.projection = perspective(glm::radians(60.0), 16.0 / 9.0, 0.1, z_far);
+    return makeFrustum(view);
+}
+
+/// Of everything: from far away, so that nothing is outside.
+Frustum frustumOfAll() {
+    View view;
+    view.view = lookAt({0, 0, 5 * kWorld}, glm::dvec3(0.0), {0, 1, 0});
+    view.projection = perspective(glm::radians(60.0), 1.0, 0.1);
+    return makeFrustum(view);
+}
+
+double millisecondsOf(const std::function<void()>& job) {
+    const double start = threadTime();
+    job();
+    return (threadTime() - start) * 1e-3;
+}
+
+double medianOf(std::vector<double> values) {
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    return values[values.size() / 2];
+}
+
+/// As timeInterleaved(), by the time that this thread computes.
+std::vector<double> threadTimes(const std::vector<std::function<void()>>& jobs, int repeat) {
+    std::vector<std::vector<double>> times(jobs.size());
+    for (int round = -1; round < repeat; ++round)
+        for (size_t i = 0; i < jobs.size(); ++i) {
+            const double took = millisecondsOf(jobs[i]);
+            if (round >= 0) times[i].push_back(took * 1e3);
+        }
+    std::vector<double> medians;
+    for (const std::vector<double>& t : times) medians.push_back(medianOf(t));
+    return medians;
+}
+
+/// Every tenth box moves each frame.
+void measureMovers(Table& table, int repeat) {
+    Swarm swarm(1000000, 1);
+    const std::string where = "1,000,000 boxes, every tenth moves";
+    DynamicBvh tree, fresh;
+    tree.build(swarm.boxes);
+    std::vector<double> updates, rebuilds, plain_rebuilds;
+    uint64_t rotations = 0, rebuilt = 0;
+    for (int frame = 0; frame < kFrames; ++frame) {
+        swarm.step();
+        updates.push_back(millisecondsOf([&] {
+            for (uint32_t i = 0; i < swarm.movers(); ++i) tree.move(swarm.mover(i), swarm.boxes[swarm.mover(i)]);
+            const DynamicBvhUpdate done = tree.update();
+            rotations += done.rotations;
+            rebuilt += done.rebuilt;
+        }));
+        if (frame % 4 != 0) continue;
+        rebuilds.push_back(millisecondsOf([&] { fresh.build(swarm.boxes); }));
+        plain_rebuilds.push_back(millisecondsOf([&] { buildBvh(swarm.boxes); }));
+    }
+    fresh.build(swarm.boxes);
+    const double update = medianOf(updates), rebuild = medianOf(rebuilds);
+    table.rows.push_back({where, "moves and update", update, "ms/frame", "build anew", rebuild});
+    table.rows.push_back(
+        {where, "moves and update", update, "ms/frame", "build the static tree anew", medianOf(plain_rebuilds)});
+    table.rows.push_back({where, "rotations", static_cast<double>(rotations) / kFrames, "a frame", "", 0});
+    table.rows.push_back({where, "items built anew", static_cast<double>(rebuilt) / kFrames, "a frame", "", 0});
+    table.rows.push_back({where, "surface after " + std::to_string(kFrames) + " frames", tree.surfaceCost(), "root's",
+                          "fresh tree", fresh.surfaceCost()});
+    FlatBoxes flat(swarm.boxes);
+    HierarchyScratch scratch;
+    std::vector<uint32_t> kept(swarm.boxes.size() + 8);
+    const auto queries = [&](const Frustum& frustum, const std::string& view) {
+        size_t by_tree = 0, by_fresh = 0, by_flat = 0;
+        const std::vector<double> times =
+            threadTimes({[&] { by_tree = cullHierarchy(frustum, tree.now(), scratch, kept); },
+                         [&] { by_fresh = cullHierarchy(frustum, fresh.now(), scratch, kept); },
+                         [&] { by_flat = cullFrustum(frustum, flat.arrays, flat.kept); }},
+                        repeat ? repeat : 15);
+        const double per_box = 1e3 / static_cast<double>(swarm.boxes.size());
+        table.rows.push_back({view, "query after the frames", times[0] * per_box, "ns/box", "query of a fresh tree",
+                              times[1] * per_box});
+        table.rows.push_back(
+            {view, "query of a fresh tree", times[1] * per_box, "ns/box", "flat, SIMD", times[2] * per_box});
+        table.rows.push_back({view, "kept by the tree", static_cast<double>(by_tree), "boxes", "kept by the flat list",
+                              static_cast<double>(by_flat)});
+    };
+    queries(frustumFrom(std::numeric_limits<double>::infinity()), where + "; 7 % in view");
+    queries(frustumFrom(0.2 * kWorld), where + "; 0.01 % in view");
+    queries(frustumOfAll(), where + "; all in view");
+}
+
+/// What it costs to hold the world as it is while it goes on.
+void measureSnapshots(Table& table) {
+    Swarm swarm(1000000, 2);
+    DynamicBvh tree;
+    tree.build(swarm.boxes);
+    Random random(3);
+    for (const uint32_t moves : {0u, 10u, 1000u, 100000u}) {
+        std::vector<double> times, anew;
+        std::shared_ptr<const LivingBvh> held = tree.snapshot();
+        for (int frame = 0; frame < kFrames; ++frame) {
+            times.push_back(millisecondsOf([&] {
+                for (uint32_t i = 0; i < moves; ++i) {
+                    const uint32_t item = static_cast<uint32_t>(random.below(swarm.boxes.size()));
+                    Box3d& box = swarm.boxes[item];
+                    box = {box.min + 0.3, box.max + 0.3};
+                    tree.move(item, box);
+                }
+                tree.update();
+                held = tree.snapshot();
+            }));
+        }
+        table.rows.push_back({"1,000,000 boxes, " + std::to_string(moves) + " move", "moves, update and snapshot",
+                              medianOf(times), "ms/frame", "", 0});
+    }
+}
+
+}  // namespace
+
+Table benchHierarchy(const Options& options) {
+    Table table{"hierarchy", {}};
+    measureMovers(table, options.repeat);
+    measureSnapshots(table);
+    return table;
+}
+
+}  // namespace sightline::bench

@@ -1,0 +1,52 @@
+// Keeps the items of a living hierarchy that may touch a view frustum.
+// SPDX-License-Identifier: MIT
+//
+// Ulf Assarsson, Tomas Moller. Optimized View Frustum Culling Algorithms for Bounding Boxes. 2000.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "sightline/base/memory.h"
+#include "sightline/geom/frustum.h"
+#include "sightline/space/dynamic_bvh.h"
+
+namespace sightline {
+
+/// What a query of a hierarchy did.
+struct HierarchyStats {
+    uint64_t nodes = 0;         ///< whose children were tested
+    uint64_t plane_tests = 0;   ///< of eight children against one plane
+    uint64_t inside_nodes = 0;  ///< whose items were all kept without a test
+};
+
+/// What a query needs and does not give back; one for each thread. Once it has seen its hierarchies, queries take no
+/// memory.
+struct HierarchyScratch {
+    struct Visit {
+        uint32_t node = 0;
+        uint32_t planes = 0;  ///< bit per plane that the node is not inside of
+    };
+    Array<Visit> stack;
+    explicit HierarchyScratch(Memory* memory = defaultMemory()) : stack(memory) {}
+};
+
+/// The planes of a frustum in float, for boxes around an origin.
+struct RelativePlanes {
+    float normal[6][3];
+    float distance[6];  ///< with a margin for all rounding up to `reach`
+    uint32_t count = 0;
+};
+
+/// @param reach  no bound that is tested is farther from the origin on any axis  [world units]
+RelativePlanes relativePlanes(const Frustum& frustum, const glm::dvec3& origin, float reach);
+
+/// Writes the numbers of the items whose stored boxes may touch the frustum, and of all that are unbounded, and returns
+/// how many. The order hangs on the tree alone. The set is that of cullFrustum() over the stored boxes, to the bit: what
+/// is outside a plane has a parent that rounding puts no farther outside, and what is inside one likewise.
+/// @param kept  [size: >= tree.count + 8]
+size_t cullHierarchy(const Frustum& frustum, const LivingBvh& tree, HierarchyScratch& scratch, std::span<uint32_t> kept,
+                     HierarchyStats* stats = nullptr);
+
+}  // namespace sightline
