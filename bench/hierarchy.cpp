@@ -1,11 +1,15 @@
 // Hierarchies that live beside ones that are built anew, and beside the flat list.
 // SPDX-License-Identifier: MIT
+#include <bit>
+#include <cmath>
+
 #include <glm/gtc/constants.hpp>
 
 #include "bench/cases.h"
 #include "bench/flat_boxes.h"
 #include "bench/stopwatch.h"
 #include "sightline/base/random.h"
+#include "sightline/cull/grid.h"
 #include "sightline/cull/hierarchy.h"
 
 namespace sightline::bench {
@@ -164,12 +168,107 @@ void measureSnapshots(Table& table) {
     }
 }
 
+/// A swarm all of which moves, in a grid.
+void measureGrid(Table& table, uint32_t count, int repeat) {
+    Swarm swarm(count, 4);
+    const std::string where = "swarm of " + std::to_string(count);
+    // About eight to a cell, but no cell smaller than the largest box.
+    const double cell = std::max(4.0, std::cbrt(8.0 * 8.0 * kWorld * kWorld * kWorld / count));
+    std::vector<double> inserts, moves, steps;
+    std::vector<glm::dvec3> velocity(count);
+    Random random(5);
+    for (glm::dvec3& v : velocity)
+        for (int axis = 0; axis < 3; ++axis) v[axis] = random.uniform(-2.0, 2.0);
+    const auto step = [&] {
+        for (uint32_t i = 0; i < count; ++i) {
+            swarm.boxes[i].min += velocity[i];
+            swarm.boxes[i].max += velocity[i];
+        }
+    };
+    Grid grid(cell);
+    for (int round = 0; round < 5; ++round) {
+        // Into memory that has been used before: a swarm that comes and goes.
+        for (uint32_t i = count; i-- > 0;) grid.remove(i);
+        const double took = millisecondsOf([&] {
+            for (const Box3d& box : swarm.boxes) grid.insert(box);
+        });
+        if (round > 0) inserts.push_back(took);
+        for (int frame = 0; frame < 4; ++frame) {
+            step();
+            moves.push_back(millisecondsOf([&] {
+                for (uint32_t i = 0; i < count; ++i) grid.move(i, swarm.boxes[i]);
+            }));
+        }
+    }
+    std::vector<double> small_moves;
+    for (int frame = 0; frame < 8; ++frame) {
+        const double by = frame % 2 ? 0.01 : -0.01;
+        for (Box3d& box : swarm.boxes) box = {box.min + by, box.max + by};
+        small_moves.push_back(millisecondsOf([&] {
+            for (uint32_t i = 0; i < count; ++i) grid.move(i, swarm.boxes[i]);
+        }));
+    }
+    const double each = 1e6 / count;
+    table.rows.push_back({where, "insert, at random", medianOf(inserts) * each, "ns", "", 0});
+    table.rows.push_back({where, "move, next to none to another cell", medianOf(small_moves) * each, "ns", "", 0});
+    table.rows.push_back({where, "move, some to another cell", medianOf(moves) * each, "ns", "", 0});
+    DynamicBvh tree;
+    tree.build(swarm.boxes);
+    FlatBoxes flat(swarm.boxes);
+    HierarchyScratch scratch;
+    std::vector<uint32_t> kept(count + 8);
+    for (const double z_far : {std::numeric_limits<double>::infinity(), 0.1 * kWorld}) {
+        const Frustum frustum = frustumFrom(z_far);
+        GridStats stats;
+        const std::vector<double> times = threadTimes(
+            {[&] { cullGrid(frustum, grid, kept, &stats); }, [&] { cullHierarchy(frustum, tree.now(), scratch, kept); },
+             [&] { cullFrustum(frustum, flat.arrays, flat.kept); }},
+            repeat ? repeat : 15);
+        const std::string view = where + (z_far < kWorld ? "; short view" : "; far view");
+        table.rows.push_back({view, "query of the grid", times[0], "us", "query of a fresh tree", times[1]});
+        table.rows.push_back({view, "query of the grid", times[0], "us", "flat, SIMD", times[2]});
+        uint64_t used = 0;
+        for (uint32_t level = 0; level < Grid::kLevels; ++level)
+            for (const Grid::Level::Listed& listed : grid.level(level).blocks)
+                used += static_cast<uint64_t>(std::popcount(grid.block(listed.block).used));
+        table.rows.push_back(
+            {view, "cells looked at", static_cast<double>(stats.cells), "cells", "in use", static_cast<double>(used)});
+    }
+}
+
+/// The same view of a world that grows far beyond it.
+void measureReach(Table& table, int repeat) {
+    double first_cells = 0;
+    for (const double side : {1000.0, 4000.0, 16000.0}) {
+        const uint32_t count = static_cast<uint32_t>(side * side / 256.0);
+        Random random(6);
+        Grid grid(16.0);
+        grid.reserve(count);
+        for (uint32_t i = 0; i < count; ++i) {
+            const double x = random.uniform(-0.5, 0.5) * side, z = random.uniform(-0.5, 0.5) * side;
+            const glm::dvec3 at(x, random.uniform(-8, 8), z);
+            grid.insert({at, at + random.uniform(0.5, 4)});
+        }
+        const Frustum frustum = frustumFrom(300.0);
+        std::vector<uint32_t> kept(count + 8);
+        GridStats stats;
+        const double time = threadTimes({[&] { cullGrid(frustum, grid, kept, &stats); }}, repeat ? repeat : 15)[0];
+        if (first_cells == 0) first_cells = static_cast<double>(stats.cells);
+        const std::string where = "outdoors, " + std::to_string(count) + " boxes, view of 300";
+        table.rows.push_back({where, "query of the grid", time, "us", "", 0});
+        table.rows.push_back(
+            {where, "cells looked at", static_cast<double>(stats.cells), "cells", "in the first world", first_cells});
+    }
+}
+
 }  // namespace
 
 Table benchHierarchy(const Options& options) {
     Table table{"hierarchy", {}};
     measureMovers(table, options.repeat);
     measureSnapshots(table);
+    for (const uint32_t count : {100000u, 1000000u}) measureGrid(table, count, options.repeat);
+    measureReach(table, options.repeat);
     return table;
 }
 

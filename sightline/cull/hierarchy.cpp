@@ -5,7 +5,6 @@
 #include "sightline/cull/hierarchy.h"
 
 #include <bit>
-#include <cmath>
 
 #include "sightline/base/assert.h"
 
@@ -16,53 +15,14 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "sightline/cull/relative_planes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sightline {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using F8 = hn::CappedTag<float, 8>;
-using U8 = hn::RebindToUnsigned<F8>;
-
-struct Slots {
-    uint32_t outside = 0;  ///< bit per slot
-    uint32_t inside[6];    ///< per plane: bit per slot
-};
-
-/// The arithmetic is that of cullFrustum(), in its order.
-HWY_INLINE Slots testSlots(const RelativePlanes& planes, const BvhNode& node, uint32_t active) {
-    const F8 d;
-    Slots slots;
-    for (uint32_t plane = 0; plane < planes.count; ++plane) {
-        slots.inside[plane] = 0xff;
-        if (!(active >> plane & 1)) continue;
-        const float* normal = planes.normal[plane];
-        const float* far_corner[3];
-        const float* near_corner[3];
-        for (int axis = 0; axis < 3; ++axis) {
-            far_corner[axis] = normal[axis] >= 0 ? node.max[axis] : node.min[axis];
-            near_corner[axis] = normal[axis] >= 0 ? node.min[axis] : node.max[axis];
-        }
-        const auto nx = hn::Set(d, normal[0]), ny = hn::Set(d, normal[1]), nz = hn::Set(d, normal[2]);
-        const auto distance = hn::Set(d, planes.distance[plane]);
-        uint32_t inside = 0;
-        for (size_t i = 0; i < 8; i += hn::Lanes(d)) {
-            const auto at = [&](const float* const(&corner)[3]) HWY_ATTR {
-                const auto x = hn::Mul(nx, hn::Load(d, corner[0] + i));
-                const auto y = hn::Mul(ny, hn::Load(d, corner[1] + i));
-                const auto z = hn::Mul(nz, hn::Load(d, corner[2] + i));
-                return hn::Add(hn::Add(x, y), hn::Add(z, distance));
-            };
-            uint8_t bits[8] = {};
-            hn::StoreMaskBits(d, hn::Lt(at(far_corner), hn::Zero(d)), bits);
-            slots.outside |= uint32_t{bits[0]} << i;
-            hn::StoreMaskBits(d, hn::Ge(at(near_corner), hn::Zero(d)), bits);
-            inside |= uint32_t{bits[0]} << i;
-        }
-        slots.inside[plane] = inside;
-    }
-    return slots;
-}
+using U8 = hn::CappedTag<uint32_t, 8>;
 
 /// Writes the items among the slots that are left, and returns how many; `nodes` becomes the nodes among them.
 HWY_INLINE size_t takeItems(const BvhNode& node, uint32_t left, uint32_t* kept, uint32_t& nodes) {
@@ -115,12 +75,11 @@ size_t cullHierarchyKernel(const RelativePlanes& planes, const LivingBvh& tree, 
         }
         ++stats.nodes;
         stats.plane_tests += static_cast<uint64_t>(std::popcount(visit.planes));
-        const Slots slots = testSlots(planes, node, visit.planes);
+        const SlotAnswer slots = testSlots(planes, node, visit.planes);
         count += takeItems(node, ~slots.outside & 0xff, kept + count, nodes);
         for (; nodes != 0; nodes &= nodes - 1) {
             const int slot = std::countr_zero(nodes);
-            uint32_t left = 0;
-            for (uint32_t plane = 0; plane < planes.count; ++plane) left |= (~slots.inside[plane] >> slot & 1) << plane;
+            const uint32_t left = planesLeft(planes, slots, slot);
             prefetch(tree.node(node.child[slot]), left != 0);
             stack.push_back({node.child[slot], left});
         }
@@ -136,23 +95,6 @@ HWY_AFTER_NAMESPACE();
 namespace sightline {
 
 HWY_EXPORT(cullHierarchyKernel);
-
-RelativePlanes relativePlanes(const Frustum& frustum, const glm::dvec3& origin, float reach) {
-    constexpr float kRounding = 0x1p-19f;  // as in cullFrustum()
-    RelativePlanes planes;
-    planes.count = frustum.count;
-    const glm::dvec3 shift = origin - frustum.eye;
-    for (uint32_t i = 0; i < frustum.count; ++i) {
-        const glm::dvec4& p = frustum.planes[i];
-        double size = std::abs(p.w) + std::abs(glm::dot(glm::dvec3(p), shift));
-        for (int axis = 0; axis < 3; ++axis) {
-            planes.normal[i][axis] = static_cast<float>(p[axis]);
-            size += std::abs(p[axis]) * reach;
-        }
-        planes.distance[i] = static_cast<float>(p.w + glm::dot(glm::dvec3(p), shift) + kRounding * size);
-    }
-    return planes;
-}
 
 size_t cullHierarchy(const Frustum& frustum, const LivingBvh& tree, HierarchyScratch& scratch, std::span<uint32_t> kept,
                      HierarchyStats* stats) {

@@ -32,16 +32,6 @@ struct HierarchyScratch {
     explicit HierarchyScratch(Memory* memory = defaultMemory()) : stack(memory) {}
 };
 
-/// The planes of a frustum in float, for boxes around an origin.
-struct RelativePlanes {
-    float normal[6][3];
-    float distance[6];  ///< with a margin for all rounding up to `reach`
-    uint32_t count = 0;
-};
-
-/// @param reach  no bound that is tested is farther from the origin on any axis  [world units]
-RelativePlanes relativePlanes(const Frustum& frustum, const glm::dvec3& origin, float reach);
-
 /// Writes the numbers of the items whose stored boxes may touch the frustum, and of all that are unbounded, and returns
 /// how many. The order hangs on the tree alone. The set is that of cullFrustum() over the stored boxes, to the bit: what
 /// is outside a plane has a parent that rounding puts no farther outside, and what is inside one likewise.

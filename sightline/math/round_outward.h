@@ -13,10 +13,9 @@ namespace sightline {
 /// The largest float that is not above a value; as std::nextafter() would find it, without the call. NaN stays NaN.
 inline float roundDown(double value) {
     const float f = static_cast<float>(value);
-    if (!(f > value)) return f;
-    const uint32_t bits = std::bit_cast<uint32_t>(f);
-    if ((bits & 0x7fffffffu) == 0) return std::bit_cast<float>(0x80000001u);
-    return std::bit_cast<float>(bits >> 31 ? bits + 1 : bits - 1);
+    // Half of all values need the step: it is made without a branch. A zero that is above its value is the negative one.
+    const uint32_t bits = std::bit_cast<uint32_t>(f), step = f > value;
+    return std::bit_cast<float>(bits >> 31 ? bits + step : bits - step);
 }
 
 /// The smallest float that is not below a value.
