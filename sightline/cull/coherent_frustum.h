@@ -1,0 +1,99 @@
+// View frustum culling over a hierarchy: eight children at once, or one by one with all that two frames have in common.
+// SPDX-License-Identifier: MIT
+//
+// Ulf Assarsson, Tomas Moller. Optimized View Frustum Culling Algorithms for Bounding Boxes. 2000.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "sightline/cull/bounds.h"
+#include "sightline/space/bvh.h"
+
+namespace sightline {
+
+namespace detail {
+/// A node on the way down, and the planes that it is not inside of.
+struct WalkVisit {
+    uint32_t node, planes;
+};
+}  // namespace detail
+
+/// What a walk may use. Apart from the refinement, none changes which items are kept; each can be tried alone.
+struct HierarchyCulling {
+    bool eight_at_once = true;  ///< SIMD across a node's children; the next five but one are then not used
+    bool inside = true;         ///< a child inside all planes is kept with all below it, unasked
+    bool masking = true;        ///< a plane that a node is inside of is not asked of its children
+    bool octant =
+        false;  ///< of two opposite planes the one nearer to the child's centre is asked; the other only if that
+                ///< one's answer leaves it open
+    bool plane_coherency = false;  ///< the plane that culled a child last time is asked first
+    bool translation = false;      ///< a child that was culled stays so, as long as the eye has not come near enough
+    bool rotation = false;         ///< and as long as the view has not turned far enough
+    Refinement refinement = Refinement::kNone;  ///< of children that cross a plane
+    float large = 0.0f;                         ///< only of children with a side of at least this much  [world units]
+
+    bool coherent() const { return plane_coherency || translation || rotation; }
+};
+
+/// The default with everything that one child at a time can use.
+HierarchyCulling everyCoherency();
+
+/// What a walk did.
+struct HierarchyStats {
+    uint64_t nodes = 0;        ///< visited
+    uint64_t boxes = 0;        ///< children and items that were asked about
+    uint64_t plane_tests = 0;  ///< a box against a plane
+    uint64_t unmoved = 0;      ///< boxes culled from memory, by translation and rotation coherency
+    uint64_t refined = 0;      ///< boxes culled by the refinement
+};
+
+/// Walks hierarchies. Keeps what a walk needs, and what the next frame's walk may know: one per camera.
+class HierarchyCuller {
+public:
+    explicit HierarchyCuller(Memory* memory = defaultMemory());
+
+    /// Writes the items whose boxes may touch the volume, in the order of the tree, and returns how many.
+    /// Conservative as cullFrustum(): the margin grows with the tree's size and the eye's distance from its origin.
+    /// Allocates only where the tree has grown.
+    /// @param refined  refineVolume(), or a RefinedVolume of which only `volume` is set  [limit: 8 planes; further ones
+    ///                 are left out]
+    /// @param kept     [size: >= items]
+    size_t cull(const RefinedVolume& refined, const Bvh& bvh, const HierarchyCulling& how, std::span<uint32_t> kept);
+
+    /// To be called when boxes of the tree have changed, or another tree comes: what was remembered does not hold.
+    void forget();
+
+    const HierarchyStats& stats() const { return stats_; }
+
+private:
+    friend struct OneByOne;
+
+    /// Why a child was culled, with all that tells whether that still holds.
+    struct Memo {
+        float inside = 0.0f;  ///< of the corner farthest inside, at most; less the plane's way until then
+        float reach = 0.0f;   ///< how far the box's points are from the eye at most
+        float turned = 0.0f, travelled = 0.0f;  ///< the plane and the eye, until then
+        uint8_t plane = kNone;
+        bool holds = false;  ///< false: only the plane is remembered
+
+        static constexpr uint8_t kNone = 255;
+    };
+    /// The planes' motion since the beginning.
+    struct Motion {
+        ViewVolume last;
+        double way[8] = {};     ///< how much farther inside what stands still has come, by the eye's translation
+        double turned[8] = {};  ///< length of the normal's path
+        double travelled = 0.0;
+        bool begun = false;
+    };
+    void follow(const ViewVolume& volume, size_t nodes);
+
+    Array<detail::WalkVisit> stack_;
+    Array<Memo> memos_;  ///< eight per node
+    Motion motion_;
+    HierarchyStats stats_;
+};
+
+}  // namespace sightline
