@@ -4,6 +4,7 @@
 
 #include "bench/cases.h"
 #include "bench/flat_boxes.h"
+#include "bench/frustum_walks.h"
 #include "bench/stopwatch.h"
 #include "sightline/base/random.h"
 #include "sightline/run/query.h"
@@ -115,10 +116,16 @@ Table benchFrustum(const Options& options) {
     };
     row("p-vertex, one by one", times[1], "eight corners, one by one", times[0]);
     row("flat, SIMD", times[2], "eight corners, one by one", times[0]);
+    row("flat, SIMD", times[2], "p-vertex, one by one", times[1]);
     row("hierarchy, plane masks, whole query", times[3], "eight corners, one by one", times[0]);
     row("hierarchy, plane masks, whole query", times[3], "flat, SIMD", times[2]);
     table.rows.push_back({where, "kept by the hierarchy", static_cast<double>(by_query), "boxes",
                           "kept by the flat list", static_cast<double>(by_flat)});
+    const FrustumWorld measured{where, boxes, flat, view, options.repeat ? options.repeat : 15};
+    addHierarchyRows(measured, table);
+    addCoherencyRows(measured, table);
+    addRefinementRows(measured, table);
+    addBoundRows(measured, table);
     return table;
 }
 
