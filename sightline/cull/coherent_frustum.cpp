@@ -101,18 +101,16 @@ struct OneByOne {
         return false;
     }
 
-    HierarchyCuller::Memo* memoOf(const Child& child) {
-        if (!how.coherent()) return nullptr;
-        return &culler
-                    .memos_[static_cast<size_t>(&child.node - bvh.nodes.data()) * 8 + static_cast<size_t>(child.slot)];
+    size_t placeOf(const Child& child) const {
+        return static_cast<size_t>(&child.node - bvh.nodes.data()) * 8 + static_cast<size_t>(child.slot);
     }
 
     void remember(const Child& child, uint32_t k, float most) {
-        HierarchyCuller::Memo* memo = memoOf(child);
-        if (!memo) return;
-        memo->plane = static_cast<uint8_t>(k);
-        memo->holds = how.translation || how.rotation;
-        if (!memo->holds) return;
+        if (!how.coherent()) return;
+        const size_t place = placeOf(child);
+        culler.last_plane_[place] = static_cast<uint8_t>(k);
+        if (!how.translation && !how.rotation) return;
+        HierarchyCuller::Memo* memo = &culler.memos_[place];
         const HierarchyCuller::Motion& motion = culler.motion_;
         double squared = 0.0;
         for (int axis = 0; axis < 3; ++axis) {
@@ -131,19 +129,21 @@ struct OneByOne {
 
     /// True if what culled the child still does, for how little the camera has moved.
     bool stillOutside(const Child& child) {
-        const HierarchyCuller::Memo* memo = memoOf(child);
-        if (!memo || !memo->holds || memo->plane >= planes.count) return false;
+        const size_t place = placeOf(child);
+        const uint8_t plane = culler.last_plane_[place];
+        if (plane >= planes.count) return false;
+        const HierarchyCuller::Memo* memo = &culler.memos_[place];
         const HierarchyCuller::Motion& motion = culler.motion_;
-        const double turned = motion.turned[memo->plane] - memo->turned;
+        const double turned = motion.turned[plane] - memo->turned;
         const double travelled = motion.travelled - memo->travelled;
-        if (!how.rotation && turned > 0x1p-20 * motion.turned[memo->plane]) return false;
+        if (!how.rotation && turned > 0x1p-20 * motion.turned[plane]) return false;
         if (!how.translation && travelled > 0x1p-20 * motion.travelled) return false;
-        const double way = motion.way[memo->plane];
+        const double way = motion.way[plane];
         const double inside =
             memo->inside + way +
             turned * (memo->reach + std::max(travelled, 0.0) * (1.0 + 0x1p-20) + 0x1p-20 * motion.travelled);
         // Below this the plane's own test says so, too, whatever it rounds.
-        return inside < -4.0 * planes.planes[memo->plane].margin - 0x1p-20 * (std::abs(memo->inside) + std::abs(way));
+        return inside < -4.0 * planes.planes[plane].margin - 0x1p-20 * (std::abs(memo->inside) + std::abs(way));
     }
 
     /// The octant test: the planes on the centre's side are asked, and those across that their answers vouch for are not.
@@ -188,9 +188,10 @@ struct OneByOne {
         std::fill_n(child.least, WalkPlanes::kMost, 0.0);  // a plane that is not active holds the parent
         ++culler.stats_.boxes;
         if ((how.translation || how.rotation) && stillOutside(child)) return ++culler.stats_.unmoved, ~0u;
-        HierarchyCuller::Memo* memo = memoOf(child);
-        if (how.plane_coherency && memo && memo->plane < planes.count && active >> memo->plane & 1)
-            if (outside(child, memo->plane)) return ~0u;
+        if (how.plane_coherency) {
+            const uint8_t plane = culler.last_plane_[placeOf(child)];
+            if (plane < planes.count && active >> plane & 1 && outside(child, plane)) return ~0u;
+        }
         if (how.octant && outsideByOctant(child)) return ~0u;
         for (uint32_t k = 0; k < planes.count; ++k)
             if (child.left >> k & 1)
@@ -239,16 +240,18 @@ HierarchyCulling everyCoherency() {
     return how;
 }
 
-HierarchyCuller::HierarchyCuller(Memory* memory) : stack_(memory), memos_(memory) {}
+HierarchyCuller::HierarchyCuller(Memory* memory) : stack_(memory), last_plane_(memory), memos_(memory) {}
 
 void HierarchyCuller::forget() {
     motion_ = {};
+    last_plane_.clear();
     memos_.clear();
 }
 
 void HierarchyCuller::follow(const ViewVolume& volume, size_t nodes) {
     const uint32_t count = std::min(volume.count, WalkPlanes::kMost);
-    if (memos_.size() != nodes * 8 || !motion_.begun || motion_.last.count != volume.count) {
+    if (last_plane_.size() != nodes * 8 || !motion_.begun || motion_.last.count != volume.count) {
+        last_plane_.assign(nodes * 8, kNever);
         memos_.assign(nodes * 8, Memo{});
         motion_ = {};
     } else {
@@ -267,7 +270,13 @@ void HierarchyCuller::follow(const ViewVolume& volume, size_t nodes) {
 size_t HierarchyCuller::cull(const RefinedVolume& refined, const Bvh& bvh, const HierarchyCulling& how,
                              std::span<uint32_t> kept) {
     stats_ = {};
-    if (how.coherent() && !how.eight_at_once) follow(refined.volume, bvh.nodes.size());
+    if (how.coherent() && !how.eight_at_once) {
+        follow(refined.volume, bvh.nodes.size());
+        const bool follows_motion = how.translation || how.rotation;
+        // Without them the planes change, and not what is known of them.
+        if (follows_motion && !followed_motion_) std::fill(memos_.begin(), memos_.end(), Memo{});
+        followed_motion_ = follows_motion;
+    }
     if (bvh.nodes.empty() || refined.volume.empty) return 0;
     const WalkPlanes planes = makePlanes(refined, bvh, how);
     if (how.eight_at_once) {

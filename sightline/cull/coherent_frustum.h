@@ -41,7 +41,7 @@ struct HierarchyCulling {
 HierarchyCulling everyCoherency();
 
 /// What a walk did.
-struct HierarchyStats {
+struct CoherentStats {
     uint64_t nodes = 0;        ///< visited
     uint64_t boxes = 0;        ///< children and items that were asked about
     uint64_t plane_tests = 0;  ///< a box against a plane
@@ -65,20 +65,17 @@ public:
     /// To be called when boxes of the tree have changed, or another tree comes: what was remembered does not hold.
     void forget();
 
-    const HierarchyStats& stats() const { return stats_; }
+    const CoherentStats& stats() const { return stats_; }
 
 private:
     friend struct OneByOne;
 
     /// Why a child was culled, with all that tells whether that still holds.
     struct Memo {
-        float inside = 0.0f;  ///< of the corner farthest inside, at most; less the plane's way until then
-        float reach = 0.0f;   ///< how far the box's points are from the eye at most
+        static constexpr float kNothing = 1e30f;
+        float inside = kNothing;  ///< of the corner farthest inside, at most; less the plane's way until then
+        float reach = 0.0f;       ///< how far the box's points are from the eye at most
         float turned = 0.0f, travelled = 0.0f;  ///< the plane and the eye, until then
-        uint8_t plane = kNone;
-        bool holds = false;  ///< false: only the plane is remembered
-
-        static constexpr uint8_t kNone = 255;
     };
     /// The planes' motion since the beginning.
     struct Motion {
@@ -88,12 +85,16 @@ private:
         double travelled = 0.0;
         bool begun = false;
     };
+    static constexpr uint8_t kNever = 255;
+
     void follow(const ViewVolume& volume, size_t nodes);
 
     Array<detail::WalkVisit> stack_;
-    Array<Memo> memos_;  ///< eight per node
+    Array<uint8_t> last_plane_;  ///< eight per node: the plane that culled the child last, or kNever
+    Array<Memo> memos_;          ///< eight per node; apart, so that plane coherency alone touches little memory
     Motion motion_;
-    HierarchyStats stats_;
+    bool followed_motion_ = false;  ///< at the last call
+    CoherentStats stats_;
 };
 
 }  // namespace sightline

@@ -65,13 +65,17 @@ TEST(HierarchyWalk, EveryCombinationKeepsOneSet) {
         std::vector<std::unique_ptr<HierarchyCuller>> cullers;
         for (int bits = 0; bits < 64; ++bits) cullers.push_back(std::make_unique<HierarchyCuller>());
         std::vector<uint64_t> unmoved(64), tests(64);
-        HierarchyCuller eight;
+        HierarchyCuller eight, changing;
         for (const View& view : cameraPath(seed, around)) {
             RefinedVolume refined;
             refined.volume = volumeOf(makeFrustum(view));
             std::vector<uint32_t> expected(1500), kept;
             expected.resize(eight.cull(refined, bvh, {}, expected));
             std::sort(expected.begin(), expected.end());
+            kept.assign(1500, 0);
+            kept.resize(changing.cull(refined, bvh, oneByOne(static_cast<int>(mixSeed(seed, tests[0]) % 64)), kept));
+            std::sort(kept.begin(), kept.end());
+            ASSERT_EQ(kept, expected) << "seed " << seed << ", another combination each frame";
             for (int bits = 0; bits < 64; ++bits) {
                 kept.assign(1500, 0);
                 kept.resize(cullers[bits]->cull(refined, bvh, oneByOne(bits), kept));
