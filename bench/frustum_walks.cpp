@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "bench/stopwatch.h"
 #include "sightline/cull/coherent_frustum.h"
 
 namespace sightline::bench {
@@ -43,10 +42,10 @@ void addHierarchyRows(const FrustumWorld& world, Table& table) {
     for (const View& view : {world.view, viewOfAll(world.boxes)}) {
         const Frustum frustum = makeFrustum(view);
         const RefinedVolume volume = plainVolume(view);
-        const std::vector<double> times = timeInterleaved(
-            {[&] { cullFrustum(frustum, world.flat.arrays, world.flat.kept); }, [&] { walk(volume, {}); },
-             [&] { walk(volume, no_masks); }, [&] { walk(volume, two_states); }},
-            world.repeat);
+        const std::vector<double> times =
+            ownTimes({[&] { cullFrustum(frustum, world.flat.arrays, world.flat.kept); }, [&] { walk(volume, {}); },
+                      [&] { walk(volume, no_masks); }, [&] { walk(volume, two_states); }},
+                     world.repeat);
         const size_t found = walk(volume, {});
         const double tests = static_cast<double>(culler.stats().plane_tests);
         const std::string where =
