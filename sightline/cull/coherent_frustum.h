@@ -22,7 +22,7 @@ struct WalkVisit {
 
 /// What a walk may use. Apart from the refinement, none changes which items are kept; each can be tried alone.
 struct HierarchyCulling {
-    bool eight_at_once = true;  ///< SIMD across a node's children; the next five but one are then not used
+    bool eight_at_once = true;  ///< SIMD across a node's children; octant and the coherencies are not used then
     bool inside = true;         ///< a child inside all planes is kept with all below it, unasked
     bool masking = true;        ///< a plane that a node is inside of is not asked of its children
     bool octant =
