@@ -110,6 +110,7 @@ uint32_t BvhSplitter::splitByBins(const BvhRange& range, const Box3f& extent) {
 }
 
 int BvhSplitter::splitToEight(const BvhRange& range, BvhRange (&parts)[kWidth]) {
+    const uint32_t whole = full_nodes && range.count() > kWidth ? kWidth : 1;
     int count = 1;
     parts[0] = range;
     while (count < kWidth) {
@@ -118,7 +119,7 @@ int BvhSplitter::splitToEight(const BvhRange& range, BvhRange (&parts)[kWidth]) 
         for (int i = 0; i < count; ++i) {
             const float cost = halfArea(parts[i].bounds) * static_cast<float>(parts[i].count());
             // Where areas overflow to no number, too, something must be split.
-            if (parts[i].count() > 1 && !(cost <= widest_cost)) {
+            if (parts[i].count() > whole && !(cost <= widest_cost)) {
                 widest = i;
                 widest_cost = cost;
             }

@@ -25,6 +25,7 @@ struct BvhSplitter {
     Array<Box3f> boxes;        ///< per item
     Array<glm::vec3> centers;  ///< per item: splitCenter()
     Array<uint32_t>& order;    ///< the items; splitting puts them in order
+    bool full_nodes = false;   ///< what fits into one node is not split among several: fewer nodes, larger ones
 
     BvhSplitter(Array<uint32_t>& items, Memory* memory) : boxes(memory), centers(memory), order(items) {}
 

@@ -52,6 +52,7 @@ void DynamicBvh::buildBelow(uint32_t index) {
     Array<uint32_t> order(count, def_.memory);
     std::iota(order.begin(), order.end(), 0u);
     BvhSplitter splitter(order, def_.memory);
+    splitter.full_nodes = true;
     splitter.boxes.resize(count);
     splitter.centers.resize(count);
     for (uint32_t i = 0; i < count; ++i) {
