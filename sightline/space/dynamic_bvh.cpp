@@ -10,6 +10,14 @@
 
 namespace sightline {
 
+namespace {
+
+/// An item stays in its node, which grows, unless the surface becomes larger than this factor: what wanders off is left to
+/// rotations.
+constexpr float kWorthLeaving = 1.06f;
+
+}  // namespace
+
 float LivingBvh::reach() const {
     if (root == kNone) return 0.0f;
     const Box3f box = boundsOf(node(root));
@@ -180,6 +188,16 @@ void DynamicBvh::cutEmpty(uint32_t index) {
     }
 }
 
+/// Makes the bounds of a node, and those above, hold a box.
+void DynamicBvh::growAbove(uint32_t index, const Box3f& box) {
+    for (uint32_t up = notes_[index].parent; up != kNone; up = notes_[up / 8].parent) {
+        Box3f bounds = slotBox(state_.node(up / 8), static_cast<int>(up % 8));
+        if (holds(bounds, box)) return;
+        bounds.grow(box);
+        setSlot(change(up / 8), static_cast<int>(up % 8), bounds);
+    }
+}
+
 bool DynamicBvh::move(uint32_t item, const Box3d& box, const glm::dvec3& displacement) {
     if (!contains(item)) return false;
     const Box3f fat = storable(box, displacement);
@@ -199,9 +217,15 @@ bool DynamicBvh::move(uint32_t item, const Box3d& box, const glm::dvec3& displac
     largest.max += slack;
     if (holds(largest, stored) && holds(stored, relativeBox(box, state_.origin))) return true;
     const uint32_t parent = notes_[place / 8].parent;
-    if (parent != kNone && !holds(slotBox(state_.node(parent / 8), static_cast<int>(parent % 8)), fat)) {
-        reinsert(item, fat);
-        return true;
+    if (parent != kNone) {
+        const Box3f bounds = slotBox(state_.node(parent / 8), static_cast<int>(parent % 8));
+        Box3f grown = bounds;
+        grown.grow(fat);
+        if (halfArea(grown) > kWorthLeaving * halfArea(bounds)) {
+            reinsert(item, fat);
+            return true;
+        }
+        growAbove(place / 8, fat);
     }
     setSlot(change(place / 8), slot, fat);
     markDirty(place / 8);

@@ -47,7 +47,7 @@ struct DynamicBvhDef {
     glm::dvec3 origin{0.0};            ///< near the middle of the world; it stays. Bounds are float around it
     double margin = 0;                 ///< by which boxes are stored wider, so that small moves change nothing
                                        ///< [world units, >= 0]
-    double decay = 1.4;                ///< a subtree that costs more than this times what it did fresh is built anew
+    double decay = 1.25;               ///< a subtree that costs more than this times what it did fresh is built anew
     double rebuilt_share = 0.125;      ///< of all items that one update() may build anew  [0 to 1]
     bool rotations = true;             ///< update() exchanges children among neighbouring nodes where that pays
     Memory* memory = defaultMemory();  ///< thread-safe if snapshots are let go by other threads; outlives them
@@ -56,7 +56,7 @@ struct DynamicBvhDef {
 /// What update() did.
 struct DynamicBvhUpdate {
     uint32_t refitted = 0;   ///< nodes whose bounds were looked at
-    uint32_t rotations = 0;  ///< children that changed their node, or were lifted into a parent that had room
+    uint32_t rotations = 0;  ///< children that changed their node, nodes lifted into their parent or merged
     uint32_t rebuilt = 0;    ///< items below what was built anew
 };
 
@@ -140,6 +140,7 @@ private:
     void enter(uint32_t item, const Box3f& box);
     void leave(uint32_t item);
     void cutEmpty(uint32_t index);
+    void growAbove(uint32_t index, const Box3f& box);
 
     // dynamic_bvh_insert.cpp: where an item goes
     void reinsert(uint32_t item, const Box3f& box);
@@ -153,6 +154,7 @@ private:
     void refitNode(uint32_t index);
     void noteCost(uint32_t index);
     uint32_t lift(uint32_t index);
+    uint32_t merge(uint32_t index);
     uint32_t rotate(uint32_t index);
     Rotation bestRotation(uint32_t index) const;
     void tryTargets(uint32_t index, int from, int which, const Entry& moved, const Box3f& rest, Rotation& best) const;

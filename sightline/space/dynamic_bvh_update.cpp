@@ -14,6 +14,8 @@ namespace {
 
 /// A rotation must gain this share of the surface of the node that it takes from; less is not worth the writing.
 constexpr float kWorthRotating = 0.1f;
+/// Two nodes become one unless its surface is larger than theirs together by this factor.
+constexpr float kWorthMerging = 1.3f;
 constexpr int kMostRotations = 3;  // of one node and update
 
 int usedSlots(const BvhNode& node) {
@@ -70,6 +72,7 @@ DynamicBvhUpdate DynamicBvh::update() {
     for (size_t i = changed_.size(); i-- > 0;) {
         const uint32_t index = changed_[i];
         done.rotations += lift(index);
+        if (def_.rotations) done.rotations += merge(index);
         if (replaceByOnlyChild(index)) continue;
         if (def_.rotations) done.rotations += rotate(index);
         refitNode(index);
@@ -161,6 +164,38 @@ uint32_t DynamicBvh::lift(uint32_t index) {
         slot = -1;  // what was lifted may have come before
     }
     return lifted;
+}
+
+/// Puts the children of two nodes side by side into one where they fit and the surface grows little: splits leave
+/// nodes half full.
+uint32_t DynamicBvh::merge(uint32_t index) {
+    uint32_t merged = 0;
+    for (int a = 0; a < 8; ++a) {
+        const BvhNode& node = state_.node(index);
+        if (!isNode(node, a) || marks_[node.child[a]] != Mark::kChanged) continue;
+        const int used = usedSlots(state_.node(node.child[a]));
+        if (used > 5) continue;
+        const Box3f box = slotBox(node, a);
+        int best = -1;
+        float least = kWorthMerging;
+        for (int b = 0; b < 8; ++b) {
+            if (b == a || !isNode(node, b) || usedSlots(state_.node(node.child[b])) + used > 8) continue;
+            const float apart = halfArea(box) + halfArea(slotBox(node, b));
+            const float growth = grownArea(box, slotBox(node, b)) / apart;
+            if (!(growth < least)) continue;
+            least = growth;
+            best = b;
+        }
+        if (best < 0) continue;
+        const uint32_t from = node.child[a], to = node.child[best];
+        for (int slot = 0; slot < 8; ++slot)
+            if (state_.node(from).count[slot] != 0) put(to, freeSlot(state_.node(to)), take(from, slot));
+        clearSlot(change(index), a);
+        freeNode(from);
+        refitNode(to);
+        ++merged;
+    }
+    return merged;
 }
 
 uint32_t DynamicBvh::rotate(uint32_t index) {
