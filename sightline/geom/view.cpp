@@ -80,6 +80,13 @@ double closedGap(const View& view) {
     return std::floor(std::min(view.close_gaps, 1.0 / 16.0) * kGapSteps) / kGapSteps;
 }
 
+uint32_t stagesInUse(const View& view) {
+    uint32_t stages = view.stages;
+    if (!(view.max_distance > 0.0)) stages &= ~stageBit(Stage::kDistance);  // nor where it is not a number
+    if (!(view.contribution > 0.0)) stages &= ~stageBit(Stage::kContribution);
+    return stages;
+}
+
 bool isUsable(const View& view) {
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row)

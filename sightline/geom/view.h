@@ -10,12 +10,15 @@
 namespace sightline {
 
 /// The stages of a query, in the order in which they are applied. Their names are the names of
-/// the files in cull/; volumes are occluder volumes.
-enum class Stage : uint8_t { kFrustum, kVolumes, kOcclusion };
-inline constexpr int kStageCount = 3;
-inline constexpr const char* kStageNames[kStageCount] = {"frustum", "volumes", "occlusion"};
+/// the files in cull/; volumes are occluder volumes. Distance and contribution are not conservative: they do nothing
+/// unless the view says how far and how small.
+enum class Stage : uint8_t { kFrustum, kDistance, kContribution, kVolumes, kOcclusion };
+inline constexpr int kStageCount = 5;
+inline constexpr const char* kStageNames[kStageCount] = {"frustum", "distance", "contribution", "volumes", "occlusion"};
 inline constexpr uint32_t stageBit(Stage stage) { return 1u << static_cast<uint32_t>(stage); }
 inline constexpr uint32_t kAllStages = (1u << kStageCount) - 1;
+/// Those that cull what may be visible.
+inline constexpr uint32_t kLossyStages = stageBit(Stage::kDistance) | stageBit(Stage::kContribution);
 /// Those that pay in most worlds.
 inline constexpr uint32_t kDefaultStages = kAllStages & ~stageBit(Stage::kVolumes);
 
@@ -32,13 +35,26 @@ enum class OcclusionDetail : uint8_t {
 /// translation); the projection may be perspective or orthographic, off-centre, with a finite or an
 /// infinite far plane. Anything that is not finite makes every object visible.
 struct View {
-    glm::dmat4 view{1.0};                    ///< world to eye                                [rigid]
-    glm::dmat4 projection{1.0};              ///< eye to clip
-    uint32_t width = 1280;                   ///< of the viewport                             [pixels, >= 1]
-    uint32_t height = 720;                   ///<                                             [pixels, >= 1]
-    double jitter = 0.5;                     ///< largest shift of the image that the frame may use  [pixels, 0 to 1e6]
-    uint32_t layers = ~0u;                   ///< objects outside these layers are neither reported nor hide
-    uint32_t stages = kDefaultStages;        ///< bits of Stage: which stages may cull
+    glm::dmat4 view{1.0};              ///< world to eye                                [rigid]
+    glm::dmat4 projection{1.0};        ///< eye to clip
+    uint32_t width = 1280;             ///< of the viewport                             [pixels, >= 1]
+    uint32_t height = 720;             ///<                                             [pixels, >= 1]
+    double jitter = 0.5;               ///< largest shift of the image that the frame may use  [pixels, 0 to 1e6]
+    uint32_t layers = ~0u;             ///< objects outside these layers are neither reported nor hide
+    uint32_t stages = kDefaultStages;  ///< bits of Stage: which stages may cull
+    /// Stage::kDistance culls what lies wholly farther from the eye; in a parallel view, from the plane through the eye.
+    /// Infinity: only objects with a limit of their own, ObjectLimits.  [world units; 0: the stage is off]
+    double max_distance = 0;
+    /// The full vertical angle that max_distance is meant for. A view that zooms in sees farther, by as much as it
+    /// enlarges; one that is wider sees less far.  [radians, below pi; 0: the same in every view, as in parallel ones]
+    double max_distance_fov = 0;
+    /// Stage::kContribution culls an object whose image is smaller than a disk of this radius: the image of the sphere
+    /// around its box, measured by its area, wherever in the image it lies. So a culled object covers pi times the
+    /// square of this at most.  [pixels of the viewport; 0: the stage is off]
+    double contribution = 0;
+    /// What the query's last answer showed is kept by both stages until it is farther, or smaller, by this share: no
+    /// object flickers at the limit. The answer then depends on the one before it.  [0 to 1; 0: no memory]
+    double hysteresis = 0.1;
     uint32_t occluder_volumes = 8;           ///< that the stage of volumes chooses at most  [limit: <= 64]
     uint32_t occluder_triangles = 1u << 17;  ///< work budget: triangles that may be rasterized, nearest first  [limit]
     uint32_t occlusion_size = 640;           ///< longer side of the occlusion buffer; a viewport that is smaller
@@ -90,6 +106,9 @@ bool isOrthographic(const View& view);
 /// True if all matrices are finite, the viewport has pixels, the jitter is in its range, and the projection can be
 /// inverted.
 bool isUsable(const View& view);
+
+/// View::stages less those of distance and contribution, if the view does not say how far and how small.
+uint32_t stagesInUse(const View& view);
 
 /// Steps of View::close_gaps in a pixel.
 inline constexpr double kGapSteps = 0x1p20;

@@ -24,6 +24,7 @@ Json verificationJson(const VerificationRow& verification, const FrameResult& fr
     out["unconfirmed"] = verification.unconfirmed;
     out["exactly_visible"] = verification.exactly_visible;
     out["reported"] = frame.visible.size();
+    if (verification.lossy_seen > 0) out["lossy_seen"] = verification.lossy_seen;
     out["list"] = Json::array();
     for (const FalseCullRow& row : verification.rows)
         out["list"].push_back({{"key", row.key},
@@ -49,6 +50,7 @@ Json frameJson(const FrameResult& frame, const CullRun& run, const Scene& scene)
                                  {"doubt", row.doubt},
                                  {"microseconds", row.microseconds}});
     }
+    if (frame.changed_pixels) out["changed_pixels"] = *frame.changed_pixels;
     out["triangles"] = frame.triangles;
     out["occluder_triangles"] = frame.occluder_triangles;
     out["nodes_visited"] = frame.nodes_visited;
@@ -84,6 +86,8 @@ Json headJson(const CullRun& run, const Scene& scene) {
     head["jitter"] = run.jitter;
     head["occluder_triangles_limit"] = run.occluder_triangles;
     if (run.occluder_error > 0) head["occluder_error"] = run.occluder_error;
+    if (run.max_distance > 0) head["max_distance"] = run.max_distance;
+    if (run.contribution > 0) head["contribution"] = run.contribution;
     if (run.stereo > 0) head["stereo"] = run.stereo;
     if (run.last_visible_first) head["last_visible_first"] = true;
     head["occlusion_size"] = run.occlusion_size;
@@ -110,6 +114,7 @@ Json sumsJson(const Verification& sum) {
     out["aimed_samples"] = sum.aimed_rays;
     out["id_samples"] = sum.id_samples;
     out["unconfirmed"] = sum.unconfirmed;
+    if (sum.lossy_seen > 0) out["lossy_seen"] = sum.lossy_seen;
     out["culled"] = sum.culled;
     out["over_estimate"] = std::isfinite(sum.overEstimate()) ? Json(sum.overEstimate()) : Json(nullptr);
     return out;
@@ -130,6 +135,8 @@ std::string cullJson(const CullRun& run, const Scene& scene) {
         between = ",\n";
     }
     text += "]";
+    if (const auto changes = sumChanges(run))
+        text += ",\n\"changes\": " + dump({{"changed_pixels", changes->changed}, {"pixels", changes->pixels}});
     if (const auto sum = sumVerification(run)) text += ",\n\"verification\": " + dump(sumsJson(*sum));
     return text + "}\n";
 }

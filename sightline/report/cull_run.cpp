@@ -33,11 +33,23 @@ std::optional<Verification> sumVerification(const CullRun& run) {
         sum->aimed_rays += row.aimed_rays;
         sum->id_samples += row.id_samples;
         sum->unconfirmed += row.unconfirmed;
+        sum->lossy_seen += row.lossy_seen;
         sum->least_supersampling = std::min(sum->least_supersampling, row.supersampling);
         sum->most_supersampling = std::max(sum->most_supersampling, row.supersampling);
         sum->exactly_visible += row.exactly_visible;
         sum->reported += frame.visible.size();
         sum->culled += run.objects - frame.visible.size();
+    }
+    return sum;
+}
+
+std::optional<Changes> sumChanges(const CullRun& run) {
+    std::optional<Changes> sum;
+    for (const FrameResult& frame : run.frames) {
+        if (!frame.changed_pixels) continue;
+        if (!sum) sum.emplace();
+        sum->changed += *frame.changed_pixels;
+        sum->pixels += uint64_t{run.width} * run.height;
     }
     return sum;
 }

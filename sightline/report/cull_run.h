@@ -36,9 +36,10 @@ struct VerificationRow {
     uint64_t rays = 0;         ///< aimed ones included
     uint64_t aimed_rays = 0;   ///< at culled objects
     uint64_t id_samples = 0;
-    uint32_t supersampling = 0;  ///< samples of the id-buffer per pixel and axis
-    uint64_t unconfirmed = 0;    ///< sightings of culled objects that exact arithmetic did not bear out
-    uint64_t exactly_visible = 0;
+    uint32_t supersampling = 0;    ///< samples of the id-buffer per pixel and axis
+    uint64_t unconfirmed = 0;      ///< sightings of culled objects that exact arithmetic did not bear out
+    uint64_t exactly_visible = 0;  ///< none that distance or contribution culled
+    uint64_t lossy_seen = 0;       ///< seen, and culled by distance or contribution: no false culls
     std::vector<FalseCullRow> rows;
     std::vector<uint32_t> kept_unseen;  ///< objects that were kept and that no witness saw, ascending
 };
@@ -72,7 +73,8 @@ struct FrameResult {
     double begin_microseconds = 0;        ///< when it began with this frame, since the run began
     double end_microseconds = 0;          ///< when it had done with it
     std::optional<VerificationRow> verification;
-    std::vector<std::string> notes;  ///< for a reader: why this frame is the slowest or the loosest of its run
+    std::optional<uint64_t> changed_pixels;  ///< that show another object for distance and contribution culling
+    std::vector<std::string> notes;          ///< for a reader: why this frame is the slowest or the loosest of its run
 };
 
 struct CullRun {
@@ -86,6 +88,7 @@ struct CullRun {
     uint32_t occluder_triangles = View().occluder_triangles;  ///< that a query drew at most
     double occluder_error = 0;                                ///< View::occluder_error; 0: none were prepared
     uint32_t stages = kDefaultStages;                         ///< bits of Stage in use
+    double max_distance = 0, contribution = 0;                ///< View
     double stereo = 0;                ///< distance of the two eyes  [world units]; 0: there is one
     bool last_visible_first = false;  ///< each frame drew first what the one before it kept
     uint32_t occlusion_size = View().occlusion_size;
@@ -104,12 +107,23 @@ struct CullRun {
 struct Verification {
     uint64_t false_culls = 0, rays = 0, id_samples = 0, exactly_visible = 0, reported = 0;
     uint64_t culled = 0;  ///< object-frames that were judged
-    uint64_t aimed_rays = 0, unconfirmed = 0;
+    uint64_t aimed_rays = 0, unconfirmed = 0, lossy_seen = 0;
     uint32_t least_supersampling = 0, most_supersampling = 0;
     /// Reported over exactly visible; 1 if neither saw anything.
     double overEstimate() const;
 };
 std::optional<Verification> sumVerification(const CullRun& run);
+
+/// What distance and contribution culling cost, over the frames for which it was counted; none if that is none.
+struct Changes {
+    uint64_t changed = 0, pixels = 0;
+};
+std::optional<Changes> sumChanges(const CullRun& run);
+
+/// Whether an object's reason is a stage that culls what may be visible.
+inline bool isLossy(uint8_t reason) {
+    return reason > 0 && reason <= kStageCount && (kLossyStages >> (reason - 1) & 1);
+}
 
 /// The median, of an even number the mean of the two in the middle; 0 of none. All that tells of a run uses this one.
 double medianOf(std::vector<double> values);

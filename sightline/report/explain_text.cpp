@@ -93,6 +93,10 @@ std::string withoutText(const OcclusionReason& reason, const NameOfObject& name)
             return "; " + who + " it would be kept";
         case Without::kOutsideFrustum:
             return "; " + who + " the frustum would cull it";
+        case Without::kTooFar:
+            return "; " + who + " it would be left out as too far away";
+        case Without::kTooSmall:
+            return "; " + who + " it would be left out as too small";
         case Without::kOccluded:
             break;
     }
@@ -126,6 +130,15 @@ std::string occlusionText(const Explanation& why, const std::string& subject, co
     text += withoutText(reason, name) + ".";
     if (reason.outside_too && reason.stage == Stage::kOcclusion) return text;
     return text + askedText(reason) + togetherText(why) + rectangleText(why);
+}
+
+std::string farText(const SizeReason& reason) {
+    return fmt::format("{} away, more than {}", units(reason.distance), units(reason.distance_limit));
+}
+
+std::string smallText(const SizeReason& reason) {
+    return fmt::format("as large as a disk of radius {:.3g} pixels, less than {:.3g}", reason.radius,
+                       reason.radius_limit);
 }
 
 std::string keptText(const Explanation& why, const NameOfObject& name) {
@@ -181,6 +194,13 @@ std::string explanationText(const Explanation& why, const std::string& subject, 
             return frustumText(why, subject);
         case Verdict::kOccluded:
             return occlusionText(why, subject, name);
+        case Verdict::kTooFar:
+            return fmt::format("culled by distance: {} is {}. It may be visible.", subject, farText(why.size)) +
+                   togetherText(why) + rectangleText(why);
+        case Verdict::kTooSmall:
+            return fmt::format("culled by contribution: {} looks {}. It may be visible.", subject,
+                               smallText(why.size)) +
+                   togetherText(why) + rectangleText(why);
         case Verdict::kVisible:
             break;
     }
@@ -198,6 +218,10 @@ std::string explanationClause(const Explanation& why, const NameOfObject& name, 
         case Verdict::kOccluded:
             return "behind " + listOf(why.occlusion.hiders, name, most) +
                    (why.occlusion.by_triangles ? ", by its triangles" : "");
+        case Verdict::kTooFar:
+            return farText(why.size);
+        case Verdict::kTooSmall:
+            return smallText(why.size);
         case Verdict::kVisible:
             break;
     }
@@ -207,11 +231,14 @@ std::string explanationClause(const Explanation& why, const NameOfObject& name, 
 std::string stageOf(const Explanation& why) {
     if (why.verdict == Verdict::kOutsideFrustum) return kStageNames[static_cast<int>(Stage::kFrustum)];
     if (why.verdict == Verdict::kOccluded) return kStageNames[static_cast<int>(why.occlusion.stage)];
+    if (why.verdict == Verdict::kTooFar) return kStageNames[static_cast<int>(Stage::kDistance)];
+    if (why.verdict == Verdict::kTooSmall) return kStageNames[static_cast<int>(Stage::kContribution)];
     return "";
 }
 
 const char* verdictName(Verdict verdict) {
-    constexpr const char* kNames[] = {"no such object", "outside layers", "visible", "outside frustum", "occluded"};
+    constexpr const char* kNames[] = {"no such object", "outside layers", "visible",  "outside frustum",
+                                      "occluded",       "too far",        "too small"};
     return kNames[static_cast<int>(verdict)];
 }
 

@@ -24,7 +24,7 @@ std::string explanationClause(const Explanation& why, const NameOfObject& name, 
 /// "frustum", "occlusion", or empty where no stage culled it.
 std::string stageOf(const Explanation& why);
 
-/// As JSON has it: "visible", "outside frustum", "occluded", "outside layers", "no such object".
+/// As JSON has it: "visible", "outside frustum", "occluded", "too far", "too small", "outside layers", "no such object".
 const char* verdictName(Verdict verdict);
 /// "open pixel", "view not usable", and so on.
 const char* keptBecauseName(KeptBecause because);

@@ -8,8 +8,8 @@
 
 namespace sightline {
 
-const glm::u8vec4 kPlanPalette[kPlanColours] = {
-    {0, 114, 178, 255}, {138, 148, 163, 140}, {204, 121, 167, 215}, {230, 126, 0, 215}};
+const glm::u8vec4 kPlanPalette[kPlanColours] = {{0, 114, 178, 255},  {138, 148, 163, 140}, {0, 158, 115, 215},
+                                                {150, 132, 20, 215}, {204, 121, 167, 215}, {230, 126, 0, 215}};
 
 namespace {
 

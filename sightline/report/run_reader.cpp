@@ -152,6 +152,7 @@ VerificationRow verificationOf(const At& at, std::vector<uint64_t>& unseen) {
     if (const auto side = at.maybe("supersampling"))
         row.supersampling = static_cast<uint32_t>(side->whole(0, kMostSupersampling));
     if (const auto unconfirmed = at.maybe("unconfirmed")) row.unconfirmed = unconfirmed->whole();
+    if (const auto seen = at.maybe("lossy_seen")) row.lossy_seen = seen->whole();
     if (const auto list = at.maybe("list"))
         for (size_t i = 0; i < list->size(); ++i) {
             const At entry = list->element(i);
@@ -185,6 +186,8 @@ void readFrame(const At& at, CullRun& run, uint32_t& stages, FrameResult& frame,
     count("nodes_visited", frame.nodes_visited);
     count("seam_pixels", frame.seam_pixels);
     count("closed_gaps", frame.closed_gaps);
+    if (const auto changed = at.maybe("changed_pixels"))
+        frame.changed_pixels = changed->whole(0, uint64_t{run.width} * run.height);
     if (const auto spent = at.maybe("budget_spent")) frame.budget_spent = spent->flag();
     count("faces_tested", frame.faces_tested);
     count("faces_culled", frame.faces_culled);
@@ -249,6 +252,8 @@ RunFile readHead(const At& head) {
         run.occluder_triangles = static_cast<uint32_t>(limit->whole(0, ~uint32_t{0}));
     if (const auto size = head.maybe("occlusion_size"))
         run.occlusion_size = static_cast<uint32_t>(size->whole(1, 8192));
+    if (const auto distance = head.maybe("max_distance")) run.max_distance = distance->positive();
+    if (const auto radius = head.maybe("contribution")) run.contribution = radius->positive();
     if (const auto error = head.maybe("occluder_error")) run.occluder_error = error->positive();
     if (const auto faces = head.maybe("faces")) run.faces = faces->flag();
     if (const auto masked = head.maybe("masked")) run.masked = masked->flag();

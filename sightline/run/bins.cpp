@@ -84,11 +84,12 @@ void BinnedWalk::addWalk() {
     walks_.back()->remembers = true;
 }
 
-void BinnedWalk::begin(const SnapshotState* now, const View& view) {
+void BinnedWalk::begin(const SnapshotState* now, const View& view, std::span<const uint32_t> shown) {
     now_ = now;
     view_ = view;
     count_ = now ? binCount(view) : 1;
     while (walks_.size() < count_) addWalk();
+    for (auto& walk : walks_) walk->sizes.shown = shown;
     merged_.clear();
     if (count_ == 1) return;
     const uint32_t columns = makeScreen(view, view.occlusion_size).width / 8;
@@ -162,7 +163,7 @@ void BinnedWalk::mergeVisible() {
     }
 }
 
-/// The nodes and objects that the frustum and the volumes cull are the same for all bins that meet them; the rest of
+/// The nodes and objects that the stages before occlusion cull are the same for all bins that meet them; the rest of
 /// what is not kept is occluded.
 void BinnedWalk::countCulled() {
     for (uint32_t bin = 0; bin < count_; ++bin)
@@ -170,7 +171,8 @@ void BinnedWalk::countCulled() {
             if (range.stage != Stage::kOcclusion && meet(range.first))
                 of(range.stage).culled += walks_[bin]->inLayers(range.first, range.count);
     uint64_t left = stats.objects;
-    for (const Stage stage : {Stage::kFrustum, Stage::kVolumes, Stage::kOcclusion}) {
+    for (int i = 0; i < kStageCount; ++i) {
+        const Stage stage = static_cast<Stage>(i);
         if (stage == Stage::kOcclusion) of(stage).culled = left - stats.visible;
         of(stage).tested = walks_[0]->uses(stage) ? left : 0;
         left -= of(stage).culled;
@@ -201,9 +203,12 @@ void BinnedWalk::finish() {
 }
 
 void BinnedWalk::timed(uint64_t nanoseconds) {
-    if (view_.time_stages && walks_[0]->uses(Stage::kOcclusion))
-        of(Stage::kOcclusion).nanoseconds =
-            stats.nanoseconds - of(Stage::kFrustum).nanoseconds - of(Stage::kVolumes).nanoseconds;
+    if (view_.time_stages && walks_[0]->uses(Stage::kOcclusion)) {
+        uint64_t others = 0;
+        for (int stage = 0; stage < static_cast<int>(Stage::kOcclusion); ++stage)
+            others += stats.stages[stage].nanoseconds;
+        of(Stage::kOcclusion).nanoseconds = stats.nanoseconds - others;
+    }
     stats.nanoseconds = nanoseconds;
 }
 

@@ -19,8 +19,9 @@ public:
     explicit BinnedWalk(Memory* memory);
 
     /// Takes up a view. Then run(bin) once for each bin, by any threads, and finish().
-    /// @param now  outlives the answer; null: there is none
-    void begin(const SnapshotState* now, const View& view);
+    /// @param now    outlives the answer; null: there is none
+    /// @param shown  SizeStages::shown; until all is run
+    void begin(const SnapshotState* now, const View& view, std::span<const uint32_t> shown = {});
     uint32_t bins() const { return count_; }
     void run(uint32_t bin);
     void finish();

@@ -66,6 +66,7 @@ struct Explainer::Impl {
     View view;
     Array<uint32_t> item_of{memory};  ///< per ObjectId::index
     Trial trial{memory};              ///< of the object, in the whole world
+    detail::LastShown shown{memory};  ///< of the answer that View::hysteresis goes by
     detail::HiderSearch search{memory};
     detail::OpenPixels open{memory};
     detail::AskedPixels asked{memory};
@@ -207,6 +208,8 @@ void Explainer::Impl::tryWithout(uint32_t item, OcclusionReason& out) {
     const Verdict verdict = trial.run(*left, view, self);
     out.without = verdict == Verdict::kOccluded         ? Without::kOccluded
                   : verdict == Verdict::kOutsideFrustum ? Without::kOutsideFrustum
+                  : verdict == Verdict::kTooFar         ? Without::kTooFar
+                  : verdict == Verdict::kTooSmall       ? Without::kTooSmall
                                                         : Without::kVisible;
     if (verdict != Verdict::kOccluded) return;
     if (trial.cull.stage == Stage::kVolumes) return nameVolume(*left, out.others);
@@ -223,6 +226,12 @@ Explainer::Explainer(const Snapshot& now, const View& view, Memory* memory)
         if (impl_->item_of.size() <= index) impl_->item_of.resize(index + 1, PixelOwner::kNone);
         impl_->item_of[index] = item;
     }
+}
+Explainer::Explainer(const Snapshot& now, const View& view, std::span<const Visible> last, Memory* memory)
+    : Explainer(now, view, memory) {
+    if (!detail::remembersShown(view)) return;
+    impl_->shown.mark(last);
+    impl_->trial.walk.sizes.shown = impl_->search.trial.walk.sizes.shown = impl_->shown.generations();
 }
 Explainer::~Explainer() = default;
 Explainer::Explainer(Explainer&&) noexcept = default;
@@ -252,6 +261,7 @@ Explanation Explainer::explain(ObjectId id, const ExplainSettings& settings) {
         out.on_screen = !leaf.doubt() && !leaf.outside();
         const Box3d box = detail::worldBounds(object);
         out.frustum = planesOf(state, box, impl.view);
+        if (stagesInUse(impl.view) & kLossyStages) out.size = impl.trial.walk.sizes.reasonFor(place);
         out.frustum.outside_any = leaf.beyond_plane || leaf.outside();
         out.frustum.by_rectangle = leaf.outside() && !leaf.beyond_plane;
         if (out.on_screen) {

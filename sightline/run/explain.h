@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "sightline/base/memory.h"
 #include "sightline/geom/view.h"
@@ -18,6 +19,8 @@ enum class Verdict : uint8_t {
     kVisible,         ///< it is in the answer
     kOutsideFrustum,  ///< culled by the frustum stage
     kOccluded,        ///< culled by the occlusion stage, or by the stage of volumes
+    kTooFar,          ///< culled by the stage of distance, although it may be visible
+    kTooSmall,        ///< culled by the stage of contribution, although it may be visible
 };
 
 /// A rectangle of the viewport. What a query looks at is the viewport widened by the jitter, in the whole pixels of its
@@ -46,6 +49,15 @@ struct FrustumReason {
 };
 inline constexpr const char* kPlaneNames[6] = {"left", "right", "bottom", "top", "near", "far"};
 
+/// How an object's box lies to the limits of View::max_distance and View::contribution; its own, if it has any, and
+/// with View::hysteresis.
+struct SizeReason {
+    double distance = 0;        ///< to the nearest point of its box; in a parallel view its depth  [world units]
+    double distance_limit = 0;  ///< infinity: there is none  [world units]
+    double radius = 0;          ///< projected; infinity of what reaches the eye's plane  [viewport pixels]
+    double radius_limit = 0;    ///< 0: there is none  [viewport pixels]
+};
+
 /// One of the occluders that hide an object.
 struct Hider {
     ObjectId id;
@@ -54,7 +66,7 @@ struct Hider {
 };
 
 /// What would be said of an object if its hiders were removed from the world.
-enum class Without : uint8_t { kNotAsked, kVisible, kOccluded, kOutsideFrustum };
+enum class Without : uint8_t { kNotAsked, kVisible, kOccluded, kOutsideFrustum, kTooFar, kTooSmall };
 
 struct OcclusionReason {
     /// That culled it. The stage of volumes has one hider, whose shadow holds all of the object's box: a proof by itself.
@@ -116,6 +128,7 @@ struct Explanation {
     ImageRect rect;                  ///< of its box
     double depth = 0;                ///< of its box's nearest point, along the direction of view  [world units]
     FrustumReason frustum;           ///< not for objects in doubt
+    SizeReason size;                 ///< where a stage of distance or contribution is in use; not for objects in doubt
     OcclusionReason occlusion;
     VisibleReason visible;
 
@@ -137,6 +150,8 @@ class Explainer {
 public:
     /// @param memory  outlives the explainer and its explanations
     Explainer(const Snapshot& now, const View& view, Memory* memory = defaultMemory());
+    /// The same after an answer, which View::hysteresis goes by.
+    Explainer(const Snapshot& now, const View& view, std::span<const Visible> last, Memory* memory = defaultMemory());
     ~Explainer();
     Explainer(Explainer&&) noexcept;
     Explainer& operator=(Explainer&&) noexcept;

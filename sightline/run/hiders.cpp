@@ -20,7 +20,7 @@ bool HiderSearch::run(const SnapshotState& state, const View& view, uint32_t ite
     const PixelRect& within = ask(decided, rect);
     owners.run(decided.walk, decided.record, within);
     View by_tiles = view;  // what the tiles of a set hide a volume may hide as well, and nobody would own a pixel
-    by_tiles.stages &= ~stageBit(Stage::kVolumes);
+    by_tiles.stages &= ~(stageBit(Stage::kVolumes) | kLossyStages);  // nor is it asked for its size by itself
     for (const bool anywhere : {false, true}) {
         collect(state, item, decided, within, anywhere);
         if (!shrink(state, by_tiles, item)) continue;

@@ -18,6 +18,9 @@ struct Query::Impl {
     /// The objects of the last answer.
     Array<Visible>& last() { return stereo ? both : walk.visible(); }
     void mergeEyes();
+    std::span<const uint32_t> shownIf(bool remembers) const {
+        return remembers ? shown.generations() : std::span<const uint32_t>();
+    }
 
     Memory* const memory;
     Jobs* const jobs;
@@ -29,6 +32,7 @@ struct Query::Impl {
     Array<uint8_t> eyes{memory};           ///< per object of `both`
     mutable Array<uint8_t> other{memory};  ///< the right eye's reasons, while both are put together
     Array<Visible> before{memory};         ///< the answer before the last
+    detail::LastShown shown{memory};       ///< of that answer, while one is made that hangs on it
     Array<float> depth_image{memory};
     Array<uint8_t> depth_covered{memory};
     Array<Visible> appeared{memory}, disappeared{memory};
@@ -49,11 +53,11 @@ uint64_t since(std::chrono::steady_clock::time_point start) {
 
 /// Walks for one eye or for both, and takes the time: of both together each has its share.
 void answer(std::span<detail::BinnedWalk* const> eyes, const Snapshot& now, std::span<const View* const> views,
-            Jobs* jobs) {
+            std::span<const uint32_t> shown, Jobs* jobs) {
     const auto start = std::chrono::steady_clock::now();
     uint32_t bins = 0;
     for (size_t eye = 0; eye < eyes.size(); ++eye) {
-        eyes[eye]->begin(now ? &now.state() : nullptr, *views[eye]);
+        eyes[eye]->begin(now ? &now.state() : nullptr, *views[eye], shown);
         bins += eyes[eye]->bins();
     }
     runJobs(jobs, bins, [&](uint32_t bin) {
@@ -77,7 +81,10 @@ VisibleSet Query::visible(const Snapshot& now, const View& view) {
     std::swap(impl.last(), impl.before);
     impl.stereo = false;
     impl.snapshot = now;
-    answer({{&impl.walk}}, now, {{&view}}, impl.jobs);
+    const bool remembers = detail::remembersShown(view);
+    if (remembers) impl.shown.mark(impl.before);
+    answer({{&impl.walk}}, now, {{&view}}, impl.shownIf(remembers), impl.jobs);
+    if (remembers) impl.shown.unmark(impl.before);
     return {impl.walk.visible(), impl.walk.stats};
 }
 
@@ -89,11 +96,15 @@ StereoSet Query::visibleStereo(const Snapshot& now, const View& left, const View
     if (!impl.right) impl.right = makeOwned<detail::BinnedWalk>(impl.memory, impl.memory);
     detail::BinnedWalk* const eyes[] = {&impl.walk, impl.right.get()};
     const View* const views[] = {&left, &right};
+    const bool remembers = detail::remembersShown(left) || detail::remembersShown(right);
+    if (remembers) impl.shown.mark(impl.before);
+    const auto shown = impl.shownIf(remembers);
     if (impl.jobs) {
-        answer(eyes, now, views, impl.jobs);
+        answer(eyes, now, views, shown, impl.jobs);
     } else {
-        for (size_t eye : {0, 1}) answer({&eyes[eye], 1}, now, {&views[eye], 1}, nullptr);
+        for (size_t eye : {0, 1}) answer({&eyes[eye], 1}, now, {&views[eye], 1}, shown, nullptr);
     }
+    if (remembers) impl.shown.unmark(impl.before);
     impl.mergeEyes();
     return {impl.both, impl.eyes, impl.walk.stats, impl.right->stats};
 }
@@ -173,7 +184,7 @@ void Query::reasons(std::span<uint8_t> reasons, uint8_t eye) const {
 }
 
 Explanation Query::explain(const Snapshot& now, const View& view, ObjectId id) const {
-    return Explainer(now, view, impl_->memory).explain(id);
+    return Explainer(now, view, impl_->last(), impl_->memory).explain(id);
 }
 
 Query::DepthImage Query::depthImage(bool resolve_seams) {

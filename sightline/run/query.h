@@ -91,6 +91,9 @@ public:
     /// With View::last_visible_first the occluders that the last answer kept are drawn before anything is asked. The
     /// answer is conservative in the same way, and may be another one than without: it depends on the calls before it,
     /// and is the same for the same calls. The same holds of View::balance_bins.
+    ///
+    /// View::max_distance and View::contribution cull what may be visible: their stages count it apart, and what they
+    /// leave out hides nothing, so that what is culled otherwise is hidden by the objects of the answer alone.
     VisibleSet visible(const Snapshot& now, const View& view);
 
     /// The objects that may be visible from either of two views, as the eyes of a headset: for each eye exactly what
@@ -112,7 +115,8 @@ public:
     /// @param eye  kLeftEye or kRightEye; after visible() both are that view
     void reasons(std::span<uint8_t> reasons, uint8_t eye) const;
 
-    /// Why visible(now, view) has the object in its answer or not; see run/explain.h. The last answer stays as it is.
+    /// Why visible(now, view) has the object in its answer or not; see run/explain.h. The last answer stays as it is, and
+    /// stands for the one before with View::hysteresis.
     /// For many objects of one answer make an Explainer, which does what they share once. Bins are taken at equal widths.
     Explanation explain(const Snapshot& now, const View& view, ObjectId id) const;
 

@@ -5,6 +5,24 @@
 #include <algorithm>
 
 namespace sightline::detail {
+namespace {
+
+Verdict verdictOf(Stage stage) {
+    switch (stage) {
+        case Stage::kFrustum:
+            return Verdict::kOutsideFrustum;
+        case Stage::kDistance:
+            return Verdict::kTooFar;
+        case Stage::kContribution:
+            return Verdict::kTooSmall;
+        case Stage::kVolumes:
+        case Stage::kOcclusion:
+            break;
+    }
+    return Verdict::kOccluded;
+}
+
+}  // namespace
 
 uint32_t hierarchyPlace(const SnapshotState& state, uint32_t item) {
     uint32_t box = item;
@@ -52,7 +70,7 @@ Verdict Trial::runBin(const SnapshotState& state, const View& view, const Bin& b
     for (const WalkRecord::Cull& candidate : record.culls) {
         if (!record.stopsAt(candidate.first, candidate.count)) continue;
         cull = candidate;
-        return cull.stage == Stage::kFrustum ? Verdict::kOutsideFrustum : Verdict::kOccluded;
+        return verdictOf(cull.stage);
     }
     return Verdict::kVisible;
 }

@@ -37,7 +37,7 @@ struct Trial {
     WalkRecord::Cull cull;  ///< that the object was part of, if it was culled
 
     /// @param item  of the state; within View::layers
-    /// @returns kVisible, kOutsideFrustum or kOccluded
+    /// @returns kVisible, or by which stage it is culled
     Verdict run(const SnapshotState& state, const View& view, uint32_t item);
 
 private:

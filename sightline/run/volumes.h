@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "sightline/cull/occluder_volumes.h"
+#include "sightline/run/size_stages.h"
 #include "sightline/run/world_state.h"
 
 namespace sightline::detail {
@@ -53,6 +54,7 @@ public:
                 uint32_t most);
     /// No volumes.
     void clear();
+    const SizeStages* sizes = nullptr;  ///< what these cull hides nothing; null: there are none
     /// All volumes, for the root.
     VolumeRange all() const { return {0, static_cast<uint32_t>(volumes_.size())}; }
     /// @param left  bit per child that is asked about

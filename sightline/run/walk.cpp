@@ -91,6 +91,7 @@ void Walk::noteKept(const Pending& entry, Look look) {
 void Walk::begin(const SnapshotState* now, const View& new_view) {
     snapshot = now;
     view = new_view;
+    view.stages = stagesInUse(view);
     stats = {};
     undecided = 0;
     pending.clear();
@@ -100,6 +101,7 @@ void Walk::begin(const SnapshotState* now, const View& new_view) {
     culled.clear();
     second.clear();
     tiles.clear(0, 0);
+    sizes.clear();
     volumes.clear();
     if (remembers) last.begin(now, view.last_visible_first);
     if (record) record->clear();
@@ -158,6 +160,7 @@ void Walk::expand(const Visit& from) {
         if (answer.outside >> slot & 1) cull(node.first[slot], node.count[slot], Stage::kFrustum, nullptr);
         else left |= 1u << slot;
     }
+    if (left && sizes.inUse()) left &= ~cullBySize(from.node, boxes, left);
     VolumesAnswer hidden;
     if (left && from.volumes.count) {
         hidden = askVolumes(node, boxes, from.volumes, left);
@@ -196,7 +199,8 @@ void Walk::meet(const BvhNode& node, int slot, const Visit& below, const ScreenA
 
 /// Draws what the last answer drew, nearest first, before anything is asked.
 void Walk::drawLast() {
-    for (const uint32_t place : last.places()) offerOccluder(place, true);
+    for (const uint32_t place : last.places())
+        if (!sizes.drops(place)) offerOccluder(place, true);
     while (!pending.empty()) visit(pending.pop());
 }
 
@@ -285,11 +289,14 @@ void Walk::walkUnordered(const Visit& root) {
         const BvhNode& node = state().bvh.nodes[visit.node];
         const EyeBoxes boxes = eyeBoxes(node, state().bvh.origin - frustum.eye);
         const FrustumAnswer answer = testFrustum(frustum, boxes, visit.planes);
+        uint32_t gone = sizes.inUse() ? cullBySize(visit.node, boxes, ~answer.outside & usedSlots(node)) : 0;
         VolumesAnswer hidden;
-        if (visit.volumes.count) hidden = askVolumes(node, boxes, visit.volumes, ~answer.outside & usedSlots(node));
+        if (visit.volumes.count)
+            hidden = askVolumes(node, boxes, visit.volumes, ~(answer.outside | gone) & usedSlots(node));
+        gone |= hidden.hidden;
         for (int slot = 0; slot < 8; ++slot) {
-            if (node.count[slot] == 0 || (hidden.hidden >> slot & 1)) continue;
-            const bool decided = answer.planes[slot] == 0 && hidden.range[slot].count == 0;
+            if (node.count[slot] == 0 || (gone >> slot & 1)) continue;
+            const bool decided = answer.planes[slot] == 0 && hidden.range[slot].count == 0 && !sizes.inUse();
             if (answer.outside >> slot & 1) cull(node.first[slot], node.count[slot], Stage::kFrustum, nullptr);
             else if (decided || (node.child[slot] & BvhNode::kLeaf)) report(node.first[slot], node.count[slot]);
             else stack.push_back({node.child[slot], answer.planes[slot], hidden.range[slot]});
@@ -306,6 +313,8 @@ void Walk::chooseVolumes() {
 void Walk::walk() {
     frustum = makeFrustum(view);
     screen = makeScreen(view, view.occlusion_size);
+    sizes.begin(state(), view, frustum.eye);
+    volumes.sizes = &sizes;
     if (uses(Stage::kOcclusion)) {
         tiles.clear(screen.width, screen.height, view.occlusion_detail);
         tiles.gap = closedGap(view);
@@ -343,7 +352,8 @@ void Walk::finish() {
     stats.closed_gaps = tiles.closed_gaps;
     if (isPart()) return;
     uint64_t left = stats.objects;
-    for (const Stage stage : {Stage::kFrustum, Stage::kVolumes, Stage::kOcclusion}) {
+    for (int i = 0; i < kStageCount; ++i) {
+        const Stage stage = static_cast<Stage>(i);
         of(stage).tested = uses(stage) ? left : 0;
         left -= of(stage).culled;
     }

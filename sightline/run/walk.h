@@ -13,6 +13,7 @@
 #include "sightline/run/last_drawn.h"
 #include "sightline/run/pending.h"
 #include "sightline/run/query.h"
+#include "sightline/run/size_stages.h"
 #include "sightline/run/volumes.h"
 #include "sightline/run/world_state.h"
 
@@ -123,6 +124,7 @@ struct Walk {
     bool every_layer = true;       ///< no object is outside the view's layers
     Frustum frustum;
     Screen screen;
+    SizeStages sizes;  ///< SizeStages::shown is set before run()
     VolumeStage volumes{memory};
     DepthTiles tiles{memory};
     bool remembers = false;  ///< `last` is kept from answer to answer: of a query, not of those who ask why
@@ -166,6 +168,7 @@ private:
     void begin(const SnapshotState* now, const View& new_view);
     void keepEverything();
     void walk();
+    uint32_t cullBySize(uint32_t node, const EyeBoxes& boxes, uint32_t left);
     void chooseVolumes();
     void walkUnordered(const Visit& root);
     void expand(const Visit& from);

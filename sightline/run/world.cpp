@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sightline/base/assert.h"
+#include "sightline/run/size_stages.h"
 #include "sightline/run/world_state.h"
 
 namespace sightline {
@@ -66,6 +67,7 @@ std::shared_ptr<SnapshotState> buildState(const ObjectTable& objects, const Occl
     if (!state->unbounded.empty()) state->boxed = std::move(boxed);
     state->bvh = buildBvh(boxes, memory);
     state->placed = placeObjects(*state, memory);
+    state->limits = placeLimits(*state, memory);
     return state;
 }
 
@@ -178,8 +180,8 @@ ObjectId World::add(const ObjectDef& object) {
     SIGHTLINE_ASSERT(object.occluder.index < state_->occluders.size());
     SIGHTLINE_ASSERT(object.shape.index < state_->occluders.size());
     const ObjectId id = state_->newId();
-    state_->objects.append() = {object.transform, object.bounds, object.key,  id,
-                                object.occluder,  object.layers, object.shape};
+    state_->objects.append() = {object.transform, object.bounds, object.key,   id,
+                                object.occluder,  object.layers, object.shape, object.limits};
     ++state_->living;
     state_->rebuild = true;
     return id;

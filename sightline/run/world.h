@@ -26,6 +26,15 @@ struct OccluderId {
     bool operator==(const OccluderId&) const = default;
 };
 
+/// What the stages of distance and contribution, which are not conservative, may do with an object.
+struct ObjectLimits {
+    bool always = false;      ///< neither of them culls it
+    double max_distance = 0;  ///< its own, in place of View::max_distance; 0: the view's  [world units]
+    double factor = 1;        ///< it counts as so many times as large, and is kept so many times as far by the view's
+                              ///< distance. What is not a positive number counts as `always`
+    bool operator==(const ObjectLimits&) const = default;
+};
+
 /// What an object is when it enters a world.
 struct ObjectDef {
     Box3d bounds;               ///< object space, of everything that may be drawn: all LODs, all poses
@@ -36,6 +45,7 @@ struct ObjectDef {
     /// Its own triangles, for View::second_look; or null. It must hold every triangle that may be drawn of it, also those
     /// that hide nothing, in every level of detail; none that a shader moves. May be the same as `occluder`.
     OccluderId shape;
+    ObjectLimits limits;  ///< for View::max_distance and View::contribution
 };
 
 /// What a query says of an object.

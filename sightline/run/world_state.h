@@ -22,6 +22,7 @@ struct ObjectRecord {
     OccluderId occluder;
     uint32_t layers = 0;
     OccluderId shape;
+    ObjectLimits limits;
 };
 
 /// Objects in chunks that snapshots share: a commit copies only the chunks that changed.
@@ -54,6 +55,8 @@ struct PlacedObject {
     OccluderId shape;
 };
 
+struct PlacedLimits;
+
 /// An occluder, simpler ones in its place, and what of it hides by itself.
 struct HeldOccluder : Occluder {
     Array<InnerOccluder> inner;  ///< finest first
@@ -84,6 +87,7 @@ struct SnapshotState {
     Array<uint32_t> unbounded;  ///< items that are always visible
     Bvh bvh;                    ///< over the boxed items
     std::shared_ptr<const Array<PlacedObject>> placed;  ///< per place of the hierarchy; moves leave it as it is
+    std::shared_ptr<const PlacedLimits> limits;         ///< of the same places; null: no object has its own
     uint32_t count = 0;                                 ///< living objects
     uint32_t common_layers = ~0u;                       ///< layers that every object is in
 

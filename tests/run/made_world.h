@@ -81,6 +81,15 @@ struct MadeWorld {
         }
     }
 
+    /// The same objects but some, for seen() alone.
+    template <class Gone>
+    MadeWorld without(Gone gone) const {
+        MadeWorld rest;
+        for (size_t i = 0; i < transforms.size(); ++i)
+            if (!gone(i)) rest.add(transforms[i], hides[i] != 0);
+        return rest;
+    }
+
     /// Which objects an exact z-buffer at `samples` per pixel and axis shows.
     std::vector<uint8_t> seen(const View& view, uint32_t samples, const glm::dvec2& offset = {0, 0}) const {
         std::vector<DrawItem> items;

@@ -1,0 +1,207 @@
+// The stages of distance and contribution in a walk: what is too far or too small, with memory and objects' own limits.
+// SPDX-License-Identifier: MIT
+#include "sightline/run/size_stages.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "sightline/run/walk.h"
+
+namespace sightline::detail {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+PlacedLimits::One limitsOf(const ObjectLimits& limits) {
+    PlacedLimits::One one;
+    const bool culled = !limits.always && limits.factor > 0.0 && limits.factor < kInfinity;
+    one.factor = culled ? limits.factor : kInfinity;
+    one.max_distance = limits.max_distance > 0.0 ? limits.max_distance : 0.0;
+    return one;
+}
+
+void add(const PlacedLimits::One& one, PlacedLimits::Below& below) {
+    below.factor = std::max(below.factor, one.factor);
+    below.max_distance = std::max(below.max_distance, one.max_distance);
+    below.views |= one.max_distance == 0.0;
+}
+
+uint32_t leavesOf(const BvhNode& node) {
+    uint32_t leaves = 0;
+    for (int slot = 0; slot < 8; ++slot) leaves |= uint32_t{(node.child[slot] & BvhNode::kLeaf) != 0} << slot;
+    return leaves;
+}
+
+/// Beyond this squares in float end: what lies there is not too far.
+constexpr double kFarthest = 1e18;
+
+bool isFarther(float square, double limit) { return limit<kFarthest&& static_cast<double>(square)> limit * limit; }
+
+double squareOf(double value) { return value * value; }
+
+}  // namespace
+
+std::shared_ptr<const PlacedLimits> placeLimits(const SnapshotState& state, Memory* memory) {
+    const size_t count = state.bvh.order.size();
+    bool any = false;
+    for (uint32_t place = 0; place < count && !any; ++place) any = state.objectAt(place).limits != ObjectLimits();
+    if (!any) return nullptr;
+    auto placed = makeShared<PlacedLimits>(memory, memory);
+    placed->objects.reserve(count);
+    for (uint32_t place = 0; place < count; ++place) placed->objects.push_back(limitsOf(state.objectAt(place).limits));
+    placed->slots.resize(8 * state.bvh.nodes.size());
+    for (size_t node = 0; node < state.bvh.nodes.size(); ++node)
+        for (size_t slot = 0; slot < 8; ++slot) {
+            const uint32_t first = state.bvh.nodes[node].first[slot], below = state.bvh.nodes[node].count[slot];
+            for (uint32_t i = 0; i < below; ++i) add(placed->objects[first + i], placed->slots[8 * node + slot]);
+        }
+    return placed;
+}
+
+bool remembersShown(const View& view) { return view.hysteresis > 0.0 && (stagesInUse(view) & kLossyStages) != 0; }
+
+void SizeStages::begin(const SnapshotState& state, const View& view, const glm::dvec3& eye) {
+    const uint32_t stages = stagesInUse(view);
+    clear();
+    by_distance_ = stages & stageBit(Stage::kDistance);
+    by_contribution_ = stages & stageBit(Stage::kContribution);
+    if (!inUse()) return;
+    state_ = &state;
+    offset_ = state.bvh.origin - eye;
+    distance_ = makeDistanceMeasure(view);
+    contribution_ = makeContributionMeasure(view);
+    zoom_ = distanceZoom(view);
+    max_distance_ = zoom_ * view.max_distance;
+    least_radius_ = view.contribution;
+    stays_ = !shown.empty() && view.hysteresis > 0.0 ? std::min(view.hysteresis, 1.0) : 0.0;
+}
+
+bool SizeStages::wasShown(uint32_t place) const {
+    if (shown.empty()) return false;
+    const ObjectId id = (*state_->placed)[place].visible.id;
+    return id.index < shown.size() && shown[id.index] == id.generation;
+}
+
+double SizeStages::farthest(uint32_t place) const {
+    double limit = max_distance_;
+    if (const PlacedLimits* placed = state_->limits.get()) {
+        const PlacedLimits::One& one = placed->objects[place];
+        if (one.factor == kInfinity) return kInfinity;
+        limit = one.max_distance > 0.0 ? zoom_ * one.max_distance : limit * one.factor;
+    }
+    return stays_ > 0.0 && wasShown(place) ? limit * (1.0 + stays_) : limit;
+}
+
+double SizeStages::smallest(uint32_t place) const {
+    double limit = least_radius_;
+    if (const PlacedLimits* placed = state_->limits.get()) limit /= placed->objects[place].factor;
+    return stays_ > 0.0 && wasShown(place) ? limit * (1.0 - stays_) : limit;
+}
+
+double SizeStages::farthestBelow(uint32_t node, int slot) const {
+    double limit = max_distance_;
+    if (const PlacedLimits* placed = state_->limits.get()) {
+        const PlacedLimits::Below& below = placed->slots[8 * node + static_cast<uint32_t>(slot)];
+        if (below.factor == kInfinity) return kInfinity;
+        limit = std::max(zoom_ * below.max_distance, below.views ? limit * below.factor : 0.0);
+    }
+    return limit * (1.0 + stays_);
+}
+
+double SizeStages::smallestBelow(uint32_t node, int slot) const {
+    double limit = least_radius_;
+    if (const PlacedLimits* placed = state_->limits.get())
+        limit /= placed->slots[8 * node + static_cast<uint32_t>(slot)].factor;
+    return limit * (1.0 - stays_);
+}
+
+uint32_t SizeStages::far(uint32_t node, const EyeBoxes& boxes, uint32_t left) const {
+    if (!by_distance_) return 0;
+    const BvhNode& from = state_->bvh.nodes[node];
+    alignas(64) float squares[8];
+    squaredDistances(distance_, boxes, squares);
+    uint32_t answer = 0;
+    for (uint32_t bits = left; bits; bits &= bits - 1) {
+        const int slot = std::countr_zero(bits);
+        const bool leaf = from.child[slot] & BvhNode::kLeaf;
+        const double limit = leaf ? farthest(from.first[slot]) : farthestBelow(node, slot);
+        answer |= uint32_t{isFarther(squares[slot], limit)} << slot;
+    }
+    return answer;
+}
+
+uint32_t SizeStages::small(uint32_t node, const EyeBoxes& boxes, uint32_t left) const {
+    if (!by_contribution_) return 0;
+    const BvhNode& from = state_->bvh.nodes[node];
+    alignas(64) float squares[8];
+    squaredRadii(contribution_, boxes, leavesOf(from), squares);
+    uint32_t answer = 0;
+    for (uint32_t bits = left; bits; bits &= bits - 1) {
+        const int slot = std::countr_zero(bits);
+        const bool leaf = from.child[slot] & BvhNode::kLeaf;
+        const double limit = leaf ? smallest(from.first[slot]) : smallestBelow(node, slot);
+        answer |= uint32_t{static_cast<double>(squares[slot]) < squareOf(limit)} << slot;
+    }
+    return answer;
+}
+
+SizeReason SizeStages::reasonFor(uint32_t place) const {
+    SizeReason reason{0, kInfinity, kInfinity, 0};
+    if (!inUse()) return reason;
+    const uint32_t at = state_->bvh.slot[state_->bvh.order[place]];
+    const EyeBoxes boxes = eyeBoxes(state_->bvh.nodes[at / 8], offset_);
+    alignas(64) float squares[8];
+    squaredDistances(distance_, boxes, squares);
+    reason.distance = std::sqrt(static_cast<double>(squares[at % 8]));
+    squaredRadii(contribution_, boxes, 0xff, squares);
+    reason.radius = std::sqrt(static_cast<double>(squares[at % 8]));
+    if (by_distance_) reason.distance_limit = farthest(place);
+    if (by_contribution_) reason.radius_limit = smallest(place);
+    return reason;
+}
+
+bool SizeStages::drops(uint32_t place) const {
+    if (!inUse()) return false;
+    const uint32_t at = state_->bvh.slot[state_->bvh.order[place]];
+    const EyeBoxes boxes = eyeBoxes(state_->bvh.nodes[at / 8], offset_);
+    const uint32_t bit = 1u << at % 8;
+    return (far(at / 8, boxes, bit) | small(at / 8, boxes, bit)) != 0;
+}
+
+/// Culls the children that are too far away or too small.
+uint32_t Walk::cullBySize(uint32_t node, const EyeBoxes& boxes, uint32_t left) {
+    using Clock = std::chrono::steady_clock;
+    uint32_t gone = 0;
+    for (const Stage stage : {Stage::kDistance, Stage::kContribution}) {
+        if (!uses(stage)) continue;
+        const auto start = view.time_stages ? Clock::now() : Clock::time_point();
+        const uint32_t ask = left & ~gone;
+        const uint32_t now = stage == Stage::kDistance ? sizes.far(node, boxes, ask) : sizes.small(node, boxes, ask);
+        if (view.time_stages)
+            of(stage).nanoseconds += static_cast<uint64_t>(
+                std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count());
+        const BvhNode& from = state().bvh.nodes[node];
+        for (uint32_t bits = now; bits; bits &= bits - 1) {
+            const int slot = std::countr_zero(bits);
+            cull(from.first[slot], from.count[slot], stage, nullptr);
+        }
+        gone |= now;
+    }
+    return gone;
+}
+
+void LastShown::mark(std::span<const Visible> last) {
+    uint32_t end = 1;  // not empty, even where nothing was shown
+    for (const Visible& object : last) end = std::max(end, object.id.index + 1);
+    if (generation_.size() < end) generation_.resize(end, 0);
+    for (const Visible& object : last) generation_[object.id.index] = object.id.generation;
+}
+
+void LastShown::unmark(std::span<const Visible> last) {
+    for (const Visible& object : last) generation_[object.id.index] = 0;
+}
+
+}  // namespace sightline::detail
