@@ -21,7 +21,9 @@ std::vector<uint32_t> objectsInFrustum(const SceneFacts& facts, const Sight& sig
     return objects;
 }
 
-std::vector<DrawItem> makeItems(const SceneFacts& facts, const std::vector<uint32_t>& objects) {
+}  // namespace
+
+std::vector<DrawItem> drawItems(const SceneFacts& facts, const std::vector<uint32_t>& objects) {
     std::vector<DrawItem> items;
     items.reserve(objects.size());
     for (uint32_t i = 0; i < objects.size(); ++i) {
@@ -38,12 +40,10 @@ std::vector<DrawItem> makeItems(const SceneFacts& facts, const std::vector<uint3
     return items;
 }
 
-}  // namespace
-
 uint64_t drawIdBuffer(const SceneFacts& facts, const View& view, const Sight& sight, const IdBufferSettings& settings,
                       const std::function<void(uint32_t, const glm::dvec2&)>& seen) {
     const std::vector<uint32_t> objects = objectsInFrustum(facts, sight);
-    const std::vector<DrawItem> items = makeItems(facts, objects);
+    const std::vector<DrawItem> items = drawItems(facts, objects);
     Random random(settings.seed);
     ZBufferSettings pass;
     pass.samples = settings.supersampling;

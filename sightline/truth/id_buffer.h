@@ -3,12 +3,17 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "sightline/geom/view.h"
+#include "sightline/hidden/draw_item.h"
 #include "sightline/truth/scene_facts.h"
 #include "sightline/truth/sight.h"
 
 namespace sightline {
+
+/// Objects as the reference renderer draws them; DrawItem::id is the place in the list. The facts must outlive them.
+std::vector<DrawItem> drawItems(const SceneFacts& facts, const std::vector<uint32_t>& objects);
 
 struct IdBufferSettings {
     uint32_t supersampling = 4;        ///< samples per pixel and axis  [>= 1]
