@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "apps/cli/session.h"
+#include "apps/cli/size_options.h"
 #include "apps/cli/verbs.h"
 #include "sightline/geom/view.h"
 #include "sightline/load/seeded_cameras.h"
@@ -126,11 +127,13 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
         ->capture_default_str()
         ->group("Culling");
     verb.add_option("--use", options.use,
-                    "only these stages, separated by commas (" + stageNames() + "; default: all but volumes)")
+                    "only these stages, separated by commas (" + stageNames() +
+                        "; default: all but volumes, if --distance and --contribution say how much)")
         ->delimiter(',')
         ->type_name("LIST")
         ->group("Culling");
     verb.add_option("--skip", options.skip, "not these stages")->delimiter(',')->type_name("LIST")->group("Culling");
+    addSizeOptions(verb, options);
     verb.add_option("--jitter", options.jitter, "largest shift of the image that the answer must hold for")
         ->check(CLI::Range(0.0, 1024.0))
         ->type_name("PX")
@@ -222,6 +225,7 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     if (!use) return use.error();
     if (!skip) return skip.error();
     options.stages = (options.use.empty() ? kDefaultStages : *use) & ~*skip;
+    if (Status sizes = finishSizeOptions(options); !sizes) return sizes;
     options.seed_given = verb.count("--seed") > 0;
     if (!options.cameras.empty() && (options.frames > 0 || options.seed_given))
         return usage("--cameras excludes --frames and --seed");

@@ -20,6 +20,7 @@
 #include "apps/cli/occlusion_files.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/session.h"
+#include "apps/cli/size_options.h"
 #include "apps/cli/summary.h"
 #include "apps/cli/verbs.h"
 #include "sightline/report/output_file.h"
@@ -167,6 +168,7 @@ Result<int> runCull(const CLI::App& verb, CullOptions& options) {
     if (run.frames.empty()) return exitCodeOf(run, path->frames.size(), options.verify);
     run.command = replayOfRun(options, options.verify);
     const Snapshot now = world ? world->world.commit() : Snapshot();
+    countChanges(*scene, options, run);
     if (options.verify) verifyPath(*scene, options, run);
     if (!options.report.empty()) noteFrames(*scene, options, std::move(world), run);
 

@@ -18,6 +18,7 @@
 #include "apps/cli/cull_frame.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/session.h"
+#include "apps/cli/size_options.h"
 #include "apps/cli/verbs.h"
 #include "sightline/base/thread_pool.h"
 #include "sightline/hidden/threads.h"
@@ -44,6 +45,11 @@ void creditFrame(const CullRun& run, CreditBook& book, FrameResult& frame) {
         frame.credits.push_back({credit.item, credit.triangles, credit.hidden, credit.hidden_weight});
 }
 
+uint64_t countOnce(std::vector<uint64_t>& keys) {
+    std::sort(keys.begin(), keys.end());
+    return static_cast<uint64_t>(std::unique(keys.begin(), keys.end()) - keys.begin());
+}
+
 VerificationRow rowOf(const FrameVerdict& verdict, const FrameResult& frame, const Scene& scene) {
     VerificationRow row;
     row.rays = verdict.rays;
@@ -51,11 +57,11 @@ VerificationRow rowOf(const FrameVerdict& verdict, const FrameResult& frame, con
     row.id_samples = verdict.id_samples;
     row.supersampling = verdict.supersampling;
     row.unconfirmed = verdict.unconfirmed;
-    std::vector<uint64_t> keys;
+    std::vector<uint64_t> keys, lossy;
     for (size_t i = 0; i < verdict.seen.size(); ++i)
-        if (verdict.seen[i]) keys.push_back(scene.objects[i].key);
-    std::sort(keys.begin(), keys.end());
-    row.exactly_visible = static_cast<uint64_t>(std::unique(keys.begin(), keys.end()) - keys.begin());
+        if (verdict.seen[i]) (isLossy(frame.reasons[i]) ? lossy : keys).push_back(scene.objects[i].key);
+    row.exactly_visible = countOnce(keys);
+    row.lossy_seen = countOnce(lossy);
     for (size_t i = 0; i < frame.reasons.size(); ++i)
         if (frame.reasons[i] == 0 && !(i < verdict.seen.size() && verdict.seen[i]))
             row.kept_unseen.push_back(static_cast<uint32_t>(i));
@@ -129,6 +135,7 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     if (run.jitter != View().jitter) command += fmt::format(" --jitter {}", run.jitter);
     if (run.occluder_triangles != View().occluder_triangles)
         command += fmt::format(" --occluder-triangles {}", run.occluder_triangles);
+    command += sizeOptionsOf(run.max_distance, run.contribution);
     if (run.occluder_error > 0) command += fmt::format(" --occluder-error {}", run.occluder_error);
     if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
     if (run.last_visible_first) command += " --last-visible-first";
@@ -140,15 +147,19 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     if (run.second_look_polygons != View().second_look_polygons)
         command += fmt::format(" --second-look-polygons {}", run.second_look_polygons);
     if (run.bins != View().bins) command += fmt::format(" --bins {}", run.bins);
+    View asked;
+    asked.max_distance = run.max_distance;
+    asked.contribution = run.contribution;
+    const uint32_t stages = stagesInUse(asked);  // if none are named
     std::string used, skipped;
     for (int stage = 0; stage < kStageCount; ++stage) {
         const bool uses = run.stages >> stage & 1;
-        if (!uses && !(kDefaultStages >> stage & 1)) continue;  // left out anyway
+        if (!uses && !(stages >> stage & 1)) continue;  // left out anyway
         std::string& names = uses ? used : skipped;
         names += (names.empty() ? "" : ",") + std::string(kStageNames[stage]);
     }
-    if (run.stages & ~kDefaultStages) command += " --use " + used;
-    else if (run.stages != kDefaultStages) command += " --skip " + skipped;
+    if (run.stages & ~stages) command += " --use " + used;
+    else if (run.stages != stages) command += " --skip " + skipped;
     return command;
 }
 
@@ -170,6 +181,8 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.height = options.height;
     run.jitter = options.jitter;
     run.stages = options.stages;
+    run.max_distance = options.max_distance;
+    run.contribution = options.contribution;
     run.occluder_triangles = options.occluder_triangles;
     run.occluder_error = options.occluder_error;
     run.stereo = options.stereo;

@@ -55,7 +55,7 @@ Json frustumJson(const FrustumReason& reason) {
 }
 
 Json occlusionJson(const AskedScene& asked, const OcclusionReason& reason) {
-    constexpr const char* kWithout[] = {"not asked", "visible", "occluded", "outside frustum"};
+    constexpr const char* kWithout[] = {"not asked", "visible", "occluded", "outside frustum", "too far", "too small"};
     Json out;
     out["occluders"] = hidersJson(asked, reason.hiders);
     if (reason.stage == Stage::kOcclusion) out["asked"] = askedName(reason.by_faces, reason.by_triangles);
@@ -118,6 +118,9 @@ View viewOfFrame(const CameraFrame& camera, const RunOptions& options) {
     View view = makeView(camera, options.width, options.height);
     view.jitter = options.jitter;
     view.stages = options.stages;
+    view.max_distance = options.max_distance;
+    view.contribution = options.contribution;
+    view.hysteresis = 0;  // each frame stands by itself, whichever thread answered the one before it
     view.occluder_triangles = options.occluder_triangles;
     view.occluder_error = options.occluder_error;
     view.occlusion_detail = options.masked ? OcclusionDetail::kMasked : OcclusionDetail::kFull;
@@ -196,6 +199,10 @@ Json answerJson(const AskedScene& asked, const ObjectAnswer& answer) {
     }
     if (why.verdict == Verdict::kOutsideFrustum || why.occlusion.outside_too) out["frustum"] = frustumJson(why.frustum);
     if (why.verdict == Verdict::kOccluded) out["occlusion"] = occlusionJson(asked, why.occlusion);
+    if (why.verdict == Verdict::kTooFar)
+        out["distance"] = {{"distance", why.size.distance}, {"limit", why.size.distance_limit}};
+    if (why.verdict == Verdict::kTooSmall)
+        out["contribution"] = {{"radius", why.size.radius}, {"limit", why.size.radius_limit}};
     if (why.verdict == Verdict::kVisible) out["kept"] = keptJson(asked, why.visible);
     if (answer.sighting) {
         const Sighting& sighting = *answer.sighting;

@@ -11,6 +11,7 @@
 
 #include "apps/cli/cull_path.h"
 #include "apps/cli/session.h"
+#include "apps/cli/size_options.h"
 #include "sightline/scene/one_line.h"
 
 namespace sightline::cli {
@@ -40,6 +41,11 @@ void addSums(std::string& text, const Verification& sum, const CullRun& run) {
                    rounded(static_cast<double>(sum.id_samples)));
     fmt::format_to(std::back_inserter(text), "over-estimate {:.3f}: {} reported, {} exactly visible, over {} frames\n",
                    sum.overEstimate(), grouped(sum.reported), grouped(sum.exactly_visible), judged);
+    if (sum.lossy_seen > 0)
+        fmt::format_to(
+            std::back_inserter(text),
+            "not proved   {} objects that distance or contribution culled were seen: so they were asked to\n",
+            grouped(sum.lossy_seen));
     if (judged < run.frames.size())
         fmt::format_to(std::back_inserter(text), "unverified   {} of {} frames\n", run.frames.size() - judged,
                        run.frames.size());
@@ -83,6 +89,11 @@ void printSummary(std::FILE* out, const CullRun& run) {
     if (budget_spent)
         fmt::format_to(std::back_inserter(text),
                        "the work budget was spent in some frames: more was kept than need be\n");
+    if (const auto changes = sumChanges(run))
+        fmt::format_to(std::back_inserter(text),
+                       "changed      {:>10} pixels   {:7.4f} %: what distance and contribution culling cost\n",
+                       grouped(changes->changed),
+                       share(static_cast<double>(changes->changed), static_cast<double>(changes->pixels)));
     if (const auto sum = sumVerification(run)) addSums(text, *sum, run);
     tell(out, text);
 }
@@ -116,6 +127,7 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     };
     list("--use", options.use);
     list("--skip", options.skip);
+    command += sizeOptionsOf(options.max_distance, options.contribution);
     if (options.jitter != View().jitter) command += fmt::format(" --jitter {}", options.jitter);
     if (options.occluder_triangles != View().occluder_triangles)
         command += fmt::format(" --occluder-triangles {}", options.occluder_triangles);

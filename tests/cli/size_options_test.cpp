@@ -1,0 +1,100 @@
+// Distance and contribution culling on the command line: what they cost is told, and they are never called false culls.
+// SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/tool.h"
+
+namespace sightline {
+namespace {
+
+using nlohmann::json;
+
+class SizeOptions : public Tool {
+protected:
+    json cull(const std::string& arguments) const {
+        const Outcome outcome = run("cull " + arguments + " --size 320x180 --repeat 1 --json -");
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return json::parse(outcome.out);
+    }
+};
+
+uint64_t culledBy(const json& run, const std::string& stage) {
+    uint64_t sum = 0;
+    for (const json& frame : run["frames"])
+        for (const json& row : frame["stages"])
+            if (row["name"] == stage) sum += row["culled"].get<uint64_t>();
+    return sum;
+}
+
+TEST_F(SizeOptions, AreOffUnlessAsked) {
+    const json run = cull("city:1:400 --frames 2 --seed 1");
+    for (const json& row : run["frames"][0]["stages"]) {
+        EXPECT_NE(row["name"], "distance");
+        EXPECT_NE(row["name"], "contribution");
+    }
+    EXPECT_FALSE(run.contains("changes"));
+    EXPECT_FALSE(run["frames"][0].contains("changed_pixels"));
+}
+
+TEST_F(SizeOptions, AreCountedApartWithThePixelsThatTheyCost) {
+    const json plain = cull("city:1:2000 --frames 3 --seed 1");
+    const json run = cull("city:1:2000 --frames 3 --seed 1 --contribution 3px");
+    EXPECT_EQ(run["contribution"], 3.0);
+    EXPECT_GT(culledBy(run, "contribution"), 0u);
+    uint64_t changed = 0;
+    for (size_t i = 0; i < 3; ++i) {
+        const json& frame = run["frames"][i];
+        changed += frame["changed_pixels"].get<uint64_t>();
+        uint64_t sum = frame["visible"].size();
+        for (const json& row : frame["stages"]) sum += row["culled"].get<uint64_t>();
+        EXPECT_EQ(sum, run["scene"]["objects"].get<uint64_t>());
+        EXPECT_LE(frame["visible"].size(), plain["frames"][i]["visible"].size());
+    }
+    EXPECT_EQ(run["changes"]["changed_pixels"], changed);
+    EXPECT_EQ(run["changes"]["pixels"], 3 * 320 * 180);
+    EXPECT_GT(changed, 0u);
+    EXPECT_LT(changed, 3u * 320 * 180 / 10);
+    const json far = cull("city:1:2000 --frames 3 --seed 1 --distance 50");
+    EXPECT_GT(culledBy(far, "distance"), 0u);
+    EXPECT_GT(far["changes"]["changed_pixels"].get<uint64_t>(), 0u);
+}
+
+TEST_F(SizeOptions, ProofHoldsTheOtherStagesAndDoesNotCallTheseWrong) {
+    const json run = cull("city:1:2000 --frames 3 --seed 1 --distance 120 --contribution 4 --verify --rays 20000");
+    EXPECT_GT(culledBy(run, "contribution") + culledBy(run, "distance"), 0u);
+    EXPECT_GT(culledBy(run, "occlusion"), 0u);
+    EXPECT_EQ(run["verification"]["false_culls"], 0);
+    EXPECT_GT(run["verification"]["lossy_seen"].get<uint64_t>(), 0u) << "what they left out was to be seen";
+}
+
+TEST_F(SizeOptions, AreTheSameForAnyNumberOfThreads) {
+    const std::string arguments = "city:1:1000 --frames 6 --seed 2 --contribution 2px --distance 300 --threads ";
+    const json one = cull(arguments + "1"), three = cull(arguments + "3");
+    for (size_t i = 0; i < 6; ++i) {
+        EXPECT_EQ(one["frames"][i]["visible"], three["frames"][i]["visible"]) << i;
+        EXPECT_EQ(one["frames"][i]["changed_pixels"], three["frames"][i]["changed_pixels"]) << i;
+    }
+}
+
+TEST_F(SizeOptions, ExplainNamesThem) {
+    const Outcome small = run("explain city:1:400 --frames 1 --seed 1 --object 3 --contribution 5000 --json -");
+    EXPECT_EQ(small.exit_code, 0) << small.err;
+    const Outcome far = run("explain city:1:400 --frames 1 --seed 1 --object 3 --distance 0.0001 --skip frustum");
+    EXPECT_EQ(far.exit_code, 0) << far.err;
+    EXPECT_NE(far.out.find("culled by distance"), std::string::npos) << far.out;
+    const Outcome tiny =
+        run("explain city:1:400 --frames 1 --seed 1 --object 3 --contribution 16000 --use contribution --json -");
+    EXPECT_NE(tiny.out.find("contribution"), std::string::npos) << tiny.out;
+}
+
+TEST_F(SizeOptions, WrongValuesExitWithTwo) {
+    for (const char* value : {"0", "-1px", "px", "2 px", "nan", "inf", "99999", "2em", "''"})
+        expectError("cull city:1:10 --contribution=" + std::string(value), 2, "--contribution");
+    for (const char* value : {"0", "-5", "nan", "inf", "far", "''"})
+        expectError("cull city:1:10 --distance=" + std::string(value), 2, "--distance");
+    expectError("cull city:1:10 --use frustum,contribution", 2, "--contribution");
+    expectError("cull city:1:10 --use distance", 2, "--distance");
+}
+
+}  // namespace
+}  // namespace sightline
