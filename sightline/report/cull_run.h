@@ -87,7 +87,7 @@ struct CullRun {
     double jitter = 0;                                        ///< [pixels]
     uint32_t occluder_triangles = View().occluder_triangles;  ///< that a query drew at most
     double occluder_error = 0;                                ///< View::occluder_error; 0: none were prepared
-    uint32_t stages = kDefaultStages;                         ///< bits of Stage in use
+    uint32_t stages = kDefaultStages & ~kLossyStages;         ///< bits of Stage in use: stagesInUse()
     double max_distance = 0, contribution = 0;                ///< View
     double stereo = 0;                ///< distance of the two eyes  [world units]; 0: there is one
     bool last_visible_first = false;  ///< each frame drew first what the one before it kept
