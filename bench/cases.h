@@ -43,6 +43,10 @@ Table benchOcclusion(const Options& options);
 /// hierarchy beside Embree's.
 Table benchOrder(const Options& options);
 
+/// A city under a low sun, from its streets: the casters of a shadow map beside those in the light's frustum, and the pixels
+/// that the reference renderer lights otherwise without the rest.
+Table benchShadow(const Options& options);
+
 /// City from its streets and from above, building and terrain: what 1 to 64 occluder volumes cull beside the tiles, alone
 /// and before them, and what the query then costs.
 Table benchVolumes(const Options& options);
