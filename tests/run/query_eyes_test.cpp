@@ -149,9 +149,9 @@ TEST(LastVisibleFirst, StaysSoundWhileAllChanges) {
                 culled += reasons[i] != 0;
                 culled_without += plain[i] != 0;
             }
-            EXPECT_EQ(set.stats.stages[0].culled + set.stats.stages[1].culled + set.stats.stages[2].culled +
-                          set.stats.visible,
-                      set.stats.objects);
+            uint64_t sum = set.stats.visible;
+            for (const StageStats& stage : set.stats.stages) sum += stage.culled;
+            EXPECT_EQ(sum, set.stats.objects);
         }
     }
     EXPECT_GT(culled * 100, culled_without * 97);
