@@ -87,7 +87,8 @@ TEST(Picture, DrawsCulledObjectsThroughWhatHidesThem) {
     const CullRun run = madeRun(scene);
     const PictureMaker::Frame frame = PictureMaker(scene).draw(madeView(run), run.frames[0].reasons);
     const glm::u8vec4 middle = frame.culled.at(run.width / 2, run.height / 2);
-    EXPECT_EQ(glm::u8vec3(middle), glm::u8vec3(kPlanPalette[3]));  // what stands behind the wall
+    EXPECT_EQ(glm::u8vec3(middle),
+              glm::u8vec3(kPlanPalette[1 + static_cast<int>(Stage::kOcclusion)]));  // what stands behind the wall
     EXPECT_GT(middle.w, 0);
     EXPECT_EQ(frame.culled.at(0, 0).w, 0);
 }
