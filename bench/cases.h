@@ -28,8 +28,8 @@ Table benchGl(const Options& options);
 /// Every hidden-surface method on one view, and then all of benchClipping, benchOrder, benchBsp, benchDepth and benchGl.
 Table benchHidden(const Options& options);
 
-/// Swarms: a hierarchy that lives beside building it anew, grids beside both, a scene's own tree of nodes, and what a query
-/// of each costs beside the flat list.
+/// Swarms: a hierarchy that lives beside building it anew, grids beside both, and what a query of each costs beside the
+/// flat list.
 Table benchHierarchy(const Options& options);
 
 /// A field of dense statues: simpler occluders inside of them beside their own polygons, by the error allowed.
