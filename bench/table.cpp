@@ -33,10 +33,13 @@ std::string toText(const Table& table) {
         what = std::max(what, row.what.size());
     }
     std::string text = fmt::format("bench {} on {}\n", table.name, machineName());
-    for (const Row& row : table.rows)
-        text += fmt::format("{:<{}}  {:<{}}  {:>12.4g} {:<14} {:>7.3f}x of {:.4g}, {}{}\n", row.where, where, row.what,
-                            what, row.value, row.unit, row.ratio(), row.baseline_value, row.baseline,
-                            row.note.empty() ? "" : "; " + row.note);
+    for (const Row& row : table.rows) {
+        text += fmt::format("{:<{}}  {:<{}}  {:>12.4g} {}", row.where, where, row.what, what, row.value, row.unit);
+        if (!row.baseline.empty())
+            text += fmt::format("{:<{}} {:>7.3f}x of {:.4g}, {}", "", row.unit.size() < 14 ? 14 - row.unit.size() : 0,
+                                row.ratio(), row.baseline_value, row.baseline);
+        text += row.note.empty() ? "\n" : fmt::format("; {}\n", row.note);
+    }
     return text;
 }
 

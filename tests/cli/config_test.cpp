@@ -186,7 +186,7 @@ TEST(ConfigFileText, AnyBytesAreReadOrRefused) {
             if (text.empty()) text = "\n";
         }
         const Result<ConfigFile> file = parseConfig(text, "t");
-        if (!file) EXPECT_EQ(file.error().message.find("t:"), 0u) << text;
+        if (!file) { EXPECT_EQ(file.error().message.find("t:"), 0u) << text; }
     }
 }
 

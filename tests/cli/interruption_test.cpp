@@ -78,9 +78,10 @@ TEST_F(Interruption, FramesWithoutVerdictAreCounted) {
     ASSERT_LT(judged, 400u);
     const std::string said = read(path(".err"));
     EXPECT_NE(said.find("of 400 frames, " + std::to_string(judged) + " of them verified"), std::string::npos) << said;
-    if (judged > 0)
+    if (judged > 0) {
         EXPECT_NE(read(path(".out")).find("unverified   " + std::to_string(400 - judged) + " of 400 frames"),
                   std::string::npos);
+    }
 }
 
 TEST_F(Interruption, BeforeTheFramesNothingIsWritten) {

@@ -26,7 +26,12 @@ struct Copy {
         std::map<uint32_t, OccluderId> occluders;
         for (const uint32_t item : items) {
             const detail::ObjectRecord& object = from.state().object(item);
-            ObjectDef def{object.bounds, object.transform, object.key, OccluderId(), object.layers, OccluderId()};
+            ObjectDef def;
+            def.bounds = object.bounds;
+            def.transform = object.transform;
+            def.key = object.key;
+            def.layers = object.layers;
+            def.limits = object.limits;
             if (object.occluder.index != 0) {
                 const auto [at, is_new] = occluders.try_emplace(object.occluder.index);
                 if (is_new) at->second = world.addOccluder(*from.state().occluders[object.occluder.index]);
@@ -237,8 +242,9 @@ private:
         } else if (why.occlusion.sufficient) {
             // Culled with others, it may lie outside of the view by its faces or triangles when it is asked alone.
             const uint8_t alone = reasonAmong(item, hiders);
-            if (!(alone == kByFrustum && (view_.faces || view_.second_look)))
+            if (!(alone == kByFrustum && (view_.faces || view_.second_look))) {
                 EXPECT_EQ(int(alone), int(kByOcclusion)) << at(item) << " with its hiders alone";
+            }
             for (size_t k = 0; k < hiders.size(); ++k) {
                 std::vector<ObjectId> fewer = hiders;
                 fewer.erase(fewer.begin() + static_cast<ptrdiff_t>(k));
