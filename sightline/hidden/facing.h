@@ -9,10 +9,9 @@
 
 #include <glm/glm.hpp>
 
-namespace sightline {
+#include "sightline/geom/front_face.h"
 
-/// Which winding the front of a triangle has, as it is seen from there.
-enum class FrontFace : uint8_t { kCounterClockwise, kClockwise };
+namespace sightline {
 
 /// How a back face is known. All agree but for rounding; the names are where the test is made.
 enum class FacingTest : uint8_t {
