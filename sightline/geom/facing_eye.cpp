@@ -55,6 +55,7 @@ glm::dvec3 alongView(const View& view, const glm::dvec2& place) {
     } else {
         const glm::dvec4 p = inverse * glm::dvec4(place, -1, 1);
         v = glm::dvec3(p) / p.w;
+        v /= std::abs(v.z);  // to one depth, so that it is affine in the place
     }
     return glm::inverse(glm::dmat3(view.view)) * v;
 }

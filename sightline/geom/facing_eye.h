@@ -34,7 +34,8 @@ struct FacingEye {
 FacingEye facingEye(const View& view, const glm::dmat4& transform, FrontFace front = FrontFace::kCounterClockwise);
 
 /// Vectors along which the edges of the window are seen from the eye, in the object's space: counter-clockwise from the
-/// lower left one, widened by the view's jitter. In a parallel view all four are the same. Of any length, pointing away from the eye.
+/// lower left one, widened by the view's jitter. In a parallel view all four are the same. Pointing away from the eye; in perspective to one depth,
+/// so that what is seen at a place between the corners is affine in it.
 struct CornerRays {
     glm::dvec3 ray[4];
     double error = 0.0;  ///< of each ray, as a share of its length; infinite: nothing is known
