@@ -203,7 +203,7 @@ bool separated(const ViewVolume& volume, const OrientedBox& box, Refinement refi
             if (supportPlane(volume, sign * face, plane) && beyond(plane, box, volume.eye)) return true;
     }
     if (refinement == Refinement::kCorners) return false;
-    VolumeEdge edges[3 * ViewVolume::kMostPlanes];
+    PlanePair edges[3 * ViewVolume::kMostPlanes];
     const uint32_t count = edgesOf(volume, edges);
     for (uint32_t i = 0; i < count; ++i)
         for (const glm::dvec3& half : box.half)
@@ -224,7 +224,7 @@ RefinedVolume refineVolume(const ViewVolume& volume) {
             if (supportPlane(volume, normal, plane)) refined.axes[refined.axis_count++] = plane;
         }
     }
-    VolumeEdge edges[3 * ViewVolume::kMostPlanes];
+    PlanePair edges[3 * ViewVolume::kMostPlanes];
     const uint32_t count = edgesOf(volume, edges);
     for (uint32_t i = 0; i < count; ++i)
         for (int axis = 0; axis < 3 && refined.crossed_count < RefinedVolume::kMostCrossed; ++axis) {

@@ -38,13 +38,14 @@ void eyeBoxesKernel(const BvhNode& node, const glm::dvec3& offset, EyeBoxes& out
     }
 }
 
-void testFrustumKernel(const Frustum& frustum, const EyeBoxes& boxes, uint32_t active, FrustumAnswer& answer) {
+void testPlanesKernel(const glm::dvec4* from, uint32_t count, const EyeBoxes& boxes, uint32_t active,
+                      FrustumAnswer& answer) {
     const F8 d;
     answer.outside = 0;
-    for (uint8_t& planes : answer.planes) planes = 0;
-    for (uint32_t plane = 0; plane < frustum.count; ++plane) {
+    for (uint32_t& planes : answer.planes) planes = 0;
+    for (uint32_t plane = 0; plane < count; ++plane) {
         if (!(active >> plane & 1)) continue;
-        const glm::dvec4& p = frustum.planes[plane];
+        const glm::dvec4& p = from[plane];
         const auto distance = hn::Set(d, static_cast<float>(p.w));
         uint32_t inside = 0;
         for (size_t i = 0; i < 8; i += hn::Lanes(d)) {
@@ -65,7 +66,7 @@ void testFrustumKernel(const Frustum& frustum, const EyeBoxes& boxes, uint32_t a
             inside |= uint32_t{bits[0]} << i;
         }
         for (int box = 0; box < 8; ++box)
-            if (!(inside >> box & 1)) answer.planes[box] |= static_cast<uint8_t>(1u << plane);
+            if (!(inside >> box & 1)) answer.planes[box] |= 1u << plane;
     }
 }
 
@@ -110,7 +111,7 @@ HWY_AFTER_NAMESPACE();
 namespace sightline {
 
 HWY_EXPORT(eyeBoxesKernel);
-HWY_EXPORT(testFrustumKernel);
+HWY_EXPORT(testPlanesKernel);
 HWY_EXPORT(cullFrustumKernel);
 
 EyeBoxes eyeBoxes(const BvhNode& node, const glm::dvec3& offset) {
@@ -119,9 +120,15 @@ EyeBoxes eyeBoxes(const BvhNode& node, const glm::dvec3& offset) {
     return out;
 }
 
-FrustumAnswer testFrustum(const Frustum& frustum, const EyeBoxes& boxes, uint8_t active) {
+FrustumAnswer testFrustum(const Frustum& frustum, const EyeBoxes& boxes, uint32_t active) {
     FrustumAnswer answer;
-    HWY_DYNAMIC_DISPATCH(testFrustumKernel)(frustum, boxes, active, answer);
+    HWY_DYNAMIC_DISPATCH(testPlanesKernel)(frustum.planes, frustum.count, boxes, active, answer);
+    return answer;
+}
+
+FrustumAnswer testViewVolume(const ViewVolume& volume, const EyeBoxes& boxes, uint32_t active) {
+    FrustumAnswer answer;
+    HWY_DYNAMIC_DISPATCH(testPlanesKernel)(volume.planes, volume.count, boxes, active, answer);
     return answer;
 }
 

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "sightline/geom/frustum.h"
+#include "sightline/geom/view_volume.h"
 #include "sightline/space/bvh.h"
 
 namespace sightline {
@@ -23,15 +24,17 @@ struct EyeBoxes {
 /// @param offset  tree origin - eye [world units]
 EyeBoxes eyeBoxes(const BvhNode& node, const glm::dvec3& offset);
 
-/// What eight boxes are to a frustum.
+/// What eight boxes are to the planes of a frustum or of a volume.
 struct FrustumAnswer {
     uint32_t outside = 0;  ///< bit per box: surely outside some plane
-    uint8_t planes[8];     ///< per box: bit per plane that it is not surely inside of
+    uint32_t planes[8];    ///< per box: bit per plane that it is not surely inside of
 };
 
 /// Tests boxes against the planes named in `active`; planes that hold a parent wholly need not be asked again.
 /// A box that touches a plane, or that rounding might place on it, is kept; so is a NaN.
-FrustumAnswer testFrustum(const Frustum& frustum, const EyeBoxes& boxes, uint8_t active);
+FrustumAnswer testFrustum(const Frustum& frustum, const EyeBoxes& boxes, uint32_t active);
+/// The same of a volume, relative to the same eye.
+FrustumAnswer testViewVolume(const ViewVolume& volume, const EyeBoxes& boxes, uint32_t active);
 
 /// Boxes as one array per bound, relative to one origin.
 struct BoxArrays {

@@ -87,11 +87,24 @@ uint32_t stagesInUse(const View& view) {
     return stages;
 }
 
+namespace {
+
+bool areFinite(const ViewPlanes& planes) {
+    if (planes.count > ViewPlanes::kMost) return false;
+    for (const glm::dvec4& plane : planes.all())
+        for (int i = 0; i < 4; ++i)
+            if (!std::isfinite(plane[i])) return false;
+    return true;
+}
+
+}  // namespace
+
 bool isUsable(const View& view) {
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row)
             if (!std::isfinite(view.view[column][row]) || !std::isfinite(view.projection[column][row])) return false;
     if (view.width == 0 || view.height == 0 || !(view.jitter >= 0.0 && view.jitter <= 1e6)) return false;
+    if (!areFinite(view.sections) || !areFinite(view.window)) return false;
     const double determinant = glm::determinant(view.projection);
     return std::isfinite(determinant) && determinant != 0.0;
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include <glm/glm.hpp>
 
@@ -26,6 +27,23 @@ inline constexpr uint32_t kDefaultStages = kAllStages & ~stageBit(Stage::kVolume
 enum class OcclusionDetail : uint8_t {
     kMasked,  ///< where depths meet in a tile that do not fit, the farthest stands for all: smallest, but looser
     kFull,    ///< such a tile gets a depth per pixel
+};
+
+/// A few half spaces of the world: a point p is inside of a plane if dot(n, p) + d >= 0. Normals are of any length; a plane
+/// without one has everything inside or, if d < 0, nothing.
+struct ViewPlanes {
+    static constexpr uint32_t kMost = 8;
+
+    glm::dvec4 planes[kMost]{};  ///< n and d
+    uint32_t count = 0;          ///< [limit: <= kMost]
+
+    /// @returns false if there is no room: nothing has changed
+    bool add(const glm::dvec4& plane) {
+        if (count >= kMost) return false;
+        planes[count++] = plane;
+        return true;
+    }
+    std::span<const glm::dvec4> all() const { return {planes, count}; }
 };
 
 /// One eye's view of a world for one frame.
@@ -78,6 +96,13 @@ struct View {
     /// not timed: so the same calls give the same answers.
     bool balance_bins = false;
     bool time_stages = false;  ///< fill StageStats::nanoseconds (costs some time itself)
+    /// Cuts the world open: what is not inside of all these planes is not drawn. Stage::kFrustum culls what lies wholly
+    /// outside of one. What a plane cuts hides only by parts that it leaves whole, so that what the cut lays open is seen.
+    ViewPlanes sections;
+    /// Asks about a part of the world alone, as what a portal or a rectangle of the image shows: Stage::kFrustum culls what
+    /// lies wholly outside of one of these planes. Nothing is cut: what reaches inside is drawn whole, and hides as ever.
+    /// What is culled hides nothing. See addWindow().
+    ViewPlanes window;
 };
 
 /// Right-handed, y up in clip space; up need not be orthogonal to the direction. If up is parallel
@@ -103,8 +128,8 @@ View shiftedEye(const View& view, double right);
 /// True if clip w is the same for all points: parallel projection.
 bool isOrthographic(const View& view);
 
-/// True if all matrices are finite, the viewport has pixels, the jitter is in its range, and the projection can be
-/// inverted.
+/// True if all matrices and planes are finite, the viewport has pixels, the jitter is in its range, and the projection
+/// can be inverted.
 bool isUsable(const View& view);
 
 /// View::stages less those of distance and contribution, if the view does not say how far and how small.

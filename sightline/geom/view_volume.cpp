@@ -204,7 +204,7 @@ bool provedEmpty(const ViewVolume& volume) {
     return false;
 }
 
-uint32_t edgesOf(const ViewVolume& volume, std::span<VolumeEdge> edges) {
+uint32_t edgesOf(const ViewVolume& volume, std::span<PlanePair> edges) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < volume.count; ++i)
         for (uint32_t j = i + 1; j < volume.count; ++j) {
@@ -265,9 +265,9 @@ ViewVolume volumeOfBoth(const ViewVolume& left, const ViewVolume& right) {
             else all = false;
     if (all) return both;
     // Where a plane of one cannot hold the other (volumes without end), planes along an edge of each do.
-    VolumeEdge edges[2][2 * ViewVolume::kMostPlanes];
+    PlanePair edges[2][2 * ViewVolume::kMostPlanes];
     const uint32_t counts[2] = {edgesOf(left, edges[0]), edgesOf(other, edges[1])};
-    const auto along = [](const ViewVolume& v, const VolumeEdge& e) {
+    const auto along = [](const ViewVolume& v, const PlanePair& e) {
         return glm::cross(glm::dvec3(v.planes[e.first]), glm::dvec3(v.planes[e.second]));
     };
     for (uint32_t i = 0; i < counts[0]; ++i)

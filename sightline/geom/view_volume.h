@@ -90,13 +90,13 @@ bool provedEmpty(const ViewVolume& volume);
 /// projection give six planes; canted ones more. O(planes^4).
 ViewVolume volumeOfBoth(const ViewVolume& left, const ViewVolume& right);
 
-/// Edges of a volume, as the pairs of planes that they lie on.
-struct VolumeEdge {
+/// Planes that share an edge of a volume.
+struct PlanePair {
     uint8_t first = 0, second = 0;
 };
 
 /// Writes the pairs of planes that share an edge, or might share one, and returns how many.
 /// @param edges  further ones are left out where it is full
-uint32_t edgesOf(const ViewVolume& volume, std::span<VolumeEdge> edges);
+uint32_t edgesOf(const ViewVolume& volume, std::span<PlanePair> edges);
 
 }  // namespace sightline

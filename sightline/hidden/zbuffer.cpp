@@ -15,7 +15,9 @@ public:
     Renderer(const View& view, const ZBufferSettings& settings, ZBufferImage& image)
         : settings_(settings),
           image_(image),
-          projector_(view, {image.width, image.height, image.first_row, settings.samples, settings.offset}) {}
+          projector_(view, {image.width, image.height, image.first_row, settings.samples, settings.offset}) {
+        for (const glm::dvec4& plane : view.sections.all()) sections_.push_back(projector_.overSamples(plane));
+    }
 
     void draw(const DrawItem& item, bool writing) {
         projector_.begin(item);
@@ -27,6 +29,7 @@ public:
             if (writes != writing || !projector_.project(triangle, polygon)) continue;
             scanPolygon(polygon.outline(), first_row, end_row, static_cast<int32_t>(image_.width),
                         [&](int32_t row, int32_t begin, int32_t end) {
+                            cutSpan(polygon.depth, row, begin, end);
                             if (writing) writeSpan(polygon.depth, item.id, row, begin, end);
                             else showSpan(polygon.depth, item.id, row, begin, end);
                         });
@@ -59,6 +62,19 @@ private:
 
     /// Where a row of the whole image begins in this band.
     size_t lineOf(int32_t row) const { return (size_t(row) - image_.first_row) * image_.width; }
+
+    /// Leaves of a span what lies inside of all sections. Along it the nearness is affine, and so is the side of a plane:
+    /// what is cut off are ends.
+    void cutSpan(const DepthPlane& plane, int32_t row, int32_t& begin, int32_t& end) const {
+        for (const glm::dvec4& section : sections_) {
+            const auto inside = [&](int32_t i) {
+                const double nearness = plane.origin + plane.per_row * row + plane.per_sample * i;
+                return glm::dot(section, glm::dvec4(i, row, nearness, 1.0)) >= 0.0;
+            };
+            while (begin < end && !inside(begin)) ++begin;
+            while (begin < end && !inside(end - 1)) --end;
+        }
+    }
 
     void countFragment(size_t at) {
         if (image_.generated[at] != UINT16_MAX) ++image_.generated[at];
@@ -100,7 +116,8 @@ private:
     const ZBufferSettings& settings_;
     ZBufferImage& image_;
     Projector projector_;
-    std::vector<uint32_t> longest_;  ///< per id: its longest run so far
+    std::vector<glm::dvec4> sections_;  ///< Projector::overSamples()
+    std::vector<uint32_t> longest_;     ///< per id: its longest run so far
 };
 
 bool hasUnwritten(const DrawItem& item) {

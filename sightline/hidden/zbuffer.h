@@ -45,7 +45,7 @@ struct ZBufferSettings {
 /// Draws the items in the order given, those triangles that write depth before those that do not. Samples
 /// lie at the centres of a regular grid; a sample exactly on a shared edge belongs to one triangle (top-left
 /// rule, decided exactly for the vertices as projected to double). Clips in homogeneous space at the near plane
-/// and, if finite, the far plane. Facing is that of the plane and the eye; a transform of negative determinant
+/// and, if finite, the far plane, and draws only samples inside of View::sections. Facing is that of the plane and the eye; a transform of negative determinant
 /// flips the winding. All arithmetic in double and relative to the eye, written apart from everything that culls.
 /// Triangles with a vertex that is not finite are not drawn. Memory: 12 bytes per sample of the band, 14 with
 /// `generated`. A band gives the same bits as the same rows of the whole image.

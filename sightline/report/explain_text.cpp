@@ -67,14 +67,16 @@ std::string planeText(const FrustumReason& reason) {
     if (reason.by_triangles)
         return "out of view: its box reaches into it, but none of its triangles that would be drawn";
     if (reason.by_faces) return "out of view: the box along the axes reaches into it, but not its own, which is turned";
-    return fmt::format("beyond the {} plane by {} units", kPlaneNames[reason.plane], units(reason.distance()));
+    const char* const name = kPlaneNames[reason.plane];
+    const std::string where = reason.plane < FrustumReason::kFirstSection ? fmt::format("the {} plane", name) : name;
+    return fmt::format("beyond {} by {} units", where, units(reason.distance()));
 }
 
 std::string frustumText(const Explanation& why, const std::string& subject) {
     const FrustumReason& reason = why.frustum;
     std::string text = fmt::format("culled by frustum: {} lies {}", subject, planeText(reason));
     std::string also;
-    for (uint32_t plane = 0; plane < 6; ++plane)
+    for (uint32_t plane = 0; plane < FrustumReason::kPlanes; ++plane)
         if (plane != reason.plane && reason.outside[plane] > 0)
             also +=
                 fmt::format("{}{} by {}", also.empty() ? "" : ", ", kPlaneNames[plane], units(reason.outside[plane]));

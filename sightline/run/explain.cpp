@@ -7,6 +7,7 @@
 
 #include "sightline/geom/depth_order.h"
 #include "sightline/run/hiders.h"
+#include "sightline/run/occluder_form.h"
 #include "sightline/run/open_pixels.h"
 #include "sightline/run/query.h"
 #include "sightline/run/trial.h"
@@ -35,10 +36,16 @@ ImageRect imageOf(const PixelRect& rect, const Screen& screen, const View& view)
 /// How far each plane has the box outside, in double; and how much rounding the query allows for.
 FrustumReason planesOf(const SnapshotState& state, const Box3d& box, const View& view) {
     const Frustum frustum = makeFrustum(view);
+    const ViewLimits limits = makeViewLimits(view, frustum.eye);
     FrustumReason reason;
     double best = FrustumReason::kNoPlane;
-    for (uint32_t i = 0; i < frustum.count; ++i) {
-        const glm::dvec4& plane = frustum.planes[i];
+    for (uint32_t i = 0; i < frustum.count + limits.volume.count; ++i) {
+        const bool added = i >= frustum.count;
+        const uint32_t limit = i - frustum.count;
+        const glm::dvec4& plane = added ? limits.volume.planes[limit] : frustum.planes[i];
+        const uint32_t name = !added                    ? frustum.side[i]
+                              : limit < limits.sections ? FrustumReason::kFirstSection + limit
+                                                        : FrustumReason::kFirstWindow + (limit - limits.sections);
         double inside = plane.w, size = std::abs(plane.w);
         for (int axis = 0; axis < 3; ++axis) {
             const double low = box.min[axis] - frustum.eye[axis], high = box.max[axis] - frustum.eye[axis];
@@ -47,11 +54,11 @@ FrustumReason planesOf(const SnapshotState& state, const Box3d& box, const View&
                                                 std::abs(box.max[axis] - state.bvh.origin[axis]));
             size += std::abs(plane[axis]) * (std::max(std::abs(low), std::abs(high)) + from_origin);
         }
-        reason.outside[frustum.side[i]] = -inside;
+        reason.outside[name] = -inside;
         if (!(-inside > best)) continue;
         best = -inside;
         reason.rounding = 0x1p-18 * size;
-        reason.plane = frustum.side[i];
+        reason.plane = name;
     }
     return reason;
 }
@@ -261,6 +268,9 @@ Explanation Explainer::explain(ObjectId id, const ExplainSettings& settings) {
         out.on_screen = !leaf.doubt() && !leaf.outside();
         const Box3d box = detail::worldBounds(object);
         out.frustum = planesOf(state, box, impl.view);
+        const ViewLimits limits = makeViewLimits(impl.view, screen.eye);
+        out.cut =
+            object.occluder.index != 0 && !isWhole(limits, *state.occluders[object.occluder.index], object.transform);
         if (stagesInUse(impl.view) & kLossyStages) out.size = impl.trial.walk.sizes.reasonFor(place);
         out.frustum.outside_any = leaf.beyond_plane || leaf.outside();
         out.frustum.by_rectangle = leaf.outside() && !leaf.beyond_plane;

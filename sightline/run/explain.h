@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -29,13 +30,16 @@ struct ImageRect {
     double left = 0, top = 0, right = 0, bottom = 0;  ///< [viewport pixels from the left and the top]
 };
 
-/// How an object's box lies to the frustum, widened by the jitter. Planes in the order of kPlaneNames.
+/// How an object's box lies to the frustum, widened by the jitter, and to the planes that the view adds to it. In the order
+/// of kPlaneNames.
 struct FrustumReason {
     static constexpr double kNoPlane = -std::numeric_limits<double>::infinity();
+    static constexpr uint32_t kFirstSection = 6, kFirstWindow = kFirstSection + ViewPlanes::kMost;
+    static constexpr uint32_t kPlanes = kFirstWindow + ViewPlanes::kMost;
 
     /// Per plane, how far outside of it the box's nearest corner lies; negative: how far it reaches inside; kNoPlane:
     /// the view has no such plane.  [world units]
-    double outside[6] = {kNoPlane, kNoPlane, kNoPlane, kNoPlane, kNoPlane, kNoPlane};
+    double outside[kPlanes];
     uint32_t plane = 0;  ///< the one that it is farthest outside of
     /// Bound on the query's own rounding at that plane: what is outside by less may be kept.  [world units]
     double rounding = 0;
@@ -45,9 +49,13 @@ struct FrustumReason {
     /// Its box reaches into the view, but no face of it or, by a second look, none of its triangles that would be drawn.
     bool by_faces = false, by_triangles = false;
 
+    FrustumReason() { std::fill_n(outside, kPlanes, kNoPlane); }
     double distance() const { return outside[plane]; }
 };
-inline constexpr const char* kPlaneNames[6] = {"left", "right", "bottom", "top", "near", "far"};
+inline constexpr const char* kPlaneNames[FrustumReason::kPlanes] = {
+    "left",      "right",     "bottom",    "top",       "near",      "far",       "section 1", "section 2",
+    "section 3", "section 4", "section 5", "section 6", "section 7", "section 8", "window 1",  "window 2",
+    "window 3",  "window 4",  "window 5",  "window 6",  "window 7",  "window 8"};
 
 /// How an object's box lies to the limits of View::max_distance and View::contribution; its own, if it has any, and
 /// with View::hysteresis.
@@ -128,6 +136,7 @@ struct Explanation {
     ImageRect rect;                  ///< of its box
     double depth = 0;                ///< of its box's nearest point, along the direction of view  [world units]
     FrustumReason frustum;           ///< not for objects in doubt
+    bool cut = false;                ///< a section cuts its occluder, of which only whole clusters hide others
     SizeReason size;                 ///< where a stage of distance or contribution is in use; not for objects in doubt
     OcclusionReason occlusion;
     VisibleReason visible;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/run/occluder_form.h"
 
+#include <algorithm>
+
 #include "sightline/cull/occlusion.h"
 
 namespace sightline::detail {
@@ -22,6 +24,23 @@ const Occluder& formFor(const HeldOccluder& occluder, const Screen& screen, cons
     for (const InnerOccluder& inner : occluder.inner)
         if (inner.error * pixels <= most_error) form = &inner.occluder;
     return *form;
+}
+
+bool isWhole(const ViewLimits& limits, const HeldOccluder& occluder, const glm::dmat4& transform) {
+    if (!sightline::isWhole(limits, occluder.bounds, transform)) return false;
+    return std::all_of(occluder.inner.begin(), occluder.inner.end(), [&](const InnerOccluder& inner) {
+        return sightline::isWhole(limits, inner.outside, transform);
+    });
+}
+
+bool isWhole(const ViewLimits& limits, const Occluder& occluder, const OccluderCluster& cluster,
+             const glm::dmat4& transform) {
+    if (!sightline::isWhole(limits, cluster.bounds, transform)) return false;
+    if (cluster.ring_count == 0) return true;
+    for (uint32_t i = cluster.first_vertex; i < cluster.first_vertex + cluster.vertex_count; ++i)
+        if (!sightline::isWhole(limits, glm::vec3(occluder.x[i], occluder.y[i], occluder.z[i]), transform))
+            return false;
+    return true;
 }
 
 }  // namespace sightline::detail

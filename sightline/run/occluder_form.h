@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "sightline/geom/view_limits.h"
 #include "sightline/raster/screen.h"
 #include "sightline/run/world_state.h"
 
@@ -14,5 +15,12 @@ namespace sightline::detail {
 /// @param most_error  [pixels of the occlusion buffer; 0: the mesh's own polygons]
 const Occluder& formFor(const HeldOccluder& occluder, const Screen& screen, const glm::dmat4& transform,
                         double most_error);
+
+/// True if no section cuts anything that an occluder, or one in its place, stands for.
+bool isWhole(const ViewLimits& limits, const HeldOccluder& occluder, const glm::dmat4& transform);
+
+/// True if no section cuts any polygon that a cluster is drawn by, those of its ring too.
+bool isWhole(const ViewLimits& limits, const Occluder& occluder, const OccluderCluster& cluster,
+             const glm::dmat4& transform);
 
 }  // namespace sightline::detail

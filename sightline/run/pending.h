@@ -20,9 +20,9 @@ struct Pending {
     uint32_t index = 0;             ///< node; place of the object; or cluster
     uint32_t owner = 0;             ///< of a cluster: index into Walk::instances
     uint32_t first = 0, count = 1;  ///< places of the objects below
-    uint8_t planes = 0;             ///< of a node: frustum planes that it is not inside of
+    uint32_t planes = 0;            ///< of a node: as Visit has it
+    VolumeRange volumes;            ///< of a node: volumes that it crosses
     Kind kind = Kind::kNode;
-    VolumeRange volumes;    ///< of a node: volumes that it crosses
     bool testable = false;  ///< the rectangle stands for the bound; else it is in doubt, or outside and kept
 };
 

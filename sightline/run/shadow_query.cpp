@@ -349,6 +349,8 @@ CasterSet ShadowQuery::casters(const Snapshot& now, const View& view, std::span<
     const auto start = std::chrono::steady_clock::now();
     const SnapshotState& state = now.state();
     CasterSettings limited = settings;
+    // A renderer may cut casters as it cuts what is shown: then what a section cuts shadows less than it would whole.
+    limited.occlusion = settings.occlusion && view.sections.count == 0;
     limited.mask_size = std::clamp(settings.mask_size, 1u, 4096u);
     limited.filter = settings.filter > 0 && settings.filter < kInfinity ? settings.filter : 0.0;
     limited.bias = settings.bias > 0 && settings.bias < kInfinity ? settings.bias : 0.0;

@@ -73,7 +73,10 @@ public:
     /// or all of it that the light could reach lies behind others of the set. So a shadow map that draws the set alone
     /// shows the same. Both sides of a surface cast; every receiver may be lit from both sides.
     ///
-    /// @param view       whose image is lit; its frustum, jitter and layers count
+    /// Where the view has sections, so that a renderer may cut casters or leave them whole, either finds all that it needs:
+    /// what lies in the shadow of others is then kept.
+    ///
+    /// @param view       whose image is lit; its frustum, jitter, layers and sections count
     /// @param receivers  what it shows: Query::visible() of the same snapshot and view
     /// If the view or the light is not usable, all objects of the layers are casters.
     CasterSet casters(const Snapshot& now, const View& view, std::span<const Visible> receivers, const Light& light,

@@ -42,7 +42,10 @@ LeafAnswer askLeaf(const SnapshotState& state, uint32_t place, const View& view,
     answer.slot = static_cast<int>(slot % 8);
     answer.on_screen = projectBoxes(screen, answer.boxes);
     const Frustum frustum = makeFrustum(view);
-    answer.beyond_plane = testFrustum(frustum, answer.boxes, (1u << frustum.count) - 1).outside >> answer.slot & 1;
+    const ViewVolume limits = makeViewLimits(view, frustum.eye).volume;
+    const uint32_t outside = testFrustum(frustum, answer.boxes, (1u << frustum.count) - 1).outside |
+                             testViewVolume(limits, answer.boxes, limits.allPlanes()).outside;
+    answer.beyond_plane = outside >> answer.slot & 1;
     return answer;
 }
 

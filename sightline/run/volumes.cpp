@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/run/occluder_form.h"
+
 namespace sightline::detail {
 namespace {
 
@@ -65,7 +67,7 @@ void VolumeStage::gather(const SnapshotState& state, const View& view, const Fru
     top_count_ = 0;
     uint32_t nodes = 0, objects = 0;
     Met top;
-    top.planes = static_cast<uint8_t>((1u << frustum.count) - 1);
+    top.planes = (1u << frustum.count) - 1;
     heap_.push_back(top);
     while (!heap_.empty()) {
         std::pop_heap(heap_.begin(), heap_.end());
@@ -114,7 +116,10 @@ void VolumeStage::lookAt(const SnapshotState& state, const View& view, const Vol
     const HeldOccluder& occluder = *state.occluders[placed.occluder.index];
     const VolumeParts& parts = occluder.parts;
     if (parts.parts.empty()) return;
-    const VolumePlace object = placeParts(shared, parts, occluder.bounds, state.objectAt(place).transform);
+    const ObjectRecord& record = state.objectAt(place);
+    if (limits && !isWhole(*limits, occluder, record.transform)) return;
+    if (limits && !reachesWindow(*limits, record.bounds, record.transform)) return;
+    const VolumePlace object = placeParts(shared, parts, occluder.bounds, record.transform);
     if (!object.usable) return;
     const uint32_t owner = static_cast<uint32_t>(places_.size());
     const double away = shared.screen.perspective ? squaredDistance(occluder.bounds, object.eye) : 0.0;

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "sightline/cull/occluder_volumes.h"
+#include "sightline/geom/view_limits.h"
 #include "sightline/run/size_stages.h"
 #include "sightline/run/world_state.h"
 
@@ -54,7 +55,8 @@ public:
                 uint32_t most);
     /// No volumes.
     void clear();
-    const SizeStages* sizes = nullptr;  ///< what these cull hides nothing; null: there are none
+    const SizeStages* sizes = nullptr;   ///< what these cull hides nothing; null: there are none
+    const ViewLimits* limits = nullptr;  ///< nor does what these cut or cull; null: there are none
     /// All volumes, for the root.
     VolumeRange all() const { return {0, static_cast<uint32_t>(volumes_.size())}; }
     /// @param left  bit per child that is asked about
@@ -76,7 +78,7 @@ private:
         double pixels = 0;
         uint32_t serial = 0;
         uint32_t index = 0;  ///< node, or place of an object
-        uint8_t planes = 0;
+        uint32_t planes = 0;
         uint8_t depth = 0;  ///< below the root; 2 stands for more
         bool leaf = false;
         bool operator<(const Met& other) const {

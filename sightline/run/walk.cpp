@@ -145,6 +145,16 @@ VolumesAnswer Walk::askVolumes(const BvhNode& node, const EyeBoxes& boxes, Volum
     return answer;
 }
 
+/// Asks the frustum, and what the view adds to it.
+FrustumAnswer Walk::askPlanes(const EyeBoxes& boxes, uint32_t planes) const {
+    FrustumAnswer answer = testFrustum(frustum, boxes, planes);
+    if (planes >> kLimitBit == 0) return answer;
+    const FrustumAnswer beside = testViewVolume(limits.volume, boxes, planes >> kLimitBit);
+    answer.outside |= beside.outside;
+    for (int slot = 0; slot < 8; ++slot) answer.planes[slot] |= beside.planes[slot] << kLimitBit;
+    return answer;
+}
+
 /// Tests a node's children against the frustum and the volumes and puts those that are left in line.
 void Walk::expand(const Visit& from) {
     const auto start = view.time_stages ? Clock::now() : Clock::time_point();
@@ -152,7 +162,7 @@ void Walk::expand(const Visit& from) {
     const BvhNode& node = state().bvh.nodes[from.node];
     const EyeBoxes boxes = eyeBoxes(node, state().bvh.origin - frustum.eye);
     FrustumAnswer answer;
-    if (uses(Stage::kFrustum)) answer = testFrustum(frustum, boxes, from.planes);
+    if (uses(Stage::kFrustum)) answer = askPlanes(boxes, from.planes);
     if (view.time_stages) of(Stage::kFrustum).nanoseconds += since(start);
     uint32_t left = 0;
     for (int slot = 0; slot < 8; ++slot) {
@@ -171,7 +181,7 @@ void Walk::expand(const Visit& from) {
     if (isPart()) left &= ~findBeside(on_screen, boxes, left);
     for (int slot = 0; slot < 8; ++slot) {
         if (!(left >> slot & 1)) continue;
-        const uint8_t planes = uses(Stage::kFrustum) ? answer.planes[slot] : uint8_t{0};
+        const uint32_t planes = uses(Stage::kFrustum) ? answer.planes[slot] : 0;
         meet(node, slot, {node.child[slot], planes, hidden.range[slot]}, on_screen);
     }
 }
@@ -197,10 +207,17 @@ void Walk::meet(const BvhNode& node, int slot, const Visit& below, const ScreenA
     push(entry);
 }
 
+/// Whether an object that nobody has asked about yet hides: not what a lossy stage or the window may cull.
+bool Walk::mayHide(uint32_t place) const {
+    if (sizes.drops(place)) return false;
+    const ObjectRecord& object = state().objectAt(place);
+    return !limits.windowed() || reachesWindow(limits, object.bounds, object.transform);
+}
+
 /// Draws what the last answer drew, nearest first, before anything is asked.
 void Walk::drawLast() {
     for (const uint32_t place : last.places())
-        if (!sizes.drops(place)) offerOccluder(place, true);
+        if (mayHide(place)) offerOccluder(place, true);
     while (!pending.empty()) visit(pending.pop());
 }
 
@@ -215,8 +232,10 @@ void Walk::offerOccluder(uint32_t place, bool in_line) {
     const PlacedObject& placed = (*state().placed)[place];
     if (placed.occluder.index == 0 || !(placed.layers & view.layers)) return;
     const glm::dmat4& transform = state().objectAt(place).transform;
-    const Occluder& occluder =
-        formFor(*state().occluders[placed.occluder.index], screen, transform, view.occluder_error);
+    const HeldOccluder& held = *state().occluders[placed.occluder.index];
+    const bool cut = limits.cut() && !isWhole(limits, held, transform);
+    // A simpler form hides in the name of all that is drawn of the object.
+    const Occluder& occluder = cut ? held : formFor(held, screen, transform, view.occluder_error);
     const uint32_t owner = static_cast<uint32_t>(instances.size());
     instances.push_back(makeOccluderInstance(screen, occluder, transform));
     if (record) record->owners.push_back(place);
@@ -227,6 +246,7 @@ void Walk::offerOccluder(uint32_t place, bool in_line) {
         const BoxAnswer box(eight, static_cast<int>(cluster % 8));
         if (box.outside || (isPart() && isBeside(box, instances[owner].screen, occluder.clusters[cluster].bounds)))
             continue;
+        if (cut && !isWhole(limits, occluder, occluder.clusters[cluster], transform)) continue;
         if (clusters == 1 && !in_line) {
             draw(instances[owner], cluster, box);
             continue;
@@ -288,7 +308,7 @@ void Walk::walkUnordered(const Visit& root) {
         ++stats.nodes_visited;
         const BvhNode& node = state().bvh.nodes[visit.node];
         const EyeBoxes boxes = eyeBoxes(node, state().bvh.origin - frustum.eye);
-        const FrustumAnswer answer = testFrustum(frustum, boxes, visit.planes);
+        const FrustumAnswer answer = askPlanes(boxes, visit.planes);
         uint32_t gone = sizes.inUse() ? cullBySize(visit.node, boxes, ~answer.outside & usedSlots(node)) : 0;
         VolumesAnswer hidden;
         if (visit.volumes.count)
@@ -312,9 +332,12 @@ void Walk::chooseVolumes() {
 
 void Walk::walk() {
     frustum = makeFrustum(view);
+    limits = makeViewLimits(view, frustum.eye);
+    if (!uses(Stage::kFrustum)) limits.dropWindow();
     screen = makeScreen(view, view.occlusion_size);
     sizes.begin(state(), view, frustum.eye);
     volumes.sizes = &sizes;
+    volumes.limits = &limits;
     if (uses(Stage::kOcclusion)) {
         tiles.clear(screen.width, screen.height, view.occlusion_detail);
         tiles.gap = closedGap(view);
@@ -326,9 +349,9 @@ void Walk::walk() {
         for (uint32_t item : state().unbounded) keep(item);
     }
     if (state().bvh.nodes.empty()) return;
-    const uint8_t planes = static_cast<uint8_t>(uses(Stage::kFrustum) ? (1u << frustum.count) - 1 : 0);
+    const uint32_t planes = (1u << frustum.count) - 1 | limits.volume.allPlanes() << kLimitBit;
     if (uses(Stage::kVolumes)) chooseVolumes();
-    const Visit root{0, planes, volumes.all()};
+    const Visit root{0, uses(Stage::kFrustum) ? planes : 0, volumes.all()};
     if (!uses(Stage::kOcclusion)) return walkUnordered(root);
     drawLast();
     expand(root);

@@ -9,6 +9,7 @@
 #include "sightline/cull/frustum.h"
 #include "sightline/cull/occlusion.h"
 #include "sightline/cull/triangles.h"
+#include "sightline/geom/view_limits.h"
 #include "sightline/raster/tile_log.h"
 #include "sightline/run/last_drawn.h"
 #include "sightline/run/pending.h"
@@ -19,12 +20,14 @@
 
 namespace sightline::detail {
 
-/// A node on the way down, and the frustum planes that it is not inside of.
+/// A node on the way down, and the planes that it is not inside of.
 struct Visit {
     uint32_t node = 0;
-    uint8_t planes = 0;
+    uint32_t planes = 0;  ///< bits of the frustum's, and from kLimitBit on of the view's limits
     VolumeRange volumes;  ///< that it crosses
 };
+
+inline constexpr uint32_t kLimitBit = 6;
 
 /// What an object was asked by.
 enum class Look : uint8_t {
@@ -123,6 +126,7 @@ struct Walk {
     WalkRecord* record = nullptr;  ///< filled, if there is one
     bool every_layer = true;       ///< no object is outside the view's layers
     Frustum frustum;
+    ViewLimits limits;
     Screen screen;
     SizeStages sizes;  ///< SizeStages::shown is set before run()
     VolumeStage volumes{memory};
@@ -170,6 +174,7 @@ private:
     void walk();
     uint32_t cullBySize(uint32_t node, const EyeBoxes& boxes, uint32_t left);
     void chooseVolumes();
+    FrustumAnswer askPlanes(const EyeBoxes& boxes, uint32_t planes) const;
     void walkUnordered(const Visit& root);
     void expand(const Visit& from);
     VolumesAnswer askVolumes(const BvhNode& node, const EyeBoxes& boxes, VolumeRange range, uint32_t left);
@@ -183,6 +188,7 @@ private:
     void drawLast();
     void offerVisible(uint32_t place);
     void offerOccluder(uint32_t place, bool in_line);
+    bool mayHide(uint32_t place) const;
     void draw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box);
     void cull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect,
               uint32_t hider = WalkRecord::kNowhere);

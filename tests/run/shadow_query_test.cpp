@@ -186,6 +186,25 @@ TEST(ShadowQuery, KeepsACasterOutsideTheViewAndDropsOneThatIsInItAndDarkensNothi
     }
 }
 
+TEST(ShadowQuery, WhatASectionCutsShadowsNoCaster) {
+    MadeWorld made;
+    made.add({-50, -2, -50}, {50, -1, 50});
+    made.add({-4, 20, -12}, {4, 21, -4});                        // in the sun's way
+    const ObjectId under = made.add({-1, 10, -9}, {1, 11, -7});  // in the shadow of that
+    const Snapshot now = made.world.commit();
+    View view = viewFrom({0, 5, 10}, {0, -0.4, -1});
+    Query query;
+    ShadowQuery shadows;
+    Light sun;
+    const auto casts = [&] {
+        const CasterSet set = shadows.casters(now, view, query.visible(now, view).objects, sun);
+        return std::any_of(set.casters.begin(), set.casters.end(), [&](const Visible& v) { return v.id == under; });
+    };
+    EXPECT_FALSE(casts());
+    view.sections.add({0, -1, 0, 15});
+    EXPECT_TRUE(casts());
+}
+
 TEST(ShadowQuery, CascadesTogetherKeepWhatOneMapKeeps) {
     Random random(23);
     for (uint64_t seed = 1; seed <= 4; ++seed) {
