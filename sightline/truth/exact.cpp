@@ -196,7 +196,8 @@ bool ExactSight::seesObject(const glm::dvec2& place, uint32_t object) const {
         if (!met.surely || !(met.front_surely || mesh.double_sided[triangle])) return;
         if (met.t >= ray.t_near && met.t <= ray.t_far) nearest = std::min(nearest, met.t);
     });
-    return std::isfinite(nearest) && !hidden(ray, nearest, object);
+    if (!std::isfinite(nearest) || !sight_.inWindow(ray.origin + nearest * ray.direction)) return false;
+    return !hidden(ray, nearest, object);
 }
 
 bool ExactSight::seesPoint(uint32_t object, uint32_t triangle, const glm::dvec3& point, glm::dvec2& place) const {

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/truth/sight.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace sightline {
@@ -24,6 +26,11 @@ Sight::Sight(const View& view)
     const glm::dvec4 z = row(2);
     const glm::dvec4 planes[6] = {w_ + x_, w_ - x_, w_ + y_, w_ - y_, w_ + z, w_ - z};
     for (int i = 0; i < 6; ++i) planes_[i] = planes[i];
+    const auto from_eye = [this](const glm::dvec4& plane) {
+        return glm::dvec4(glm::dvec3(plane), plane.w + glm::dot(glm::dvec3(plane), eye_));
+    };
+    for (const glm::dvec4& plane : view.sections.all()) sections_.push_back(from_eye(plane));
+    for (const glm::dvec4& plane : view.window.all()) window_.push_back(from_eye(plane));
 }
 
 SightRay Sight::rayThrough(const glm::dvec2& place) const {
@@ -41,12 +48,26 @@ SightRay Sight::rayThrough(const glm::dvec2& place) const {
     // An infinite far plane is never met: its normal is zero but for rounding.
     const bool meets_far = closing < -1e-14 * glm::length(glm::dvec3(w_)) && closing < 0;
     ray.t_far = meets_far ? -distanceTo(far_plane, ray.origin) / closing : std::numeric_limits<double>::infinity();
+    for (const glm::dvec4& section : sections_) {
+        const double slope = glm::dot(glm::dvec3(section), ray.direction), start = distanceTo(section, ray.origin);
+        if (slope > 0) ray.t_near = std::max(ray.t_near, -start / slope);
+        else if (slope < 0) ray.t_far = std::min(ray.t_far, -start / slope);
+        else if (start < 0) ray.t_far = -std::numeric_limits<double>::infinity();
+    }
     return ray;
+}
+
+bool Sight::inWindow(const glm::dvec3& point) const {
+    return std::all_of(window_.begin(), window_.end(),
+                       [&](const glm::dvec4& plane) { return distanceTo(plane, point) >= 0; });
 }
 
 bool Sight::project(const glm::dvec3& point, glm::dvec2& place) const {
     for (const glm::dvec4& plane : planes_)
         if (!(distanceTo(plane, point) >= 0)) return false;
+    for (const glm::dvec4& section : sections_)
+        if (!(distanceTo(section, point) >= 0)) return false;
+    if (!inWindow(point)) return false;
     const double w = distanceTo(w_, point);
     if (!(w > 0)) return false;
     place = glm::dvec2(distanceTo(x_, point), distanceTo(y_, point)) / w;
@@ -55,14 +76,15 @@ bool Sight::project(const glm::dvec3& point, glm::dvec2& place) const {
 
 bool Sight::touches(const Box3d& box) const {
     const glm::dvec3 low = box.min - eye_, high = box.max - eye_;
-    for (const glm::dvec4& plane : planes_) {
+    const auto reaches = [&](const glm::dvec4& plane) {
         const glm::dvec3 corner(plane.x > 0 ? high.x : low.x, plane.y > 0 ? high.y : low.y,
                                 plane.z > 0 ? high.z : low.z);
         const glm::dvec3 size = glm::abs(glm::dvec3(plane)) * glm::abs(corner);
         const double slack = 1e-12 * (size.x + size.y + size.z + std::abs(plane.w));
-        if (distanceTo(plane, corner) < -slack) return false;
-    }
-    return true;
+        return !(distanceTo(plane, corner) < -slack);
+    };
+    return std::all_of(std::begin(planes_), std::end(planes_), reaches) &&
+           std::all_of(sections_.begin(), sections_.end(), reaches);
 }
 
 glm::dvec2 Sight::pixel(const glm::dvec2& place) const {

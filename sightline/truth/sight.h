@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <vector>
+
 #include <glm/glm.hpp>
 
 #include "sightline/geom/view.h"
@@ -9,12 +11,12 @@
 
 namespace sightline {
 
-/// The visible part of a line of sight: origin + t * direction with t_near <= t <= t_far. Positions are
-/// relative to the eye, axes are the world's.
+/// The visible part of a line of sight: origin + t * direction with t_near <= t <= t_far; none if t_near > t_far.
+/// Positions are relative to the eye, axes are the world's.
 struct SightRay {
     glm::dvec3 origin{0.0};
     glm::dvec3 direction{0.0, 0.0, -1.0};  ///< unit length
-    double t_near = 0, t_far = 0;          ///< the near and the far plane; far may be infinite
+    double t_near = 0, t_far = 0;          ///< the near and the far plane, or sections; far may be infinite
 };
 
 /// Written from the matrices alone, apart from the frusta that cull.
@@ -30,12 +32,17 @@ public:
     /// @param place  x and y of clip space divided by w  [-1 to 1, y up]
     SightRay rayThrough(const glm::dvec2& place) const;
 
-    /// Where a point appears; false if it lies outside of the frustum.
+    /// Where a point appears; false if it lies outside of the frustum, of a section or of the window.
     /// @param point  relative to the eye
     bool project(const glm::dvec3& point, glm::dvec2& place) const;
 
-    /// False only if a box, in world space, lies wholly outside of one plane.
+    /// False only if a box, in world space, lies wholly outside of one plane of the frustum or of a section: what lies
+    /// outside of the window alone is drawn, and may hide.
     bool touches(const Box3d& box) const;
+
+    /// False if a point lies outside of the window.
+    /// @param point  relative to the eye
+    bool inWindow(const glm::dvec3& point) const;
 
     /// Pixels from the left and the top.
     glm::dvec2 pixel(const glm::dvec2& place) const;
@@ -46,6 +53,7 @@ private:
     glm::dvec2 size_;
     glm::dvec4 x_, y_, w_;  ///< rows: clip coordinates of a point relative to the eye
     glm::dvec4 planes_[6];  ///< left, right, bottom, top, near, far; inside is >= 0, not normalised
+    std::vector<glm::dvec4> sections_, window_;  ///< the view's, likewise
 };
 
 }  // namespace sightline

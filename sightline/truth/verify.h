@@ -55,6 +55,8 @@ public:
     /// The same verdict for the same view, culled objects and settings. A view that is not usable has no verdict:
     /// nothing is seen, no rays are cast.
     /// @param culled  per object of the scene: non-zero if it was reported hidden [size: objects]
+    /// Sections cut the scene that is judged. A culled object is seen only at a point in the window (the id-buffer looks at
+    /// one point of each); one that is kept, anywhere.
     /// A ray passes single-sided back faces; surfaces that do not hide are counted as seen and passed;
     /// it begins at the near plane and ends at the far plane.
     FrameVerdict judge(const View& view, std::span<const uint8_t> culled, const WitnessSettings& settings = {}) const;
