@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "apps/cli/session.h"
+#include "apps/cli/section_options.h"
 #include "apps/cli/size_options.h"
 #include "apps/cli/verbs.h"
 #include "sightline/geom/view.h"
@@ -134,6 +135,7 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
         ->group("Culling");
     verb.add_option("--skip", options.skip, "not these stages")->delimiter(',')->type_name("LIST")->group("Culling");
     addSizeOptions(verb, options);
+    addSectionOptions(verb, options);
     verb.add_option("--jitter", options.jitter, "largest shift of the image that the answer must hold for")
         ->check(CLI::Range(0.0, 1024.0))
         ->type_name("PX")

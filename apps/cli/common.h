@@ -33,6 +33,7 @@ struct RunOptions {
     uint32_t stages = 0;      ///< from `use` and `skip`
     double max_distance = 0;  ///< View; 0: not given
     double contribution = 0;  ///< the same
+    ViewPlanes sections;      ///< View
     double jitter = 0.5;
     uint32_t occluder_triangles = View().occluder_triangles;
     double occluder_error = 0;  ///< View::occluder_error; 0: no simpler occluders are prepared

@@ -49,6 +49,7 @@ View viewOf(const CameraFrame& camera, const CullRun& run) {
     view.stages = run.stages;
     view.max_distance = run.max_distance;
     view.contribution = run.contribution;
+    view.sections = run.sections;
     view.hysteresis = 0;  // each frame stands by itself, whichever thread answered the one before it
     view.occluder_triangles = run.occluder_triangles;
     view.occluder_error = run.occluder_error;

@@ -18,6 +18,7 @@
 #include "apps/cli/cull_frame.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/session.h"
+#include "apps/cli/section_options.h"
 #include "apps/cli/size_options.h"
 #include "apps/cli/verbs.h"
 #include "sightline/base/thread_pool.h"
@@ -135,7 +136,7 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     if (run.jitter != View().jitter) command += fmt::format(" --jitter {}", run.jitter);
     if (run.occluder_triangles != View().occluder_triangles)
         command += fmt::format(" --occluder-triangles {}", run.occluder_triangles);
-    command += sizeOptionsOf(run.max_distance, run.contribution);
+    command += sizeOptionsOf(run.max_distance, run.contribution) + sectionOptionsOf(run.sections);
     if (run.occluder_error > 0) command += fmt::format(" --occluder-error {}", run.occluder_error);
     if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
     if (run.last_visible_first) command += " --last-visible-first";
@@ -183,6 +184,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.stages = options.stages;
     run.max_distance = options.max_distance;
     run.contribution = options.contribution;
+    run.sections = options.sections;
     run.occluder_triangles = options.occluder_triangles;
     run.occluder_error = options.occluder_error;
     run.stereo = options.stereo;

@@ -45,7 +45,7 @@ Json frustumJson(const FrustumReason& reason) {
     Json out;
     out["plane"] = kPlaneNames[reason.plane];
     out["distance"] = reason.distance();
-    for (uint32_t plane = 0; plane < 6; ++plane)
+    for (uint32_t plane = 0; plane < FrustumReason::kPlanes; ++plane)
         if (reason.outside[plane] != FrustumReason::kNoPlane)
             out["outside"][kPlaneNames[plane]] = reason.outside[plane];
     out["by_rectangle"] = reason.by_rectangle;
@@ -120,6 +120,7 @@ View viewOfFrame(const CameraFrame& camera, const RunOptions& options) {
     view.stages = options.stages;
     view.max_distance = options.max_distance;
     view.contribution = options.contribution;
+    view.sections = options.sections;
     view.hysteresis = 0;  // each frame stands by itself, whichever thread answered the one before it
     view.occluder_triangles = options.occluder_triangles;
     view.occluder_error = options.occluder_error;
@@ -192,6 +193,7 @@ Json answerJson(const AskedScene& asked, const ObjectAnswer& answer) {
     out["verdict"] = verdictName(why.verdict);
     out["stage"] = stageOf(why).empty() ? Json(nullptr) : Json(stageOf(why));
     out["together"] = why.together;
+    if (why.cut) out["cut"] = true;
     out["rectangle"] = nullptr;
     if (why.on_screen) {
         out["rectangle"] = {why.rect.left, why.rect.top, why.rect.right, why.rect.bottom};

@@ -11,6 +11,7 @@
 
 #include "apps/cli/cull_path.h"
 #include "apps/cli/session.h"
+#include "apps/cli/section_options.h"
 #include "apps/cli/size_options.h"
 #include "sightline/scene/one_line.h"
 
@@ -127,7 +128,7 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     };
     list("--use", options.use);
     list("--skip", options.skip);
-    command += sizeOptionsOf(options.max_distance, options.contribution);
+    command += sizeOptionsOf(options.max_distance, options.contribution) + sectionOptionsOf(options.sections);
     if (options.jitter != View().jitter) command += fmt::format(" --jitter {}", options.jitter);
     if (options.occluder_triangles != View().occluder_triangles)
         command += fmt::format(" --occluder-triangles {}", options.occluder_triangles);

@@ -89,6 +89,7 @@ struct CullRun {
     double occluder_error = 0;                                ///< View::occluder_error; 0: none were prepared
     uint32_t stages = kDefaultStages & ~kLossyStages;         ///< bits of Stage in use: stagesInUse()
     double max_distance = 0, contribution = 0;                ///< View
+    ViewPlanes sections;                                      ///< View
     double stereo = 0;                ///< distance of the two eyes  [world units]; 0: there is one
     bool last_visible_first = false;  ///< each frame drew first what the one before it kept
     uint32_t occlusion_size = View().occlusion_size;

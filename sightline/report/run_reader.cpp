@@ -254,6 +254,12 @@ RunFile readHead(const At& head) {
         run.occlusion_size = static_cast<uint32_t>(size->whole(1, 8192));
     if (const auto distance = head.maybe("max_distance")) run.max_distance = distance->positive();
     if (const auto radius = head.maybe("contribution")) run.contribution = radius->positive();
+    if (const auto sections = head.maybe("sections"))
+        for (size_t i = 0; i < sections->size(); ++i) {
+            glm::dvec4 plane;
+            sections->element(i).numbers(&plane.x, 4);
+            if (!run.sections.add(plane)) sections->fail("too many planes");
+        }
     if (const auto error = head.maybe("occluder_error")) run.occluder_error = error->positive();
     if (const auto faces = head.maybe("faces")) run.faces = faces->flag();
     if (const auto masked = head.maybe("masked")) run.masked = masked->flag();
