@@ -3,92 +3,22 @@
 #include <bit>
 #include <cmath>
 
-#include <glm/gtc/constants.hpp>
-
 #include "bench/cases.h"
 #include "bench/flat_boxes.h"
+#include "bench/hierarchy_world.h"
 #include "bench/stopwatch.h"
-#include "sightline/base/random.h"
+#include "bench/swarm.h"
 #include "sightline/cull/grid.h"
 #include "sightline/cull/hierarchy.h"
 
 namespace sightline::bench {
 namespace {
 
-constexpr double kWorld = 1000.0;
 constexpr int kFrames = 10;
 
-/// Boxes of which every tenth is under way.
-struct Swarm {
-    std::vector<Box3d> boxes;
-    std::vector<glm::dvec3> velocity;  ///< per mover  [world units a frame]
-    uint32_t every = 10;
+Frustum frustumFrom(double z_far) { return makeFrustum(viewFrom(z_far)); }
 
-    Swarm(uint32_t count, uint64_t seed) {
-        Random random(seed);
-        const auto point = [&](double by) {
-            const double x = random.uniform(-by, by), y = random.uniform(-by, by);
-            return glm::dvec3(x, y, random.uniform(-by, by));
-        };
-        for (uint32_t i = 0; i < count; ++i) {
-            const glm::dvec3 at = point(kWorld);
-            const double x = random.uniform(0.5, 4), y = random.uniform(0.5, 4);
-            boxes.push_back({at, at + glm::dvec3(x, y, random.uniform(0.5, 4))});
-            if (i % every == 0) velocity.push_back(point(2.0));
-        }
-    }
-    uint32_t movers() const { return static_cast<uint32_t>(velocity.size()); }
-    uint32_t mover(uint32_t i) const { return i * every; }
-    void step() {
-        for (uint32_t i = 0; i < movers(); ++i) {
-            Box3d& box = boxes[mover(i)];
-            for (int axis = 0; axis < 3; ++axis)
-                if (box.min[axis] + velocity[i][axis] < -kWorld || box.max[axis] + velocity[i][axis] > kWorld)
-                    velocity[i][axis] = -velocity[i][axis];
-            box.min += velocity[i];
-            box.max += velocity[i];
-        }
-    }
-};
-
-Frustum frustumFrom(double z_far) {
-    View view;
-    view.view = lookAt(glm::dvec3(0.0), glm::dvec3(1, 0.1, 0.3), {0, 1, 0});
-    view.projection = perspective(glm::radians(60.0), 16.0 / 9.0, 0.1, z_far);
-    return makeFrustum(view);
-}
-
-/// Of everything: from far away, so that nothing is outside.
-Frustum frustumOfAll() {
-    View view;
-    view.view = lookAt({0, 0, 5 * kWorld}, glm::dvec3(0.0), {0, 1, 0});
-    view.projection = perspective(glm::radians(60.0), 1.0, 0.1);
-    return makeFrustum(view);
-}
-
-double millisecondsOf(const std::function<void()>& job) {
-    const double start = threadTime();
-    job();
-    return (threadTime() - start) * 1e-3;
-}
-
-double medianOf(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-    return values[values.size() / 2];
-}
-
-/// As timeInterleaved(), by the time that this thread computes.
-std::vector<double> threadTimes(const std::vector<std::function<void()>>& jobs, int repeat) {
-    std::vector<std::vector<double>> times(jobs.size());
-    for (int round = -1; round < repeat; ++round)
-        for (size_t i = 0; i < jobs.size(); ++i) {
-            const double took = millisecondsOf(jobs[i]);
-            if (round >= 0) times[i].push_back(took * 1e3);
-        }
-    std::vector<double> medians;
-    for (const std::vector<double>& t : times) medians.push_back(medianOf(t));
-    return medians;
-}
+Frustum frustumOfAll() { return makeFrustum(viewOfAll()); }
 
 /// Every tenth box moves each frame.
 void measureMovers(Table& table, int repeat) {
@@ -269,6 +199,8 @@ Table benchHierarchy(const Options& options) {
     measureSnapshots(table);
     for (const uint32_t count : {100000u, 1000000u}) measureGrid(table, count, options.repeat);
     measureReach(table, options.repeat);
+    addWorld(table, "world of 100,000", 100000, options.repeat);
+    addWorld(table, "world of 1,000,000", 1000000, options.repeat);
     return table;
 }
 

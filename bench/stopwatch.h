@@ -37,4 +37,29 @@ inline std::vector<double> timeInterleaved(const std::vector<std::function<void(
     return medians;
 }
 
+/// By the time that this thread computes.
+inline double millisecondsOf(const std::function<void()>& job) {
+    const double start = threadTime();
+    job();
+    return (threadTime() - start) * 1e-3;
+}
+
+inline double medianOf(std::vector<double> values) {
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    return values[values.size() / 2];
+}
+
+/// As timeInterleaved(), by the time that this thread computes.
+inline std::vector<double> threadTimes(const std::vector<std::function<void()>>& jobs, int repeat) {
+    std::vector<std::vector<double>> times(jobs.size());
+    for (int round = -1; round < repeat; ++round)
+        for (size_t i = 0; i < jobs.size(); ++i) {
+            const double took = millisecondsOf(jobs[i]);
+            if (round >= 0) times[i].push_back(took * 1e3);
+        }
+    std::vector<double> medians;
+    for (const std::vector<double>& t : times) medians.push_back(medianOf(t));
+    return medians;
+}
+
 }  // namespace sightline::bench

@@ -168,8 +168,8 @@ void BinnedWalk::mergeVisible() {
 void BinnedWalk::countCulled() {
     for (uint32_t bin = 0; bin < count_; ++bin)
         for (const CulledRange& range : walks_[bin]->culled)
-            if (range.stage != Stage::kOcclusion && meet(range.first))
-                of(range.stage).culled += walks_[bin]->inLayers(range.first, range.count);
+            if (range.stage != Stage::kOcclusion && meet(range.places.first))
+                of(range.stage).culled += walks_[bin]->inLayers(range.places);
     uint64_t left = stats.objects;
     for (int i = 0; i < kStageCount; ++i) {
         const Stage stage = static_cast<Stage>(i);
@@ -186,13 +186,13 @@ void BinnedWalk::finish() {
     of(Stage::kOcclusion).doubt = 0;
     for (StageStats& stage : stats.stages) stage.culled = 0;
     for (uint32_t bin = 1; bin < count_; ++bin) addWork(walks_[bin]->stats, stats);
-    if (met_.size() < now_->placed->size()) met_.resize(now_->placed->size(), 0);
+    if (met_.size() < now_->placed.size()) met_.resize(now_->placed.size(), 0);
     if (++answer_ == 0) {
         std::fill(met_.begin(), met_.end(), 0);
         answer_ = 1;
     }
-    for (const uint32_t item : now_->unbounded) {
-        const ObjectRecord& object = now_->object(item);
+    for (const uint32_t row : now_->unbounded) {
+        const ObjectRecord& object = now_->objects[row];
         if (!(object.layers & view_.layers)) continue;
         merged_.push_back({object.key, object.id});
         ++of(Stage::kFrustum).doubt;
@@ -216,11 +216,12 @@ void BinnedWalk::reasons(std::span<uint8_t> reasons) const {
     if (count_ == 1) return walks_[0]->reasons(reasons);
     SIGHTLINE_ASSERT(reasons.size() >= now_->count);
     std::fill(reasons.begin(), reasons.end(), uint8_t{0});
-    const auto at = [&](uint32_t place) -> uint8_t& { return reasons[now_->itemOf(now_->bvh.order[place])]; };
+    const auto at = [&](uint32_t place) -> uint8_t& { return reasons[now_->itemAt(place)]; };
     for (uint32_t bin = 0; bin < count_; ++bin)
         for (const CulledRange& range : walks_[bin]->culled)
-            for (uint32_t place = range.first; place < range.first + range.count; ++place)
-                at(place) = std::max(at(place), static_cast<uint8_t>(1 + static_cast<int>(range.stage)));
+            for (uint32_t place = range.places.first; place < range.places.first + range.places.count; ++place)
+                if (now_->bvh.order[place] != PlacedBvh::kNone)
+                    at(place) = std::max(at(place), static_cast<uint8_t>(1 + static_cast<int>(range.stage)));
     for (uint32_t bin = 0; bin < count_; ++bin)
         for (const KeptObject& object : walks_[bin]->kept) at(object.place) = 0;
     for (uint32_t item = 0; item < now_->count; ++item)

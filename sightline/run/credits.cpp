@@ -39,16 +39,20 @@ void CreditBook::Impl::weigh(std::span<const double> weights) {
     SIGHTLINE_ASSERT(weights.empty() || weights.size() >= state.count);
     weight_before.assign(1, 0.0);
     weight_before.reserve(state.bvh.order.size() + 1);
-    for (const uint32_t item : state.bvh.order)
-        weight_before.push_back(weight_before.back() + (weights.empty() ? 1.0 : weights[state.itemOf(item)]));
+    for (uint32_t place = 0; place < state.bvh.order.size(); ++place) {
+        double weight = 0.0;
+        if (state.bvh.order[place] != PlacedBvh::kNone) weight = weights.empty() ? 1.0 : weights[state.itemAt(place)];
+        weight_before.push_back(weight_before.back() + weight);
+    }
 }
 
 /// Of the objects within the view's layers.
 double CreditBook::Impl::weightOf(const detail::WalkRecord::Cull& cull) const {
-    if (walk.every_layer) return weight_before[cull.first + cull.count] - weight_before[cull.first];
+    if (walk.every_layer)
+        return weight_before[cull.places.first + cull.places.count] - weight_before[cull.places.first];
     double sum = 0;
-    for (uint32_t place = cull.first; place < cull.first + cull.count; ++place)
-        if (walk.inLayers(place, 1)) sum += weight_before[place + 1] - weight_before[place];
+    for (uint32_t place = cull.places.first; place < cull.places.first + cull.places.count; ++place)
+        if (walk.inLayers({place})) sum += weight_before[place + 1] - weight_before[place];
     return sum;
 }
 
@@ -56,7 +60,7 @@ double CreditBook::Impl::weightOf(const detail::WalkRecord::Cull& cull) const {
 void CreditBook::Impl::share(const detail::WalkRecord::Cull& cull) {
     uint32_t owned = 0;
     if (cull.look == detail::Look::kBox) asked.run(cull.rect);
-    else asked.run(walk, cull.first, cull.look, cull.boxed ? &cull.rect : nullptr);
+    else asked.run(walk, cull.places.first, cull.look, cull.boxed ? &cull.rect : nullptr);
     const PixelRect& rect = asked.rect;
     for (int32_t y = rect.y0; y <= rect.y1; ++y)
         for (int32_t x = rect.x0; x <= rect.x1; ++x) {
@@ -66,7 +70,7 @@ void CreditBook::Impl::share(const detail::WalkRecord::Cull& cull) {
             if (pixels[instance]++ == 0) met.push_back(instance);
             ++owned;
         }
-    const double objects = static_cast<double>(walk.inLayers(cull.first, cull.count)), weight = weightOf(cull);
+    const double objects = static_cast<double>(walk.inLayers(cull.places)), weight = weightOf(cull);
     if (owned == 0) unshared += objects;
     for (const uint32_t instance : met) {
         const double part = static_cast<double>(pixels[instance]) / owned;
@@ -80,7 +84,7 @@ void CreditBook::Impl::share(const detail::WalkRecord::Cull& cull) {
 /// Gives a range that a volume culled to the volume's object, which need not have been drawn.
 void CreditBook::Impl::shareVolume(const detail::WalkRecord::Cull& cull) {
     const detail::SnapshotState& state = snapshot.state();
-    const uint32_t item = state.itemOf(state.bvh.order[cull.hider]);
+    const uint32_t item = state.itemAt(cull.hider);
     size_t at = 0;
     while (at < of_instance.size() && of_instance[at].item != item) ++at;
     if (at == of_instance.size()) {
@@ -88,7 +92,7 @@ void CreditBook::Impl::shareVolume(const detail::WalkRecord::Cull& cull) {
         credit.item = item;
         credit.id = state.object(item).id;
     }
-    of_instance[at].hidden += static_cast<double>(walk.inLayers(cull.first, cull.count));
+    of_instance[at].hidden += static_cast<double>(walk.inLayers(cull.places));
     of_instance[at].hidden_weight += weightOf(cull);
 }
 
@@ -123,7 +127,7 @@ std::span<const Credit> CreditBook::credits(const View& view) {
     impl.of_instance.assign(impl.record.owners.size(), Credit());
     impl.pixels.assign(impl.record.owners.size(), 0);
     for (size_t i = 0; i < impl.record.owners.size(); ++i) {
-        impl.of_instance[i].item = state.itemOf(state.bvh.order[impl.record.owners[i]]);
+        impl.of_instance[i].item = state.itemAt(impl.record.owners[i]);
         impl.of_instance[i].id = state.object(impl.of_instance[i].item).id;
     }
     for (const detail::WalkRecord::Draw& draw : impl.record.draws)

@@ -71,7 +71,6 @@ struct Explainer::Impl {
     Memory* const memory;
     Snapshot snapshot;
     View view;
-    Array<uint32_t> item_of{memory};  ///< per ObjectId::index
     Trial trial{memory};              ///< of the object, in the whole world
     detail::LastShown shown{memory};  ///< of the answer that View::hysteresis goes by
     detail::HiderSearch search{memory};
@@ -89,9 +88,8 @@ struct Explainer::Impl {
 };
 
 uint32_t Explainer::Impl::find(ObjectId id) const {
-    if (!snapshot || id.index >= item_of.size() || item_of[id.index] == PixelOwner::kNone) return PixelOwner::kNone;
-    const uint32_t item = item_of[id.index];
-    return snapshot.state().object(item).id == id ? item : PixelOwner::kNone;
+    const uint32_t row = snapshot ? snapshot.state().find(id) : detail::IdSlot::kNowhere;
+    return row == detail::IdSlot::kNowhere ? PixelOwner::kNone : snapshot.state().itemOf(row);
 }
 
 /// Which doubt keeps a box that has no rectangle.
@@ -226,14 +224,7 @@ void Explainer::Impl::tryWithout(uint32_t item, OcclusionReason& out) {
 }
 
 Explainer::Explainer(const Snapshot& now, const View& view, Memory* memory)
-    : impl_(makeOwned<Impl>(memory, now, view, memory)) {
-    if (!now) return;
-    for (uint32_t item = 0; item < now.state().count; ++item) {
-        const uint32_t index = now.state().object(item).id.index;
-        if (impl_->item_of.size() <= index) impl_->item_of.resize(index + 1, PixelOwner::kNone);
-        impl_->item_of[index] = item;
-    }
-}
+    : impl_(makeOwned<Impl>(memory, now, view, memory)) {}
 Explainer::Explainer(const Snapshot& now, const View& view, std::span<const Visible> last, Memory* memory)
     : Explainer(now, view, memory) {
     if (!detail::remembersShown(view)) return;
@@ -288,7 +279,7 @@ Explanation Explainer::explain(ObjectId id, const ExplainSettings& settings) {
         (by_frustum ? out.frustum.by_triangles : out.occlusion.by_triangles) = look == detail::Look::kTriangles;
     }
     if (out.verdict == Verdict::kVisible) impl.explainVisible(item, out);
-    else out.together = static_cast<uint32_t>(impl.trial.walk.inLayers(impl.trial.cull.first, impl.trial.cull.count));
+    else out.together = static_cast<uint32_t>(impl.trial.walk.inLayers(impl.trial.cull.places));
     out.occlusion.outside_too = out.verdict == Verdict::kOccluded && out.frustum.outside_any;
     if (out.verdict == Verdict::kOccluded) out.occlusion.stage = impl.trial.cull.stage;
     if (out.verdict == Verdict::kOccluded) impl.explainOccluded(item, rect, settings, out.occlusion);

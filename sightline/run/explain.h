@@ -73,7 +73,7 @@ struct Hider {
     double share = 0;  ///< of the object's rectangle: pixels that it is the nearest to cover. All shares add up to 1
 };
 
-/// What would be said of an object if its hiders were removed from the world.
+/// What would be said of an object in a world that is made without its hiders.
 enum class Without : uint8_t { kNotAsked, kVisible, kOccluded, kOutsideFrustum, kTooFar, kTooSmall };
 
 struct OcclusionReason {
@@ -90,7 +90,7 @@ struct OcclusionReason {
     bool outside_too = false;
     bool by_faces = false;                 ///< its box's rectangle is open: the faces of the box are hidden
     bool by_triangles = false;             ///< the box is open: its own triangles are hidden
-    Without without = Without::kNotAsked;  ///< the hiders, removed from the world
+    Without without = Without::kNotAsked;  ///< the hiders
     Array<Hider> others;                   ///< that would hide it then, as `hiders` do now
 
     explicit OcclusionReason(Memory* memory) : hiders(memory), others(memory) {}

@@ -10,7 +10,7 @@ namespace sightline::detail {
 const PixelRect& HiderSearch::ask(const Trial& decided, const PixelRect& rect) {
     const WalkRecord::Cull& cull = decided.cull;
     if (cull.look == Look::kBox) asked.run(rect);
-    else asked.run(decided.walk, cull.first, cull.look, cull.boxed ? &cull.rect : nullptr);
+    else asked.run(decided.walk, cull.places.first, cull.look, cull.boxed ? &cull.rect : nullptr);
     return asked.rect;
 }
 
@@ -68,7 +68,7 @@ void HiderSearch::collect(const SnapshotState& state, uint32_t item, const Trial
     candidates.clear();
     for (uint32_t i = 0; i < record.owners.size(); ++i) {
         // The object itself may have been drawn before a closer look culled it.
-        const uint32_t drawn = state.itemOf(state.bvh.order[record.owners[i]]);
+        const uint32_t drawn = state.itemAt(record.owners[i]);
         if (over[i] && drawn != item) candidates.push_back({drawn, pixels[i], i});
     }
     std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {

@@ -3,36 +3,26 @@
 #include "sightline/run/last_drawn.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace sightline::detail {
 
 void LastDrawn::begin(const SnapshotState* now, bool wanted) {
-    const Placed before = std::exchange(noted_in_, now ? now->placed : nullptr);
-    std::swap(noted_, places_);
+    places_.clear();
+    if (wanted && now) {
+        for (const Noted& object : noted_) {
+            const bool stays = object.place < now->placed.size() && now->placed[object.place].visible.id == object.id;
+            const uint32_t place = stays ? object.place : now->placeOf(object.id);
+            if (place != PlacedBvh::kNone) places_.push_back(place);
+        }
+    }
     noted_.clear();
-    if (!wanted || !now || !before) return places_.clear();
-    if (before != noted_in_) translate(*before, *noted_in_);
+    if (places_.empty()) return;
     if (++answer_ == 0) {
         std::fill(stamp_.begin(), stamp_.end(), 0);
         answer_ = 1;
     }
-    if (stamp_.size() < noted_in_->size()) stamp_.resize(noted_in_->size(), 0);
+    if (stamp_.size() < now->placed.size()) stamp_.resize(now->placed.size(), 0);
     for (const uint32_t place : places_) stamp_[place] = answer_;
-}
-
-void LastDrawn::translate(const Array<PlacedObject>& from, const Array<PlacedObject>& to) {
-    uint32_t last = 0;
-    for (const PlacedObject& object : to) last = std::max(last, object.visible.id.index);
-    place_of_.assign(last + 1, 0);
-    for (uint32_t place = 0; place < to.size(); ++place) place_of_[to[place].visible.id.index] = place + 1;
-    size_t kept = 0;
-    for (const uint32_t place : places_) {
-        const ObjectId id = from[place].visible.id;
-        const uint32_t now = id.index <= last ? place_of_[id.index] : 0;
-        if (now > 0 && to[now - 1].visible.id == id) places_[kept++] = now - 1;
-    }
-    places_.resize(kept);
 }
 
 }  // namespace sightline::detail

@@ -17,27 +17,27 @@ namespace sightline::detail {
 /// and never more.
 class LastDrawn {
 public:
-    explicit LastDrawn(Memory* memory) : noted_(memory), places_(memory), place_of_(memory), stamp_(memory) {}
+    explicit LastDrawn(Memory* memory) : noted_(memory), places_(memory), stamp_(memory) {}
 
     /// A new answer begins. What the last one noted becomes places(), if it is wanted: objects that are no more are left
-    /// out. O(noted), and O(objects) where the hierarchy was built anew.
+    /// out. O(noted).
     /// @param now  null: all is forgotten
     void begin(const SnapshotState* now, bool wanted);
     /// The answer keeps this object, and it is large enough to hide something.
-    void note(uint32_t place) { noted_.push_back(place); }
+    void note(uint32_t place, ObjectId id) { noted_.push_back({place, id}); }
 
     /// Of the last answer, nearest first as it was then.
     std::span<const uint32_t> places() const { return places_; }
     bool has(uint32_t place) const { return !places_.empty() && stamp_[place] == answer_; }
 
 private:
-    using Placed = std::shared_ptr<const Array<PlacedObject>>;
-    void translate(const Array<PlacedObject>& from, const Array<PlacedObject>& to);
-
-    Array<uint32_t> noted_, places_;
-    Placed noted_in_;           ///< what the places in noted_ are of
-    Array<uint32_t> place_of_;  ///< per ObjectId::index: 1 + place, while places are translated
-    Array<uint32_t> stamp_;     ///< per place: the last answer that had it in places()
+    struct Noted {
+        uint32_t place = 0;  ///< as it was then
+        ObjectId id;
+    };
+    Array<Noted> noted_;
+    Array<uint32_t> places_;
+    Array<uint32_t> stamp_;  ///< per place: the last answer that had it in places()
     uint32_t answer_ = 0;
 };
 

@@ -9,19 +9,30 @@
 #include "sightline/base/memory.h"
 #include "sightline/cull/occlusion.h"
 #include "sightline/run/volumes.h"
+#include "sightline/space/bvh.h"
 
 namespace sightline::detail {
+
+/// Places side by side in the hierarchy.
+struct PlaceRange {
+    uint32_t first = 0, count = 1;
+    uint32_t empty = 0;  ///< of them, those that hold no object
+};
+
+inline PlaceRange placesBelow(const BvhNode& node, int slot) {
+    return {node.first[slot], node.count[slot], node.empty[slot]};
+}
 
 /// Something that the walk has met and not yet looked at.
 struct Pending {
     enum class Kind : uint8_t { kNode, kObject, kCluster };
     PixelRect rect;
-    uint32_t serial = 0;            ///< how many were met before it
-    uint32_t index = 0;             ///< node; place of the object; or cluster
-    uint32_t owner = 0;             ///< of a cluster: index into Walk::instances
-    uint32_t first = 0, count = 1;  ///< places of the objects below
-    uint32_t planes = 0;            ///< of a node: as Visit has it
-    VolumeRange volumes;            ///< of a node: volumes that it crosses
+    uint32_t serial = 0;  ///< how many were met before it
+    uint32_t index = 0;   ///< node; place of the object; or cluster
+    uint32_t owner = 0;   ///< of a cluster: index into Walk::instances
+    PlaceRange below;     ///< the objects below
+    uint32_t planes = 0;  ///< of a node: as Visit has it
+    VolumeRange volumes;  ///< of a node: volumes that it crosses
     Kind kind = Kind::kNode;
     bool testable = false;  ///< the rectangle stands for the bound; else it is in doubt, or outside and kept
 };

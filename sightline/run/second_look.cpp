@@ -16,7 +16,7 @@ bool Walk::settle(const Pending& entry, Look look, Sight sight, uint64_t& count)
     if (sight == Sight::kVisible || (sight == Sight::kOutside && !uses(Stage::kFrustum))) return false;
     ++count;
     const bool outside = sight == Sight::kOutside && !isPart();
-    cull(entry.first, entry.count, outside ? Stage::kFrustum : Stage::kOcclusion, &entry.rect);
+    cull(entry.below, outside ? Stage::kFrustum : Stage::kOcclusion, &entry.rect);
     if (record) {
         record->culls.back().look = look;
         record->culls.back().boxed = entry.testable;

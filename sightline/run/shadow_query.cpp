@@ -17,7 +17,6 @@ namespace {
 
 using detail::SnapshotState;
 
-constexpr uint32_t kNowhere = ~0u;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What a camera's image shows, as half spaces in the world: dot(n, p) + d >= 0 with d for the origin that is given.
@@ -110,9 +109,7 @@ struct ShadowQuery::Impl {
     Memory* const memory;
     Query query;  ///< of what the light sees
     ReceiverMask mask{memory};
-    std::shared_ptr<const Array<detail::PlacedObject>> placed;  ///< that `place_of` is of
-    Array<uint32_t> place_of{memory};                           ///< per ObjectId::index
-    Array<uint32_t> bits{memory};                               ///< per place: cascades that it may darken
+    Array<uint32_t> bits{memory};     ///< per place: cascades that it may darken
     Array<uint8_t> why{memory};       ///< per place: how far it came with any mask; kHere with the last one
     Array<uint8_t> in_light{memory};  ///< per place: in the light's frustum, of any cascade or face
     Array<uint8_t> reasons{memory};   ///< per item, of what the light sees
@@ -122,7 +119,6 @@ struct ShadowQuery::Impl {
 
     void begin(const SnapshotState& state);
     Box3d boxAt(const SnapshotState& state, uint32_t place) const { return detail::worldBounds(state.objectAt(place)); }
-    uint32_t find(const SnapshotState& state, ObjectId id) const;
     bool fitSun(const SnapshotState& state, std::span<const Visible> receivers, const Light& light, const Cuts& cuts,
                 const CasterSettings& settings, View& out) const;
     void addLight(const Snapshot& now, const View& light, std::span<const Visible> receivers, const Cuts& cuts,
@@ -141,25 +137,11 @@ constexpr uint8_t kNotMet = 0, kBeside = 1, kBehind = 2, kPassed = 3, kFarthest 
 }  // namespace
 
 void ShadowQuery::Impl::begin(const SnapshotState& state) {
-    bits.assign(state.placed->size(), 0);
-    why.assign(state.placed->size(), kNotMet);
-    in_light.assign(state.placed->size(), 0);
+    bits.assign(state.placed.size(), 0);
+    why.assign(state.placed.size(), kNotMet);
+    in_light.assign(state.placed.size(), 0);
     casters.clear();
     cascades.clear();
-    if (placed == state.placed) return;
-    placed = state.placed;
-    place_of.clear();
-    for (uint32_t place = 0; place < placed->size(); ++place) {
-        const uint32_t index = (*placed)[place].visible.id.index;
-        if (place_of.size() <= index) place_of.resize(std::max<size_t>(index + 1, 2 * place_of.size()), kNowhere);
-        place_of[index] = place;
-    }
-}
-
-/// The place of an object, or kNowhere: it has no bounds to trust, or is of another snapshot.
-uint32_t ShadowQuery::Impl::find(const SnapshotState& state, ObjectId id) const {
-    const uint32_t place = id.index < place_of.size() ? place_of[id.index] : kNowhere;
-    return place != kNowhere && (*state.placed)[place].visible.id == id ? place : kNowhere;
 }
 
 /// A parallel view that just holds what of the receivers lies in the cuts, and all that may cast on it. False: nothing.
@@ -168,8 +150,8 @@ bool ShadowQuery::Impl::fitSun(const SnapshotState& state, std::span<const Visib
     const glm::dmat3 axes = sunAxes(light.direction);
     Box3d lit;
     for (const Visible& receiver : receivers) {
-        const uint32_t place = find(state, receiver.id);
-        if (place == kNowhere) continue;
+        const uint32_t place = state.placeOf(receiver.id);
+        if (place == PlacedBvh::kNone) continue;
         lit.grow(shrink(alongAxes(boxAt(state, place), axes, cuts.origin), cuts, axes));
     }
     if (lit.empty()) return false;
@@ -241,8 +223,8 @@ void ShadowQuery::Impl::addLight(const Snapshot& now, const View& light, std::sp
     mask.begin(grid, settings.filter / texel, settings.bias);
     const Cuts here = cuts.from(grid.eye);
     for (const Visible& receiver : receivers) {
-        const uint32_t place = find(state, receiver.id);
-        mask.addReceiver(place == kNowhere ? Box3d() : boxAt(state, place), {here.planes, here.count});
+        const uint32_t place = state.placeOf(receiver.id);
+        mask.addReceiver(place == PlacedBvh::kNone ? Box3d() : boxAt(state, place), {here.planes, here.count});
     }
     mask.finish();
     for (uint8_t& known : why) known &= kFarthest;
@@ -255,14 +237,15 @@ void ShadowQuery::Impl::addLight(const Snapshot& now, const View& light, std::sp
     seen.occlusion_size = std::max(seen.width, seen.height);
     const VisibleSet set = query.visible(now, seen);
     for (const Visible& object : set.objects) {
-        const uint32_t place = find(state, object.id);
-        if (place == kNowhere) continue;  // kept in any case
+        const uint32_t place = state.placeOf(object.id);
+        if (place == PlacedBvh::kNone) continue;  // kept in any case
         if (why[place] & kHere) bits[place] |= bit;
     }
     reasons.resize(state.count);
     query.reasons(reasons);
     for (uint32_t place = 0; place < in_light.size(); ++place) {
-        const uint8_t reason = reasons[state.itemOf(state.bvh.order[place])];
+        if (state.bvh.order[place] == PlacedBvh::kNone) continue;
+        const uint8_t reason = reasons[state.itemAt(place)];
         in_light[place] |= reason == 0 || reason == 1 + static_cast<uint8_t>(Stage::kOcclusion);
     }
 }
@@ -312,7 +295,7 @@ void ShadowQuery::Impl::keepAll(const SnapshotState& state, uint32_t layers) {
 CasterStats ShadowQuery::Impl::collect(const SnapshotState& state, uint32_t layers) {
     CasterStats stats;
     for (uint32_t place = 0; place < bits.size(); ++place) {
-        const detail::PlacedObject& object = (*state.placed)[place];
+        const detail::PlacedObject& object = state.placed[place];
         if (!(object.layers & layers)) continue;
         if (bits[place] != 0) {
             casters.push_back(object.visible);
@@ -324,8 +307,8 @@ CasterStats ShadowQuery::Impl::collect(const SnapshotState& state, uint32_t laye
             stats.beside += known <= kBeside;
         }
     }
-    for (const uint32_t item : state.unbounded) {
-        const detail::ObjectRecord& object = state.object(item);
+    for (const uint32_t row : state.unbounded) {
+        const detail::ObjectRecord& object = state.objects[row];
         if (!(object.layers & layers)) continue;
         casters.push_back({object.key, object.id});
         cascades.push_back(~0u);

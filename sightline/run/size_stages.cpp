@@ -15,20 +15,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-PlacedLimits::One limitsOf(const ObjectLimits& limits) {
-    PlacedLimits::One one;
-    const bool culled = !limits.always && limits.factor > 0.0 && limits.factor < kInfinity;
-    one.factor = culled ? limits.factor : kInfinity;
-    one.max_distance = limits.max_distance > 0.0 ? limits.max_distance : 0.0;
-    return one;
-}
-
-void add(const PlacedLimits::One& one, PlacedLimits::Below& below) {
-    below.factor = std::max(below.factor, one.factor);
-    below.max_distance = std::max(below.max_distance, one.max_distance);
-    below.views |= one.max_distance == 0.0;
-}
-
 uint32_t leavesOf(const BvhNode& node) {
     uint32_t leaves = 0;
     for (int slot = 0; slot < 8; ++slot) leaves |= uint32_t{(node.child[slot] & BvhNode::kLeaf) != 0} << slot;
@@ -43,23 +29,6 @@ bool isFarther(float square, double limit) { return limit<kFarthest&& static_cas
 double squareOf(double value) { return value * value; }
 
 }  // namespace
-
-std::shared_ptr<const PlacedLimits> placeLimits(const SnapshotState& state, Memory* memory) {
-    const size_t count = state.bvh.order.size();
-    bool any = false;
-    for (uint32_t place = 0; place < count && !any; ++place) any = state.objectAt(place).limits != ObjectLimits();
-    if (!any) return nullptr;
-    auto placed = makeShared<PlacedLimits>(memory, memory);
-    placed->objects.reserve(count);
-    for (uint32_t place = 0; place < count; ++place) placed->objects.push_back(limitsOf(state.objectAt(place).limits));
-    placed->slots.resize(8 * state.bvh.nodes.size());
-    for (size_t node = 0; node < state.bvh.nodes.size(); ++node)
-        for (size_t slot = 0; slot < 8; ++slot) {
-            const uint32_t first = state.bvh.nodes[node].first[slot], below = state.bvh.nodes[node].count[slot];
-            for (uint32_t i = 0; i < below; ++i) add(placed->objects[first + i], placed->slots[8 * node + slot]);
-        }
-    return placed;
-}
 
 bool remembersShown(const View& view) { return view.hysteresis > 0.0 && (stagesInUse(view) & kLossyStages) != 0; }
 
@@ -81,14 +50,14 @@ void SizeStages::begin(const SnapshotState& state, const View& view, const glm::
 
 bool SizeStages::wasShown(uint32_t place) const {
     if (shown.empty()) return false;
-    const ObjectId id = (*state_->placed)[place].visible.id;
+    const ObjectId id = state_->placed[place].visible.id;
     return id.index < shown.size() && shown[id.index] == id.generation;
 }
 
 double SizeStages::farthest(uint32_t place) const {
     double limit = max_distance_;
-    if (const PlacedLimits* placed = state_->limits.get()) {
-        const PlacedLimits::One& one = placed->objects[place];
+    if (!state_->limits.empty()) {
+        const PlacedLimits::One& one = state_->limits.objects[place];
         if (one.factor == kInfinity) return kInfinity;
         limit = one.max_distance > 0.0 ? zoom_ * one.max_distance : limit * one.factor;
     }
@@ -97,14 +66,14 @@ double SizeStages::farthest(uint32_t place) const {
 
 double SizeStages::smallest(uint32_t place) const {
     double limit = least_radius_;
-    if (const PlacedLimits* placed = state_->limits.get()) limit /= placed->objects[place].factor;
+    if (!state_->limits.empty()) limit /= state_->limits.objects[place].factor;
     return stays_ > 0.0 && wasShown(place) ? limit * (1.0 - stays_) : limit;
 }
 
 double SizeStages::farthestBelow(uint32_t node, int slot) const {
     double limit = max_distance_;
-    if (const PlacedLimits* placed = state_->limits.get()) {
-        const PlacedLimits::Below& below = placed->slots[8 * node + static_cast<uint32_t>(slot)];
+    if (!state_->limits.empty()) {
+        const PlacedLimits::Below& below = state_->limits.nodes[node].below[slot];
         if (below.factor == kInfinity) return kInfinity;
         limit = std::max(zoom_ * below.max_distance, below.views ? limit * below.factor : 0.0);
     }
@@ -113,8 +82,7 @@ double SizeStages::farthestBelow(uint32_t node, int slot) const {
 
 double SizeStages::smallestBelow(uint32_t node, int slot) const {
     double limit = least_radius_;
-    if (const PlacedLimits* placed = state_->limits.get())
-        limit /= placed->slots[8 * node + static_cast<uint32_t>(slot)].factor;
+    if (!state_->limits.empty()) limit /= state_->limits.nodes[node].below[slot].factor;
     return limit * (1.0 - stays_);
 }
 
@@ -186,7 +154,7 @@ uint32_t Walk::cullBySize(uint32_t node, const EyeBoxes& boxes, uint32_t left) {
         const BvhNode& from = state().bvh.nodes[node];
         for (uint32_t bits = now; bits; bits &= bits - 1) {
             const int slot = std::countr_zero(bits);
-            cull(from.first[slot], from.count[slot], stage, nullptr);
+            cull(placesBelow(from, slot), stage, nullptr);
         }
         gone |= now;
     }

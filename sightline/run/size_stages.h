@@ -17,26 +17,6 @@
 
 namespace sightline::detail {
 
-/// Objects' own limits in the hierarchy's order, and what holds for all below a node.
-struct PlacedLimits {
-    struct One {
-        double factor = 1;        ///< infinity: neither stage culls it
-        double max_distance = 0;  ///< 0: the view's
-    };
-    struct Below {
-        double factor = 0;        ///< the largest; infinity: some object is never culled
-        double max_distance = 0;  ///< the largest that is an object's own
-        bool views = false;       ///< the view's distance holds for some
-    };
-    Array<One> objects;  ///< per place
-    Array<Below> slots;  ///< per node and slot: 8 * node + slot
-
-    explicit PlacedLimits(Memory* memory) : objects(memory), slots(memory) {}
-};
-
-/// Null if no object has limits of its own. O(objects) then, else O(objects log objects).
-std::shared_ptr<const PlacedLimits> placeLimits(const SnapshotState& state, Memory* memory);
-
 /// Children of a node that a stage culls: bit per slot.
 struct SizeAnswer {
     uint32_t far = 0, small = 0;

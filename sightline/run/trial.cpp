@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/run/trial.h"
 
-#include <algorithm>
-
 namespace sightline::detail {
 namespace {
 
@@ -25,14 +23,8 @@ Verdict verdictOf(Stage stage) {
 }  // namespace
 
 uint32_t hierarchyPlace(const SnapshotState& state, uint32_t item) {
-    uint32_t box = item;
-    if (!state.boxed.empty() || !state.unbounded.empty()) {
-        const auto at = std::lower_bound(state.boxed.begin(), state.boxed.end(), item);
-        if (at == state.boxed.end() || *at != item) return WalkRecord::kNowhere;
-        box = static_cast<uint32_t>(at - state.boxed.begin());
-    }
-    const uint32_t slot = state.bvh.slot[box];
-    return state.bvh.nodes[slot / 8].first[slot % 8];
+    static_assert(WalkRecord::kNowhere == PlacedBvh::kNone);
+    return state.bvh.placeOf(state.rowOf(item));
 }
 
 LeafAnswer askLeaf(const SnapshotState& state, uint32_t place, const View& view, const Screen& screen) {
@@ -71,18 +63,11 @@ Verdict Trial::runBin(const SnapshotState& state, const View& view, const Bin& b
     record.clear();  // a walk for a view that is not usable notes nothing
     walk.run(&state, view, bin);
     for (const WalkRecord::Cull& candidate : record.culls) {
-        if (!record.stopsAt(candidate.first, candidate.count)) continue;
+        if (!record.stopsAt(candidate.places)) continue;
         cull = candidate;
         return verdictOf(cull.stage);
     }
     return Verdict::kVisible;
-}
-
-std::shared_ptr<SnapshotState> stateOfSome(const SnapshotState& from, std::span<const uint32_t> items, Memory* memory) {
-    Array<uint32_t> places(memory);
-    places.reserve(items.size());
-    for (const uint32_t item : items) places.push_back(from.placeOf(item));
-    return buildState(from.objects, from.occluders, std::move(places), memory);
 }
 
 }  // namespace sightline::detail

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <span>
 
 #include "sightline/run/explain.h"
 #include "sightline/run/walk.h"
@@ -43,9 +41,5 @@ struct Trial {
 private:
     Verdict runBin(const SnapshotState& state, const View& view, const Bin& bin);
 };
-
-/// The state of a world that holds only some of a snapshot's objects, as World::commit() would make it.
-/// @param items  of `from`, in rising order
-std::shared_ptr<SnapshotState> stateOfSome(const SnapshotState& from, std::span<const uint32_t> items, Memory* memory);
 
 }  // namespace sightline::detail

@@ -103,7 +103,7 @@ void VolumeStage::openNode(const SnapshotState& state, const Frustum& frustum, c
         met.planes = answer.planes[slot];
         met.serial = ++serial_;
         met.depth = static_cast<uint8_t>(from.depth + (from.depth < 2));
-        if (met.leaf && (*state.placed)[met.index].occluder.index == 0) continue;
+        if (met.leaf && state.placed[met.index].occluder.index == 0) continue;
         if (met.leaf && sizes && sizes->drops(met.index)) continue;
         heap_.push_back(met);
         std::push_heap(heap_.begin(), heap_.end());
@@ -111,7 +111,7 @@ void VolumeStage::openNode(const SnapshotState& state, const Frustum& frustum, c
 }
 
 void VolumeStage::lookAt(const SnapshotState& state, const View& view, const VolumeView& shared, uint32_t place) {
-    const PlacedObject& placed = (*state.placed)[place];
+    const PlacedObject& placed = state.placed[place];
     if (!(placed.layers & view.layers)) return;
     const HeldOccluder& occluder = *state.occluders[placed.occluder.index];
     const VolumeParts& parts = occluder.parts;

@@ -42,20 +42,20 @@ void Walk::push(const Pending& entry) {
 }
 
 /// How many objects of a range of places are within the view's layers.
-uint64_t Walk::inLayers(uint32_t first, uint32_t count) const {
-    if (every_layer) return count;
+uint64_t Walk::inLayers(const PlaceRange& places) const {
+    if (every_layer) return places.count - places.empty;
     uint64_t within = 0;
-    for (uint32_t place = first; place < first + count; ++place)
-        within += ((*state().placed)[place].layers & view.layers) != 0;
+    for (uint32_t place = places.first; place < places.first + places.count; ++place)
+        within += (state().placed[place].layers & view.layers) != 0;
     return within;
 }
 
 /// @param rect   that decided; null: a plane or a volume did
 /// @param hider  place of the object that the volume belongs to
-void Walk::cull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect, uint32_t hider) {
-    of(stage).culled += inLayers(first, count);
-    culled.push_back({first, count, stage});
-    if (record) noteCull(first, count, stage, rect, hider);
+void Walk::cull(const PlaceRange& places, Stage stage, const PixelRect* rect, uint32_t hider) {
+    of(stage).culled += inLayers(places);
+    culled.push_back({places, stage});
+    if (record) noteCull(places, stage, rect, hider);
 }
 
 void WalkRecord::clear() {
@@ -71,18 +71,18 @@ void Walk::noteDraw(const OccluderInstance& instance, uint32_t cluster, const Bo
     if (record->log) record->log->noteDraw();
 }
 
-void Walk::noteCull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect, uint32_t hider) {
-    WalkRecord::Cull note{first, count, stage, stage == Stage::kFrustum && rect, PixelRect(), hider};
+void Walk::noteCull(const PlaceRange& places, Stage stage, const PixelRect* rect, uint32_t hider) {
+    WalkRecord::Cull note{places, stage, stage == Stage::kFrustum && rect, PixelRect(), hider};
     if (rect) note.rect = *rect;
     record->culls.push_back(note);
-    if (stage != Stage::kFrustum && record->stopsAt(first, count)) {
+    if (stage != Stage::kFrustum && record->stopsAt(places)) {
         record->stopped = true;
         undecided = 0;
     }
 }
 
 void Walk::noteKept(const Pending& entry, Look look) {
-    if (!record->stopsAt(entry.index, 1)) return;
+    if (!record->stopsAt({entry.index})) return;
     record->stopped = true;
     record->kept = {entry.rect, entry.testable, look};
     undecided = 0;
@@ -110,13 +110,11 @@ void Walk::begin(const SnapshotState* now, const View& new_view) {
     every_layer = (state().common_layers & view.layers) != 0 || state().count == 0;
     stats.objects = state().count;
     if (every_layer || bin.index > 0) return;
-    stats.objects = 0;
-    for (uint32_t item = 0; item < state().count; ++item)
-        stats.objects += (state().object(item).layers & view.layers) != 0;
+    stats.objects = inLayers({0, state().placed.size()});
+    for (const uint32_t row : state().unbounded) stats.objects += (state().objects[row].layers & view.layers) != 0;
 }
 
-void Walk::keep(uint32_t item) {
-    const ObjectRecord& object = state().object(item);
+void Walk::keep(const ObjectRecord& object) {
     if (!(object.layers & view.layers)) return;
     visible.push_back({object.key, object.id});
     ++of(Stage::kFrustum).doubt;
@@ -124,14 +122,23 @@ void Walk::keep(uint32_t item) {
 
 /// Keeps the objects at the given places of the hierarchy.
 void Walk::report(uint32_t first, uint32_t count) {
-    const PlacedObject* placed = state().placed->data();
-    for (uint32_t place = first; place < first + count; ++place)
-        if (placed[place].layers & view.layers) visible.push_back(placed[place].visible);
+    if (count == 1) {
+        const PlacedObject& placed = state().placed[first];
+        if (placed.layers & view.layers) visible.push_back(placed.visible);
+        return;
+    }
+    while (count > 0) {
+        const std::span<const PlacedObject> run = state().placed.run(first, count);
+        for (const PlacedObject& placed : run)
+            if (placed.layers & view.layers) visible.push_back(placed.visible);
+        first += static_cast<uint32_t>(run.size());
+        count -= static_cast<uint32_t>(run.size());
+    }
 }
 
 /// Without a usable view nothing can be proved hidden.
 void Walk::keepEverything() {
-    for (uint32_t item = 0; item < state().count; ++item) keep(item);
+    for (uint32_t item = 0; item < state().count; ++item) keep(state().object(item));
 }
 
 /// Culls the children that lie in a volume.
@@ -141,7 +148,7 @@ VolumesAnswer Walk::askVolumes(const BvhNode& node, const EyeBoxes& boxes, Volum
     if (view.time_stages) of(Stage::kVolumes).nanoseconds += since(start);
     for (int slot = 0; slot < 8; ++slot)
         if (answer.hidden >> slot & 1)
-            cull(node.first[slot], node.count[slot], Stage::kVolumes, nullptr, volumes.owner(answer.volume[slot]));
+            cull(placesBelow(node, slot), Stage::kVolumes, nullptr, volumes.owner(answer.volume[slot]));
     return answer;
 }
 
@@ -167,7 +174,7 @@ void Walk::expand(const Visit& from) {
     uint32_t left = 0;
     for (int slot = 0; slot < 8; ++slot) {
         if (node.count[slot] == 0) continue;
-        if (answer.outside >> slot & 1) cull(node.first[slot], node.count[slot], Stage::kFrustum, nullptr);
+        if (answer.outside >> slot & 1) cull(placesBelow(node, slot), Stage::kFrustum, nullptr);
         else left |= 1u << slot;
     }
     if (left && sizes.inUse()) left &= ~cullBySize(from.node, boxes, left);
@@ -189,14 +196,12 @@ void Walk::expand(const Visit& from) {
 /// @param below  the child as a node: planes and volumes that it crosses
 void Walk::meet(const BvhNode& node, int slot, const Visit& below, const ScreenAnswer& on_screen) {
     const bool doubt = on_screen.doubt >> slot & 1, outside = on_screen.outside >> slot & 1;
-    if (outside && uses(Stage::kFrustum))
-        return cull(node.first[slot], node.count[slot], Stage::kFrustum, &on_screen.rects[slot]);
+    if (outside && uses(Stage::kFrustum)) return cull(placesBelow(node, slot), Stage::kFrustum, &on_screen.rects[slot]);
     Pending entry;
     const bool leaf = node.child[slot] & BvhNode::kLeaf;
     entry.kind = leaf ? Pending::Kind::kObject : Pending::Kind::kNode;
     entry.index = node.child[slot] & ~BvhNode::kLeaf;
-    entry.first = node.first[slot];
-    entry.count = node.count[slot];
+    entry.below = placesBelow(node, slot);
     entry.planes = below.planes;
     entry.volumes = below.volumes;
     entry.rect = on_screen.rects[slot];
@@ -222,14 +227,14 @@ void Walk::drawLast() {
 }
 
 void Walk::offerVisible(uint32_t place) {
-    if (remembers) last.note(place);
+    if (remembers) last.note(place, state().placed[place].visible.id);
     if (!remembers || !last.has(place)) offerOccluder(place, false);
 }
 
 /// Puts the clusters of an object's occluder in line, or draws it at once if there is one only.
 /// @param in_line  not at once in any case
 void Walk::offerOccluder(uint32_t place, bool in_line) {
-    const PlacedObject& placed = (*state().placed)[place];
+    const PlacedObject& placed = state().placed[place];
     if (placed.occluder.index == 0 || !(placed.layers & view.layers)) return;
     const glm::dmat4& transform = state().objectAt(place).transform;
     const HeldOccluder& held = *state().occluders[placed.occluder.index];
@@ -286,7 +291,7 @@ void Walk::visit(const Pending& entry) {
     // A node in doubt is opened: its children's smaller rectangles need fewer seams.
     const Seams seams = entry.kind == Pending::Kind::kNode ? Seams::kLeave : Seams::kResolve;
     if (occlusion && entry.testable && isHiddenHere(entry.rect, seams))
-        return cull(entry.first, entry.count, Stage::kOcclusion, &entry.rect);
+        return cull(entry.below, Stage::kOcclusion, &entry.rect);
     if (entry.kind == Pending::Kind::kNode) return expand({entry.index, entry.planes, entry.volumes});
     if (occlusion && lookCloser(entry)) return;
     report(entry.index, 1);
@@ -302,12 +307,14 @@ void Walk::visit(const Pending& entry) {
 void Walk::walkUnordered(const Visit& root) {
     Array<Visit>& stack = visits;
     stack.assign(1, root);
+    const PlacedBvh& bvh = state().bvh;
+    const glm::dvec3 offset = bvh.origin - frustum.eye;
     while (!stack.empty()) {
         const Visit visit = stack.back();
         stack.pop_back();
         ++stats.nodes_visited;
-        const BvhNode& node = state().bvh.nodes[visit.node];
-        const EyeBoxes boxes = eyeBoxes(node, state().bvh.origin - frustum.eye);
+        const BvhNode& node = bvh.nodes[visit.node];
+        const EyeBoxes boxes = eyeBoxes(node, offset);
         const FrustumAnswer answer = askPlanes(boxes, visit.planes);
         uint32_t gone = sizes.inUse() ? cullBySize(visit.node, boxes, ~answer.outside & usedSlots(node)) : 0;
         VolumesAnswer hidden;
@@ -317,7 +324,7 @@ void Walk::walkUnordered(const Visit& root) {
         for (int slot = 0; slot < 8; ++slot) {
             if (node.count[slot] == 0 || (gone >> slot & 1)) continue;
             const bool decided = answer.planes[slot] == 0 && hidden.range[slot].count == 0 && !sizes.inUse();
-            if (answer.outside >> slot & 1) cull(node.first[slot], node.count[slot], Stage::kFrustum, nullptr);
+            if (answer.outside >> slot & 1) cull(placesBelow(node, slot), Stage::kFrustum, nullptr);
             else if (decided || (node.child[slot] & BvhNode::kLeaf)) report(node.first[slot], node.count[slot]);
             else stack.push_back({node.child[slot], answer.planes[slot], hidden.range[slot]});
         }
@@ -346,7 +353,7 @@ void Walk::walk() {
     if (isPart()) {
         tiles.keepColumns(bin.first_column, bin.end_column);
     } else {
-        for (uint32_t item : state().unbounded) keep(item);
+        for (const uint32_t row : state().unbounded) keep(state().objects[row]);
     }
     if (state().bvh.nodes.empty()) return;
     const uint32_t planes = (1u << frustum.count) - 1 | limits.volume.allPlanes() << kLimitBit;
@@ -400,8 +407,9 @@ void Walk::reasons(std::span<uint8_t> reasons) const {
     std::fill(reasons.begin(), reasons.end(), uint8_t{0});
     if (!snapshot) return;
     for (const CulledRange& range : culled)
-        for (uint32_t place = range.first; place < range.first + range.count; ++place)
-            reasons[state().itemOf(state().bvh.order[place])] = static_cast<uint8_t>(1 + static_cast<int>(range.stage));
+        for (uint32_t place = range.places.first; place < range.places.first + range.places.count; ++place)
+            if (state().bvh.order[place] != PlacedBvh::kNone)
+                reasons[state().itemAt(place)] = static_cast<uint8_t>(1 + static_cast<int>(range.stage));
     if (every_layer) return;
     for (uint32_t item = 0; item < state().count; ++item)
         if (!(state().object(item).layers & view.layers)) reasons[item] = 255;

@@ -65,7 +65,7 @@ struct KeptObject {
 
 /// Objects that were culled together.
 struct CulledRange {
-    uint32_t first = 0, count = 0;
+    PlaceRange places;
     Stage stage = Stage::kFrustum;
 };
 
@@ -82,7 +82,7 @@ struct WalkRecord {
     };
     /// Objects that were culled together, and what they were taken for.
     struct Cull {
-        uint32_t first = 0, count = 0;
+        PlaceRange places;
         Stage stage = Stage::kFrustum;
         bool off_screen = false;    ///< the rectangle misses the buffer; no plane decided
         PixelRect rect;             ///< by the occlusion stage: what was hidden
@@ -108,7 +108,9 @@ struct WalkRecord {
     explicit WalkRecord(Memory* memory) : draws(memory), culls(memory), owners(memory) {}
 
     void clear();
-    bool stopsAt(uint32_t first, uint32_t count) const { return stop_at >= first && stop_at - first < count; }
+    bool stopsAt(const PlaceRange& places) const {
+        return stop_at >= places.first && stop_at - places.first < places.count;
+    }
 };
 
 /// One answer in the making, or one bin's part of it. What it needs stays from walk to walk.
@@ -158,9 +160,9 @@ struct Walk {
     /// As Query::reasons(), of the whole view.
     void reasons(std::span<uint8_t> reasons) const;
     /// How many objects of a range of places are within the view's layers.
-    uint64_t inLayers(uint32_t first, uint32_t count) const;
+    uint64_t inLayers(const PlaceRange& places) const;
     /// Keeps an object that no stage can look at.
-    void keep(uint32_t item);
+    void keep(const ObjectRecord& object);
 
 private:
     bool isPart() const { return bin.count > 1; }
@@ -190,12 +192,11 @@ private:
     void offerOccluder(uint32_t place, bool in_line);
     bool mayHide(uint32_t place) const;
     void draw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box);
-    void cull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect,
-              uint32_t hider = WalkRecord::kNowhere);
+    void cull(const PlaceRange& places, Stage stage, const PixelRect* rect, uint32_t hider = WalkRecord::kNowhere);
     void push(const Pending& entry);
     void finish();
     void noteDraw(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box, uint32_t triangles);
-    void noteCull(uint32_t first, uint32_t count, Stage stage, const PixelRect* rect, uint32_t hider);
+    void noteCull(const PlaceRange& places, Stage stage, const PixelRect* rect, uint32_t hider);
     void noteKept(const Pending& entry, Look look);
 };
 

@@ -55,7 +55,7 @@ struct Visible {
 };
 
 namespace detail {
-struct WorldState;
+class WorldState;
 struct SnapshotState;
 }  // namespace detail
 
@@ -106,8 +106,8 @@ public:
     bool move(ObjectId id, const glm::dmat4& transform);
     bool remove(ObjectId id);
 
-    /// The world as it is now. Costs O(changes log objects) and a copy of the hierarchy (some 100 bytes an object) for
-    /// moves, and O(objects log objects) after additions and removals.
+    /// The world as it is now. Costs O(changes log² objects), and a few bytes an object to share with it what has not
+    /// changed; O(objects log objects) the first time, and now and then after as many changes as there are objects.
     Snapshot commit();
 
     uint32_t objectCount() const;

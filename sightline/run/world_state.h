@@ -1,4 +1,4 @@
-// What worlds and snapshots hold: objects in shared chunks, and the hierarchy over them.
+// What snapshots of a world hold, in pages that they share: objects, and the hierarchy over them.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -6,10 +6,13 @@
 #include <span>
 
 #include "sightline/base/memory.h"
+#include "sightline/base/paged.h"
+#include "sightline/base/ranked_bits.h"
 #include "sightline/cull/volume_parts.h"
 #include "sightline/geom/occluder.h"
+#include "sightline/run/placed_limits.h"
 #include "sightline/run/world.h"
-#include "sightline/space/bvh.h"
+#include "sightline/space/growing_bvh.h"
 
 namespace sightline::detail {
 
@@ -25,37 +28,28 @@ struct ObjectRecord {
     ObjectLimits limits;
 };
 
-/// Objects in chunks that snapshots share: a commit copies only the chunks that changed.
-struct ObjectChunk {
-    static constexpr uint32_t kSize = 256;
-    ObjectRecord objects[kSize];
+/// Objects by row; rows are given in the order of World::add. Snapshots share its pages.
+using ObjectTable = Paged<ObjectRecord, 32>;
+
+/// What an ObjectId's index stands for.
+struct IdSlot {
+    static constexpr uint32_t kNowhere = ~0u;
+    uint32_t row = kNowhere;
+    uint32_t generation = 0;  ///< of the object that has the index now, or had it last
 };
-
-/// Objects by place; places are given in the order of World::add.
-struct ObjectTable {
-    Array<std::shared_ptr<ObjectChunk>> chunks;
-    uint32_t size = 0;
-
-    explicit ObjectTable(Memory* memory) : chunks(memory) {}
-
-    const ObjectRecord& operator[](uint32_t place) const {
-        return chunks[place / ObjectChunk::kSize]->objects[place % ObjectChunk::kSize];
-    }
-    /// For writing: makes the chunk this table's own first.
-    ObjectRecord& change(uint32_t place);
-    ObjectRecord& append();
-    Memory* memory() const { return chunks.get_allocator().resource(); }
-};
+using IdTable = Paged<IdSlot, 512>;  // by ObjectId::index - 1
 
 /// What a walk needs of an object that it keeps, in the hierarchy's order: neighbours in space are neighbours here.
 struct PlacedObject {
     Visible visible;
     OccluderId occluder;
-    uint32_t layers = 0;
+    uint32_t layers = 0;  ///< none: the place is empty
     OccluderId shape;
 };
-
-struct PlacedLimits;
+inline PlacedObject placedObject(const ObjectRecord& object) {
+    return {{object.key, object.id}, object.occluder, object.layers, object.shape};
+}
+using PlacedObjects = Paged<PlacedObject, 128>;
 
 /// An occluder, simpler ones in its place, and what of it hides by itself.
 struct HeldOccluder : Occluder {
@@ -76,34 +70,53 @@ struct HeldOccluder : Occluder {
     }
 };
 
-using OccluderTable = Array<std::shared_ptr<const HeldOccluder>>;  // entry 0 is null
+using OccluderTable = Paged<std::shared_ptr<const HeldOccluder>, 64>;  // entry 0 is null
 
-/// An immutable state of a world. Items are the living objects in the order of World::add.
+/// An immutable state of a world. Items are the living objects in the order of World::add; the hierarchy's are rows.
 struct SnapshotState {
     ObjectTable objects;
+    IdTable ids;  ///< empty in a world of some of another one's objects
     OccluderTable occluders;
-    Array<uint32_t> items;      ///< item to place; empty if every place is its own item
-    Array<uint32_t> boxed;      ///< hierarchy item to item; empty if all items have finite bounds
-    Array<uint32_t> unbounded;  ///< items that are always visible
-    Bvh bvh;                    ///< over the boxed items
-    std::shared_ptr<const Array<PlacedObject>> placed;  ///< per place of the hierarchy; moves leave it as it is
-    std::shared_ptr<const PlacedLimits> limits;         ///< of the same places; null: no object has its own
-    uint32_t count = 0;                                 ///< living objects
-    uint32_t common_layers = ~0u;                       ///< layers that every object is in
+    std::shared_ptr<const RankedBits> living;  ///< rows that hold an object; null if all do
+    Array<uint32_t> unbounded;                 ///< rows of objects that are always visible, rising
+    PlacedBvh bvh;                             ///< over the others
+    PlacedObjects placed;                      ///< per place of the hierarchy
+    PlacedLimits limits;                       ///< of the same places; of none: no object has its own
+    uint32_t count = 0;                        ///< living objects
+    uint32_t common_layers = ~0u;              ///< layers that every object is in
 
     explicit SnapshotState(Memory* memory)
-        : objects(memory), occluders(memory), items(memory), boxed(memory), unbounded(memory), bvh(memory) {}
+        : objects(memory),
+          ids(memory),
+          occluders(memory),
+          unbounded(memory),
+          bvh(memory),
+          placed(memory),
+          limits(memory) {}
 
-    uint32_t placeOf(uint32_t item) const { return items.empty() ? item : items[item]; }
-    uint32_t itemOf(uint32_t hierarchy_item) const { return boxed.empty() ? hierarchy_item : boxed[hierarchy_item]; }
-    const ObjectRecord& object(uint32_t item) const { return objects[placeOf(item)]; }
-    const ObjectRecord& objectAt(uint32_t place) const { return object(itemOf(bvh.order[place])); }
+    uint32_t rowOf(uint32_t item) const { return living ? living->select(item) : item; }
+    uint32_t itemOf(uint32_t row) const { return living ? living->rank(row) : row; }
+    const ObjectRecord& object(uint32_t item) const { return objects[rowOf(item)]; }
+    const ObjectRecord& objectAt(uint32_t place) const { return objects[bvh.order[place]]; }
+    uint32_t itemAt(uint32_t place) const { return itemOf(bvh.order[place]); }
+
+    /// The row of an object, or IdSlot::kNowhere.
+    uint32_t find(ObjectId id) const {
+        if (id.index == 0 || id.index > ids.size()) return IdSlot::kNowhere;
+        const IdSlot& slot = ids[id.index - 1];
+        return slot.generation == id.generation ? slot.row : IdSlot::kNowhere;
+    }
+    /// The place of an object in the hierarchy, or PlacedBvh::kNone: it has no bounds, or is of another snapshot.
+    uint32_t placeOf(ObjectId id) const {
+        const uint32_t row = find(id);
+        return row == IdSlot::kNowhere ? PlacedBvh::kNone : bvh.placeOf(row);
+    }
 };
 
-/// The state of a world that holds the objects at the given places of a table, which rise and are all in use.
-/// O(places log places), and a copy of the table of chunks.
-std::shared_ptr<SnapshotState> buildState(const ObjectTable& objects, const OccluderTable& occluders,
-                                          Array<uint32_t> places, Memory* memory);
+/// The state of a world that holds only some of a snapshot's objects, as World::commit() would make it.
+/// O(items log items), and a copy of their records.
+/// @param items  of `from`, in rising order
+std::shared_ptr<SnapshotState> stateOfSome(const SnapshotState& from, std::span<const uint32_t> items, Memory* memory);
 
 /// The bounds in world space; not finite if they cannot be trusted.
 Box3d worldBounds(const ObjectRecord& object);

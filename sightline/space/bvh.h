@@ -21,6 +21,7 @@ struct alignas(64) BvhNode {
     uint32_t child[8];  ///< a node's index, or kLeaf | place
     uint32_t first[8];  ///< the places of all items below the child: first ... first + count - 1
     uint32_t count[8];  ///< 0: the slot is unused
+    uint32_t empty[8];  ///< of these places, those whose items have left: PlacedBvh alone has such
 };
 
 /// Items are boxes in float around a double origin: an item's true box is inside origin + box.

@@ -38,7 +38,7 @@ inline Box3f slotBox(const BvhNode& node, int slot) {
 inline void clearSlot(BvhNode& node, int slot) {
     setSlot(node, slot, Box3f());
     node.child[slot] = kUnusedChild;
-    node.first[slot] = node.count[slot] = 0;
+    node.first[slot] = node.count[slot] = node.empty[slot] = 0;
 }
 
 inline BvhNode emptyNode() {

@@ -30,7 +30,6 @@ float LivingBvh::reach() const {
 DynamicBvh::DynamicBvh(const DynamicBvhDef& def)
     : def_(def),
       state_(def.memory),
-      page_epoch_(def.memory),
       notes_(def.memory),
       marks_(def.memory),
       free_nodes_(def.memory),
@@ -43,17 +42,6 @@ DynamicBvh::DynamicBvh(const DynamicBvhDef& def)
     state_.origin = def.origin;
 }
 
-/// For writing: makes the node's page this tree's own first.
-BvhNode& DynamicBvh::change(uint32_t index) {
-    std::shared_ptr<BvhPage>& page = state_.pages[index / BvhPage::kSize];
-    uint32_t& epoch = page_epoch_[index / BvhPage::kSize];
-    if (epoch != epoch_) {
-        page = makeShared<BvhPage>(def_.memory, *page);
-        epoch = epoch_;
-    }
-    return page->nodes[index % BvhPage::kSize];
-}
-
 uint32_t DynamicBvh::newNode() {
     uint32_t index;
     if (!free_nodes_.empty()) {
@@ -62,14 +50,11 @@ uint32_t DynamicBvh::newNode() {
         notes_[index] = {};
     } else {
         index = static_cast<uint32_t>(notes_.size());
-        if (index % BvhPage::kSize == 0) {
-            state_.pages.push_back(makeShared<BvhPage>(def_.memory));
-            page_epoch_.push_back(epoch_);
-        }
+        state_.nodes.push_back({});
         notes_.emplace_back();
         marks_.push_back(Mark::kNone);
     }
-    change(index) = emptyNode();
+    state_.nodes.change(index) = emptyNode();
     return index;
 }
 
@@ -88,7 +73,7 @@ void DynamicBvh::markDirty(uint32_t index) {
 }
 
 void DynamicBvh::put(uint32_t index, int slot, const Entry& entry) {
-    BvhNode& node = change(index);
+    BvhNode& node = state_.nodes.change(index);
     setSlot(node, slot, entry.box);
     node.child[slot] = entry.child;
     node.count[slot] = entry.count;
@@ -104,11 +89,10 @@ DynamicBvh::Entry DynamicBvh::take(uint32_t index, int slot) const {
 
 /// Forgets all nodes and items. Pages that a snapshot holds stay with it.
 void DynamicBvh::clear() {
-    state_.pages.clear();
+    state_.nodes.clear();
     state_.unbounded.clear();
     state_.root = kNone;
     state_.count = 0;
-    page_epoch_.clear();
     notes_.clear();
     marks_.clear();
     free_nodes_.clear();
@@ -164,7 +148,7 @@ void DynamicBvh::leave(uint32_t item) {
         state_.unbounded.pop_back();
         return;
     }
-    clearSlot(change(place / 8), static_cast<int>(place % 8));
+    clearSlot(state_.nodes.change(place / 8), static_cast<int>(place % 8));
     markDirty(place / 8);
     cutEmpty(place / 8);
 }
@@ -183,7 +167,7 @@ void DynamicBvh::cutEmpty(uint32_t index) {
             state_.root = kNone;
             return;
         }
-        clearSlot(change(parent / 8), static_cast<int>(parent % 8));
+        clearSlot(state_.nodes.change(parent / 8), static_cast<int>(parent % 8));
         index = parent / 8;
     }
 }
@@ -194,7 +178,7 @@ void DynamicBvh::growAbove(uint32_t index, const Box3f& box) {
         Box3f bounds = slotBox(state_.node(up / 8), static_cast<int>(up % 8));
         if (holds(bounds, box)) return;
         bounds.grow(box);
-        setSlot(change(up / 8), static_cast<int>(up % 8), bounds);
+        setSlot(state_.nodes.change(up / 8), static_cast<int>(up % 8), bounds);
     }
 }
 
@@ -227,7 +211,7 @@ bool DynamicBvh::move(uint32_t item, const Box3d& box, const glm::dvec3& displac
         }
         growAbove(place / 8, fat);
     }
-    setSlot(change(place / 8), slot, fat);
+    setSlot(state_.nodes.change(place / 8), slot, fat);
     markDirty(place / 8);
     return true;
 }
@@ -243,8 +227,11 @@ bool DynamicBvh::remove(uint32_t item) {
 
 std::shared_ptr<const LivingBvh> DynamicBvh::snapshot() {
     auto taken = makeShared<LivingBvh>(def_.memory, def_.memory);
-    *taken = state_;
-    ++epoch_;
+    taken->origin = state_.origin;
+    taken->nodes = state_.nodes.share();
+    taken->root = state_.root;
+    taken->unbounded = state_.unbounded;
+    taken->count = state_.count;
     return taken;
 }
 

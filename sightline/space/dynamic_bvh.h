@@ -11,15 +11,10 @@
 #include <span>
 
 #include "sightline/base/memory.h"
+#include "sightline/base/paged.h"
 #include "sightline/space/bvh.h"
 
 namespace sightline {
-
-/// Nodes that are copied together when one of them changes under a snapshot.
-struct BvhPage {
-    static constexpr uint32_t kSize = 32;
-    BvhNode nodes[kSize];
-};
 
 /// What can be asked of a living hierarchy: its nodes as they are, or as they were when a snapshot was taken.
 ///
@@ -29,15 +24,15 @@ struct BvhPage {
 struct LivingBvh {
     static constexpr uint32_t kNone = ~0u;
 
-    glm::dvec3 origin{0.0};                 ///< an item's box is inside origin + its slot
-    Array<std::shared_ptr<BvhPage>> pages;  ///< nodes, BvhPage::kSize a page
-    uint32_t root = kNone;                  ///< none: no item has bounds
+    glm::dvec3 origin{0.0};  ///< an item's box is inside origin + its slot
+    Paged<BvhNode, 32> nodes;
+    uint32_t root = kNone;      ///< none: no item has bounds
     Array<uint32_t> unbounded;  ///< items that no bounds hold: always visible, in no order that means anything
     uint32_t count = 0;         ///< items, with the unbounded
 
-    explicit LivingBvh(Memory* memory = defaultMemory()) : pages(memory), unbounded(memory) {}
+    explicit LivingBvh(Memory* memory = defaultMemory()) : nodes(memory), unbounded(memory) {}
 
-    const BvhNode& node(uint32_t index) const { return pages[index / BvhPage::kSize]->nodes[index % BvhPage::kSize]; }
+    const BvhNode& node(uint32_t index) const { return nodes[index]; }
     /// No bound is farther from the origin on any axis.
     float reach() const;
 };
@@ -129,7 +124,6 @@ private:
     struct Rotation;
 
     // dynamic_bvh.cpp: nodes and items
-    BvhNode& change(uint32_t index);
     uint32_t newNode();
     void freeNode(uint32_t index);
     void markDirty(uint32_t index);
@@ -169,10 +163,8 @@ private:
 
     DynamicBvhDef def_;
     LivingBvh state_;
-    uint32_t epoch_ = 1;
-    Array<uint32_t> page_epoch_;  ///< a page of this epoch is in no snapshot
-    Array<NodeNote> notes_;       ///< per node
-    Array<Mark> marks_;           ///< per node; above a dirty one all are
+    Array<NodeNote> notes_;  ///< per node
+    Array<Mark> marks_;      ///< per node; above a dirty one all are
     Array<uint32_t> free_nodes_;
     Array<uint32_t> slot_;  ///< per item: node * 8 + slot, or kUnbounded | place, or kFree
     Array<uint32_t> free_items_;

@@ -37,8 +37,7 @@ void DynamicBvh::rebuild() {
         if (slot_[item] != kFree && !(slot_[item] & kUnbounded))
             entries_.push_back({storedBox(item), BvhNode::kLeaf | item, 1});
     // Without what has no bounds: its places there stay as they are.
-    state_.pages.clear();
-    page_epoch_.clear();
+    state_.nodes.clear();
     notes_.clear();
     marks_.clear();
     free_nodes_.clear();
@@ -128,7 +127,7 @@ uint32_t DynamicBvh::rebuildDecayed() {
 /// @param most  entries to build over
 uint32_t DynamicBvh::rebuildBelow(uint32_t index, uint32_t most) {
     collect(index, most);
-    change(index) = emptyNode();
+    state_.nodes.change(index) = emptyNode();
     buildBelow(index);
     for (uint32_t up = notes_[index].parent; up != kNone; up = notes_[up / 8].parent) noteCost(up / 8);
     return static_cast<uint32_t>(entries_.size());

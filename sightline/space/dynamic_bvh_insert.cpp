@@ -57,7 +57,7 @@ BestChild findBestChild(const BvhNode& node, const Box3f& box) {
 /// Moves an item that has left its node's bounds: into the smallest node above that holds it, and down from there.
 void DynamicBvh::reinsert(uint32_t item, const Box3f& box) {
     const uint32_t place = slot_[item], left = place / 8;
-    clearSlot(change(left), static_cast<int>(place % 8));
+    clearSlot(state_.nodes.change(left), static_cast<int>(place % 8));
     markDirty(left);
     uint32_t above = left;
     for (uint32_t up = notes_[above].parent; up != kNone; up = notes_[above].parent) {
@@ -81,7 +81,7 @@ void DynamicBvh::insertBelow(uint32_t start, const Entry& entry) {
         if (!holds(old, entry.box)) {
             Box3f grown = old;
             grown.grow(entry.box);
-            setSlot(change(index), best.slot, grown);
+            setSlot(state_.nodes.change(index), best.slot, grown);
         }
         index = state_.node(index).child[best.slot];
     }
@@ -109,7 +109,7 @@ void DynamicBvh::place(uint32_t index, Entry entry) {
             put(root, 1, other);
             return;
         }
-        setSlot(change(parent / 8), static_cast<int>(parent % 8), boundsOf(state_.node(index)));
+        setSlot(state_.nodes.change(parent / 8), static_cast<int>(parent % 8), boundsOf(state_.node(index)));
         index = parent / 8;
         entry = other;
     }
@@ -147,7 +147,7 @@ DynamicBvh::Entry DynamicBvh::splitOff(uint32_t index, const Entry& entry) {
     }
     const uint32_t other = newNode();
     marks_[other] = Mark::kDirty;  // as those above it will be, for this node is
-    change(index) = emptyNode();
+    state_.nodes.change(index) = emptyNode();
     for (int i = 0; i < kCount; ++i)
         put(i < best_left ? index : other, i < best_left ? i : i - best_left, entries[best_order[i]]);
     return {boundsOf(state_.node(other)), other, static_cast<uint32_t>(kCount - best_left)};

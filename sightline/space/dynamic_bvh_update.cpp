@@ -157,7 +157,7 @@ uint32_t DynamicBvh::lift(uint32_t index) {
         int count = 0;
         for (int below = 0; below < 8; ++below)
             if (state_.node(child).count[below] != 0) entries[count++] = take(child, below);
-        clearSlot(change(index), slot);
+        clearSlot(state_.nodes.change(index), slot);
         freeNode(child);
         for (int i = 0; i < count; ++i) put(index, freeSlot(state_.node(index)), entries[i]);
         ++lifted;
@@ -190,7 +190,7 @@ uint32_t DynamicBvh::merge(uint32_t index) {
         const uint32_t from = node.child[a], to = node.child[best];
         for (int slot = 0; slot < 8; ++slot)
             if (state_.node(from).count[slot] != 0) put(to, freeSlot(state_.node(to)), take(from, slot));
-        clearSlot(change(index), a);
+        clearSlot(state_.nodes.change(index), a);
         freeNode(from);
         refitNode(to);
         ++merged;
@@ -257,7 +257,7 @@ void DynamicBvh::apply(uint32_t index, const Rotation& rotation) {
     const uint32_t from = state_.node(index).child[rotation.from];
     const Entry moved = take(from, rotation.which);
     const Entry other = take(index, rotation.to);
-    clearSlot(change(from), rotation.which);
+    clearSlot(state_.nodes.change(from), rotation.which);
     if (rotation.kind == Kind::kExchange) put(from, rotation.which, other);
     if (rotation.kind == Kind::kAcross) {
         put(other.child, freeSlot(state_.node(other.child)), moved);

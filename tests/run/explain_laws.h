@@ -269,16 +269,13 @@ private:
 
     void expectWithout(uint32_t item, const Explanation& why, const std::vector<ObjectId>& hiders) {
         ++count.without;
-        Copy copy(now_, allItems(now_));
-        copy.world.commit();
-        uint32_t before = 0;
-        for (uint32_t i = 0; i < now_.objectCount(); ++i) {
-            if (std::find(hiders.begin(), hiders.end(), now_.state().object(i).id) == hiders.end()) continue;
-            EXPECT_TRUE(copy.world.remove(copy.ids[i]));
-            before += i < item;
-        }
-        const Snapshot left = copy.world.commit();
-        const uint8_t reason = reasonOf(left, view_, item - before);
+        std::vector<uint32_t> others;
+        for (uint32_t i = 0; i < now_.objectCount(); ++i)
+            if (std::find(hiders.begin(), hiders.end(), now_.state().object(i).id) == hiders.end()) others.push_back(i);
+        EXPECT_EQ(others.size() + hiders.size(), now_.objectCount()) << at(item);
+        Copy copy(now_, others);
+        const auto self = std::lower_bound(others.begin(), others.end(), item) - others.begin();
+        const uint8_t reason = reasonOf(copy.world.commit(), view_, static_cast<uint32_t>(self));
         const Without without = why.occlusion.without;
         ASSERT_NE(int(without), int(Without::kNotAsked)) << at(item);
         const uint8_t said = without == Without::kVisible    ? 0

@@ -158,11 +158,13 @@ TEST(Query, ASnapshotOutlivesChanges) {
 
 TEST(Query, StaysSoundWhileObjectsComeMoveAndGo) {
     MadeWorld made;
-    made.fill(3, 200, {0, 0, 0});
+    made.fill(3, 600, {0, 0, 0});
     Query query;
     Random random(3);
     std::vector<uint8_t> gone(made.transforms.size(), 0);
-    for (int step = 0; step < 40; ++step) {
+    for (int step = 0; step < 60; ++step) {
+        if (step % 5 == 1) made.fill(100 + static_cast<uint64_t>(step), 1 + 15 * (step % 3), {0, 0, 0});
+        gone.resize(made.transforms.size(), 0);
         for (int k = 0; k < 12; ++k) {
             const size_t i = random.below(made.ids.size());
             if (gone[i]) continue;
@@ -173,19 +175,36 @@ TEST(Query, StaysSoundWhileObjectsComeMoveAndGo) {
                 made.transforms[i][3] = glm::dvec4(1e5, 1e5, 1e5, 1);
                 continue;
             }
-            made.transforms[i][3] += glm::dvec4(random.uniform(-3, 3), random.uniform(-1, 1), random.uniform(-3, 3), 0);
+            const double way = k % 4 ? 3 : 30;
+            made.transforms[i][3] +=
+                glm::dvec4(random.uniform(-way, way), random.uniform(-1, 1), random.uniform(-way, way), 0);
             ASSERT_TRUE(made.world.move(made.ids[i], made.transforms[i]));
         }
         const Snapshot now = made.world.commit();
         const View view =
             viewFrom({random.uniform(-20, 20), 0, random.uniform(-20, 20)}, {random.uniform(-1, 1), 0, 1});
-        std::vector<uint8_t> kept(made.transforms.size(), 0);
-        for (const Visible& v : query.visible(now, view).objects) {
+        View settings = view;
+        settings.bins = step % 3 == 2 ? 4 : 1;
+        settings.last_visible_first = step % 2;
+        std::vector<uint8_t> kept(made.transforms.size(), 0), reasons(now.objectCount());
+        const VisibleSet set = query.visible(now, settings);
+        for (const Visible& v : set.objects) {
             EXPECT_FALSE(gone[v.key]);
+            EXPECT_FALSE(kept[v.key]) << "reported twice";
             kept[v.key] = 1;
         }
         const std::vector<uint8_t> seen = made.seen(view, 2);
         for (size_t i = 0; i < kept.size(); ++i) ASSERT_TRUE(kept[i] || !seen[i]) << "step " << step << " object " << i;
+        query.reasons(reasons);
+        uint64_t sum = set.stats.visible;
+        for (const StageStats& stage : set.stats.stages) sum += stage.culled;
+        EXPECT_EQ(sum, now.objectCount());
+        EXPECT_EQ(static_cast<uint64_t>(std::count(reasons.begin(), reasons.end(), 0)), set.stats.visible);
+        for (size_t i = 0, item = 0; i < gone.size(); ++i) {
+            if (gone[i]) continue;
+            ASSERT_EQ(kept[i] == 1, reasons[item] == 0) << "step " << step << " object " << i;
+            ++item;
+        }
     }
 }
 

@@ -6,6 +6,8 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <limits>
+#include <map>
 #include <memory_resource>
 #include <new>
 #include <vector>
@@ -113,6 +115,114 @@ TEST(World, StaleIdsDoNothingEvenAfterTheirIndexIsUsedAgain) {
     EXPECT_FALSE(world.remove(ObjectId{}));
     EXPECT_FALSE(world.remove(ObjectId{999999, 1}));
     EXPECT_EQ(world.objectCount(), 100u);
+}
+
+/// A world that changes, and a list of what is in it.
+struct Lived {
+    World world;
+    std::map<uint64_t, std::pair<ObjectId, ObjectDef>> there;  ///< by key
+    uint64_t next = 1;
+
+    void add(Random& random) {
+        ObjectDef def =
+            boxAt({random.uniform(-50, 50), random.uniform(-5, 5), random.uniform(-50, 50)}, random.uniform(0.5, 3));
+        def.key = next++;
+        def.layers = random.below(5) ? 1 : 2;
+        if (random.below(200) == 0) def.bounds.max.x = std::numeric_limits<double>::quiet_NaN();
+        if (random.below(300) == 0) def.limits.always = true;
+        if (random.below(300) == 0) def.limits.max_distance = random.uniform(5, 90);
+        there[def.key] = {world.add(def), def};
+    }
+    std::pair<ObjectId, ObjectDef>& any(Random& random) {
+        const auto at = there.lower_bound(random.below(next));
+        return at == there.end() ? there.begin()->second : at->second;
+    }
+    void change(Random& random) {
+        const uint64_t kind = random.below(10);
+        if (there.empty() || kind == 0) return add(random);
+        auto& [id, def] = any(random);
+        if (kind == 1) {
+            ASSERT_TRUE(world.remove(id));
+            there.erase(def.key);
+            return;
+        }
+        const double way = kind == 2 ? 60 : 0.5;
+        def.transform[3] += glm::dvec4(random.uniform(-way, way), 0, random.uniform(-way, way), 0);
+        if (random.below(100) == 0) def.transform[3].y = std::numeric_limits<double>::infinity();
+        if (!(std::abs(def.transform[3].y) < 10)) def.transform[3].y = random.below(2) ? 1.0 : def.transform[3].y;
+        ASSERT_TRUE(world.move(id, def.transform));
+    }
+};
+
+std::vector<uint8_t> reasonsIn(Query& query, const Snapshot& now, const View& view) {
+    query.visible(now, view);
+    std::vector<uint8_t> reasons(now.objectCount());
+    query.reasons(reasons);
+    return reasons;
+}
+
+TEST(World, ThatHasLivedAnswersAsOneThatIsMadeAnew) {
+    for (uint64_t seed = 1; seed <= 8; ++seed) {
+        Random random(seed);
+        Lived lived;
+        const int begin = seed % 3 == 0 ? 0 : 600;
+        for (int i = 0; i < begin; ++i) lived.add(random);
+        Query query;
+        for (int step = 0; step < 60; ++step) {
+            const uint64_t changes = random.below(step % 10 == 9 ? 400 : 30);
+            for (uint64_t i = 0; i < changes; ++i) lived.change(random);
+            const Snapshot now = lived.world.commit();
+            ASSERT_EQ(now.objectCount(), lived.there.size());
+            World anew;
+            for (const auto& [key, object] : lived.there) anew.add(object.second);
+            const Snapshot fresh = anew.commit();
+            View view = viewFrom({random.uniform(-50, 50), 1, random.uniform(-50, 50)}, {0, 1, 0});
+            view.layers = 1 + static_cast<uint32_t>(random.below(3));
+            view.stages = stageBit(Stage::kFrustum) | kLossyStages;
+            view.max_distance = step % 3 ? 40 : 0;
+            view.contribution = step % 4 ? 1.5 : 0;
+            view.hysteresis = 0;
+            const auto reasons = reasonsIn(query, now, view);
+            // Which of the stages names an object hangs on the nodes; whether it is kept does not.
+            const auto others = reasonsIn(query, fresh, view);
+            size_t item = 0;
+            for (const auto& [key, object] : lived.there) {
+                EXPECT_EQ(reasons[item] == 0, others[item] == 0)
+                    << "seed " << seed << " step " << step << " key " << key;
+                EXPECT_EQ(reasons[item] == 255, others[item] == 255);
+                ++item;
+            }
+            EXPECT_EQ(lived.world.commit().objectCount(), now.objectCount());
+        }
+    }
+}
+
+TEST(World, ACommitCopiesNoMoreThanWhatChanged) {
+    CountingMemory memory;
+    WorldDef def;
+    def.memory = &memory;
+    World world = World::create(def);
+    Random random(12);
+    std::vector<ObjectId> ids;
+    for (int i = 0; i < 40000; ++i)
+        ids.push_back(world.add(boxAt({random.uniform(-500, 500), 0, random.uniform(-500, 500)}, 1)));
+    Snapshot held = world.commit();
+    const uint64_t whole = memory.bytes;
+    for (int frame = 0; frame < 40; ++frame) {
+        const uint64_t before = memory.bytes;
+        for (int i = 0; i < 3; ++i) {
+            const size_t which = random.below(ids.size());
+            if (frame % 2) {
+                world.remove(ids[which]);
+                ids[which] = world.add(boxAt({random.uniform(-500, 500), 0, random.uniform(-500, 500)}, 1));
+            } else {
+                world.move(ids[which], boxAt({random.uniform(-500, 500), 0, random.uniform(-500, 500)}, 1).transform);
+            }
+        }
+        const Snapshot next = world.commit();
+        EXPECT_LT(memory.bytes - before, whole / 20) << "beside a snapshot that is held";
+        held = next;
+    }
 }
 
 TEST(World, AllMemoryComesThroughTheHookAndGoesBack) {

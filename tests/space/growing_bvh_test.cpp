@@ -1,0 +1,254 @@
+// The laws of the hierarchy of a world: every item once, in a row of places below each node, with bounds that are tight.
+// SPDX-License-Identifier: MIT
+#include "sightline/space/growing_bvh.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <map>
+
+#include "sightline/space/bvh_node.h"
+#include "tests/space/living_fixture.h"
+
+namespace sightline::test {
+namespace {
+
+constexpr double kWorld = 100.0;
+
+using Truth = std::map<uint32_t, Box3d>;
+
+bool same(const Box3f& a, const Box3f& b) { return a.min == b.min && a.max == b.max; }
+
+/// Looks at all of a tree. @returns how many nodes it has
+uint32_t expectSound(const PlacedBvh& tree, const Truth& truth) {
+    std::vector<int> met(tree.order.size(), 0);
+    uint32_t nodes = 0;
+    struct Visit {
+        uint32_t node, first, end;
+    };
+    std::vector<Visit> stack;
+    if (!tree.nodes.empty()) stack.push_back({0, 0, tree.order.size()});
+    while (!stack.empty()) {
+        const Visit visit = stack.back();
+        stack.pop_back();
+        ++nodes;
+        const BvhNode& node = tree.nodes[visit.node];
+        for (int slot = 0; slot < 8; ++slot) {
+            const Box3f box = slotBox(node, slot);
+            const uint32_t first = node.first[slot], count = node.count[slot], child = node.child[slot];
+            if (count == 0) {
+                EXPECT_TRUE(box.empty());
+                EXPECT_EQ(child, kUnusedChild);
+                continue;
+            }
+            EXPECT_GE(first, visit.first);
+            EXPECT_LE(first + count, visit.end);
+            uint32_t gone = 0;
+            for (uint32_t place = first; place < first + count; ++place) gone += tree.order[place] == PlacedBvh::kNone;
+            EXPECT_EQ(node.empty[slot], gone);
+            if (child & BvhNode::kLeaf) {
+                EXPECT_EQ(child & ~BvhNode::kLeaf, first);
+                EXPECT_EQ(count, 1u);
+                ++met[first];
+                const uint32_t item = tree.order[first];
+                const auto at = truth.find(item);
+                if (at == truth.end()) {
+                    ADD_FAILURE() << "item " << item << " has left";
+                    continue;
+                }
+                EXPECT_TRUE(same(box, roundOutward(at->second, tree.origin))) << "item " << item;
+                EXPECT_EQ(tree.slot[item], 8 * visit.node + static_cast<uint32_t>(slot));
+                EXPECT_EQ(tree.placeOf(item), first);
+            } else {
+                EXPECT_TRUE(same(box, boundsOf(tree.nodes[child]))) << "a child's bounds are tight";
+                stack.push_back({child, first, first + count});
+            }
+        }
+    }
+    size_t living = 0;
+    for (uint32_t place = 0; place < tree.order.size(); ++place) {
+        const bool empty = tree.order[place] == PlacedBvh::kNone;
+        EXPECT_EQ(met[place], empty ? 0 : 1) << "place " << place;
+        living += !empty;
+    }
+    EXPECT_EQ(living, truth.size());
+    for (uint32_t item = 0; item < tree.slot.size(); ++item)
+        EXPECT_EQ(tree.placeOf(item) != PlacedBvh::kNone, truth.count(item) > 0) << "item " << item;
+    return nodes;
+}
+
+struct Both {
+    GrowingBvh tree;
+    Truth truth;
+    uint32_t next = 0;
+    uint64_t placed = 0;  ///< places given out since the tree was built
+    uint64_t inserted = 0, mended = 0;
+
+    void build() {
+        std::vector<Box3d> boxes;
+        std::vector<uint32_t> items;
+        for (const auto& [item, box] : truth) {
+            boxes.push_back(box);
+            items.push_back(item);
+        }
+        tree.build(boxes, items);
+    }
+    void append(const std::vector<Box3d>& boxes, std::vector<uint32_t> items = {}) {
+        for (size_t i = 0; i < boxes.size(); ++i) {
+            if (items.size() <= i) items.push_back(next++);
+            truth[items[i]] = boxes[i];
+        }
+        const uint32_t first = tree.append(boxes, items);
+        ASSERT_LE(first, tree.now().order.size());
+        placed += tree.now().order.size() - first;
+    }
+    void remove(uint32_t item) {
+        const uint32_t place = tree.now().placeOf(item);
+        ASSERT_EQ(tree.remove(item), place);
+        ASSERT_FALSE(tree.contains(item));
+        truth.erase(item);
+    }
+    /// Moves an item; what has strayed leaves and comes again.
+    bool move(uint32_t item, const Box3d& box) {
+        if (tree.move(item, box)) {
+            truth[item] = box;
+            return true;
+        }
+        remove(item);
+        enter(item, box);
+        return false;
+    }
+    void enter(uint32_t item, const Box3d& box) {
+        truth[item] = box;
+        const uint32_t place = tree.insert(item, box);
+        if (place == GrowingBvh::kNone) return append({box}, {item});
+        ++inserted;
+        ASSERT_EQ(tree.now().placeOf(item), place);
+        ASSERT_EQ(tree.now().order[place], item);
+    }
+    void mend() {
+        const std::vector<uint32_t> before = order();
+        std::vector<bool> anew(before.size(), false);
+        for (const GrowingBvh::Places& places : tree.mend(1000))
+            for (uint32_t place = places.first; place < places.end; ++place) anew[place] = true;
+        const std::vector<uint32_t> after = order();
+        ASSERT_EQ(before.size(), after.size());
+        for (size_t place = 0; place < after.size(); ++place) {
+            ASSERT_TRUE(anew[place] || before[place] == after[place]) << "place " << place;
+            mended += anew[place];
+        }
+    }
+    std::vector<uint32_t> order() const {
+        std::vector<uint32_t> all;
+        for (uint32_t place = 0; place < tree.now().order.size(); ++place) all.push_back(tree.now().order[place]);
+        return all;
+    }
+    uint32_t any(Random& random) const {
+        auto at = truth.lower_bound(static_cast<uint32_t>(random.below(next)));
+        return at == truth.end() ? truth.begin()->first : at->first;
+    }
+};
+
+TEST(GrowingBvh, HoldsEveryItemOnceWhateverComesMovesAndGoes) {
+    uint64_t strayed = 0, built = 0, inserted = 0, mended = 0;
+    for (uint64_t seed = 1; seed <= 30; ++seed) {
+        SCOPED_TRACE(seed);
+        Random random(seed);
+        Both both;
+        const uint32_t changes = changesToMake(30000) / 30;
+        const double largest = seed % 2 ? kWorld : 0.05 * kWorld;
+        for (uint32_t step = 0; step < changes; ++step) {
+            const uint64_t kind = random.below(10);
+            if (both.truth.empty() || kind == 0) {
+                std::vector<Box3d> boxes(both.truth.empty() ? 2000 : random.below(random.below(4) ? 8 : 300));
+                for (Box3d& box : boxes) box = randomBox(random, randomPoint(random, kWorld), largest);
+                if (random.below(2)) both.append(boxes);
+                else
+                    for (const Box3d& box : boxes) both.enter(both.next++, box);
+            } else if (kind <= 2 && both.truth.size() > 1) {
+                for (uint64_t left = random.below(30); left > 0 && !both.truth.empty(); --left)
+                    both.remove(both.any(random));
+            } else {
+                const uint32_t item = both.any(random);
+                const double way = random.below(20) ? 0.5 : kWorld;
+                const glm::dvec3 by = randomPoint(random, way);
+                strayed += !both.move(item, {both.truth[item].min + by, both.truth[item].max + by});
+            }
+            if (step % 7 == 0) both.mend();
+            if (both.tree.isWorn()) {
+                both.build();
+                ++built;
+                ASSERT_FALSE(both.tree.isWorn());
+            }
+            ASSERT_EQ(both.tree.size(), both.truth.size());
+            if (step % 50 == 0) expectSound(both.tree.share(), both.truth);
+            if (testing::Test::HasFailure()) return;
+        }
+        expectSound(both.tree.share(), both.truth);
+        inserted += both.inserted;
+        mended += both.mended;
+    }
+    EXPECT_GT(strayed, 100u);
+    EXPECT_GT(inserted, 1000u);
+    EXPECT_GT(mended, 1000u);
+    EXPECT_GT(built, 30u);
+}
+
+TEST(GrowingBvh, ASharedTreeStaysAsItWas) {
+    Random random(5);
+    Both both;
+    std::vector<Box3d> boxes(3000);
+    for (Box3d& box : boxes) box = randomBox(random, randomPoint(random, kWorld), kWorld);
+    both.append(boxes);
+    std::vector<std::pair<PlacedBvh, Truth>> kept;
+    for (int round = 0; round < 12; ++round) {
+        kept.emplace_back(both.tree.share(), both.truth);
+        for (int i = 0; i < 40; ++i) {
+            const uint32_t item = both.any(random);
+            const glm::dvec3 by = randomPoint(random, i % 4 ? 1.0 : kWorld);
+            both.move(item, {both.truth[item].min + by, both.truth[item].max + by});
+            both.remove(both.any(random));
+        }
+        both.append({boxes.begin(), boxes.begin() + 30 * (round % 3)});
+    }
+    for (const auto& [tree, truth] : kept) expectSound(tree, truth);
+}
+
+TEST(GrowingBvh, OneByOneNoItemIsPlacedMoreOftenThanLogarithmically) {
+    Random random(6);
+    Both both;
+    std::vector<Box3d> boxes(40000);
+    for (Box3d& box : boxes) box = randomBox(random, randomPoint(random, kWorld), kWorld);
+    both.append(boxes);
+    both.placed = 0;
+    constexpr uint32_t kCame = 4096;
+    for (uint32_t i = 0; i < kCame; ++i) both.append({boxes[i]});
+    EXPECT_FALSE(both.tree.isWorn());
+    EXPECT_LE(both.placed, 2 * uint64_t{kCame} * std::bit_width(kCame));
+    expectSound(both.tree.share(), both.truth);
+}
+
+TEST(GrowingBvh, WhatWandersOffStraysAndSwarmsThatMoveTogetherDoNot) {
+    Random random(7);
+    Both both;
+    std::vector<Box3d> boxes;
+    for (int i = 0; i < 4096; ++i) {
+        const glm::dvec3 at(i % 64, 0, i / 64);
+        boxes.push_back({at, at + 0.5});
+    }
+    both.append(boxes);
+    EXPECT_TRUE(both.tree.move(100, {boxes[100].min + 0.3, boxes[100].max + 0.3}));
+    const PlacedBvh before = both.tree.share();
+    EXPECT_FALSE(both.tree.move(200, {boxes[200].min + 500.0, boxes[200].max + 500.0}));
+    const uint32_t at = both.tree.now().slot[200];
+    EXPECT_TRUE(same(slotBox(both.tree.now().nodes[at / 8], static_cast<int>(at % 8)),
+                     slotBox(before.nodes[at / 8], static_cast<int>(at % 8))));
+    uint32_t strayed = 0;
+    for (int frame = 1; frame <= 300; ++frame)
+        for (uint32_t item = 0; item < 4096; ++item)
+            strayed += !both.move(item, {boxes[item].min + 0.1 * frame, boxes[item].max + 0.1 * frame});
+    EXPECT_EQ(strayed, 0u);
+}
+
+}  // namespace
+}  // namespace sightline::test
