@@ -103,10 +103,10 @@ Table benchFrustum(const Options& options) {
     Query query;
     size_t by_query = 0, by_flat = 0;
     const std::vector<double> times =
-        ownTimes({[&] { cullByCorners(planes, plain, kept); }, [&] { cullByPVertex(planes, plain, kept); },
-                  [&] { by_flat = cullFrustum(frustum, flat.arrays, flat.kept); },
-                  [&] { by_query = query.visible(now, view).objects.size(); }},
-                 options.repeat ? options.repeat : 15);
+        threadTimes({[&] { cullByCorners(planes, plain, kept); }, [&] { cullByPVertex(planes, plain, kept); },
+                     [&] { by_flat = cullFrustum(frustum, flat.arrays, flat.kept); },
+                     [&] { by_query = query.visible(now, view).objects.size(); }},
+                    options.repeat ? options.repeat : 15);
     const std::string where = options.scene ? options.scene->name : "1,000,000 boxes";
     const double per_box = 1e3 / static_cast<double>(std::max<size_t>(boxes.size(), 1));
     Table table{"frustum", {}};

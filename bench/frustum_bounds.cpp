@@ -78,14 +78,14 @@ void addRefinementRows(const FrustumWorld& world, Table& table) {
     const RefinedVolume refined = refineVolume(volumeOf(makeFrustum(view)));
     const float large = static_cast<float>(0.1 * kDeep);
     size_t by_planes = 0, by_corners = 0, by_axes = 0;
-    const std::vector<double> times =
-        ownTimes({[&] { by_planes = cullBounds(refined, flat.arrays, Refinement::kNone, large, flat.kept); },
-                  [&] { by_corners = cullBounds(refined, flat.arrays, Refinement::kCorners, large, flat.kept); },
-                  [&] { by_axes = cullBounds(refined, flat.arrays, Refinement::kSeparatingAxes, large, flat.kept); },
-                  [&] { cullBounds(refined, world.flat.arrays, Refinement::kNone, large, world.flat.kept); },
-                  [&] { cullBounds(refined, world.flat.arrays, Refinement::kSeparatingAxes, large, world.flat.kept); },
-                  [&] { refineVolume(refined.volume); }},
-                 world.repeat);
+    const std::vector<double> times = threadTimes(
+        {[&] { by_planes = cullBounds(refined, flat.arrays, Refinement::kNone, large, flat.kept); },
+         [&] { by_corners = cullBounds(refined, flat.arrays, Refinement::kCorners, large, flat.kept); },
+         [&] { by_axes = cullBounds(refined, flat.arrays, Refinement::kSeparatingAxes, large, flat.kept); },
+         [&] { cullBounds(refined, world.flat.arrays, Refinement::kNone, large, world.flat.kept); },
+         [&] { cullBounds(refined, world.flat.arrays, Refinement::kSeparatingAxes, large, world.flat.kept); },
+         [&] { refineVolume(refined.volume); }},
+        world.repeat);
     // The separating axes are exact but for what float cannot tell: their set stands for the truth.
     const double excess = static_cast<double>(by_planes - by_axes);
     const std::string where = fmt::format("{} boxes, half sides to 0.5 of the view's depth", kHuge);
@@ -124,7 +124,7 @@ void addBoundRows(const FrustumWorld& world, Table& table) {
         view.projection = orthographic(50.0 * (1 << cascade), 1.0, -1000.0, 1000.0);
         volumes.push_back(volumeOf(makeFrustum(view)));
     }
-    const std::vector<double> times = ownTimes(
+    const std::vector<double> times = threadTimes(
         {[&] { kept[0] = cullBounds(volume, world.flat.arrays, out); },
          [&] { kept[1] = cullBounds(volume, other.spheres, out); },
          [&] { kept[2] = cullBounds(volume, other.oriented, out); },

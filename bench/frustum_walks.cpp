@@ -43,9 +43,9 @@ void addHierarchyRows(const FrustumWorld& world, Table& table) {
         const Frustum frustum = makeFrustum(view);
         const RefinedVolume volume = plainVolume(view);
         const std::vector<double> times =
-            ownTimes({[&] { cullFrustum(frustum, world.flat.arrays, world.flat.kept); }, [&] { walk(volume, {}); },
-                      [&] { walk(volume, no_masks); }, [&] { walk(volume, two_states); }},
-                     world.repeat);
+            threadTimes({[&] { cullFrustum(frustum, world.flat.arrays, world.flat.kept); }, [&] { walk(volume, {}); },
+                         [&] { walk(volume, no_masks); }, [&] { walk(volume, two_states); }},
+                        world.repeat);
         const size_t found = walk(volume, {});
         const double tests = static_cast<double>(culler.stats().plane_tests);
         const std::string where =

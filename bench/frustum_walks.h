@@ -12,23 +12,6 @@
 
 namespace sightline::bench {
 
-/// As timeInterleaved(), by the thread's own time: the lists are long, and others' turns on the processor would show.
-inline std::vector<double> ownTimes(const std::vector<std::function<void()>>& jobs, int repeat) {
-    std::vector<std::vector<double>> times(jobs.size());
-    for (int round = -1; round < repeat; ++round)
-        for (size_t i = 0; i < jobs.size(); ++i) {
-            const double start = threadTime();
-            jobs[i]();
-            if (round >= 0) times[i].push_back(threadTime() - start);
-        }
-    std::vector<double> medians;
-    for (std::vector<double>& t : times) {
-        std::nth_element(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(t.size() / 2), t.end());
-        medians.push_back(t[t.size() / 2]);
-    }
-    return medians;
-}
-
 /// What is measured: boxes, the same as arrays, and a view from among them.
 struct FrustumWorld {
     std::string where;

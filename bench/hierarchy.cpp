@@ -5,6 +5,7 @@
 
 #include "bench/cases.h"
 #include "bench/flat_boxes.h"
+#include "bench/hierarchy_frusta.h"
 #include "bench/hierarchy_world.h"
 #include "bench/stopwatch.h"
 #include "bench/swarm.h"
@@ -70,6 +71,7 @@ void measureMovers(Table& table, int repeat) {
     queries(frustumFrom(std::numeric_limits<double>::infinity()), where + "; far view");
     queries(frustumFrom(0.2 * kWorld), where + "; short view");
     queries(frustumOfAll(), where + "; all in view");
+    measureManyFrusta(table, tree.now(), "1,000,000 boxes", kWorld, repeat);
 }
 
 /// What it costs to hold the world as it is while it goes on.

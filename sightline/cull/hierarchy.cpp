@@ -11,47 +11,16 @@
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sightline/cull/hierarchy.cpp"
-#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "sightline/cull/living_node-inl.h"
 #include "sightline/cull/relative_planes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-using U8 = hn::CappedTag<uint32_t, 8>;
-
-/// Writes the items among the slots that are left, and returns how many; `nodes` becomes the nodes among them.
-HWY_INLINE size_t takeItems(const BvhNode& node, uint32_t left, uint32_t* kept, uint32_t& nodes) {
-    const U8 d;
-    size_t count = 0;
-    nodes = 0;
-    for (size_t i = 0; i < 8; i += hn::Lanes(d)) {
-        const auto child = hn::Load(d, node.child + i);
-        const auto is_item = hn::Ne(hn::And(child, hn::Set(d, BvhNode::kLeaf)), hn::Zero(d));
-        const auto used = hn::Ne(child, hn::Set(d, ~0u));
-        uint8_t bits[8] = {static_cast<uint8_t>(left >> i)};
-        const auto wanted = hn::And(hn::LoadMaskBits(d, bits), used);
-        uint8_t node_bits[8] = {};
-        hn::StoreMaskBits(d, hn::AndNot(is_item, wanted), node_bits);
-        nodes |= uint32_t{node_bits[0]} << i;
-        const auto item = hn::And(child, hn::Set(d, ~BvhNode::kLeaf));
-        count += hn::CompressStore(item, hn::And(wanted, is_item), d, kept + count);
-    }
-    return count;
-}
-
-HWY_INLINE void prefetch(const BvhNode& node, bool bounds) {
-    const char* at = reinterpret_cast<const char*>(&node);
-    hwy::Prefetch(at + 192);
-    if (!bounds) return;
-    hwy::Prefetch(at);
-    hwy::Prefetch(at + 64);
-    hwy::Prefetch(at + 128);
-}
 
 size_t cullHierarchyKernel(const RelativePlanes& planes, const LivingBvh& tree, HierarchyScratch& scratch,
                            uint32_t* kept, HierarchyStats& stats) {

@@ -21,6 +21,9 @@ struct HierarchyStats {
     uint64_t inside_nodes = 0;  ///< whose items were all kept without a test
 };
 
+/// Frusta that one walk asks at most.
+inline constexpr uint32_t kMostFrusta = 32;
+
 /// What a query needs and does not give back; one for each thread. Once it has seen its hierarchies, queries take no
 /// memory.
 struct HierarchyScratch {
@@ -28,8 +31,15 @@ struct HierarchyScratch {
         uint32_t node = 0;
         uint32_t planes = 0;  ///< bit per plane that the node is not inside of
     };
+    /// The same of several frusta.
+    struct ManyVisit {
+        uint32_t node = 0;
+        uint32_t live = 0;            ///< bit per frustum that the node may touch
+        uint8_t planes[kMostFrusta];  ///< per live one
+    };
     Array<Visit> stack;
-    explicit HierarchyScratch(Memory* memory = defaultMemory()) : stack(memory) {}
+    Array<ManyVisit> many;
+    explicit HierarchyScratch(Memory* memory = defaultMemory()) : stack(memory), many(memory) {}
 };
 
 /// Writes the numbers of the items whose stored boxes may touch the frustum, and of all that are unbounded, and returns
@@ -38,5 +48,15 @@ struct HierarchyScratch {
 /// @param kept  [size: >= tree.count + 8]
 size_t cullHierarchy(const Frustum& frustum, const LivingBvh& tree, HierarchyScratch& scratch, std::span<uint32_t> kept,
                      HierarchyStats* stats = nullptr);
+
+/// The same for several frusta in one walk (the eyes of a headset, cascades, the faces of a cube): writes what any of them
+/// may touch, once, with a bit per frustum. Of each frustum these are the items that the walk for it alone keeps, to the
+/// bit and in its order; a node that only some may touch costs the others nothing. Of unbounded items all bits are set.
+/// @param frusta  [size: 1 to kMostFrusta]
+/// @param kept    [size: >= tree.count + 8]
+/// @param masks   per kept item: bit i of frusta[i]  [size: as kept]
+/// @param stats   plane tests of all frusta together
+size_t cullHierarchy(std::span<const Frustum> frusta, const LivingBvh& tree, HierarchyScratch& scratch,
+                     std::span<uint32_t> kept, std::span<uint32_t> masks, HierarchyStats* stats = nullptr);
 
 }  // namespace sightline
