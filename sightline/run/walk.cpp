@@ -356,7 +356,7 @@ void Walk::walk() {
         for (const uint32_t row : state().unbounded) keep(state().objects[row]);
     }
     if (state().bvh.nodes.empty()) return;
-    const uint32_t planes = (1u << frustum.count) - 1 | limits.volume.allPlanes() << kLimitBit;
+    const uint32_t planes = ((1u << frustum.count) - 1) | (limits.volume.allPlanes() << kLimitBit);
     if (uses(Stage::kVolumes)) chooseVolumes();
     const Visit root{0, uses(Stage::kFrustum) ? planes : 0, volumes.all()};
     if (!uses(Stage::kOcclusion)) return walkUnordered(root);
