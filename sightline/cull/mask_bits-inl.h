@@ -19,10 +19,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Sixteen at a time at most.
 using FaceLanes = hn::CappedTag<float, 16>;
 
-/// Asks for the answers of `count` items, in steps of lanes, and writes a bit each.
+/// Asks for the answers of `count` items, in steps of lanes, and writes a bit each; or adds it to those that are there.
 /// @param test   from the first item of a step to the mask of its lanes; items up to a multiple of 16 are asked for
 /// @param bits   [size: >= count rounded up to 16, a bit each]
-template <class Test>
+template <bool add = false, class Test>
 HWY_INLINE void storeAnswers(FaceLanes d, size_t count, uint8_t* HWY_RESTRICT bits, const Test& test) {
     const size_t lanes = hn::Lanes(d);
     for (size_t i = 0; i < count; i += 16) {
@@ -32,6 +32,7 @@ HWY_INLINE void storeAnswers(FaceLanes d, size_t count, uint8_t* HWY_RESTRICT bi
             hn::StoreMaskBits(d, test(i + j), answer);
             word |= (uint32_t{answer[0]} | uint32_t{answer[1]} << 8) << j;
         }
+        if constexpr (add) word |= uint32_t{bits[i / 8]} | uint32_t{bits[i / 8 + 1]} << 8;
         bits[i / 8] = static_cast<uint8_t>(word);
         bits[i / 8 + 1] = static_cast<uint8_t>(word >> 8);
     }

@@ -1,0 +1,334 @@
+// Back faces: triangle by triangle, by masks of normals, by clusters; what each finds, and what it costs.
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "bench/cases.h"
+#include "bench/facing_meshes.h"
+#include "bench/frustum_walks.h"
+#include "sightline/base/random.h"
+#include "sightline/cull/back_faces.h"
+#include "sightline/cull/facing_clusters.h"
+#include "sightline/cull/normal_masks.h"
+#include "sightline/prepare/facing_clusters.h"
+#include "sightline/prepare/merge_facing.h"
+#include "sightline/prepare/normal_classes.h"
+#include "sightline/prepare/triangle_planes.h"
+
+namespace sightline::bench {
+namespace {
+
+constexpr double kAngle = 60.0;  // [degrees]
+constexpr int kCells = 16;
+constexpr int kEyes = 200;
+
+bool bitOf(const std::vector<uint8_t>& bits, size_t i) { return bits[i / 8] >> (i % 8) & 1; }
+
+struct PlainPlane {
+    float n[3], d;
+};
+
+/// One triangle after the other.
+size_t findPlain(const std::vector<PlainPlane>& planes, const glm::vec3& eye, std::vector<uint8_t>& back) {
+    size_t found = 0;
+    for (size_t i = 0; i < planes.size(); i += 8) {
+        uint32_t byte = 0;
+        for (size_t k = 0; k < 8; ++k) {
+            const PlainPlane& p = planes[i + k];
+            byte |= uint32_t{p.n[0] * eye.x + p.n[1] * eye.y + p.n[2] * eye.z + p.d <= 0.0f} << k;
+        }
+        back[i / 8] = static_cast<uint8_t>(byte);
+        found += byte != 0;
+    }
+    return found;
+}
+
+/// Triangles that face all ways, as records of every kind.
+struct Facets {
+    TrianglePlanes planes;
+    NormalClasses classes;
+    std::vector<PlainPlane> plain;
+    std::vector<uint8_t> back;
+
+    explicit Facets(size_t count) : back(count / 8) {
+        Random random(5);
+        planes.count = classes.count = count;
+        planes.reach = 3.0;
+        classes.cells = kCells;
+        for (size_t i = 0; i < count; ++i) {
+            glm::dvec3 n;
+            do {
+                const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+                n = {x, y, random.uniform(-1, 1)};
+            } while (glm::dot(n, n) > 1 || glm::dot(n, n) < 0.01);
+            n = glm::normalize(n);
+            const float d = static_cast<float>(random.uniform(-1, 1));
+            planes.x.push_back(static_cast<float>(n.x)), planes.y.push_back(static_cast<float>(n.y));
+            planes.z.push_back(static_cast<float>(n.z)), planes.d.push_back(d);
+            plain.push_back({{static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)}, d});
+            const int number = normalClass(n, kCells);
+            classes.byte.push_back(static_cast<uint8_t>(number >> 3));
+            classes.bit.push_back(static_cast<uint8_t>(1u << (number & 7)));
+        }
+    }
+};
+
+View viewAt(double angle, bool parallel) {
+    View view;
+    view.width = view.height = 1000;
+    view.view = lookAt({1, 2, 3}, {3, 1, 0}, {0, 1, 0});
+    view.projection = parallel ? orthographic(2.0, 1.0, 0.1, 10.0) : perspective(glm::radians(angle), 1.0, 0.1, 10.0);
+    return view;
+}
+
+void addTimes(size_t count, int passes, int repeat, Table& table) {
+    Facets facets(count);
+    const View view = viewAt(kAngle, false);
+    const FacingEye eye = facingEye(view, glm::dmat4(1.0));
+    const NormalMask mask = makeNormalMask(cornerRays(view, glm::dmat4(1.0)), eye.front, kCells);
+    const auto often = [passes](auto job) {
+        return [=] {
+            for (int i = 0; i < passes; ++i) job();
+        };
+    };
+    const std::vector<double> times =
+        ownTimes({often([&] { findPlain(facets.plain, glm::vec3(eye.point), facets.back); }),
+                  often([&] { findBackFaces(facets.planes, eye, facets.back); }),
+                  often([&] { findBackFaces(facets.classes, mask, facets.back); })},
+                 repeat);
+    const double each = 1e3 / static_cast<double>(count) / passes;
+    const std::string where = fmt::format("{} triangles{}", count, count > 1000000 ? ", out of cache" : ", in cache");
+    const auto row = [&](const char* what, size_t i, const char* baseline, size_t base) {
+        table.rows.push_back({where, what, times[i] * each, "ns/triangle", baseline, times[base] * each});
+    };
+    row("planes, SIMD", 1, "planes, one by one", 0);
+    row("normal masks", 2, "planes, one by one", 0);
+    row("normal masks", 2, "planes, SIMD", 1);
+}
+
+/// Of triangles of all directions that are seen in the window from the back: those that are found.
+double maskRecall(double angle, bool parallel, int sectors) {
+    Random random(6);
+    View view = viewAt(angle, parallel);
+    const auto direction = [&] {
+        for (;;) {
+            const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+            const glm::dvec3 v(x, y, random.uniform(-1, 1));
+            if (glm::dot(v, v) < 1 && glm::dot(v, v) > 0.01) return glm::normalize(v);
+        }
+    };
+    size_t backs = 0, found = 0;
+    for (int v = 0; v < 400; ++v) {
+        const glm::dvec3 from(1, 2, 3);
+        view.view = lookAt(from, from + direction(), direction());
+        const FacingEye eye = facingEye(view, glm::dmat4(1.0));
+        const SectorMasks masks(view, glm::dmat4(1.0), eye.front, kCells, sectors);
+        const glm::dmat4 inverse = glm::inverse(view.projection * view.view);
+        for (int i = 0; i < 500; ++i) {
+            const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+            const glm::dvec4 clip = inverse * glm::dvec4(x, y, random.uniform(-1, 1), 1.0);
+            const glm::dvec3 p = glm::dvec3(clip) / clip.w, n = direction();
+            if (glm::dot(n, eye.point - eye.w * p) > 0) continue;
+            ++backs;
+            const int sector = masks.sectorOf(glm::vec3(p));
+            const int number = normalClass(n, kCells);
+            if (sector >= 0)
+                found += masks.mask(sector % sectors, sector / sectors).bytes[static_cast<size_t>(number >> 3)] >>
+                             (number & 7) &
+                         1;
+        }
+    }
+    return static_cast<double>(found) / static_cast<double>(backs);
+}
+
+void addMaskRows(int repeat, Table& table) {
+    const std::string where = fmt::format("triangles of all directions, N = {}", kCells);
+    for (const int sectors : {1, 2, 4, 8})
+        table.rows.push_back({where, fmt::format("{0}x{0} sectors, 60 degrees: found", sectors),
+                              maskRecall(kAngle, false, sectors), "of back faces", "all", 1.0});
+    table.rows.push_back({where, "parallel: found", maskRecall(kAngle, true, 1), "of back faces", "all", 1.0});
+    const View view = viewAt(kAngle, false);
+    const std::vector<double> times =
+        ownTimes({[&] {
+                      for (int i = 0; i < 100; ++i)
+                          makeNormalMask(cornerRays(view, glm::dmat4(1.0)), FrontFace::kCounterClockwise, kCells);
+                  },
+                  [&] {
+                      for (int i = 0; i < 10; ++i)
+                          SectorMasks(view, glm::dmat4(1.0), FrontFace::kCounterClockwise, kCells, 8);
+                  }},
+                 repeat);
+    table.rows.push_back({"a frustum", "making its mask", times[0] / 100, "us", "", 0});
+    table.rows.push_back(
+        {"a frustum", "making 8x8 sectors' masks", times[1] / 10, "us", "making its mask", times[0] / 100});
+}
+
+/// What the tests find on given clusters, in triangles over all eyes.
+struct Found {
+    double backs = 0, oracle = 0, volumes = 0, turned = 0, cones = 0, all = 0, meshopt = 0, masks = 0, both = 0;
+};
+
+Found findOn(const ClusteredMesh& clustered, const Box3d& eyes_box) {
+    const MeshView mesh = clustered.mesh.view();
+    std::vector<uint32_t> order(mesh.triangles());
+    std::iota(order.begin(), order.end(), 0u);
+    FacingSettings settings;
+    settings.mask_steps = 2;
+    const FacingClusters clusters = describeClusters(mesh, order, clustered.sizes, settings);
+    const TrianglePlanes planes = makeTrianglePlanes(mesh);
+    const MeshoptCones meshopt(clustered);
+    const size_t bytes = (clusters.count() + 15) / 16 * 2;
+    std::vector<uint8_t> triangles((mesh.triangles() + 15) / 16 * 2);
+    std::vector<uint8_t> by[5] = {std::vector<uint8_t>(bytes), std::vector<uint8_t>(bytes), std::vector<uint8_t>(bytes),
+                                  std::vector<uint8_t>(bytes), std::vector<uint8_t>(bytes)};
+    Found found;
+    for (const FacingEye& eye : randomEyes(eyes_box, kEyes)) {
+        found.backs += static_cast<double>(findBackFaces(planes, eye, triangles));
+        findBackClusters(clusters, eye, kVolumeTest, by[0]);
+        findBackClusters(clusters, eye, kTurnedTest, by[1]);
+        findBackClusters(clusters, eye, kConeTest, by[2]);
+        findBackClusters(clusters, eye, kAllFacingTests, by[3]);
+        meshopt.find(eye.point, by[4]);
+        double* const sums[5] = {&found.volumes, &found.turned, &found.cones, &found.all, &found.meshopt};
+        for (size_t c = 0; c < clusters.count(); ++c) {
+            for (int k = 0; k < 5; ++k)
+                if (bitOf(by[k], c)) *sums[k] += clusters.size(c);
+            size_t backs = 0, masked = 0;
+            const uint64_t* const masks = backTriangles(clusters, c, eye);
+            for (uint32_t i = 0; i < clusters.size(c); ++i) {
+                backs += bitOf(triangles, clusters.first[c] + i);
+                masked += masks && masks[i / 64] >> (i % 64) & 1;
+            }
+            if (backs == clusters.size(c)) found.oracle += static_cast<double>(backs);
+            found.masks += static_cast<double>(masked);
+            found.both += static_cast<double>(bitOf(by[3], c) ? clusters.size(c) : masked);
+        }
+    }
+    return found;
+}
+
+void addRecallRows(const FacingMesh& mesh, Table& table) {
+    const Box3d eyes = eyeSpace(mesh.box(), 3.0);
+    for (const uint32_t size : {16u, 32u, 64u}) {
+        const ClusteredMesh clustered = meshoptClusters(mesh, size, 0.5f);
+        const Found found = findOn(clustered, eyes);
+        const std::string where = fmt::format("{}, meshoptimizer's clusters of {}", mesh.name, size);
+        const auto row = [&](const char* what, double value, const char* baseline, double base) {
+            table.rows.push_back({where, what, value / found.backs, "of back faces", baseline, base / found.backs});
+        };
+        row("any cluster test", found.oracle, "all", found.backs);
+        row("volumes", found.volumes, "any cluster test", found.oracle);
+        row("turned volumes", found.turned, "volumes", found.volumes);
+        row("cones", found.cones, "meshoptimizer's cones", found.meshopt);
+        row("all three", found.all, "meshoptimizer's cones", found.meshopt);
+        row("all three", found.all, "any cluster test", found.oracle);
+        row("masks, 24 sectors", found.masks, "cones", found.cones);
+        row("all three and masks", found.both, "all", found.backs);
+    }
+}
+
+void addCostRows(const FacingMesh& mesh, int repeat, Table& table) {
+    for (const double test : {1.0, 4.0, 16.0}) {
+        FacingCost cost;
+        cost.test = test;
+        double best = 1e300;
+        std::string best_name;
+        for (const uint32_t size : {8u, 16u, 32u, 64u, 124u})
+            for (const float weight : {0.0f, 0.25f, 0.5f, 1.0f}) {
+                const ClusteredMesh clustered = meshoptClusters(mesh, size, weight);
+                std::vector<uint32_t> order(clustered.mesh.view().triangles());
+                std::iota(order.begin(), order.end(), 0u);
+                FacingSettings settings;
+                settings.turned = settings.cones = false;
+                const double one =
+                    modelledCost(describeClusters(clustered.mesh.view(), order, clustered.sizes, settings),
+                                 clustered.mesh.view(), cost);
+                if (one < best) best = one, best_name = fmt::format("clusters of {}, weight {}", size, weight);
+            }
+        const FacingPartition part = mergeFacing(mesh.view(), cost);
+        const double ours = modelledCost(describeClusters(mesh.view(), part.triangles, part.sizes), mesh.view(), cost);
+        const double all = static_cast<double>(mesh.view().triangles());
+        const std::string where = fmt::format("{}, a test as dear as {} triangles", mesh.name, test);
+        table.rows.push_back(
+            {where, "modelled cost", ours / all, "of all triangles", "meshoptimizer's best", best / all, best_name});
+        table.rows.push_back(
+            {where, "triangles a cluster", all / static_cast<double>(part.sizes.size()), "triangles", "", 0});
+    }
+    const std::vector<double> times =
+        ownTimes({[&] { meshoptClusters(mesh, 64, 0.5f); }, [&] { mergeFacing(mesh.view()); }}, std::min(repeat, 3));
+    const double each = 1.0 / static_cast<double>(mesh.view().triangles());
+    table.rows.push_back(
+        {mesh.name, "making clusters", times[1] * each, "us/triangle", "meshoptimizer", times[0] * each});
+}
+
+void addClusterTimes(const FacingMesh& mesh, int repeat, Table& table) {
+    const FacingPartition part = mergeFacing(mesh.view());
+    const FacingClusters clusters = describeClusters(mesh.view(), part.triangles, part.sizes);
+    const FacingTree tree = makeFacingTree(clusters, mesh.view());
+    const std::vector<FacingEye> eyes = randomEyes(eyeSpace(mesh.box(), 3.0), kEyes);
+    std::vector<uint8_t> back((clusters.count() + 15) / 16 * 2);
+    std::vector<TriangleRange> ranges(clusters.count() / 2 + 1);
+    size_t asked = 0, runs = 0, drawn = 0, tree_asked = 0;
+    const auto test = [&](uint32_t tests) {
+        return [&, tests] {
+            for (const FacingEye& eye : eyes) findBackClusters(clusters, eye, tests, back);
+        };
+    };
+    const std::vector<double> times =
+        ownTimes({test(kVolumeTest), test(kTurnedTest), test(kConeTest), test(kAllFacingTests),
+                  [&] {
+                      tree_asked = 0;
+                      for (const FacingEye& eye : eyes) tree_asked += walkFacingTree(tree, clusters, eye, back);
+                  }},
+                 repeat);
+    for (const FacingEye& eye : eyes) {
+        findBackClusters(clusters, eye, kAllFacingTests, back);
+        const size_t count = remainingRanges(clusters, back, 0, ranges);
+        runs += count;
+        for (size_t i = 0; i < count; ++i) drawn += ranges[i].count;
+    }
+    asked = clusters.count() * eyes.size();
+    const double each = 1e3 / static_cast<double>(asked);
+    const std::string where = fmt::format("{}, {} clusters", mesh.name, clusters.count());
+    table.rows.push_back({where, "volumes", times[0] * each, "ns/cluster", "", 0});
+    table.rows.push_back({where, "turned volumes", times[1] * each, "ns/cluster", "volumes", times[0] * each});
+    table.rows.push_back({where, "cones", times[2] * each, "ns/cluster", "volumes", times[0] * each});
+    table.rows.push_back({where, "all three", times[3] * each, "ns/cluster", "volumes", times[0] * each});
+    table.rows.push_back({where, "tree of volumes", times[4] * each, "ns/cluster", "volumes", times[0] * each,
+                          fmt::format("{} nodes", tree.nodes.size())});
+    table.rows.push_back({where, "volumes asked by the tree", static_cast<double>(tree_asked) / kEyes, "volumes",
+                          "clusters", static_cast<double>(clusters.count())});
+    const double all = static_cast<double>(mesh.view().triangles());
+    table.rows.push_back({where, "triangles drawn", static_cast<double>(drawn) / kEyes, "triangles", "all", all});
+    table.rows.push_back({where, "runs of triangles", static_cast<double>(runs) / kEyes, "runs", "", 0});
+}
+
+}  // namespace
+
+Table benchBackface(const Options& options) {
+    Table table{"backface", {}};
+    const int repeat = options.repeat ? options.repeat : 15;
+    std::vector<FacingMesh> meshes;
+    if (options.scene) {
+        meshes.push_back(wholeScene(*options.scene));
+    } else {
+        addTimes(size_t{1} << 12, 1000, repeat, table);
+        addTimes(size_t{1} << 22, 1, repeat, table);
+        addMaskRows(repeat, table);
+        meshes.push_back(bumpyBall("smooth ball", 80, 0.0, 0.0));
+        meshes.push_back(bumpyBall("bumpy ball", 80, 0.1, 0.0));
+        meshes.push_back(bumpyBall("rough ball", 80, 0.1, 0.01));
+    }
+    for (const FacingMesh& mesh : meshes) {
+        if (mesh.indices.empty()) continue;
+        addRecallRows(mesh, table);
+        addCostRows(mesh, repeat, table);
+        addClusterTimes(mesh, repeat, table);
+    }
+    return table;
+}
+
+}  // namespace sightline::bench

@@ -1,0 +1,126 @@
+// How much of space a volume culls, beside random eyes; and what joining volumes may and may not do.
+// SPDX-License-Identifier: MIT
+#include "sightline/prepare/culling_volume.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sightline/base/random.h"
+
+namespace sightline {
+namespace {
+
+glm::dvec3 randomVector(Random& random, double size) {
+    const double x = random.uniform(-size, size), y = random.uniform(-size, size);
+    return {x, y, random.uniform(-size, size)};
+}
+
+double highest(const CullingVolume& volume, const glm::dvec3& q) {
+    double sum = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        sum += std::max(double(volume.most[axis]) * q[axis], double(volume.least[axis]) * q[axis]);
+    return sum;
+}
+
+bool culls(const CullingVolume& volume, const glm::dvec3& eye) {
+    return highest(volume, eye - glm::dvec3(volume.origin)) <= volume.back;
+}
+
+std::vector<Facet> randomFacets(Random& random, int count, double spread) {
+    const glm::dvec3 ahead = glm::normalize(randomVector(random, 1.0) + glm::dvec3(0.01)),
+                     place = randomVector(random, 2.0);
+    std::vector<Facet> facets;
+    for (int i = 0; i < count; ++i) {
+        const glm::dvec3 p = place + randomVector(random, 0.5);
+        facets.push_back({glm::normalize(ahead + spread * randomVector(random, 1.0)), {p, p, p}});
+    }
+    return facets;
+}
+
+TEST(CullingProbability, IsTheShareOfRandomEyes) {
+    Random random(111);
+    double worst = 0, largest = 0;
+    for (int round = 0; round < 60; ++round) {
+        const std::vector<Facet> facets =
+            randomFacets(random, 1 + static_cast<int>(random.below(20)), random.uniform(0.0, 0.9));
+        Box3d eyes;
+        eyes.grow(randomVector(random, 6.0));
+        eyes.grow(randomVector(random, 6.0));
+        CullingVolume volume = makeCullingVolume(facets, eyes);
+        // Weights that are nothing or next to nothing: walls along the axes.
+        if (round % 4 == 0) volume.most.x = volume.least.x = 0.0f;
+        if (round % 8 == 0) volume.most.y = volume.least.y = 1e-6f;
+        const double share = cullingProbability(volume, eyes);
+        const int samples = 100000;
+        int inside = 0;
+        for (int i = 0; i < samples; ++i) {
+            const double x = random.uniform(eyes.min.x, eyes.max.x), y = random.uniform(eyes.min.y, eyes.max.y);
+            inside += culls(volume, {x, y, random.uniform(eyes.min.z, eyes.max.z)});
+        }
+        const double counted = static_cast<double>(inside) / samples;
+        worst = std::max(worst, std::abs(share - counted));
+        largest = std::max(largest, share);
+    }
+    EXPECT_LT(worst, 0.008);  // five standard deviations
+    EXPECT_GT(largest, 0.3);
+}
+
+TEST(CullingProbability, OfABoxAndAHalfSpaceIsWhatGeometrySays) {
+    const glm::dvec3 one(1.0);
+    EXPECT_NEAR(volumeBelow(one, {1, 1, 1}, 1.0), 1.0 / 6.0, 1e-12);  // a corner
+    EXPECT_NEAR(volumeBelow(one, {1, 1, 1}, 1.5), 0.5, 1e-12);
+    EXPECT_NEAR(volumeBelow(one, {1, 1, 1}, 2.0), 5.0 / 6.0, 1e-12);
+    EXPECT_NEAR(volumeBelow(one, {-1, -1, -1}, -2.0), 1.0 / 6.0, 1e-12);
+    EXPECT_NEAR(volumeBelow({2, 3, 4}, {1, 0, 0}, 0.5), 6.0, 1e-12);
+    EXPECT_NEAR(volumeBelow({2, 3, 4}, {0, 1, 1e-9}, 1.5), 12.0, 1e-6);
+    EXPECT_EQ(volumeBelow(one, {0, 0, 0}, 0.0), 1.0);
+    EXPECT_EQ(volumeBelow(one, {0, 0, 0}, -0.1), 0.0);
+    EXPECT_EQ(volumeBelow(one, {1, 1, 1}, 4.0), 1.0);
+    EXPECT_EQ(volumeBelow(one, {1, 1, 1}, -0.1), 0.0);
+}
+
+TEST(CullingVolume, AChosenOriginIsNoWorseThanTheCentre) {
+    Random random(112);
+    int better = 0;
+    for (int round = 0; round < 500; ++round) {
+        const std::vector<Facet> facets = randomFacets(random, 8, random.uniform(0.0, 1.0));
+        const Box3d eyes{glm::dvec3(-6.0), glm::dvec3(6.0)};
+        Box3d box;
+        for (const Facet& facet : facets)
+            for (const glm::dvec3& p : facet.corner) box.grow(p);
+        const double at_center = cullingProbability(cullingVolumeAt(facets, glm::vec3(box.center())), eyes);
+        const double chosen = cullingProbability(makeCullingVolume(facets, eyes), eyes);
+        EXPECT_GE(chosen, at_center);
+        better += chosen > at_center;
+    }
+    EXPECT_GT(better, 100);
+}
+
+TEST(CullingVolume, AJoinedOneCullsOnlyWhatBothCull) {
+    Random random(113);
+    size_t culled = 0;
+    for (int round = 0; round < 2000; ++round) {
+        std::vector<Facet> one = randomFacets(random, 5, 0.2);
+        const std::vector<Facet> more = randomFacets(random, 5, 0.2);
+        const CullingVolume a = cullingVolumeAt(one, glm::vec3(randomVector(random, 2.0)));
+        const CullingVolume b = cullingVolumeAt(more, glm::vec3(randomVector(random, 2.0)));
+        const CullingVolume joined = joinVolumes(a, b, glm::vec3(randomVector(random, 2.0)));
+        one.insert(one.end(), more.begin(), more.end());
+        const CullingVolume exact = cullingVolumeAt(one, joined.origin);
+        EXPECT_LE(joined.back, exact.back);
+        EXPECT_GE(joined.front, exact.front);
+        for (int i = 0; i < 100; ++i) {
+            const glm::dvec3 eye = randomVector(random, 20.0);
+            if (!culls(joined, eye)) continue;
+            ++culled;
+            for (const Facet& facet : one)
+                ASSERT_LE(glm::dot(facet.normal, eye - facet.corner[0]), 1e-6) << "round " << round;
+        }
+    }
+    EXPECT_GT(culled, 1000u);
+}
+
+}  // namespace
+}  // namespace sightline
