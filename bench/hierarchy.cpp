@@ -9,6 +9,8 @@
 #include "bench/hierarchy_world.h"
 #include "bench/stopwatch.h"
 #include "bench/swarm.h"
+#include "sightline/base/random.h"
+#include "sightline/cull/box_query.h"
 #include "sightline/cull/grid.h"
 #include "sightline/cull/hierarchy.h"
 
@@ -193,12 +195,53 @@ void measureReach(Table& table, int repeat) {
     }
 }
 
+/// Boxes that hold a share of the world, in all that can be asked.
+void measureBoxQueries(Table& table, int repeat) {
+    const Swarm swarm(1000000, 7);
+    const Bvh fixed = buildBvh(swarm.boxes);
+    DynamicBvh tree;
+    tree.build(swarm.boxes);
+    FlatBoxes flat(swarm.boxes);
+    HierarchyScratch scratch;
+    std::vector<uint32_t> kept(swarm.boxes.size() + 16);
+    Random random(8);
+    for (const double share : {0.00001, 0.001, 0.07, 0.5}) {
+        const double half = kWorld * std::cbrt(share), room = kWorld - half;
+        std::vector<Box3d> asked;
+        for (int i = 0; i < (share < 0.01 ? 200 : 8); ++i) {
+            const double x = random.uniform(-room, room), y = random.uniform(-room, room);
+            const glm::dvec3 at(x, y, random.uniform(-room, room));
+            asked.push_back({at - half, at + half});
+        }
+        size_t found = 0;
+        const auto each = [&](const auto& query) {
+            return [&asked, &found, query] {
+                found = 0;
+                for (const Box3d& box : asked) found += query(box);
+            };
+        };
+        const std::vector<double> times =
+            threadTimes({each([&](const Box3d& box) { return queryBox(box, flat.arrays, kept); }),
+                         each([&](const Box3d& box) { return queryBox(box, fixed, scratch, kept); }),
+                         each([&](const Box3d& box) { return queryBox(box, tree.now(), scratch, kept); })},
+                        repeat ? repeat : 15);
+        const double each_one = 1.0 / static_cast<double>(asked.size());
+        const std::string where = "1,000,000 boxes, a box that meets " +
+                                  std::to_string(static_cast<long>(each_one * static_cast<double>(found) + 0.5));
+        table.rows.push_back(
+            {where, "query of the static tree", times[1] * each_one, "us", "flat, SIMD", times[0] * each_one});
+        table.rows.push_back(
+            {where, "query of the living tree", times[2] * each_one, "us", "flat, SIMD", times[0] * each_one});
+    }
+}
+
 }  // namespace
 
 Table benchHierarchy(const Options& options) {
     Table table{"hierarchy", {}};
     measureMovers(table, options.repeat);
     measureSnapshots(table);
+    measureBoxQueries(table, options.repeat);
     for (const uint32_t count : {100000u, 1000000u}) measureGrid(table, count, options.repeat);
     measureReach(table, options.repeat);
     addWorld(table, "world of 100,000", 100000, options.repeat);

@@ -280,7 +280,7 @@ size_t HierarchyCuller::cull(const RefinedVolume& refined, const Bvh& bvh, const
     if (bvh.nodes.empty() || refined.volume.empty) return 0;
     const WalkPlanes planes = makePlanes(refined, bvh, how);
     if (how.eight_at_once) {
-        detail::EightWalk walk{planes, bvh, how.inside, how.masking, how.large, kept.data()};
+        detail::EightWalk walk{planes, bvh, how.inside, how.masking, how.large, kept};
         const size_t found = detail::walkEight(walk, stack_);
         stats_ = {walk.nodes, walk.boxes, walk.plane_tests, 0, walk.refined};
         return found;

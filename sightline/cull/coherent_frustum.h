@@ -54,7 +54,7 @@ class HierarchyCuller {
 public:
     explicit HierarchyCuller(Memory* memory = defaultMemory());
 
-    /// Writes the items whose boxes may touch the volume, in the order of the tree, and returns how many.
+    /// Writes the items whose boxes may touch the volume, in an order that hangs on the tree and the options alone, and returns how many.
     /// Conservative as cullFrustum(): the margin grows with the tree's size and the eye's distance from its origin.
     /// Allocates only where the tree has grown.
     /// @param refined  refineVolume(), or a RefinedVolume of which only `volume` is set  [limit: 8 planes; further ones

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
 #include "sightline/cull/walk_planes.h"
+#include "sightline/space/bvh_node.h"
 
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sightline/cull/eight_walk.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -73,19 +74,73 @@ uint32_t ask(const detail::WalkPlanes& planes, const BvhNode& node, uint32_t act
     return out;
 }
 
-size_t walkEightKernel(detail::EightWalk& walk, Array<detail::WalkVisit>& stack) {
+/// Bits of the children that are in use; `items` becomes those that are items.
+uint32_t usedSlots(const BvhNode& node, uint32_t& items) {
+    const U8 u;
+    uint32_t used = 0;
+    items = 0;
+    for (size_t i = 0; i < 8; i += hn::Lanes(u)) {
+        const auto child = hn::Load(u, node.child + i);
+        const auto in_use = hn::Ne(child, hn::Set(u, kUnusedChild));
+        const auto is_item = hn::Ne(hn::And(child, hn::Set(u, BvhNode::kLeaf)), hn::Zero(u));
+        uint8_t bits[8] = {};
+        hn::StoreMaskBits(u, in_use, bits);
+        used |= uint32_t{bits[0]} << i;
+        hn::StoreMaskBits(u, hn::And(in_use, is_item), bits);
+        items |= uint32_t{bits[0]} << i;
+    }
+    return used;
+}
+
+/// Writes the items in the slots named, and returns how many.
+/// @param room  where nothing more may be written than items
+size_t takeItems(const Bvh& bvh, const BvhNode& node, uint32_t slots, std::span<uint32_t> room) {
+    const U8 u;
+    const hn::RebindToSigned<U8> index;
+    size_t count = 0;
+    for (size_t i = 0; i < 8; i += hn::Lanes(u)) {
+        uint8_t bits[8] = {static_cast<uint8_t>(slots >> i)};
+        const auto taken = hn::LoadMaskBits(u, bits);
+        const auto place = hn::IfThenElseZero(taken, hn::Load(u, node.first + i));
+        const auto items = hn::GatherIndex(u, bvh.order.data(), hn::BitCast(index, place));
+        if (count + hn::Lanes(u) <= room.size())
+            count += hn::CompressStore(items, taken, u, room.data() + count);  // may write more, which is faster
+        else count += hn::CompressBlendedStore(items, taken, u, room.data() + count);
+    }
+    return count;
+}
+
+/// Copies all items below a child.
+size_t takeBelow(const Bvh& bvh, const BvhNode& node, uint32_t slot, uint32_t* kept) {
+    const U8 u;
+    const uint32_t* order = bvh.order.data() + node.first[slot];
+    const size_t count = node.count[slot];
+    size_t i = 0;
+    for (; i + hn::Lanes(u) <= count; i += hn::Lanes(u)) hn::StoreU(hn::LoadU(u, order + i), u, kept + i);
+    for (; i < count; ++i) kept[i] = order[i];
+    return count;
+}
+
+void prefetch(const BvhNode& node) {
+    const char* at = reinterpret_cast<const char*>(&node);
+    for (size_t line = 0; line < sizeof(BvhNode); line += 64) hwy::Prefetch(at + line);
+}
+
+/// Level by level, so that what comes next is known early enough to be fetched.
+size_t walkEightKernel(detail::EightWalk& walk, Array<detail::WalkVisit>& visits) {
+    constexpr size_t kAhead = 8;
     const Bvh& bvh = walk.bvh;
     const uint32_t all = (1u << walk.planes.count) - 1;
-    size_t found = 0;
+    size_t found = 0, fetched = 0;
     alignas(64) uint32_t crossed[8];
-    stack.clear();
-    stack.push_back({0, all});
-    while (!stack.empty()) {
-        const detail::WalkVisit visit = stack.back();
-        stack.pop_back();
+    visits.clear();
+    visits.push_back({0, all});
+    for (size_t at = 0; at < visits.size(); ++at) {
+        for (; fetched < std::min(visits.size(), at + kAhead); ++fetched) prefetch(bvh.nodes[visits[fetched].node]);
+        const detail::WalkVisit visit = visits[at];
         const BvhNode& node = bvh.nodes[visit.node];
-        uint32_t live = 0;
-        for (uint32_t slot = 0; slot < 8; ++slot) live |= uint32_t{node.count[slot] != 0} << slot;
+        uint32_t items;
+        uint32_t live = usedSlots(node, items);
         const uint32_t asked = static_cast<uint32_t>(std::popcount(live));
         ++walk.nodes;
         walk.boxes += asked;
@@ -98,16 +153,14 @@ size_t walkEightKernel(detail::EightWalk& walk, Array<detail::WalkVisit>& stack)
             walk.refined += static_cast<uint32_t>(std::popcount(separated));
             live &= ~separated;
         }
-        for (; live; live &= live - 1) {
+        if (live & items) found += takeItems(bvh, node, live & items, walk.kept.subspan(found));
+        for (live &= ~items; live; live &= live - 1) {
             const uint32_t slot = static_cast<uint32_t>(std::countr_zero(live));
-            if (node.child[slot] & BvhNode::kLeaf) {
-                walk.kept[found++] = bvh.order[node.first[slot]];
-            } else if (walk.inside && crossed[slot] == 0) {
-                std::memcpy(walk.kept + found, bvh.order.data() + node.first[slot],
-                            node.count[slot] * sizeof(uint32_t));
-                found += node.count[slot];
+            if (walk.inside && crossed[slot] == 0) {
+                found += takeBelow(bvh, node, slot, walk.kept.data() + found);
             } else {
-                stack.push_back({node.child[slot], walk.masking ? crossed[slot] : all});
+                hwy::Prefetch(bvh.order.data() + node.first[slot]);
+                visits.push_back({node.child[slot], walk.masking ? crossed[slot] : all});
             }
         }
     }
@@ -123,8 +176,8 @@ namespace sightline::detail {
 
 HWY_EXPORT(walkEightKernel);
 
-size_t walkEight(EightWalk& walk, Array<WalkVisit>& stack) {
-    return HWY_DYNAMIC_DISPATCH(walkEightKernel)(walk, stack);
+size_t walkEight(EightWalk& walk, Array<WalkVisit>& visits) {
+    return HWY_DYNAMIC_DISPATCH(walkEightKernel)(walk, visits);
 }
 
 }  // namespace sightline::detail

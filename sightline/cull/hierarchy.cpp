@@ -4,6 +4,7 @@
 // Ulf Assarsson, Tomas Moller. Optimized View Frustum Culling Algorithms for Bounding Boxes. 2000.
 #include "sightline/cull/hierarchy.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "sightline/base/assert.h"
@@ -22,24 +23,23 @@ namespace sightline {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// Level by level, so that what comes next is known early enough to be fetched.
 size_t cullHierarchyKernel(const RelativePlanes& planes, const LivingBvh& tree, HierarchyScratch& scratch,
                            uint32_t* kept, HierarchyStats& stats) {
-    Array<HierarchyScratch::Visit>& stack = scratch.stack;
-    stack.assign(1, {tree.root, (1u << planes.count) - 1});
-    size_t count = 0;
-    while (!stack.empty()) {
-        const HierarchyScratch::Visit visit = stack.back();
-        stack.pop_back();
+    constexpr size_t kAhead = 8;
+    Array<HierarchyScratch::Visit>& visits = scratch.visits;
+    visits.assign(1, {tree.root, (1u << planes.count) - 1});
+    size_t count = 0, fetched = 0;
+    for (size_t at = 0; at < visits.size(); ++at) {
+        for (; fetched < std::min(visits.size(), at + kAhead); ++fetched)
+            prefetch(tree.node(visits[fetched].node), visits[fetched].planes != 0);
+        const HierarchyScratch::Visit visit = visits[at];
         const BvhNode& node = tree.node(visit.node);
         uint32_t nodes = 0;
         if (visit.planes == 0) {
             ++stats.inside_nodes;
             count += takeItems(node, 0xff, kept + count, nodes);
-            for (; nodes != 0; nodes &= nodes - 1) {
-                const uint32_t child = node.child[std::countr_zero(nodes)];
-                prefetch(tree.node(child), false);
-                stack.push_back({child, 0});
-            }
+            for (; nodes != 0; nodes &= nodes - 1) visits.push_back({node.child[std::countr_zero(nodes)], 0});
             continue;
         }
         ++stats.nodes;
@@ -48,9 +48,7 @@ size_t cullHierarchyKernel(const RelativePlanes& planes, const LivingBvh& tree, 
         count += takeItems(node, ~slots.outside & 0xff, kept + count, nodes);
         for (; nodes != 0; nodes &= nodes - 1) {
             const int slot = std::countr_zero(nodes);
-            const uint32_t left = planesLeft(planes, slots, slot);
-            prefetch(tree.node(node.child[slot]), left != 0);
-            stack.push_back({node.child[slot], left});
+            visits.push_back({node.child[slot], planesLeft(planes, slots, slot)});
         }
     }
     return count;

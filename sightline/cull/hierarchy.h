@@ -35,11 +35,12 @@ struct HierarchyScratch {
     struct ManyVisit {
         uint32_t node = 0;
         uint32_t live = 0;            ///< bit per frustum that the node may touch
+        bool crossing = true;         ///< not inside of all of these
         uint8_t planes[kMostFrusta];  ///< per live one
     };
-    Array<Visit> stack;
-    Array<ManyVisit> many;
-    explicit HierarchyScratch(Memory* memory = defaultMemory()) : stack(memory), many(memory) {}
+    Array<Visit> visits;
+    Array<ManyVisit> many_visits;
+    explicit HierarchyScratch(Memory* memory = defaultMemory()) : visits(memory), many_visits(memory) {}
 };
 
 /// Writes the numbers of the items whose stored boxes may touch the frustum, and of all that are unbounded, and returns

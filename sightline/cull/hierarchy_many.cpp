@@ -36,20 +36,23 @@ HWY_INLINE void addBit(uint32_t slots, uint32_t frustum, uint32_t* masks) {
     }
 }
 
+/// Level by level, as the walk for one frustum.
 size_t cullManyKernel(const RelativePlanes* frusta, uint32_t frustum_count, const LivingBvh& tree,
                       HierarchyScratch& scratch, uint32_t* kept, uint32_t* kept_masks, HierarchyStats& stats) {
-    Array<HierarchyScratch::ManyVisit>& stack = scratch.many;
+    constexpr size_t kAhead = 8;
+    Array<HierarchyScratch::ManyVisit>& visits = scratch.many_visits;
     HierarchyScratch::ManyVisit top;
     top.node = tree.root;
     top.live = static_cast<uint32_t>((uint64_t{1} << frustum_count) - 1);
     for (uint32_t i = 0; i < frustum_count; ++i) top.planes[i] = static_cast<uint8_t>((1u << frusta[i].count) - 1);
-    stack.assign(1, top);
-    size_t count = 0;
+    visits.assign(1, top);
+    size_t count = 0, fetched = 0;
     alignas(64) uint32_t masks[8];
     uint64_t left[kMostFrusta] = {};  // per frustum: a byte per slot, the planes that it is not inside of
-    while (!stack.empty()) {
-        const HierarchyScratch::ManyVisit visit = stack.back();
-        stack.pop_back();
+    for (size_t at = 0; at < visits.size(); ++at) {
+        for (; fetched < std::min(visits.size(), at + kAhead); ++fetched)
+            prefetch(tree.node(visits[fetched].node), visits[fetched].crossing);
+        const HierarchyScratch::ManyVisit visit = visits[at];
         const BvhNode& node = tree.node(visit.node);
         uint32_t inside = 0;
         for (uint32_t bits = visit.live; bits != 0; bits &= bits - 1) {
@@ -74,7 +77,7 @@ size_t cullManyKernel(const RelativePlanes* frusta, uint32_t frustum_count, cons
         count += takeItems(node, masks, kept + count, kept_masks + count, nodes);
         for (; nodes != 0; nodes &= nodes - 1) {
             const int slot = std::countr_zero(nodes);
-            HierarchyScratch::ManyVisit& next = stack.emplace_back();
+            HierarchyScratch::ManyVisit& next = visits.emplace_back();
             next.node = node.child[slot];
             next.live = masks[slot];
             uint32_t any = 0;
@@ -83,7 +86,7 @@ size_t cullManyKernel(const RelativePlanes* frusta, uint32_t frustum_count, cons
                 next.planes[i] = static_cast<uint8_t>(left[i] >> (8 * slot));
                 any |= next.planes[i];
             }
-            prefetch(tree.node(next.node), any != 0);
+            next.crossing = any != 0;
         }
     }
     return count;

@@ -22,7 +22,7 @@ namespace HWY_NAMESPACE {
 
 size_t cullNodeTreeKernel(const RelativePlanes& planes, const NodeTreeBounds& tree, HierarchyScratch& scratch,
                           uint32_t* kept, HierarchyStats& stats) {
-    Array<HierarchyScratch::Visit>& stack = scratch.stack;
+    Array<HierarchyScratch::Visit>& stack = scratch.visits;
     stack.assign(1, {0, (1u << planes.count) - 1});
     size_t count = 0;
     while (!stack.empty()) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "sightline/cull/coherent_frustum.h"
 
@@ -54,11 +55,11 @@ struct EightWalk {
     const Bvh& bvh;
     bool inside, masking;
     float large;
-    uint32_t* kept;
+    std::span<uint32_t> kept;
     uint64_t nodes = 0, boxes = 0, plane_tests = 0, refined = 0;
 };
 
 /// Writes the items that are kept, and returns how many.
-size_t walkEight(EightWalk& walk, Array<WalkVisit>& stack);
+size_t walkEight(EightWalk& walk, Array<WalkVisit>& visits);
 
 }  // namespace sightline::detail

@@ -29,6 +29,7 @@ Bvh buildBvh(std::span<const Box3d> boxes, Memory* memory) {
     bvh.order.resize(count);
     bvh.slot.resize(count);
     BvhSplitter builder(bvh.order, memory);
+    builder.full_nodes = true;
     builder.boxes.resize(count);
     builder.centers.resize(count);
     for (uint32_t i = 0; i < count; ++i) {
