@@ -226,7 +226,8 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     const Result<uint32_t> use = readStages("--use", options.use), skip = readStages("--skip", options.skip);
     if (!use) return use.error();
     if (!skip) return skip.error();
-    options.stages = (options.use.empty() ? kDefaultStages : *use) & ~*skip;
+    // Clusters take long to prepare: they are for those who ask for them.
+    options.stages = (options.use.empty() ? kDefaultStages & ~stageBit(Stage::kClusters) : *use) & ~*skip;
     if (Status sizes = finishSizeOptions(options); !sizes) return sizes;
     options.seed_given = verb.count("--seed") > 0;
     if (!options.cameras.empty() && (options.frames > 0 || options.seed_given))

@@ -97,6 +97,9 @@ void cullFrame(const Snapshot& now, const CullRun& run, const CameraFrame* befor
     frame.second_look_culled = stats.second_look_culled;
     frame.second_look_polygons = stats.second_look_polygons;
     frame.second_look_spent = stats.second_look_spent;
+    if (run.stages & stageBit(Stage::kClusters) && !(run.stereo > 0))
+        frame.clusters = {stats.clusters_tested,   stats.clusters_back,   stats.clusters_outside, stats.clusters_hidden,
+                          stats.cluster_triangles, stats.drawn_triangles, stats.draw_ranges};
     frame.reasons.resize(now.objectCount());
     query.reasons(frame.reasons);
     if (!(run.stereo > 0)) return;

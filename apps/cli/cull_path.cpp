@@ -203,7 +203,8 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
         Progress progress("preparing", "meshes", scene.meshes.size());
         return loadWorld(
             scene, [&](size_t done, size_t total) { progress.set(done, total); },
-            loadSettings((options.stages & stageBit(Stage::kVolumes)) != 0, options.occluder_error));
+            loadSettings((options.stages & stageBit(Stage::kVolumes)) != 0, options.occluder_error,
+                         (options.stages & stageBit(Stage::kClusters)) != 0));
     }();
     const Snapshot now = loaded.world.commit();
 

@@ -191,7 +191,7 @@ Status explainObjects(const ExplainOptions& options, const Scene& scene, const C
     Result<std::vector<uint32_t>> objects = std::vector<uint32_t>();
     if (!options.has_pixel) objects = findObjects(scene, options.object);
     if (!objects) return objects.error();
-    const AskedScene asked(scene, options.occluder_error);
+    const AskedScene asked(scene, options);
     if (options.all_frames) {
         exit_code = explainInAll(options, asked, path, *objects, body);
     } else {

@@ -103,10 +103,11 @@ std::string eyeText(const ObjectAnswer& answer) {
 
 }  // namespace
 
-AskedScene::AskedScene(const Scene& from, double occluder_error) : scene(from) {
+AskedScene::AskedScene(const Scene& from, const RunOptions& options) : scene(from) {
     Progress progress("preparing", "meshes", scene.meshes.size());
     loaded = loadWorld(
-        scene, [&](size_t done, size_t total) { progress.set(done, total); }, loadSettings(true, occluder_error));
+        scene, [&](size_t done, size_t total) { progress.set(done, total); },
+        loadSettings(true, options.occluder_error, (options.stages & stageBit(Stage::kClusters)) != 0));
     now = loaded.world.commit();
 }
 
@@ -205,6 +206,10 @@ Json answerJson(const AskedScene& asked, const ObjectAnswer& answer) {
         out["distance"] = {{"distance", why.size.distance}, {"limit", why.size.distance_limit}};
     if (why.verdict == Verdict::kTooSmall)
         out["contribution"] = {{"radius", why.size.radius}, {"limit", why.size.radius_limit}};
+    if (why.clusters.clusters > 0)
+        out["clusters"] = {{"clusters", why.clusters.clusters},   {"back", why.clusters.back},
+                           {"outside", why.clusters.outside},     {"hidden", why.clusters.hidden},
+                           {"triangles", why.clusters.triangles}, {"drawn", why.clusters.drawn}};
     if (why.verdict == Verdict::kVisible) out["kept"] = keptJson(asked, why.visible);
     if (answer.sighting) {
         const Sighting& sighting = *answer.sighting;

@@ -49,8 +49,7 @@ struct AskedScene {
     LoadedWorld loaded;
     Snapshot now;
 
-    /// @param occluder_error  as loadSettings()
-    AskedScene(const Scene& scene, double occluder_error);
+    AskedScene(const Scene& scene, const RunOptions& options);
     /// @param loaded  of this scene
     AskedScene(const Scene& scene, LoadedWorld loaded);
     /// Scene::objects' index of an object of the world.

@@ -85,7 +85,7 @@ std::vector<std::string> looseNotes(const Scene& scene, const RunOptions& option
     notes.push_back(fmt::format("{} of {} kept objects were seen by no witness.", grouped(unseen.size()),
                                 grouped(frame.objects_visible)));
     if (unseen.empty()) return notes;
-    const AskedScene asked = world ? AskedScene(scene, std::move(*world)) : AskedScene(scene, options.occluder_error);
+    const AskedScene asked = world ? AskedScene(scene, std::move(*world)) : AskedScene(scene, options);
     View view = viewOfFrame(frame.camera, options);
     view.width = run.width;
     view.height = run.height;

@@ -52,6 +52,31 @@ void addSums(std::string& text, const Verification& sum, const CullRun& run) {
                        run.frames.size());
 }
 
+/// What the stage of clusters left of the triangles of kept objects.
+void addClusters(std::string& text, const CullRun& run) {
+    ClusterRow sum;
+    for (const FrameResult& frame : run.frames) {
+        if (!frame.clusters) continue;
+        sum.tested += frame.clusters->tested;
+        sum.back += frame.clusters->back;
+        sum.outside += frame.clusters->outside;
+        sum.hidden += frame.clusters->hidden;
+        sum.whole += frame.clusters->whole;
+        sum.drawn += frame.clusters->drawn;
+        sum.draws += frame.clusters->draws;
+    }
+    if (sum.tested == 0) return;
+    const auto all = static_cast<double>(sum.tested), frames = static_cast<double>(run.frames.size());
+    fmt::format_to(std::back_inserter(text),
+                   "clusters     {:>10} tested   {:.1f} % seen from the back, {:.1f} % outside, {:.1f} % hidden\n",
+                   rounded(all / frames), share(static_cast<double>(sum.back), all),
+                   share(static_cast<double>(sum.outside), all), share(static_cast<double>(sum.hidden), all));
+    fmt::format_to(std::back_inserter(text), "of these     {:>10} triangles {:.3f} % of those objects', in {} draws\n",
+                   rounded(static_cast<double>(sum.drawn) / frames),
+                   share(static_cast<double>(sum.drawn), static_cast<double>(sum.whole)),
+                   rounded(static_cast<double>(sum.draws) / frames));
+}
+
 }  // namespace
 
 void printSummary(std::FILE* out, const CullRun& run) {
@@ -85,6 +110,7 @@ void printSummary(std::FILE* out, const CullRun& run) {
     }
     fmt::format_to(std::back_inserter(text), "triangles    {:>10} submitted {:6.3f} % of the scene's\n",
                    rounded(triangles / frames), share(triangles / frames, static_cast<double>(run.triangles)));
+    addClusters(text, run);
     fmt::format_to(std::back_inserter(text), "query        {:>10.1f} us median, {:.1f} us at most\n", medianQuery(run),
                    slowest);
     if (budget_spent)

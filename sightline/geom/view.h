@@ -11,11 +11,12 @@
 namespace sightline {
 
 /// The stages of a query, in the order in which they are applied. Their names are the names of
-/// the files in cull/; volumes are occluder volumes. Distance and contribution are not conservative: they do nothing
-/// unless the view says how far and how small.
-enum class Stage : uint8_t { kFrustum, kDistance, kContribution, kVolumes, kOcclusion };
-inline constexpr int kStageCount = 5;
-inline constexpr const char* kStageNames[kStageCount] = {"frustum", "distance", "contribution", "volumes", "occlusion"};
+/// the files in cull/; volumes are occluder volumes, clusters those of objects that have some. Distance and contribution are
+/// not conservative: they do nothing unless the view says how far and how small.
+enum class Stage : uint8_t { kFrustum, kDistance, kContribution, kVolumes, kOcclusion, kClusters };
+inline constexpr int kStageCount = 6;
+inline constexpr const char* kStageNames[kStageCount] = {"frustum", "distance",  "contribution",
+                                                         "volumes", "occlusion", "clusters"};
 inline constexpr uint32_t stageBit(Stage stage) { return 1u << static_cast<uint32_t>(stage); }
 inline constexpr uint32_t kAllStages = (1u << kStageCount) - 1;
 /// Those that cull what may be visible.
@@ -83,6 +84,9 @@ struct View {
     bool faces = true;                       ///< what its box's rectangle would keep is asked by the box's faces
     bool second_look = true;                 ///< and then by its own triangles: ObjectDef::shape
     uint32_t second_look_polygons = 1u << 16;  ///< work budget of that: polygons that may be asked  [limit]
+    /// Runs of an object's triangles with so few between them that are culled count as one: VisibleSet::ranges, for fewer
+    /// draws.  [triangles]
+    uint32_t cluster_gap = 0;
     OcclusionDetail occlusion_detail = OcclusionDetail::kFull;
     /// Gaps between occluders that are narrower than this count as closed: see closedGap(). Off at 0. What is seen through
     /// such gaps alone may then be culled.  [pixels of the occlusion buffer, limit: 0 to 1/16]

@@ -4,14 +4,18 @@
 
 #include <algorithm>
 
+#include "sightline/prepare/draw_clusters.h"
+
 namespace sightline {
 namespace {
 
-constexpr size_t kDense = 200;  // triangles: below that a simpler occluder is no cheaper
+constexpr size_t kClustered = 128;  // triangles: below that a mesh is drawn whole
+constexpr size_t kDense = 200;      // triangles: below that a simpler occluder is no cheaper
 
 /// What a mesh hides with, and what it is asked about.
 struct Forms {
     OccluderId occluder, shape;
+    ClustersId clusters;
 };
 
 /// The occluder holds the triangles whose material hides, the shape all; one record serves both where they are equal.
@@ -37,15 +41,23 @@ Forms formsOf(const Scene& scene, const Mesh& mesh, const LoadSettings& settings
     }
     if (hiding == hides.size()) forms.shape = forms.occluder;
     else forms.shape = world.addShape(prepareOccluder(view, {}, double_sided));
+    if (settings.clusters && mesh.triangles() >= kClustered) {
+        std::vector<MeshPart> parts;
+        for (const Primitive& primitive : mesh.primitives)
+            parts.push_back(
+                {primitive.first_triangle, primitive.triangle_count, scene.materials[primitive.material].double_sided});
+        forms.clusters = world.addClusters(prepareDrawClusters(view, parts));
+    }
     return forms;
 }
 
 }  // namespace
 
-LoadSettings loadSettings(bool volumes, double occluder_error) {
+LoadSettings loadSettings(bool volumes, double occluder_error, bool clusters) {
     LoadSettings settings;
     settings.volumes = volumes;
     settings.inner = occluder_error > 0;
+    settings.clusters = clusters;
     return settings;
 }
 
@@ -67,6 +79,7 @@ LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_
         def.key = object.key;
         def.occluder = forms[object.mesh].occluder;
         def.shape = forms[object.mesh].shape;
+        def.clusters = forms[object.mesh].clusters;
         loaded.ids.push_back(loaded.world.add(def));
     }
     return loaded;

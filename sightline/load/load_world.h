@@ -22,11 +22,12 @@ struct LoadSettings {
     OccluderSettings occluders = {.few = 64};
     bool inner = false;  ///< prepare simpler occluders for dense meshes, too: prepareInner()
     InnerSettings inner_occluders;
+    bool clusters = false;  ///< prepare clusters of meshes of some size, too: prepareDrawClusters()
 };
 
 /// What the tool loads with.
 /// @param occluder_error  View::occluder_error of the queries to come; 0: no simpler occluders are prepared
-LoadSettings loadSettings(bool volumes, double occluder_error);
+LoadSettings loadSettings(bool volumes, double occluder_error, bool clusters = false);
 
 /// Deforming meshes and materials that do not hide give no occluder triangles.
 /// @param progress  called with (done, total) meshes now and then; may be empty

@@ -52,6 +52,12 @@ Json frameJson(const FrameResult& frame, const CullRun& run, const Scene& scene)
     }
     if (frame.changed_pixels) out["changed_pixels"] = *frame.changed_pixels;
     out["triangles"] = frame.triangles;
+    if (frame.clusters) {
+        const ClusterRow& row = *frame.clusters;
+        out["clusters"] = {{"tested", row.tested}, {"back", row.back},   {"outside", row.outside},
+                           {"hidden", row.hidden}, {"whole", row.whole}, {"drawn", row.drawn},
+                           {"draws", row.draws}};
+    }
     out["occluder_triangles"] = frame.occluder_triangles;
     out["nodes_visited"] = frame.nodes_visited;
     out["seam_pixels"] = frame.seam_pixels;

@@ -94,6 +94,7 @@ void countByKey(const Scene& scene, const std::vector<uint32_t>& key_order, uint
         if (visible) frame.visible.push_back(key);
         else if (finest <= kStageCount) ++frame.stages[finest - 1].culled;
     }
+    if (frame.clusters) frame.triangles -= frame.clusters->whole - frame.clusters->drawn;
     uint64_t left = keys;
     for (int stage = 0; stage < kStageCount; ++stage) {
         if (!(stages >> stage & 1)) continue;

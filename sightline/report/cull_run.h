@@ -52,6 +52,13 @@ struct OccluderCredit {
     double hidden_triangles = 0;  ///< their triangles, shared alike
 };
 
+/// What the stage of clusters did: QueryStats.
+struct ClusterRow {
+    uint64_t tested = 0, back = 0, outside = 0, hidden = 0;
+    uint64_t whole = 0, drawn = 0;  ///< triangles of the objects that have clusters: all, and those that are left
+    uint64_t draws = 0;             ///< runs of triangles
+};
+
 struct FrameResult {
     CameraFrame camera;
     std::vector<uint64_t> visible;  ///< keys, ascending, each once
@@ -59,9 +66,10 @@ struct FrameResult {
     std::vector<uint8_t> eyes;      ///< of two eyes: per visible key, bit 0 if the left may see it, bit 1 the right
     std::vector<uint8_t> eye_reasons[2];  ///< of two eyes: `reasons` of each; else empty
     StageRow stages[kStageCount];
-    uint64_t objects_visible = 0;     ///< objects, not keys
-    uint64_t triangles = 0;           ///< of the visible objects: what a renderer would submit
-    uint64_t occluder_triangles = 0;  ///< rasterized by the query
+    uint64_t objects_visible = 0;  ///< objects, not keys
+    uint64_t triangles = 0;        ///< of the visible objects, or of what is left of them: what a renderer would submit
+    std::optional<ClusterRow> clusters;  ///< with that stage, of one eye
+    uint64_t occluder_triangles = 0;     ///< rasterized by the query
     bool budget_spent = false;
     double query_microseconds = 0;                                 ///< median over the repeats
     uint64_t nodes_visited = 0, seam_pixels = 0, closed_gaps = 0;  ///< QueryStats
@@ -87,9 +95,10 @@ struct CullRun {
     double jitter = 0;                                        ///< [pixels]
     uint32_t occluder_triangles = View().occluder_triangles;  ///< that a query drew at most
     double occluder_error = 0;                                ///< View::occluder_error; 0: none were prepared
-    uint32_t stages = kDefaultStages & ~kLossyStages;         ///< bits of Stage in use: stagesInUse()
-    double max_distance = 0, contribution = 0;                ///< View
-    ViewPlanes sections;                                      ///< View
+    uint32_t stages =
+        kDefaultStages & ~(kLossyStages | stageBit(Stage::kClusters));  ///< bits of Stage in use: stagesInUse()
+    double max_distance = 0, contribution = 0;                          ///< View
+    ViewPlanes sections;                                                ///< View
     double stereo = 0;                ///< distance of the two eyes  [world units]; 0: there is one
     bool last_visible_first = false;  ///< each frame drew first what the one before it kept
     uint32_t occlusion_size = View().occlusion_size;

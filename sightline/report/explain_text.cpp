@@ -48,6 +48,19 @@ std::string listOf(const Array<Hider>& hiders, const NameOfObject& name, size_t 
 
 const char* pronoun(size_t count) { return count == 1 ? "that one" : count == 2 ? "these two" : "these"; }
 
+std::string clustersText(const ClustersReason& found) {
+    return fmt::format("of {} cluster{}, {} seen from the back, {} outside of the view, {} hidden",
+                       readable(static_cast<double>(found.clusters)), found.clusters == 1 ? "" : "s",
+                       readable(static_cast<double>(found.back)), readable(static_cast<double>(found.outside)),
+                       readable(static_cast<double>(found.hidden)));
+}
+
+std::string drawnText(const ClustersReason& found) {
+    if (found.clusters == 0) return "";
+    return fmt::format(" Of its {} triangles {} are left to draw: {}.", readable(static_cast<double>(found.triangles)),
+                       readable(static_cast<double>(found.drawn)), clustersText(found));
+}
+
 std::string togetherText(const Explanation& why) {
     if (why.together <= 1) return "";
     return fmt::format(" It was culled in one step with {} object{} that {} near it.", readable(why.together - 1.0),
@@ -203,10 +216,13 @@ std::string explanationText(const Explanation& why, const std::string& subject, 
             return fmt::format("culled by contribution: {} looks {}. It may be visible.", subject,
                                smallText(why.size)) +
                    togetherText(why) + rectangleText(why);
+        case Verdict::kNoCluster:
+            return fmt::format("culled by clusters: of {} none is left: {}.", subject, clustersText(why.clusters)) +
+                   rectangleText(why);
         case Verdict::kVisible:
             break;
     }
-    return fmt::format("kept: {}: {}.", subject, keptText(why, name)) + rectangleText(why);
+    return fmt::format("kept: {}: {}.", subject, keptText(why, name)) + rectangleText(why) + drawnText(why.clusters);
 }
 
 std::string explanationClause(const Explanation& why, const NameOfObject& name, size_t most) {
@@ -224,6 +240,8 @@ std::string explanationClause(const Explanation& why, const NameOfObject& name, 
             return farText(why.size);
         case Verdict::kTooSmall:
             return smallText(why.size);
+        case Verdict::kNoCluster:
+            return clustersText(why.clusters);
         case Verdict::kVisible:
             break;
     }
@@ -235,12 +253,13 @@ std::string stageOf(const Explanation& why) {
     if (why.verdict == Verdict::kOccluded) return kStageNames[static_cast<int>(why.occlusion.stage)];
     if (why.verdict == Verdict::kTooFar) return kStageNames[static_cast<int>(Stage::kDistance)];
     if (why.verdict == Verdict::kTooSmall) return kStageNames[static_cast<int>(Stage::kContribution)];
+    if (why.verdict == Verdict::kNoCluster) return kStageNames[static_cast<int>(Stage::kClusters)];
     return "";
 }
 
 const char* verdictName(Verdict verdict) {
-    constexpr const char* kNames[] = {"no such object", "outside layers", "visible",  "outside frustum",
-                                      "occluded",       "too far",        "too small"};
+    constexpr const char* kNames[] = {"no such object", "outside layers", "visible",   "outside frustum",
+                                      "occluded",       "too far",        "too small", "no cluster"};
     return kNames[static_cast<int>(verdict)];
 }
 

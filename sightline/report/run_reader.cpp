@@ -122,6 +122,12 @@ CameraFrame cameraOf(const At& at) {
     return camera;
 }
 
+ClusterRow clustersOf(const At& at) {
+    return {at.member("tested").whole(), at.member("back").whole(),  at.member("outside").whole(),
+            at.member("hidden").whole(), at.member("whole").whole(), at.member("drawn").whole(),
+            at.member("draws").whole()};
+}
+
 void readStages(const At& list, FrameResult& frame, uint32_t& stages) {
     stages = 0;
     for (size_t i = 0; i < list.size(); ++i) {
@@ -178,6 +184,7 @@ void readFrame(const At& at, CullRun& run, uint32_t& stages, FrameResult& frame,
     frame.objects_visible = frame.visible.size();
     readStages(at.member("stages"), frame, stages);
     frame.triangles = at.member("triangles").whole();
+    if (const auto clusters = at.maybe("clusters")) frame.clusters = clustersOf(*clusters);
     frame.query_microseconds = at.member("query_microseconds").positive();
     const auto count = [&](const char* name, uint64_t& out) {
         if (const auto value = at.maybe(name)) out = value->whole();

@@ -37,6 +37,8 @@ public:
     void reasons(std::span<uint8_t> reasons) const;
     /// As Query::DepthImage has it.  [size: pixels of the buffer]
     void depthImage(Seams seams, std::span<float> nearness, std::span<uint8_t> covered);
+    /// The buffer of a view in one bin.
+    DepthTiles* tiles() { return &walks_[0]->tiles; }
     const Screen& screen() const { return walks_[0]->screen; }
     uint32_t width() const { return walks_[0]->tiles.width; }
     uint32_t height() const { return walks_[0]->tiles.height; }

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "sightline/geom/depth_order.h"
+#include "sightline/run/bins.h"
+#include "sightline/run/cluster_stage.h"
 #include "sightline/run/hiders.h"
 #include "sightline/run/occluder_form.h"
 #include "sightline/run/open_pixels.h"
@@ -65,6 +67,19 @@ FrustumReason planesOf(const SnapshotState& state, const Box3d& box, const View&
 
 }  // namespace
 
+/// The answer to the whole view, for what hangs on all of it.
+struct WholeAnswer {
+    detail::BinnedWalk walk;
+    detail::ClusterStage clusters;
+
+    WholeAnswer(const Snapshot& now, const View& view, std::span<const uint32_t> shown, Memory* memory)
+        : walk(memory), clusters(memory) {
+        walk.begin(&now.state(), view, shown);
+        for (uint32_t bin = 0; bin < walk.bins(); ++bin) walk.run(bin);
+        walk.finish();
+    }
+};
+
 struct Explainer::Impl {
     Impl(const Snapshot& now, const View& seen_from, Memory* from) : memory(from), snapshot(now), view(seen_from) {}
 
@@ -76,6 +91,7 @@ struct Explainer::Impl {
     detail::HiderSearch search{memory};
     detail::OpenPixels open{memory};
     detail::AskedPixels asked{memory};
+    Owned<WholeAnswer> whole;  ///< made when first needed
 
     uint32_t find(ObjectId id) const;
     void explainVisible(uint32_t item, Explanation& out);
@@ -84,6 +100,7 @@ struct Explainer::Impl {
     KeptBecause doubtOf(const Box3d& box) const;
     void explainOccluded(uint32_t item, const PixelRect& rect, const ExplainSettings& settings, OcclusionReason& out);
     void tryWithout(uint32_t item, OcclusionReason& out);
+    ClustersReason lookAtClusters(uint32_t item);
     void nameVolume(const SnapshotState& state, Array<Hider>& hiders) const;
 };
 
@@ -192,6 +209,13 @@ void Explainer::Impl::explainOccluded(uint32_t item, const PixelRect& rect, cons
     if (settings.without) tryWithout(item, out);
 }
 
+ClustersReason Explainer::Impl::lookAtClusters(uint32_t item) {
+    const uint32_t row = snapshot.state().rowOf(item);
+    if (snapshot.state().objects[row].clusters.index == 0) return {};
+    if (!whole) whole = makeOwned<WholeAnswer>(memory, snapshot, view, shown.generations(), memory);
+    return whole->clusters.look(snapshot.state(), row, view, whole->walk);
+}
+
 /// The object whose volume culled what the trial asked for.
 void Explainer::Impl::nameVolume(const SnapshotState& state, Array<Hider>& hiders) const {
     const detail::ObjectRecord& owner = state.objectAt(trial.cull.hider);
@@ -277,6 +301,11 @@ Explanation Explainer::explain(ObjectId id, const ExplainSettings& settings) {
         const detail::Look look = impl.trial.cull.look;
         (by_frustum ? out.frustum.by_faces : out.occlusion.by_faces) = look == detail::Look::kFaces;
         (by_frustum ? out.frustum.by_triangles : out.occlusion.by_triangles) = look == detail::Look::kTriangles;
+    }
+    if (out.verdict == Verdict::kVisible) out.clusters = impl.lookAtClusters(item);
+    if (out.clusters.clusters > 0 && out.clusters.drawn == 0) {
+        out.verdict = Verdict::kNoCluster;
+        return out;
     }
     if (out.verdict == Verdict::kVisible) impl.explainVisible(item, out);
     else out.together = static_cast<uint32_t>(impl.trial.walk.inLayers(impl.trial.cull.places));

@@ -22,6 +22,7 @@ enum class Verdict : uint8_t {
     kOccluded,        ///< culled by the occlusion stage, or by the stage of volumes
     kTooFar,          ///< culled by the stage of distance, although it may be visible
     kTooSmall,        ///< culled by the stage of contribution, although it may be visible
+    kNoCluster,       ///< culled by the stage of clusters: none of its clusters is left
 };
 
 /// A rectangle of the viewport. What a query looks at is the viewport widened by the jitter, in the whole pixels of its
@@ -96,6 +97,16 @@ struct OcclusionReason {
     explicit OcclusionReason(Memory* memory) : hiders(memory), others(memory) {}
 };
 
+/// What the stage of clusters found of an object that has some: ObjectDef::clusters.
+struct ClustersReason {
+    uint64_t clusters = 0;
+    uint64_t back = 0;       ///< seen from their backs
+    uint64_t outside = 0;    ///< of the others: outside of the view
+    uint64_t hidden = 0;     ///< of the rest
+    uint64_t triangles = 0;  ///< of all clusters
+    uint64_t drawn = 0;      ///< triangles that are left
+};
+
 /// Why an object is kept.
 enum class KeptBecause : uint8_t {
     kOpenPixel,        ///< a pixel is not hidden: of its rectangle, or of its triangles where they were asked
@@ -140,6 +151,7 @@ struct Explanation {
     SizeReason size;                 ///< where a stage of distance or contribution is in use; not for objects in doubt
     OcclusionReason occlusion;
     VisibleReason visible;
+    ClustersReason clusters;  ///< of what is kept, and of what the stage culls, with that stage
 
     explicit Explanation(Memory* memory = defaultMemory()) : occlusion(memory) {}
 };

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "sightline/run/bins.h"
+#include "sightline/run/cluster_stage.h"
 #include "sightline/run/explain.h"
 
 namespace sightline {
@@ -24,9 +25,10 @@ struct Query::Impl {
 
     Memory* const memory;
     Jobs* const jobs;
-    Snapshot snapshot;                     ///< of the last answer
-    detail::BinnedWalk walk{memory};       ///< of the left eye, where there are two
-    Owned<detail::BinnedWalk> right;       ///< made when first needed
+    Snapshot snapshot;                ///< of the last answer
+    detail::BinnedWalk walk{memory};  ///< of the left eye, where there are two
+    Owned<detail::BinnedWalk> right;  ///< made when first needed
+    detail::ClusterStage clusters{memory};
     bool stereo = false;                   ///< the last answer was visibleStereo()'s
     Array<Visible> both{memory};           ///< what either eye sees
     Array<uint8_t> eyes{memory};           ///< per object of `both`
@@ -85,7 +87,8 @@ VisibleSet Query::visible(const Snapshot& now, const View& view) {
     if (remembers) impl.shown.mark(impl.before);
     answer({{&impl.walk}}, now, {{&view}}, impl.shownIf(remembers), impl.jobs);
     if (remembers) impl.shown.unmark(impl.before);
-    return {impl.walk.visible(), impl.walk.stats};
+    impl.clusters.run(now ? &now.state() : nullptr, view, impl.walk);
+    return {impl.walk.visible(), impl.walk.stats, impl.clusters.ranges()};
 }
 
 StereoSet Query::visibleStereo(const Snapshot& now, const View& left, const View& right) {
@@ -167,7 +170,10 @@ VisibleChanges Query::changes() {
 void Query::reasons(std::span<uint8_t> reasons) const {
     const Impl& impl = *impl_;
     impl.walk.reasons(reasons);
-    if (!impl.stereo) return;
+    if (!impl.stereo) {
+        if (impl.snapshot) impl.clusters.reasons(impl.snapshot.state(), reasons);
+        return;
+    }
     impl.other.resize(reasons.size());
     impl.right->reasons(impl.other);
     constexpr uint8_t kOutside = 255;
@@ -180,7 +186,8 @@ void Query::reasons(std::span<uint8_t> reasons) const {
 
 void Query::reasons(std::span<uint8_t> reasons, uint8_t eye) const {
     const Impl& impl = *impl_;
-    (impl.stereo && eye == kRightEye ? *impl.right : impl.walk).reasons(reasons);
+    if (impl.stereo) (eye == kRightEye ? *impl.right : impl.walk).reasons(reasons);
+    else this->reasons(reasons);
 }
 
 Explanation Query::explain(const Snapshot& now, const View& view, ObjectId id) const {

@@ -40,7 +40,21 @@ struct QueryStats {
     uint64_t second_look_culled = 0;  ///< the same of these
     uint64_t second_look_polygons = 0;  ///< that they were asked by
     bool second_look_spent = false;     ///< View::second_look_polygons kept an object from being asked to the end
+    uint64_t clusters_tested = 0;       ///< of objects that were kept until then
+    uint64_t clusters_back = 0;         ///< of these: seen from their backs
+    uint64_t clusters_outside = 0;      ///< of the others: outside of the view
+    uint64_t clusters_hidden = 0;       ///< of the rest: hidden
+    uint64_t cluster_triangles = 0;     ///< all, of the objects of which some are left
+    uint64_t drawn_triangles = 0;       ///< of VisibleSet::ranges
+    uint64_t draw_ranges = 0;           ///< VisibleSet::ranges
     uint64_t nanoseconds = 0;           ///< the whole query
+};
+
+/// Triangles of a kept object that has clusters: what of it may be seen.
+struct DrawRange {
+    uint32_t object = 0;            ///< index into VisibleSet::objects
+    uint32_t first = 0, count = 0;  ///< in the order of DrawClusters::triangles
+    uint32_t part = 0;              ///< DrawClusters::part
 };
 
 /// Bits of StereoSet::eyes.
@@ -56,6 +70,9 @@ struct StereoSet {
 struct VisibleSet {
     std::span<const Visible> objects;  ///< front to back; valid until the query's next call
     QueryStats stats;
+    /// Of the objects that have clusters, with Stage::kClusters, by object: each has some. What is in none of them is
+    /// seen from its back, by surfaces that are single-sided, or outside of the view, or hidden.
+    std::span<const DrawRange> ranges;
 };
 
 /// Objects that an answer has and the one before it had not, and the other way round.
@@ -98,7 +115,7 @@ public:
 
     /// The objects that may be visible from either of two views, as the eyes of a headset: for each eye exactly what
     /// visible() says of its view, bit for bit. One occlusion buffer for each eye: what one eye sees past the other does
-    /// not. Costs the two queries. changes(), reasons() and depthImage() then speak of both eyes, as they say.
+    /// not. Costs the two queries. Stage::kClusters does nothing here. changes(), reasons() and depthImage() then speak of both eyes, as they say.
     StereoSet visibleStereo(const Snapshot& now, const View& left, const View& right);
 
     /// What the last answer changed against the one before; the first answer's objects have all appeared. Snapshots and

@@ -15,6 +15,7 @@ Verdict verdictOf(Stage stage) {
             return Verdict::kTooSmall;
         case Stage::kVolumes:
         case Stage::kOcclusion:
+        case Stage::kClusters:
             break;
     }
     return Verdict::kOccluded;

@@ -20,6 +20,8 @@ OccluderId World::addOccluder(const Occluder& occluder, std::span<const InnerOcc
     return state_->addOccluder(occluder, inner);
 }
 
+ClustersId World::addClusters(const DrawClusters& clusters) { return state_->addClusters(clusters); }
+
 ObjectId World::add(const ObjectDef& object) { return state_->add(object); }
 bool World::move(ObjectId id, const glm::dmat4& transform) { return state_->move(id, transform); }
 bool World::remove(ObjectId id) { return state_->remove(id); }

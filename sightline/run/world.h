@@ -9,6 +9,7 @@
 #include <glm/glm.hpp>
 
 #include "sightline/base/memory.h"
+#include "sightline/geom/draw_clusters.h"
 #include "sightline/geom/occluder.h"
 #include "sightline/math/box.h"
 
@@ -24,6 +25,10 @@ struct ObjectId {
 struct OccluderId {
     uint32_t index = 0;
     bool operator==(const OccluderId&) const = default;
+};
+struct ClustersId {
+    uint32_t index = 0;
+    bool operator==(const ClustersId&) const = default;
 };
 
 /// What the stages of distance and contribution, which are not conservative, may do with an object.
@@ -46,6 +51,9 @@ struct ObjectDef {
     /// that hide nothing, in every level of detail; none that a shader moves. May be the same as `occluder`.
     OccluderId shape;
     ObjectLimits limits;  ///< for View::max_distance and View::contribution
+    /// What it is drawn by, for VisibleSet::ranges; or null. They must hold every triangle that may be drawn of it, and lie
+    /// within `bounds`.
+    ClustersId clusters;
 };
 
 /// What a query says of an object.
@@ -99,6 +107,9 @@ public:
 
     /// The same for ObjectDef::shape; the ids are of one kind. prepareOccluder(mesh, {}, double_sided) makes it.
     OccluderId addShape(const Occluder& shape) { return addOccluder(shape); }
+
+    /// Copies the clusters; many objects may share them. They live as long as the world and its snapshots.
+    ClustersId addClusters(const DrawClusters& clusters);
 
     /// Bounds that are NaN, infinite, or empty make an object that is always visible and never hides.
     ObjectId add(const ObjectDef& object);

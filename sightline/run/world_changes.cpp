@@ -23,7 +23,10 @@ void clearBit(Array<uint64_t>& bits, uint32_t i) { bits[i / 64] &= ~(uint64_t{1}
 
 }  // namespace
 
-WorldState::WorldState(Memory* from) : memory(from) { occluders.push_back(nullptr); }
+WorldState::WorldState(Memory* from) : memory(from) {
+    occluders.push_back(nullptr);
+    clusters.push_back(nullptr);
+}
 
 void WorldState::reserve(uint32_t objects) {
     living_.reserve(objects / 64 + 1);
@@ -56,13 +59,22 @@ OccluderId WorldState::addOccluder(const Occluder& occluder, std::span<const Inn
     return {occluders.size() - 1};
 }
 
+ClustersId WorldState::addClusters(const DrawClusters& given) {
+    auto held = makeShared<DrawClusters>(memory, memory);
+    *held = given;
+    clusters.push_back(std::move(held));
+    changed_ = true;
+    return {clusters.size() - 1};
+}
+
 ObjectId WorldState::add(const ObjectDef& object) {
     SIGHTLINE_ASSERT(object.occluder.index < occluders.size());
     SIGHTLINE_ASSERT(object.shape.index < occluders.size());
+    SIGHTLINE_ASSERT(object.clusters.index < clusters.size());
     const ObjectId id = newId();
     setBit(living_, objects_.size());
-    objects_.push_back(
-        {object.transform, object.bounds, object.key, id, object.occluder, object.layers, object.shape, object.limits});
+    objects_.push_back({object.transform, object.bounds, object.key, id, object.occluder, object.layers, object.shape,
+                        object.limits, object.clusters});
     limited_ += object.limits != ObjectLimits();
     changed_ = true;
     return id;
@@ -227,6 +239,7 @@ std::shared_ptr<const SnapshotState> WorldState::commit() {
     state->objects = objects_.share();
     state->ids = ids_.share();
     state->occluders = occluders.share();
+    state->clusters = clusters.share();
     if (gaps_ > 0) state->living = makeShared<RankedBits>(memory, living_, memory);
     state->unbounded = unbounded_;
     state->bvh = bvh_.share();

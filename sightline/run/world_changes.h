@@ -18,12 +18,14 @@ public:
     Memory* const memory;
     bool volumes = false;  ///< WorldDef::volumes
     OccluderTable occluders{memory};
+    ClusterTable clusters{memory};
 
     void reserve(uint32_t objects);
     ObjectId add(const ObjectDef& object);
     bool move(ObjectId id, const glm::dmat4& transform);
     bool remove(ObjectId id);
     OccluderId addOccluder(const Occluder& occluder, std::span<const InnerOccluder> inner);
+    ClustersId addClusters(const DrawClusters& given);
     std::shared_ptr<const SnapshotState> commit();
     uint32_t size() const { return objects_.size() - gaps_; }
 

@@ -26,6 +26,7 @@ struct ObjectRecord {
     uint32_t layers = 0;
     OccluderId shape;
     ObjectLimits limits;
+    ClustersId clusters;
 };
 
 /// Objects by row; rows are given in the order of World::add. Snapshots share its pages.
@@ -72,11 +73,14 @@ struct HeldOccluder : Occluder {
 
 using OccluderTable = Paged<std::shared_ptr<const HeldOccluder>, 64>;  // entry 0 is null
 
+using ClusterTable = Paged<std::shared_ptr<const DrawClusters>, 64>;  // entry 0 is null
+
 /// An immutable state of a world. Items are the living objects in the order of World::add; the hierarchy's are rows.
 struct SnapshotState {
     ObjectTable objects;
     IdTable ids;  ///< empty in a world of some of another one's objects
     OccluderTable occluders;
+    ClusterTable clusters;                     ///< empty in a world of some of another one's objects
     std::shared_ptr<const RankedBits> living;  ///< rows that hold an object; null if all do
     Array<uint32_t> unbounded;                 ///< rows of objects that are always visible, rising
     PlacedBvh bvh;                             ///< over the others
@@ -89,6 +93,7 @@ struct SnapshotState {
         : objects(memory),
           ids(memory),
           occluders(memory),
+          clusters(memory),
           unbounded(memory),
           bvh(memory),
           placed(memory),

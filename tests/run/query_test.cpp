@@ -208,6 +208,36 @@ TEST(Query, StaysSoundWhileObjectsComeMoveAndGo) {
     }
 }
 
+TEST(Query, SnapshotsAreAskedWhileTheWorldGoesOn) {
+    MadeWorld made;
+    made.fill(11, 500, {0, 0, 0});
+    const View view = viewFrom({-20, 1, 3}, {1, 0, 0});
+    std::vector<std::thread> readers;
+    std::vector<std::vector<uint64_t>> expected(12), found(12);
+    Random random(11);
+    for (size_t frame = 0; frame < found.size(); ++frame) {
+        const Snapshot now = made.world.commit();
+        Query here;
+        expected[frame] = keysOf(here.visible(now, view));
+        readers.emplace_back([now, &view, &keys = found[frame]] {
+            for (int again = 0; again < 20; ++again) {
+                Query query;
+                keys = keysOf(query.visible(now, view));
+            }
+        });
+        for (int i = 0; i < 60; ++i) {
+            const size_t which = random.below(made.ids.size());
+            glm::dmat4 elsewhere = made.transforms[which];
+            elsewhere[3].z += random.uniform(-20, 20);
+            made.world.move(made.ids[which], elsewhere);
+            if (i % 10 == 0) made.world.remove(made.ids[which]);
+        }
+        made.fill(100 + frame, 6, {0, 0, 0});
+    }
+    for (std::thread& reader : readers) reader.join();
+    EXPECT_EQ(found, expected);
+}
+
 TEST(Query, IsTheSameOnEveryInstructionSetAndThread) {
     MadeWorld made;
     made.fill(5, 2000, {0, 0, 0});

@@ -97,7 +97,7 @@ TEST(Sections, AClosedRoomCutOpenShowsWhatIsInside) {
         view.bins = 1;
         View beside = shiftedEye(view, 0.3);
         const StereoSet both = query.visibleStereo(now, view, beside);
-        EXPECT_EQ(inside({both.objects, both.left}), Room::kEnd - Room::kInside);
+        EXPECT_EQ(inside({both.objects, both.left, {}}), Room::kEnd - Room::kInside);
         // A wall that the cut does not reach hides as ever: from behind, the room is closed.
         view = viewFrom({0, 0, -20}, {0, 0, 1});
         view.sections.add({0, 0, -1, 4.0});
@@ -225,8 +225,11 @@ TEST(Sections, WhatIsLeftWholeHidesAsEver) {
     // Object 1 + i stands at x = -8 + 1.6 i, and the line of sight to it meets the wall at half of that.
     for (size_t i = 0; i < 10; ++i) {
         const double x = -8.0 + 1.6 * double(i);
-        if (x < -2.5) EXPECT_FALSE(kept[1 + i]) << i << ": beyond the section";
-        else if (x > 1.0) EXPECT_FALSE(kept[1 + i]) << i << ": behind what is whole";
+        if (x < -2.5) {
+            EXPECT_FALSE(kept[1 + i]) << i << ": beyond the section";
+        } else if (x > 1.0) {
+            EXPECT_FALSE(kept[1 + i]) << i << ": behind what is whole";
+        }
     }
     EXPECT_TRUE(kept[0]);
     // From an eye to the left, the gap that was cut shows what stands behind the wall.
