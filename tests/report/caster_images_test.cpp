@@ -166,7 +166,7 @@ void expectSame(const Scene& scene) {
     LoadedWorld loaded = loadWorld(scene, {}, loadSettings(false, 0));
     const Snapshot now = loaded.world.commit();
     PathChoice choice;
-    choice.frames = 2;
+    choice.frames = 3;
     choice.seed = 7;
     const Result<CameraPath> path = choosePath(scene, choice);
     ASSERT_TRUE(path.ok()) << path.error().message;
