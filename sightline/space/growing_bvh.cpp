@@ -152,6 +152,7 @@ void GrowingBvh::growTree(uint32_t root, uint32_t parent, uint32_t first, uint32
     const uint32_t count = static_cast<uint32_t>(items_.size());
     sorted_.resize(count);
     BvhSplitter splitter(sorted_, memory_);
+    splitter.full_nodes = true;
     splitter.boxes.assign(boxes_.begin(), boxes_.end());
     splitter.centers.resize(count);
     for (uint32_t i = 0; i < count; ++i) {
