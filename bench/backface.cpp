@@ -1,6 +1,7 @@
 // Back faces: triangle by triangle, by masks of normals, by clusters; what each finds, and what it costs.
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -8,7 +9,7 @@
 
 #include "bench/cases.h"
 #include "bench/facing_meshes.h"
-#include "bench/frustum_walks.h"
+#include "bench/stopwatch.h"
 #include "sightline/base/random.h"
 #include "sightline/cull/back_faces.h"
 #include "sightline/cull/facing_clusters.h"
@@ -95,10 +96,10 @@ void addTimes(size_t count, int passes, int repeat, Table& table) {
         };
     };
     const std::vector<double> times =
-        ownTimes({often([&] { findPlain(facets.plain, glm::vec3(eye.point), facets.back); }),
-                  often([&] { findBackFaces(facets.planes, eye, facets.back); }),
-                  often([&] { findBackFaces(facets.classes, mask, facets.back); })},
-                 repeat);
+        threadTimes({often([&] { findPlain(facets.plain, glm::vec3(eye.point), facets.back); }),
+                     often([&] { findBackFaces(facets.planes, eye, facets.back); }),
+                     often([&] { findBackFaces(facets.classes, mask, facets.back); })},
+                    repeat);
     const double each = 1e3 / static_cast<double>(count) / passes;
     const std::string where = fmt::format("{} triangles{}", count, count > 1000000 ? ", out of cache" : ", in cache");
     const auto row = [&](const char* what, size_t i, const char* baseline, size_t base) {
@@ -152,15 +153,15 @@ void addMaskRows(int repeat, Table& table) {
     table.rows.push_back({where, "parallel: found", maskRecall(kAngle, true, 1), "of back faces", "all", 1.0});
     const View view = viewAt(kAngle, false);
     const std::vector<double> times =
-        ownTimes({[&] {
-                      for (int i = 0; i < 100; ++i)
-                          makeNormalMask(cornerRays(view, glm::dmat4(1.0)), FrontFace::kCounterClockwise, kCells);
-                  },
-                  [&] {
-                      for (int i = 0; i < 10; ++i)
-                          SectorMasks(view, glm::dmat4(1.0), FrontFace::kCounterClockwise, kCells, 8);
-                  }},
-                 repeat);
+        threadTimes({[&] {
+                         for (int i = 0; i < 100; ++i)
+                             makeNormalMask(cornerRays(view, glm::dmat4(1.0)), FrontFace::kCounterClockwise, kCells);
+                     },
+                     [&] {
+                         for (int i = 0; i < 10; ++i)
+                             SectorMasks(view, glm::dmat4(1.0), FrontFace::kCounterClockwise, kCells, 8);
+                     }},
+                    repeat);
     table.rows.push_back({"a frustum", "making its mask", times[0] / 100, "us", "", 0});
     table.rows.push_back(
         {"a frustum", "making 8x8 sectors' masks", times[1] / 10, "us", "making its mask", times[0] / 100});
@@ -168,7 +169,8 @@ void addMaskRows(int repeat, Table& table) {
 
 /// What the tests find on given clusters, in triangles over all eyes.
 struct Found {
-    double backs = 0, oracle = 0, volumes = 0, turned = 0, cones = 0, all = 0, meshopt = 0, masks = 0, both = 0;
+    double backs = 0, oracle = 0, volumes = 0, turned = 0, cones = 0, all = 0, meshopt = 0, masks = 0, both = 0,
+           finer = 0;
 };
 
 Found findOn(const ClusteredMesh& clustered, const Box3d& eyes_box) {
@@ -178,6 +180,8 @@ Found findOn(const ClusteredMesh& clustered, const Box3d& eyes_box) {
     FacingSettings settings;
     settings.mask_steps = 2;
     const FacingClusters clusters = describeClusters(mesh, order, clustered.sizes, settings);
+    FacingSettings finer{.turned = false, .cones = false, .mask_steps = 4};
+    const FacingClusters fine = describeClusters(mesh, order, clustered.sizes, finer);
     const TrianglePlanes planes = makeTrianglePlanes(mesh);
     const MeshoptCones meshopt(clustered);
     const size_t bytes = (clusters.count() + 15) / 16 * 2;
@@ -204,6 +208,9 @@ Found findOn(const ClusteredMesh& clustered, const Box3d& eyes_box) {
             }
             if (backs == clusters.size(c)) found.oracle += static_cast<double>(backs);
             found.masks += static_cast<double>(masked);
+            const uint64_t* const more = backTriangles(fine, c, eye);
+            for (size_t i = 0; more && i < (clusters.size(c) + 63) / 64; ++i)
+                found.finer += static_cast<double>(std::popcount(more[i]));
             found.both += static_cast<double>(bitOf(by[3], c) ? clusters.size(c) : masked);
         }
     }
@@ -226,40 +233,47 @@ void addRecallRows(const FacingMesh& mesh, Table& table) {
         row("all three", found.all, "meshoptimizer's cones", found.meshopt);
         row("all three", found.all, "any cluster test", found.oracle);
         row("masks, 24 sectors", found.masks, "cones", found.cones);
-        row("all three and masks", found.both, "all", found.backs);
+        row("masks, 96 sectors", found.finer, "cones", found.cones);
+        row("all three and 24 sectors", found.both, "all", found.backs);
     }
 }
 
+/// The cheapest of many ways to cluster.
+struct Cheapest {
+    double cost = 1e300;
+    std::string name;
+};
+
 void addCostRows(const FacingMesh& mesh, int repeat, Table& table) {
-    for (const double test : {1.0, 4.0, 16.0}) {
-        FacingCost cost;
-        cost.test = test;
-        double best = 1e300;
-        std::string best_name;
-        for (const uint32_t size : {8u, 16u, 32u, 64u, 124u})
-            for (const float weight : {0.0f, 0.25f, 0.5f, 1.0f}) {
-                const ClusteredMesh clustered = meshoptClusters(mesh, size, weight);
-                std::vector<uint32_t> order(clustered.mesh.view().triangles());
-                std::iota(order.begin(), order.end(), 0u);
-                FacingSettings settings;
-                settings.turned = settings.cones = false;
-                const double one =
-                    modelledCost(describeClusters(clustered.mesh.view(), order, clustered.sizes, settings),
-                                 clustered.mesh.view(), cost);
-                if (one < best) best = one, best_name = fmt::format("clusters of {}, weight {}", size, weight);
+    constexpr double kTests[] = {1.0, 4.0, 16.0};
+    Cheapest best[3];
+    FacingSettings settings;
+    settings.turned = settings.cones = false;
+    for (const uint32_t size : {8u, 16u, 32u, 64u, 124u, 256u})
+        for (const float weight : {0.0f, 0.25f, 0.5f, 1.0f}) {
+            const ClusteredMesh clustered = meshoptClusters(mesh, size, weight);
+            std::vector<uint32_t> order(clustered.mesh.view().triangles());
+            std::iota(order.begin(), order.end(), 0u);
+            const FacingClusters clusters = describeClusters(clustered.mesh.view(), order, clustered.sizes, settings);
+            for (int i = 0; i < 3; ++i) {
+                const double cost = modelledCost(clusters, clustered.mesh.view(), {.test = kTests[i]});
+                if (cost < best[i].cost) best[i] = {cost, fmt::format("clusters of {}, weight {}", size, weight)};
             }
+        }
+    const double all = static_cast<double>(mesh.view().triangles());
+    for (int i = 0; i < 3; ++i) {
+        const FacingCost cost{.test = kTests[i]};
         const FacingPartition part = mergeFacing(mesh.view(), cost);
-        const double ours = modelledCost(describeClusters(mesh.view(), part.triangles, part.sizes), mesh.view(), cost);
-        const double all = static_cast<double>(mesh.view().triangles());
-        const std::string where = fmt::format("{}, a test as dear as {} triangles", mesh.name, test);
-        table.rows.push_back(
-            {where, "modelled cost", ours / all, "of all triangles", "meshoptimizer's best", best / all, best_name});
-        table.rows.push_back(
-            {where, "triangles a cluster", all / static_cast<double>(part.sizes.size()), "triangles", "", 0});
+        const FacingClusters clusters = describeClusters(mesh.view(), part.triangles, part.sizes, settings);
+        const double ours = modelledCost(clusters, mesh.view(), cost);
+        const std::string where = fmt::format("{}, a test as dear as {} triangles", mesh.name, kTests[i]);
+        table.rows.push_back({where, "modelled cost", ours / all, "of all triangles", "meshoptimizer's best",
+                              best[i].cost / all, best[i].name});
+        table.rows.push_back({where, "clusters of", all / static_cast<double>(part.sizes.size()), "triangles", "", 0});
     }
     const std::vector<double> times =
-        ownTimes({[&] { meshoptClusters(mesh, 64, 0.5f); }, [&] { mergeFacing(mesh.view()); }}, std::min(repeat, 3));
-    const double each = 1.0 / static_cast<double>(mesh.view().triangles());
+        threadTimes({[&] { meshoptClusters(mesh, 64, 0.5f); }, [&] { mergeFacing(mesh.view()); }}, std::min(repeat, 3));
+    const double each = 1.0 / all;
     table.rows.push_back(
         {mesh.name, "making clusters", times[1] * each, "us/triangle", "meshoptimizer", times[0] * each});
 }
@@ -278,12 +292,12 @@ void addClusterTimes(const FacingMesh& mesh, int repeat, Table& table) {
         };
     };
     const std::vector<double> times =
-        ownTimes({test(kVolumeTest), test(kTurnedTest), test(kConeTest), test(kAllFacingTests),
-                  [&] {
-                      tree_asked = 0;
-                      for (const FacingEye& eye : eyes) tree_asked += walkFacingTree(tree, clusters, eye, back);
-                  }},
-                 repeat);
+        threadTimes({test(kVolumeTest), test(kTurnedTest), test(kConeTest), test(kAllFacingTests),
+                     [&] {
+                         tree_asked = 0;
+                         for (const FacingEye& eye : eyes) tree_asked += walkFacingTree(tree, clusters, eye, back);
+                     }},
+                    repeat);
     for (const FacingEye& eye : eyes) {
         findBackClusters(clusters, eye, kAllFacingTests, back);
         const size_t count = remainingRanges(clusters, back, 0, ranges);

@@ -17,12 +17,21 @@ struct Case {
 };
 
 constexpr Case kCases[] = {
-    {"bsp", benchBsp},       {"clipping", benchClipping},   {"depth", benchDepth},     {"frustum", benchFrustum},
+    {"backface", benchBackface},
+    {"bsp", benchBsp},
+    {"clipping", benchClipping},
+    {"depth", benchDepth},
+    {"frustum", benchFrustum},
 #ifdef SIGHTLINE_GL
     {"gl", benchGl},
 #endif
-    {"hidden", benchHidden}, {"hierarchy", benchHierarchy}, {"inner", benchInner},     {"occlusion", benchOcclusion},
-    {"order", benchOrder},   {"shadow", benchShadow},       {"volumes", benchVolumes},
+    {"hidden", benchHidden},
+    {"hierarchy", benchHierarchy},
+    {"inner", benchInner},
+    {"occlusion", benchOcclusion},
+    {"order", benchOrder},
+    {"shadow", benchShadow},
+    {"volumes", benchVolumes},
 };
 
 }  // namespace

@@ -7,6 +7,10 @@
 
 namespace sightline::bench {
 
+/// Balls smooth, bumpy and rough, or a scene: back faces by planes, masks of normals, and clusters of several makes; what each
+/// finds of them, and what it costs.
+Table benchBackface(const Options& options);
+
 /// Random triangles and a city eight surfaces deep: building BSP trees beside random choice, and drawing by them front to
 /// back, with what is free looked up, in segments and in bits, beside back to front.
 Table benchBsp(const Options& options);

@@ -50,6 +50,9 @@ FacingMesh wholeScene(const Scene& scene) {
             out.positions.push_back(glm::vec3(object.transform * glm::dvec4(glm::dvec3(p), 1.0)));
         const bool mirrored = glm::determinant(glm::dmat3(object.transform)) < 0;
         for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+            const glm::vec3 a = mesh.positions[mesh.indices[i]], b = mesh.positions[mesh.indices[i + 1]],
+                            c = mesh.positions[mesh.indices[i + 2]];
+            if (a == b || b == c || c == a) continue;
             out.indices.push_back(first + mesh.indices[i]);
             out.indices.push_back(first + mesh.indices[i + (mirrored ? 2 : 1)]);
             out.indices.push_back(first + mesh.indices[i + (mirrored ? 1 : 2)]);

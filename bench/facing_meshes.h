@@ -26,7 +26,8 @@ struct FacingMesh {
 /// @param noise    how far each vertex is moved along its normal at random, in radii
 FacingMesh bumpyBall(const std::string& name, int rings, double bumps, double noise);
 
-/// All objects of a scene in world space; mirrored ones wound the other way, so that their fronts stay fronts.
+/// All objects of a scene in world space; mirrored ones wound the other way, so that their fronts stay fronts. Triangles with two
+/// corners in one place, which face nobody, are left out.
 FacingMesh wholeScene(const Scene& scene);
 
 /// A mesh in another order of its triangles, and the sizes of its clusters.

@@ -27,7 +27,7 @@ struct FacingPartition {
 };
 
 struct MergeLimits {
-    uint32_t triangles = 64;  ///< of a cluster  [limit: >= 1]
+    uint32_t triangles = 256;  ///< of a cluster  [limit: >= 1]
     int rounds = 4;           ///< of neighbours that touch nowhere but lie near and face alike, after those that touch
 };
 

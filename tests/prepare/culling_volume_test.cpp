@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "sightline/base/random.h"
+#include "sightline/prepare/volume_polyhedron.h"
 
 namespace sightline {
 namespace {
@@ -120,6 +121,34 @@ TEST(CullingVolume, AJoinedOneCullsOnlyWhatBothCull) {
         }
     }
     EXPECT_GT(culled, 1000u);
+}
+
+TEST(VolumePolyhedron, HoldsTheVolumeThatTheClosedFormSays) {
+    Random random(114);
+    int solids = 0, empty = 0;
+    for (int round = 0; round < 2000; ++round) {
+        const std::vector<Facet> facets =
+            randomFacets(random, 1 + static_cast<int>(random.below(10)), random.uniform(0.0, 0.9));
+        Box3d box;
+        box.grow(randomVector(random, 6.0));
+        box.grow(randomVector(random, 6.0));
+        const CullingVolume volume = makeCullingVolume(facets, box);
+        const Polyhedron solid = volumePolyhedron(volume, box);
+        double six_times = 0;
+        const std::vector<uint32_t> triangles = trianglesOf(solid);
+        for (size_t i = 0; i < triangles.size(); i += 3) {
+            const auto at = [&](size_t k) { return solid.positions[triangles[i + k]] - box.min; };
+            six_times += glm::dot(at(0), glm::cross(at(1), at(2)));
+        }
+        const glm::dvec3 size = box.max - box.min;
+        const double whole = size.x * size.y * size.z;
+        EXPECT_NEAR(six_times / 6.0 / whole, cullingProbability(volume, box), 2e-5) << "round " << round;
+        for (const glm::dvec3& p : solid.positions)
+            EXPECT_LE(highest(volume, p - glm::dvec3(volume.origin)) - volume.back, 1e-7) << "round " << round;
+        (solid.faces.empty() ? empty : solids) += 1;
+    }
+    EXPECT_GT(solids, 500);
+    EXPECT_GT(empty, 50);
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST(MergeFacing, HoldsEveryTriangleOnceAndCostsLessThanPlainRuns) {
             std::iota(all.begin(), all.end(), 0u);
             ASSERT_EQ(sorted, all);
             ASSERT_EQ(std::accumulate(part.sizes.begin(), part.sizes.end(), size_t{0}), all.size());
-            EXPECT_LE(*std::max_element(part.sizes.begin(), part.sizes.end()), 64u);
+            EXPECT_LE(*std::max_element(part.sizes.begin(), part.sizes.end()), MergeLimits{}.triangles);
             const double merged =
                 modelledCost(describeClusters(mesh.view(), part.triangles, part.sizes), mesh.view(), cost);
             // The records have better origins than the merging had.
