@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/table.h"
 #include "sightline/geom/facing_eye.h"
 #include "sightline/geom/mesh_view.h"
 #include "sightline/math/box.h"
@@ -51,6 +52,11 @@ private:
     };
     std::vector<Cone> cones_;
 };
+
+inline bool bitOf(const std::vector<uint8_t>& bits, size_t i) { return bits[i / 8] >> (i % 8) & 1; }
+
+/// What the tests of clusters find on clusters of several makes, what ours cost beside them, and how long all that takes.
+void addClusterRows(const FacingMesh& mesh, int repeat, Table& table);
 
 /// Eyes at random places of a box.
 std::vector<FacingEye> randomEyes(const Box3d& box, int count);

@@ -77,9 +77,13 @@ RayBits bitsOf(const glm::dvec3& ray, double error, int cells) {
         const double across = ray[(axis + 1) % 3], up = ray[(axis + 2) % 3];
         for (int row = 0; row <= cells; ++row) {
             const double base = ahead + borders[row] * up;
-            uint32_t word = 0;
-            for (int column = 0; column <= cells; ++column)
-                word |= uint32_t{base + borders[column] * across > 0.0} << column;
+            const bool first = base + borders[0] * across > 0.0, last = base + borders[cells] * across > 0.0;
+            uint32_t word = first ? (2u << cells) - 1 : 0;  // most rows are of one kind
+            if (first != last) {
+                word = 0;
+                for (int column = 0; column <= cells; ++column)
+                    word |= uint32_t{base + borders[column] * across > 0.0} << column;
+            }
             bits.rows[face][row] = word;
         }
     }
@@ -163,25 +167,32 @@ SectorMasks::SectorMasks(const View& view, const glm::dmat4& transform, FrontFac
 
 SectorMasks::Range SectorMasks::sectorsOf(const Box3f& box) const {
     Range range{{0, 0}, {sectors_ - 1, sectors_ - 1}};
-    double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 p(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                           corner & 4 ? box.max.z : box.min.z);
-        const glm::dvec4 clip = to_clip_ * glm::dvec4(p, 1.0);
-        double size = std::abs(to_clip_[3][3]);  // of the terms that w is the sum of
-        for (int axis = 0; axis < 3; ++axis) size += std::abs(to_clip_[axis][3] * p[axis]);
-        if (!(clip.w > 1e-5 * size)) return range;
+    const glm::dvec3 from(box.min), side = glm::dvec3(box.max) - from;
+    const glm::dvec3 largest = glm::max(glm::abs(glm::dvec3(box.min)), glm::abs(glm::dvec3(box.max)));
+    const glm::dvec4 corner = to_clip_ * glm::dvec4(from, 1.0);
+    const glm::dvec4 step[3] = {side.x * to_clip_[0], side.y * to_clip_[1], side.z * to_clip_[2]};
+    glm::dvec4 size = glm::abs(to_clip_[3]);  // of the terms that are summed
+    for (int axis = 0; axis < 3; ++axis) size += 2.0 * largest[axis] * glm::abs(to_clip_[axis]);
+    double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300}, nearest = 1e300;
+    for (int i = 0; i < 8; ++i) {
+        glm::dvec4 clip = corner;
+        for (int axis = 0; axis < 3; ++axis)
+            if (i >> axis & 1) clip += step[axis];
+        if (!(clip.w > 1e-6 * size.w)) return range;  // nor where a number is none
+        nearest = std::min(nearest, clip.w);
+        const double scale = 1.0 / clip.w;
         for (int k = 0; k < 2; ++k) {
-            const double at = clip[k] / clip.w;
-            if (!(std::abs(at) < 1e100)) return range;
+            const double at = clip[k] * scale;
             low[k] = std::min(low[k], at), high[k] = std::max(high[k], at);
         }
     }
+    const double rounding = 0x1p-46 * (size.x + size.y) / nearest;
+    if (!(rounding < 1.0)) return range;
     for (int k = 0; k < 2; ++k) {
         const auto sectorAt = [&](double at) {
             return static_cast<int>(std::floor(std::clamp(0.5 * (at + 1.0), -1.0, 2.0) * sectors_));
         };
-        const double doubt = 1e-6 * (1.0 + std::abs(low[k]) + std::abs(high[k]));
+        const double doubt = rounding + 1e-6 * (1.0 + std::abs(low[k]) + std::abs(high[k]));
         // What the jitter may bring into view is seen in the outermost sectors, whose masks have been widened by it.
         if (high[k] + doubt < -outer_[k] || low[k] - doubt > outer_[k]) return {{1, 1}, {0, 0}};
         range.first[k] = std::clamp(sectorAt(low[k] - doubt), 0, sectors_ - 1);
