@@ -116,7 +116,7 @@ void addCostRows(const FacingMesh& mesh, int repeat, Table& table) {
     const double all = static_cast<double>(mesh.view().triangles());
     for (int i = 0; i < 3; ++i) {
         const FacingCost cost{.test = kTests[i]};
-        const FacingPartition part = mergeFacing(mesh.view(), cost);
+        const FacingPartition part = mergeFacing(mesh.view(), cost, {.triangles = 256});
         const FacingClusters clusters = describeClusters(mesh.view(), part.triangles, part.sizes, settings);
         const double ours = modelledCost(clusters, mesh.view(), cost);
         const std::string where = fmt::format("{}, a test as dear as {} triangles", mesh.name, kTests[i]);

@@ -27,8 +27,8 @@ struct FacingPartition {
 };
 
 struct MergeLimits {
-    uint32_t triangles = 256;  ///< of a cluster  [limit: >= 1]
-    int rounds = 4;            ///< of neighbours that touch nowhere but lie near and face alike, after those that touch
+    uint32_t triangles = 64;  ///< of a cluster  [limit: >= 1]
+    int rounds = 4;           ///< of neighbours that touch nowhere but lie near and face alike, after those that touch
 };
 
 /// Merges clusters, at first of a triangle each, as long as two of them cost less as one: T(C) < T(A) + T(B) with
