@@ -3,7 +3,7 @@
 //
 // Andreas Johannsen, Michael Carter. Clustered Backface Culling. 1998 (the volumes).
 // Subodh Kumar, Dinesh Manocha, William Garrett, Ming Lin. Hierarchical Back-Face Computation. 1996 (the idea).
-// Arseny Kapoulkine. meshoptimizer. 2018 (the cone with an apex).
+// Arseny Kapoulkine. meshoptimizer 0.18. 2022 (the cone with an apex).
 // Ulrich Haar, Sebastian Aaltonen. GPU-Driven Rendering Pipelines. 2015 (the masks of triangles).
 #pragma once
 

@@ -1,7 +1,7 @@
 // Makes the cones from which clusters are seen from their backs.
 // SPDX-License-Identifier: MIT
 //
-// Arseny Kapoulkine. meshoptimizer. 2018.
+// Arseny Kapoulkine. meshoptimizer 0.18. 2022.
 // Mihai Badoiu, Kenneth Clarkson. Smaller Core-Sets for Balls. 2003 (the axis).
 #pragma once
 
