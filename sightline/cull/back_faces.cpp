@@ -3,10 +3,10 @@
 #include "sightline/cull/back_faces.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "sightline/base/assert.h"
+#include "sightline/cull/answer_bits.h"
 
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
@@ -123,32 +123,18 @@ HWY_EXPORT(planeFacesKernel);
 HWY_EXPORT(homogeneousFacesKernel);
 HWY_EXPORT(screenFacesKernel);
 
-size_t bytesOf(size_t count) { return (count + 15) / 16 * 2; }
-
-/// Clears what is beyond the last triangle, and counts.
-size_t finish(size_t count, std::span<uint8_t> back) {
-    if (count % 16) {
-        const uint32_t kept = (1u << count % 16) - 1;
-        back[count / 16 * 2] &= static_cast<uint8_t>(kept);
-        back[count / 16 * 2 + 1] &= static_cast<uint8_t>(kept >> 8);
-    }
-    size_t found = 0;
-    for (size_t i = 0; i < bytesOf(count); ++i) found += static_cast<size_t>(std::popcount(back[i]));
-    return found;
-}
-
 size_t findIndexed(const detail::IndexedTriangles& mesh, std::span<uint8_t> back) {
-    SIGHTLINE_ASSERT(back.size() >= bytesOf(mesh.count));
+    SIGHTLINE_ASSERT(back.size() >= detail::answerBytes(mesh.count));
     if (mesh.count == 0) return 0;
     if (mesh.w) HWY_DYNAMIC_DISPATCH(homogeneousFacesKernel)(mesh, back.data());
     else HWY_DYNAMIC_DISPATCH(screenFacesKernel)(mesh, back.data());
-    return finish(mesh.count, back);
+    return detail::finishAnswers(mesh.count, back);
 }
 
 }  // namespace
 
 size_t findBackFaces(const TrianglePlanes& planes, const FacingEye& eye, std::span<uint8_t> back) {
-    SIGHTLINE_ASSERT(back.size() >= bytesOf(planes.count));
+    SIGHTLINE_ASSERT(back.size() >= detail::answerBytes(planes.count));
     const glm::dvec3 q = eye.point - eye.w * planes.origin;
     const double size = std::abs(q.x) + std::abs(q.y) + std::abs(q.z) + eye.w * planes.reach;
     // Normal, eye and distance round by 2^-24 each, and so do the products and sums: less than a dozen times in all. The
@@ -156,14 +142,14 @@ size_t findBackFaces(const TrianglePlanes& planes, const FacingEye& eye, std::sp
     const double far_away = glm::length(eye.point) + eye.w * glm::length(planes.origin);
     const double margin = 0x1p-20 * size + 2.0 * eye.error + 0x1p-50 * far_away + 0x1p-100;
     if (!eye.known() || !(size < 0x1p100) || !(margin < 0x1p100)) {
-        std::fill_n(back.begin(), bytesOf(planes.count), uint8_t{0});
+        std::fill_n(back.begin(), detail::answerBytes(planes.count), uint8_t{0});
         return 0;
     }
     const double turn = eye.front == FrontFace::kClockwise ? -1.0 : 1.0;
     const glm::vec3 point(turn * q);
     HWY_DYNAMIC_DISPATCH(planeFacesKernel)
     (planes, {point.x, point.y, point.z, static_cast<float>(turn * eye.w), static_cast<float>(-margin)}, back.data());
-    return finish(planes.count, back);
+    return detail::finishAnswers(planes.count, back);
 }
 
 size_t findBackFaces(const HomogeneousVertices& vertices, std::span<const uint32_t> indices, FrontFace front,

@@ -3,10 +3,10 @@
 #include "sightline/cull/facing_clusters.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "sightline/base/assert.h"
+#include "sightline/cull/answer_bits.h"
 
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
@@ -141,8 +141,6 @@ HWY_EXPORT(frontVolumesKernel);
 HWY_EXPORT(turnedKernel);
 HWY_EXPORT(conesKernel);
 
-size_t bytesOf(size_t count) { return (count + 15) / 16 * 2; }
-
 /// False if nothing can be said.
 bool placeEye(const FacingClusters& clusters, const FacingEye& eye, detail::ClusterEye& out) {
     const glm::dvec3 q = eye.point - eye.w * clusters.origin;
@@ -156,17 +154,6 @@ bool placeEye(const FacingClusters& clusters, const FacingEye& eye, detail::Clus
     out.margin = static_cast<float>(margin);
     out.turned = eye.front == FrontFace::kClockwise;
     return true;
-}
-
-size_t finish(size_t count, std::span<uint8_t> bits) {
-    if (count % 16) {
-        const uint32_t kept = (1u << count % 16) - 1;
-        bits[count / 16 * 2] &= static_cast<uint8_t>(kept);
-        bits[count / 16 * 2 + 1] &= static_cast<uint8_t>(kept >> 8);
-    }
-    size_t found = 0;
-    for (size_t i = 0; i < bytesOf(count); ++i) found += static_cast<size_t>(std::popcount(bits[i]));
-    return found;
 }
 
 /// What one volume says: positive, all are front faces; negative, all are back faces; 0, neither is known. The arithmetic
@@ -191,7 +178,7 @@ void setBits(std::span<uint8_t> bits, uint32_t first, uint32_t count) {
 }  // namespace
 
 size_t findBackClusters(const FacingClusters& clusters, const FacingEye& eye, uint32_t tests, std::span<uint8_t> back) {
-    const size_t bytes = bytesOf(clusters.count());
+    const size_t bytes = detail::answerBytes(clusters.count());
     SIGHTLINE_ASSERT(back.size() >= bytes);
     detail::ClusterEye placed;
     if (!placeEye(clusters, eye, placed)) {
@@ -205,11 +192,11 @@ size_t findBackClusters(const FacingClusters& clusters, const FacingEye& eye, ui
         HWY_DYNAMIC_DISPATCH(turnedKernel)(clusters, placed, back.data());
     if (!placed.turned && tests & kConeTest && !clusters.cones.empty())
         HWY_DYNAMIC_DISPATCH(conesKernel)(clusters, placed, back.data());
-    return finish(clusters.count(), back);
+    return detail::finishAnswers(clusters.count(), back);
 }
 
 size_t findFrontClusters(const FacingClusters& clusters, const FacingEye& eye, std::span<uint8_t> front) {
-    const size_t bytes = bytesOf(clusters.count());
+    const size_t bytes = detail::answerBytes(clusters.count());
     SIGHTLINE_ASSERT(front.size() >= bytes);
     detail::ClusterEye placed;
     if (!placeEye(clusters, eye, placed)) {
@@ -218,12 +205,12 @@ size_t findFrontClusters(const FacingClusters& clusters, const FacingEye& eye, s
     }
     if (placed.turned) HWY_DYNAMIC_DISPATCH(backVolumesKernel)(clusters, placed, front.data());
     else HWY_DYNAMIC_DISPATCH(frontVolumesKernel)(clusters, placed, front.data());
-    return finish(clusters.count(), front);
+    return detail::finishAnswers(clusters.count(), front);
 }
 
 size_t walkFacingTree(const FacingTree& tree, const FacingClusters& clusters, const FacingEye& eye,
                       std::span<uint8_t> back) {
-    const size_t bytes = bytesOf(clusters.count());
+    const size_t bytes = detail::answerBytes(clusters.count());
     SIGHTLINE_ASSERT(back.size() >= bytes);
     std::fill_n(back.begin(), bytes, uint8_t{0});
     detail::ClusterEye placed;

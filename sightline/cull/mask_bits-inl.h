@@ -25,6 +25,10 @@ using FaceLanes = hn::CappedTag<float, 16>;
 template <bool add = false, class Test>
 HWY_INLINE void storeAnswers(FaceLanes d, size_t count, uint8_t* HWY_RESTRICT bits, const Test& test) {
     const size_t lanes = hn::Lanes(d);
+    if (lanes == 16 && !add) {  // whole bytes, as they come
+        for (size_t i = 0; i < count; i += 16) hn::StoreMaskBits(d, test(i), bits + i / 8);
+        return;
+    }
     for (size_t i = 0; i < count; i += 16) {
         uint32_t word = 0;
         for (size_t j = 0; j < 16; j += lanes) {

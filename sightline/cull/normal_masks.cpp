@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "sightline/base/assert.h"
+#include "sightline/cull/answer_bits.h"
 
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
@@ -244,7 +245,7 @@ size_t findBackFaces(const NormalClasses& classes, size_t first, size_t count, c
             word &= (uint64_t{1} << count % 64) - 1;
             std::memcpy(back.data() + 8 * i, &word, 8);
         }
-        found += static_cast<size_t>(std::popcount(word));
+        found += static_cast<size_t>(detail::countBits(word));
     }
     return found;
 }
