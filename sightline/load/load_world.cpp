@@ -44,8 +44,9 @@ Forms formsOf(const Scene& scene, const Mesh& mesh, const LoadSettings& settings
     if (settings.clusters && mesh.triangles() >= kClustered) {
         std::vector<MeshPart> parts;
         for (const Primitive& primitive : mesh.primitives)
-            parts.push_back(
-                {primitive.first_triangle, primitive.triangle_count, scene.materials[primitive.material].double_sided});
+            parts.push_back({primitive.first_triangle, primitive.triangle_count,
+                             scene.materials[primitive.material].double_sided,
+                             scene.materials[primitive.material].hides()});
         forms.clusters = world.addClusters(prepareDrawClusters(view, parts));
     }
     return forms;

@@ -53,7 +53,7 @@ PlanBand sliceOf(const PlanArea& section, const glm::dvec3& eye);
 inline constexpr int kPlanColours = 1 + kStageCount;
 extern const glm::u8vec4 kPlanPalette[kPlanColours];
 inline constexpr const char* kPlanNames[kPlanColours] = {
-    "visible",           "culled by frustum",  "culled by distance", "culled by contribution",
+    "visible",           "culled by frustum",   "culled by distance", "culled by contribution",
     "culled by volumes", "culled by occlusion", "culled by clusters"};
 
 /// Draws the boxes of the objects, larger ones below smaller ones, flat ones and those outside the band pale;

@@ -35,29 +35,44 @@ uint64_t countBits(std::span<const uint8_t> bytes) {
     return count;
 }
 
+/// Whether nothing of a box is cut open, by the near plane or by a section, so that the eye is outside of what is in it.
+/// @param object  the view's buffer seen from the box's space; null: there is none
+bool seesOutside(const Box3f& box, const Screen* object, const View& view) {
+    if (!object || view.sections.count > 0) return false;
+    Screen guarded = *object;
+    guarded.near.w -= 2.0 * guarded.near_guard;
+    const BoxAnswer answer = projectBox(guarded, box);
+    return !answer.doubt && !answer.outside;
+}
+
 }  // namespace
 
 /// Leaves those of which some triangle may be seen from its front.
 void ClusterStage::findFacing(const DrawClusters& clusters, const ObjectRecord& object, const View& view,
-                              QueryStats& stats) {
+                              const Screen* screen, QueryStats& stats) {
     const size_t count = clusters.count();
     // The facing tests write whole sixteens.
     left_.assign((std::max(count, clusters.facing.count()) + 15) / 16 * 2, 0);
-    stats.clusters_back += findBackClusters(clusters.facing, facingEye(view, object.transform), kAllFacingTests, left_);
+    findBackClusters(clusters.facing, facingEye(view, object.transform), kAllFacingTests, left_);
+    for (const ClosedClusters& solid : clusters.closed) {
+        if (seesOutside(solid.box, screen, view)) continue;
+        for (uint32_t i = solid.first; i < solid.first + solid.count; ++i)
+            left_[i / 8] &= static_cast<uint8_t>(~(1u << i % 8));
+    }
+    stats.clusters_back += countBits(left_);
     for (uint8_t& byte : left_) byte = static_cast<uint8_t>(~byte);
     for (size_t i = count; i < 8 * left_.size(); ++i) left_[i / 8] &= static_cast<uint8_t>(~(1u << i % 8));
 }
 
 /// Of these those that lie in the view and are not hidden.
-void ClusterStage::findSeen(const DrawClusters& clusters, const ObjectRecord& object, const View& view,
-                            const Buffer& buffer, QueryStats& stats) {
-    if (!buffer.screen) return;
+void ClusterStage::findSeen(const DrawClusters& clusters, const View& view, const Screen* screen, DepthTiles* tiles,
+                            QueryStats& stats) {
+    if (!screen) return;
     const bool frustum = view.stages & stageBit(Stage::kFrustum), occlusion = view.stages & stageBit(Stage::kOcclusion);
     if (!frustum && !occlusion) return;
-    const Screen screen = objectScreen(*buffer.screen, object.transform);
     for (size_t byte = 0; 8 * byte < clusters.count(); ++byte) {
         if (left_[byte] == 0) continue;
-        const ScreenAnswer on_screen = projectBoxes(screen, boundsOf(clusters, 8 * byte));
+        const ScreenAnswer on_screen = projectBoxes(*screen, boundsOf(clusters, 8 * byte));
         for (uint32_t bits = left_[byte]; bits; bits &= bits - 1) {
             const int which = std::countr_zero(bits);
             const uint8_t bit = static_cast<uint8_t>(1u << which);
@@ -66,8 +81,8 @@ void ClusterStage::findSeen(const DrawClusters& clusters, const ObjectRecord& ob
                 ++stats.clusters_outside;
             } else {
                 PixelRect rect = on_screen.rects[which];
-                if (!occlusion || on_screen.doubt & bit || !buffer.tiles->clip(rect)) continue;
-                if (!isHidden(*buffer.tiles, rect, Seams::kLeave)) continue;
+                if (!occlusion || on_screen.doubt & bit || !tiles->clip(rect)) continue;
+                if (!isHidden(*tiles, rect, Seams::kLeave)) continue;
                 ++stats.clusters_hidden;
             }
             left_[byte] &= static_cast<uint8_t>(~bit);
@@ -98,8 +113,11 @@ void ClusterStage::addRanges(const DrawClusters& clusters, uint32_t gap, uint32_
 bool ClusterStage::select(const DrawClusters& clusters, const ObjectRecord& object, const View& view,
                           const Buffer& buffer, uint32_t visible, QueryStats& stats) {
     stats.clusters_tested += clusters.count();
-    findFacing(clusters, object, view, stats);
-    findSeen(clusters, object, view, buffer, stats);
+    Screen placed;
+    if (buffer.screen) placed = objectScreen(*buffer.screen, object.transform);
+    const Screen* const screen = buffer.screen ? &placed : nullptr;
+    findFacing(clusters, object, view, screen, stats);
+    findSeen(clusters, view, screen, buffer.tiles, stats);
     if (countBits(left_) == 0) return false;
     stats.cluster_triangles += clusters.triangles.size();
     addRanges(clusters, view.cluster_gap, visible, stats);

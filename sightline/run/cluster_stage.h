@@ -42,8 +42,9 @@ private:
     static Buffer bufferOf(BinnedWalk& walk);
     bool select(const DrawClusters& clusters, const ObjectRecord& object, const View& view, const Buffer& buffer,
                 uint32_t visible, QueryStats& stats);
-    void findFacing(const DrawClusters& clusters, const ObjectRecord& object, const View& view, QueryStats& stats);
-    void findSeen(const DrawClusters& clusters, const ObjectRecord& object, const View& view, const Buffer& buffer,
+    void findFacing(const DrawClusters& clusters, const ObjectRecord& object, const View& view, const Screen* screen,
+                    QueryStats& stats);
+    void findSeen(const DrawClusters& clusters, const View& view, const Screen* screen, DepthTiles* tiles,
                   QueryStats& stats);
     void addRanges(const DrawClusters& clusters, uint32_t gap, uint32_t visible, QueryStats& stats);
 

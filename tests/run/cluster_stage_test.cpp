@@ -32,18 +32,19 @@ struct TestMesh {
 };
 
 /// A ball with bumps, of two or three parts; the last one may be open and double-sided.
-TestMesh makeBall(uint64_t seed, uint32_t rings, double rough, bool open) {
+TestMesh makeBall(uint64_t seed, uint32_t rings, double rough, bool open, bool two_sides = false) {
     Random random(seed);
     TestMesh mesh;
     const uint32_t around = 2 * rings;
     for (uint32_t ring = 0; ring <= rings; ++ring)
         for (uint32_t k = 0; k < around; ++k) {
             const double theta = M_PI * ring / rings, phi = 2 * M_PI * k / around;
-            const double r = ring == 0 || ring == rings ? 1.0 : 1.0 + rough * random.uniform(-1, 1);
-            mesh.positions.push_back(glm::vec3(
-                r * glm::dvec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi))));
+            const bool pole = ring == 0 || ring == rings;
+            const double r = pole ? 1.0 : 1.0 + rough * random.uniform(-1, 1), across = pole ? 0.0 : std::sin(theta);
+            mesh.positions.push_back(
+                glm::vec3(r * glm::dvec3(across * std::cos(phi), std::cos(theta), across * std::sin(phi))));
         }
-    const auto at = [&](uint32_t ring, uint32_t k) { return ring * around + k % around; };
+    const auto at = [&](uint32_t ring, uint32_t k) { return ring * around + k % around; };  // poles: welded by place
     for (uint32_t ring = 0; ring < rings; ++ring) {
         if (open && ring == 1) continue;
         for (uint32_t k = 0; k < around; ++k) {
@@ -55,6 +56,8 @@ TestMesh makeBall(uint64_t seed, uint32_t rings, double rough, bool open) {
     const auto count = static_cast<uint32_t>(mesh.indices.size() / 3);
     const uint32_t half = count / 2;
     mesh.parts = {{0, half / 2, false}, {half / 2, half - half / 2, open}, {half, count - half, false}};
+    if (two_sides)
+        for (MeshPart& part : mesh.parts) part.double_sided = true;
     mesh.double_sided.assign(count, 0);
     for (const MeshPart& part : mesh.parts)
         std::fill_n(mesh.double_sided.begin() + part.first, part.count, static_cast<uint8_t>(part.double_sided));
@@ -75,13 +78,14 @@ struct MadeScene {
         meshes.push_back(makeBall(1, 12, 0.15, false));
         meshes.push_back(makeBall(2, 9, 0.02, true));
         meshes.push_back(makeBall(3, 3, 0.0, false));
+        meshes.push_back(makeBall(4, 8, 0.1, false, true));
         for (TestMesh& each : meshes) {
             each.occluder = world.addOccluder(prepareOccluder(each.view(), {}, each.double_sided));
             each.id = world.addClusters(each.clusters);
         }
         Random random(seed);
         for (int i = 0; i < count; ++i) {
-            const uint32_t which = static_cast<uint32_t>(random.below(3));
+            const uint32_t which = static_cast<uint32_t>(random.below(4));
             glm::dmat4 t(1.0);
             for (int axis = 0; axis < 3; ++axis) {
                 t[axis][axis] = random.uniform(0.3, 2.5) * (random.below(5) ? 1 : -1);
@@ -233,10 +237,50 @@ TEST(ClusterStage, WhatIsLeftDrawsTheWholeImage) {
             sum.clusters_hidden += set.stats.clusters_hidden;
         }
     }
-    EXPECT_GT(sum.clusters_back, sum.clusters_tested / 5);
+    EXPECT_GT(sum.clusters_back, sum.clusters_tested / 6);
     EXPECT_GT(sum.clusters_outside, sum.clusters_tested / 50);
     EXPECT_GT(sum.clusters_hidden, sum.clusters_tested / 50);
     EXPECT_GT(objects_culled, 10u);
+}
+
+TEST(ClusterStage, DoubleSidedSolidsHaveBacksFromOutside) {
+    const TestMesh ball = makeBall(4, 8, 0.1, false, true), open = makeBall(2, 9, 0.02, true, true);
+    EXPECT_EQ(ball.clusters.closed.size(), 1u);
+    EXPECT_EQ(ball.clusters.facing.count(), ball.clusters.count());
+    EXPECT_EQ(open.clusters.facing.count(), 0u);
+    for (const bool turned : {false, true}) {
+        TestMesh given = ball;
+        if (turned)
+            for (size_t i = 0; i < given.indices.size(); i += 3) std::swap(given.indices[i], given.indices[i + 1]);
+        given.clusters = prepareDrawClusters(given.view(), given.parts);
+        ASSERT_EQ(given.clusters.closed.size(), 1u);
+        World world;
+        ObjectDef def;
+        def.bounds = {glm::dvec3(-1.2), glm::dvec3(1.2)};
+        def.clusters = world.addClusters(given.clusters);
+        world.add(def);
+        const Snapshot now = world.commit();
+        Query query;
+        View view;
+        view.projection = perspective(1.0, 1.6, 0.1);
+        view.view = lookAt({0, 0, 5}, glm::dvec3(0.0), {0, 1, 0});
+        const uint64_t all = given.indices.size() / 3;
+        EXPECT_GT(query.visible(now, view).stats.clusters_back, 0u);
+        EXPECT_LT(query.visible(now, view).stats.drawn_triangles, 9 * all / 10);
+        View near = view;
+        near.projection = perspective(1.0, 1.6, 4.5);
+        EXPECT_EQ(query.visible(now, near).stats.clusters_back, 0u) << "the near plane cuts it open";
+        View cut = view;
+        cut.sections.add({0, 0, -1, 0.5});
+        EXPECT_EQ(query.visible(now, cut).stats.clusters_back, 0u) << "a section cuts it open";
+        View inside = view;
+        inside.view = lookAt(glm::dvec3(0.0), {0, 0, -1}, {0, 1, 0});
+        EXPECT_EQ(query.visible(now, inside).stats.clusters_back, 0u);
+        if (std::any_of(given.parts.begin(), given.parts.end(), [](const MeshPart& part) { return part.hides; })) {
+            for (MeshPart& part : given.parts) part.hides = false;
+            EXPECT_EQ(prepareDrawClusters(given.view(), given.parts).closed.size(), 0u) << "glass shows its inside";
+        }
+    }
 }
 
 TEST(ClusterStage, IsTheSameOnEveryInstructionSet) {

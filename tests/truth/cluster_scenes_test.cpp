@@ -21,8 +21,9 @@ namespace {
 std::vector<MeshPart> partsOf(const Scene& scene, const Mesh& mesh) {
     std::vector<MeshPart> parts;
     for (const Primitive& primitive : mesh.primitives)
-        parts.push_back(
-            {primitive.first_triangle, primitive.triangle_count, scene.materials[primitive.material].double_sided});
+        parts.push_back({primitive.first_triangle, primitive.triangle_count,
+                         scene.materials[primitive.material].double_sided,
+                         scene.materials[primitive.material].hides()});
     return parts;
 }
 
