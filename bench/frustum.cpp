@@ -5,8 +5,11 @@
 #include "bench/cases.h"
 #include "bench/flat_boxes.h"
 #include "bench/frustum_walks.h"
+#include "bench/query_refinement.h"
 #include "sightline/base/random.h"
 #include "sightline/run/query.h"
+#include "sightline/scene/building.h"
+#include "sightline/scene/city.h"
 
 namespace sightline::bench {
 namespace {
@@ -125,6 +128,12 @@ Table benchFrustum(const Options& options) {
     addCoherencyRows(measured, table);
     addRefinementRows(measured, table);
     addBoundRows(measured, table);
+    if (options.scene) {
+        addQueryRefinement(table, where, *options.scene, options.repeat);
+    } else {
+        addQueryRefinement(table, "building of 4 floors", makeBuilding(1, 4), options.repeat);
+        addQueryRefinement(table, "city of 30,000", makeCity(1, 30000), options.repeat);
+    }
     return table;
 }
 

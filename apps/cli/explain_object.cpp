@@ -51,6 +51,7 @@ Json frustumJson(const FrustumReason& reason) {
     out["by_rectangle"] = reason.by_rectangle;
     out["by_faces"] = reason.by_faces;
     out["by_triangles"] = reason.by_triangles;
+    if (reason.by_refinement) out["by_refinement"] = true;
     return out;
 }
 

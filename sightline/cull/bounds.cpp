@@ -213,10 +213,11 @@ bool separated(const ViewVolume& volume, const OrientedBox& box, Refinement refi
     return false;
 }
 
-RefinedVolume refineVolume(const ViewVolume& volume) {
+RefinedVolume refineVolume(const ViewVolume& volume, Refinement refinement) {
     RefinedVolume refined;
     refined.volume = volume;
     glm::dvec4 plane;
+    if (refinement == Refinement::kNone) return refined;
     for (int axis = 0; axis < 3; ++axis) {
         glm::dvec3 normal(0.0);
         for (const double sign : {1.0, -1.0}) {
@@ -224,6 +225,7 @@ RefinedVolume refineVolume(const ViewVolume& volume) {
             if (supportPlane(volume, normal, plane)) refined.axes[refined.axis_count++] = plane;
         }
     }
+    if (refinement == Refinement::kCorners) return refined;
     PlanePair edges[3 * ViewVolume::kMostPlanes];
     const uint32_t count = edgesOf(volume, edges);
     for (uint32_t i = 0; i < count; ++i)

@@ -70,6 +70,30 @@ void testPlanesKernel(const glm::dvec4* from, uint32_t count, const EyeBoxes& bo
     }
 }
 
+uint32_t outsideAnyKernel(const glm::dvec4* planes, size_t count, const EyeBoxes& boxes) {
+    const F8 d;
+    uint32_t outside = 0;
+    for (size_t i = 0; i < 8; i += hn::Lanes(d)) {
+        auto any = hn::FirstN(d, 0);
+        for (size_t plane = 0; plane < count; ++plane) {
+            const glm::dvec4& p = planes[plane];
+            auto sum = hn::Set(d, static_cast<float>(p.w)), size = hn::Abs(sum);
+            for (int axis = 0; axis < 3; ++axis) {
+                const auto n = hn::Set(d, static_cast<float>(p[axis]));
+                const auto a = hn::Mul(n, hn::Load(d, boxes.min[axis] + i));
+                const auto b = hn::Mul(n, hn::Load(d, boxes.max[axis] + i));
+                sum = hn::Add(sum, hn::Max(a, b));
+                size = hn::Add(size, hn::Max(hn::Abs(a), hn::Abs(b)));
+            }
+            any = hn::Or(any, hn::Lt(sum, hn::Neg(hn::Mul(size, hn::Set(d, kRounding)))));
+        }
+        uint8_t bits[8] = {};
+        hn::StoreMaskBits(d, any, bits);
+        outside |= uint32_t{bits[0]} << i;
+    }
+    return outside;
+}
+
 size_t cullFrustumKernel(const Frustum& frustum, const BoxArrays& boxes, uint32_t* kept) {
     const F16 d;
     const hn::RebindToUnsigned<F16> u;
@@ -114,6 +138,7 @@ namespace sightline {
 
 HWY_EXPORT(eyeBoxesKernel);
 HWY_EXPORT(testPlanesKernel);
+HWY_EXPORT(outsideAnyKernel);
 HWY_EXPORT(cullFrustumKernel);
 
 EyeBoxes eyeBoxes(const BvhNode& node, const glm::dvec3& offset) {
@@ -132,6 +157,10 @@ FrustumAnswer testViewVolume(const ViewVolume& volume, const EyeBoxes& boxes, ui
     FrustumAnswer answer;
     HWY_DYNAMIC_DISPATCH(testPlanesKernel)(volume.planes, volume.count, boxes, active, answer);
     return answer;
+}
+
+uint32_t outsideAny(std::span<const glm::dvec4> planes, const EyeBoxes& boxes) {
+    return HWY_DYNAMIC_DISPATCH(outsideAnyKernel)(planes.data(), planes.size(), boxes);
 }
 
 size_t cullFrustum(const Frustum& frustum, const BoxArrays& boxes, std::span<uint32_t> kept) {

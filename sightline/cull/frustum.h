@@ -36,6 +36,9 @@ FrustumAnswer testFrustum(const Frustum& frustum, const EyeBoxes& boxes, uint32_
 /// The same of a volume, relative to the same eye.
 FrustumAnswer testViewVolume(const ViewVolume& volume, const EyeBoxes& boxes, uint32_t active);
 
+/// Bit per box that is surely outside of one of the planes, which are relative to the eye and of unit length.
+uint32_t outsideAny(std::span<const glm::dvec4> planes, const EyeBoxes& boxes);
+
 /// Boxes as one array per bound, relative to one origin.
 struct BoxArrays {
     const float* min[3];  ///< [size: count rounded up to 16]

@@ -30,6 +30,13 @@ enum class OcclusionDetail : uint8_t {
     kFull,    ///< such a tile gets a depth per pixel
 };
 
+/// How much is asked of bounds that the planes of a view volume keep.
+enum class Refinement : uint8_t {
+    kNone,
+    kCorners,         ///< all corners of the volume are beyond one face of the bound
+    kSeparatingAxes,  ///< and the planes along one edge of each: exact for boxes but for rounding
+};
+
 /// A few half spaces of the world: a point p is inside of a plane if dot(n, p) + d >= 0. Normals are of any length; a plane
 /// without one has everything inside or, if d < 0, nothing.
 struct ViewPlanes {
@@ -100,6 +107,8 @@ struct View {
     /// not timed: so the same calls give the same answers.
     bool balance_bins = false;
     bool time_stages = false;  ///< fill StageStats::nanoseconds (costs some time itself)
+    /// Stage::kFrustum asks more of boxes that cross two planes or more, and may lie beyond the edge where these meet.
+    Refinement refinement = Refinement::kNone;
     /// Cuts the world open: what is not inside of all these planes is not drawn. Stage::kFrustum culls what lies wholly
     /// outside of one. What a plane cuts hides only by parts that it leaves whole, so that what the cut lays open is seen.
     ViewPlanes sections;

@@ -80,6 +80,7 @@ std::string planeText(const FrustumReason& reason) {
     if (reason.by_triangles)
         return "out of view: its box reaches into it, but none of its triangles that would be drawn";
     if (reason.by_faces) return "out of view: the box along the axes reaches into it, but not its own, which is turned";
+    if (reason.by_refinement) return "out of view: its box crosses planes of it, but lies beyond where they meet";
     const char* const name = kPlaneNames[reason.plane];
     const std::string where = reason.plane < FrustumReason::kFirstSection ? fmt::format("the {} plane", name) : name;
     return fmt::format("beyond {} by {} units", where, units(reason.distance()));

@@ -302,6 +302,8 @@ Explanation Explainer::explain(ObjectId id, const ExplainSettings& settings) {
         (by_frustum ? out.frustum.by_faces : out.occlusion.by_faces) = look == detail::Look::kFaces;
         (by_frustum ? out.frustum.by_triangles : out.occlusion.by_triangles) = look == detail::Look::kTriangles;
     }
+    if (by_frustum && !out.frustum.outside_any && !out.frustum.by_faces && !out.frustum.by_triangles)
+        out.frustum.by_refinement = out.frustum.outside_any = true;
     if (out.verdict == Verdict::kVisible) out.clusters = impl.lookAtClusters(item);
     if (out.clusters.clusters > 0 && out.clusters.drawn == 0) {
         out.verdict = Verdict::kNoCluster;

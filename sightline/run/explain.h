@@ -49,6 +49,8 @@ struct FrustumReason {
     bool outside_any = false;  ///< the frustum stage would cull the object by itself
     /// Its box reaches into the view, but no face of it or, by a second look, none of its triangles that would be drawn.
     bool by_faces = false, by_triangles = false;
+    /// No plane has its box outside, or the box of what was culled with it, but several together: View::refinement.
+    bool by_refinement = false;
 
     FrustumReason() { std::fill_n(outside, kPlanes, kNoPlane); }
     double distance() const { return outside[plane]; }

@@ -162,11 +162,35 @@ VolumesAnswer Walk::askVolumes(const BvhNode& node, const EyeBoxes& boxes, Volum
 /// Asks the frustum, and what the view adds to it.
 FrustumAnswer Walk::askPlanes(const EyeBoxes& boxes, uint32_t planes) const {
     FrustumAnswer answer = testFrustum(frustum, boxes, planes);
-    if (planes >> kLimitBit == 0) return answer;
-    const FrustumAnswer beside = testViewVolume(limits.volume, boxes, planes >> kLimitBit);
-    answer.outside |= beside.outside;
-    for (int slot = 0; slot < 8; ++slot) answer.planes[slot] |= beside.planes[slot] << kLimitBit;
+    if (planes >> kLimitBit != 0) {
+        const FrustumAnswer beside = testViewVolume(limits.volume, boxes, planes >> kLimitBit);
+        answer.outside |= beside.outside;
+        for (int slot = 0; slot < 8; ++slot) answer.planes[slot] |= beside.planes[slot] << kLimitBit;
+    }
+    if (refining && planes) answer.outside |= refine(boxes, answer);
     return answer;
+}
+
+void Walk::chooseRefinement() {
+    refining = view.refinement != Refinement::kNone && uses(Stage::kFrustum);
+    if (!refining) return;
+    ViewVolume volume = volumeOf(frustum);
+    intersect(volume, limits.volume);
+    refined = refineVolume(volume, view.refinement);
+}
+
+/// The boxes that are outside although no plane of the view has them outside. What crosses one plane alone reaches inside.
+uint32_t Walk::refine(const EyeBoxes& boxes, const FrustumAnswer& answer) const {
+    uint32_t asked = 0;
+    for (int slot = 0; slot < 8; ++slot) {
+        const uint32_t crossed = answer.planes[slot];
+        asked |= uint32_t{(crossed & (crossed - 1)) != 0} << slot;
+    }
+    asked &= ~answer.outside;
+    if (asked == 0) return 0;
+    uint32_t outside = outsideAny({refined.axes, refined.axis_count}, boxes);
+    if (asked & ~outside) outside |= outsideAny({refined.crossed, refined.crossed_count}, boxes);
+    return outside & asked;
 }
 
 /// Tests a node's children against the frustum and the volumes and puts those that are left in line.
@@ -349,6 +373,7 @@ void Walk::walk() {
     frustum = makeFrustum(view);
     limits = makeViewLimits(view, frustum.eye);
     if (!uses(Stage::kFrustum)) limits.dropWindow();
+    chooseRefinement();
     screen = makeScreen(view, view.occlusion_size);
     sizes.begin(state(), view, frustum.eye);
     volumes.sizes = &sizes;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "sightline/cull/bounds.h"
 #include "sightline/cull/frustum.h"
 #include "sightline/cull/occlusion.h"
 #include "sightline/cull/triangles.h"
@@ -129,6 +130,8 @@ struct Walk {
     bool every_layer = true;       ///< no object is outside the view's layers
     Frustum frustum;
     ViewLimits limits;
+    RefinedVolume refined;  ///< of both, if `refining`
+    bool refining = false;  ///< View::refinement
     Screen screen;
     SizeStages sizes;  ///< SizeStages::shown is set before run()
     VolumeStage volumes{memory};
@@ -177,6 +180,8 @@ private:
     uint32_t cullBySize(uint32_t node, const EyeBoxes& boxes, uint32_t left);
     void chooseVolumes();
     FrustumAnswer askPlanes(const EyeBoxes& boxes, uint32_t planes) const;
+    void chooseRefinement();
+    uint32_t refine(const EyeBoxes& boxes, const FrustumAnswer& answer) const;
     void walkUnordered(const Visit& root);
     void expand(const Visit& from);
     VolumesAnswer askVolumes(const BvhNode& node, const EyeBoxes& boxes, VolumeRange range, uint32_t left);
