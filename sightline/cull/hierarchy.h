@@ -35,8 +35,8 @@ struct HierarchyScratch {
     struct ManyVisit {
         uint32_t node = 0;
         uint32_t live = 0;            ///< bit per frustum that the node may touch
-        bool crossing = true;         ///< not inside of all of these
-        uint8_t planes[kMostFrusta];  ///< per live one
+        uint32_t crossing = 0;        ///< of these: it is not inside of the frustum
+        uint8_t planes[kMostFrusta];  ///< of each that it crosses
     };
     Array<Visit> visits;
     Array<ManyVisit> many_visits;
