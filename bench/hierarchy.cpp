@@ -6,6 +6,7 @@
 #include "bench/cases.h"
 #include "bench/flat_boxes.h"
 #include "bench/hierarchy_frusta.h"
+#include "bench/hierarchy_scene.h"
 #include "bench/hierarchy_world.h"
 #include "bench/stopwatch.h"
 #include "bench/swarm.h"
@@ -13,6 +14,8 @@
 #include "sightline/cull/box_query.h"
 #include "sightline/cull/grid.h"
 #include "sightline/cull/hierarchy.h"
+#include "sightline/scene/building.h"
+#include "sightline/scene/city.h"
 
 namespace sightline::bench {
 namespace {
@@ -239,11 +242,17 @@ void measureBoxQueries(Table& table, int repeat) {
 
 Table benchHierarchy(const Options& options) {
     Table table{"hierarchy", {}};
+    if (options.scene) {
+        addSceneTree(table, options.scene->name, *options.scene, options.repeat);
+        return table;
+    }
     measureMovers(table, options.repeat);
     measureSnapshots(table);
     measureBoxQueries(table, options.repeat);
     for (const uint32_t count : {100000u, 1000000u}) measureGrid(table, count, options.repeat);
     measureReach(table, options.repeat);
+    addSceneTree(table, "building of 8 floors", makeBuilding(1, 8), options.repeat);
+    addSceneTree(table, "city of 100,000", makeCity(1, 100000), options.repeat);
     addWorld(table, "world of 100,000", 100000, options.repeat);
     addWorld(table, "world of 1,000,000", 1000000, options.repeat);
     return table;

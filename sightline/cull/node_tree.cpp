@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/cull/node_tree.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -20,14 +21,17 @@ HWY_BEFORE_NAMESPACE();
 namespace sightline {
 namespace HWY_NAMESPACE {
 
+/// Level by level, so that what comes next is known early enough to be fetched.
 size_t cullNodeTreeKernel(const RelativePlanes& planes, const NodeTreeBounds& tree, HierarchyScratch& scratch,
                           uint32_t* kept, HierarchyStats& stats) {
-    Array<HierarchyScratch::Visit>& stack = scratch.visits;
-    stack.assign(1, {0, (1u << planes.count) - 1});
-    size_t count = 0;
-    while (!stack.empty()) {
-        const HierarchyScratch::Visit visit = stack.back();
-        stack.pop_back();
+    constexpr size_t kAhead = 8;
+    Array<HierarchyScratch::Visit>& visits = scratch.visits;
+    visits.assign(1, {0, (1u << planes.count) - 1});
+    size_t count = 0, fetched = 0;
+    for (size_t at = 0; at < visits.size(); ++at) {
+        for (; fetched < std::min(visits.size(), at + kAhead); ++fetched)
+            prefetch(tree.blocks[tree.branches[visits[fetched].node].first_block], true);
+        const HierarchyScratch::Visit visit = visits[at];
         const NodeTreeBounds::Branch& branch = tree.branches[visit.node];
         stats.nodes += branch.block_count;
         stats.plane_tests += static_cast<uint64_t>(std::popcount(visit.planes)) * branch.block_count;
@@ -40,9 +44,7 @@ size_t cullNodeTreeKernel(const RelativePlanes& planes, const NodeTreeBounds& tr
                 const int slot = std::countr_zero(branches);
                 const uint32_t left = planesLeft(planes, slots, slot);
                 if (left != 0) {
-                    const uint32_t below = block.child[slot];
-                    prefetch(tree.blocks[tree.branches[below].first_block], true);
-                    stack.push_back({below, left});
+                    visits.push_back({block.child[slot], left});
                     continue;
                 }
                 ++stats.inside_nodes;

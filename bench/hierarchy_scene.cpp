@@ -1,0 +1,133 @@
+// A scene's own hierarchy beside a static tree and one that lives, over the same objects.
+// SPDX-License-Identifier: MIT
+#include "bench/hierarchy_scene.h"
+
+#include "bench/flat_boxes.h"
+#include "bench/stopwatch.h"
+#include "sightline/cull/coherent_frustum.h"
+#include "sightline/cull/hierarchy.h"
+#include "sightline/cull/node_tree.h"
+#include "sightline/load/scene_tree.h"
+#include "sightline/load/seeded_cameras.h"
+
+namespace sightline::bench {
+namespace {
+
+constexpr uint32_t kViews = 16;
+constexpr int kFrames = 21;
+
+Box3d boxOf(const Scene& scene, const SceneObject& object, const glm::dvec3& by) {
+    const Box3d box = transformBox(scene.meshes[object.mesh].bounds, object.transform);
+    return {box.min + by, box.max + by};
+}
+
+/// The name with the most objects that has no more than a share of all below it; and these objects.
+struct Part {
+    uint32_t name = SceneNode::kNone;
+    std::vector<uint32_t> objects;
+};
+
+Part partOf(const Scene& scene, size_t most) {
+    std::vector<size_t> below(scene.nodes.size(), 0);
+    const auto forAbove = [&](const SceneObject& object, auto use) {
+        for (uint32_t name = object.node; name < scene.nodes.size(); name = scene.nodes[name].parent)
+            if (use(name)) return true;
+        return false;
+    };
+    for (const SceneObject& object : scene.objects)
+        forAbove(object, [&](uint32_t name) { return ++below[name], false; });
+    Part part;
+    for (uint32_t name = 0; name < scene.nodes.size(); ++name)
+        if (below[name] <= most && (part.name == SceneNode::kNone || below[name] > below[part.name])) part.name = name;
+    for (uint32_t i = 0; i < scene.objects.size(); ++i)
+        if (forAbove(scene.objects[i], [&](uint32_t name) { return name == part.name; })) part.objects.push_back(i);
+    return part;
+}
+
+}  // namespace
+
+void addSceneTree(Table& table, const std::string& where, const Scene& scene, int repeat) {
+    const SceneTree from = sceneTree(scene);
+    NodeTree own;
+    DynamicBvh living;
+    std::vector<Box3d> boxes;
+    for (const SceneObject& object : scene.objects) boxes.push_back(boxOf(scene, object, glm::dvec3(0.0)));
+    const double build_own = millisecondsOf([&] { own.build(from.nodes, from.items); });
+    Bvh fixed;
+    const double build_fixed = millisecondsOf([&] { fixed = buildBvh(boxes); });
+    const double build_living = millisecondsOf([&] { living.build(boxes); });
+    table.rows.push_back({where, "build its own hierarchy", build_own, "ms", "static tree", build_fixed});
+    table.rows.push_back({where, "build its own hierarchy", build_own, "ms", "tree that lives", build_living});
+    std::vector<Frustum> frusta;
+    for (const CameraFrame& camera : seededCameras(scene, kViews, 1).frames)
+        frusta.push_back(makeFrustum(makeView(camera, 1280, 720)));
+    HierarchyScratch scratch;
+    HierarchyCuller culler;
+    FlatBoxes flat(boxes);
+    std::vector<uint32_t> kept(boxes.size() + 16);
+    size_t by_own = 0, by_living = 0;
+    HierarchyStats stats;
+    uint64_t own_nodes = 0, living_nodes = 0;
+    const auto queries = [&](const std::string& when) {
+        const std::vector<double> times =
+            threadTimes({[&] {
+                             by_own = own_nodes = 0;
+                             for (const Frustum& frustum : frusta) {
+                                 by_own += cullNodeTree(frustum, own.now(), scratch, kept, &stats);
+                                 own_nodes += stats.nodes;
+                             }
+                         },
+                         [&] {
+                             by_living = living_nodes = 0;
+                             for (const Frustum& frustum : frusta) {
+                                 by_living += cullHierarchy(frustum, living.now(), scratch, kept, &stats);
+                                 living_nodes += stats.nodes + stats.inside_nodes;
+                             }
+                         },
+                         [&] {
+                             for (const Frustum& frustum : frusta) {
+                                 RefinedVolume volume;
+                                 volume.volume = volumeOf(frustum);
+                                 culler.cull(volume, fixed, {}, kept);
+                             }
+                         },
+                         [&] {
+                             for (const Frustum& frustum : frusta) cullFrustum(frustum, flat.arrays, flat.kept);
+                         }},
+                        repeat ? repeat : 15);
+        const double each = 1.0 / kViews;
+        const std::string what = "query of its own hierarchy" + when;
+        table.rows.push_back({where, what, times[0] * each, "us", "tree that lives", times[1] * each});
+        if (when.empty()) {
+            table.rows.push_back({where, what, times[0] * each, "us", "static tree", times[2] * each});
+            table.rows.push_back({where, what, times[0] * each, "us", "flat, SIMD", times[3] * each});
+        }
+        table.rows.push_back({where, "nodes visited" + when, static_cast<double>(own_nodes) * each, "nodes",
+                              "tree that lives", static_cast<double>(living_nodes) * each});
+        table.rows.push_back({where, "kept" + when, static_cast<double>(by_own) * each, "objects", "tree that lives",
+                              static_cast<double>(by_living) * each});
+    };
+    queries("");
+    const Part part = partOf(scene, std::max<size_t>(scene.objects.size() / 10, 1));
+    if (part.name == SceneNode::kNone) return;
+    std::vector<double> by_node, one_by_one;
+    for (int frame = 0; frame < kFrames; ++frame) {
+        const glm::dvec3 by(0.1 * frame, 0.0, 0.05 * frame);
+        by_node.push_back(millisecondsOf([&] {
+            glm::dmat4 local(1.0);
+            local[3] = glm::dvec4(by, 1.0);
+            own.setTransform(from.node_of_name[part.name], local);
+            own.update();
+        }));
+        one_by_one.push_back(millisecondsOf([&] {
+            for (const uint32_t object : part.objects) living.move(object, boxOf(scene, scene.objects[object], by));
+            living.update();
+        }));
+    }
+    table.rows.push_back({where + ", " + std::to_string(part.objects.size()) + " objects move as one",
+                          "place a node and update", medianOf(by_node), "ms/frame",
+                          "moves and update of the tree that lives", medianOf(one_by_one)});
+    queries(", then");
+}
+
+}  // namespace sightline::bench
