@@ -155,7 +155,7 @@ TEST(WitnessSections, EndLinesOfSight) {
         shown += inside > 0;
         Box3d box;
         box.grow(eye + point);
-        if (inside > 0) ASSERT_TRUE(Sight(view).touches(box));
+        if (inside > 0) { ASSERT_TRUE(Sight(view).touches(box)); }
     }
     EXPECT_GT(shown, 50);
 }
