@@ -3,6 +3,7 @@
 #include "sightline/prepare/draw_clusters.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "sightline/base/assert.h"
@@ -13,10 +14,19 @@
 namespace sightline {
 namespace {
 
-glm::vec3 cornerSum(const MeshView& mesh, uint32_t triangle) {
+bool isFinite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+bool isFinite(const MeshView& mesh, uint32_t triangle) {
+    for (uint32_t corner = 0; corner < 3; ++corner)
+        if (!isFinite(mesh.positions[mesh.indices[3 * triangle + corner]])) return false;
+    return true;
+}
+
+/// Where a triangle lies, for putting near ones together; one that is not finite, at the origin.
+glm::vec3 middleOf(const MeshView& mesh, uint32_t triangle) {
     glm::vec3 sum(0.0f);
-    for (uint32_t corner = 0; corner < 3; ++corner) sum += mesh.positions[mesh.indices[3 * triangle + corner]];
-    return sum;
+    for (uint32_t corner = 0; corner < 3; ++corner) sum += mesh.positions[mesh.indices[3 * triangle + corner]] / 3.0f;
+    return isFinite(sum) ? sum : glm::vec3(0.0f);
 }
 
 /// Solids of fewer triangles are not worth clusters of their own.
@@ -40,13 +50,14 @@ std::vector<Closed> findClosed(const MeshView& mesh, std::span<const MeshPart> p
         any |= part.double_sided;
         for (uint32_t t = part.first; t < part.first + part.count; ++t) {
             double_sided[t] = part.double_sided;
-            if (!isDegenerate(mesh, t)) given.push_back(t);
+            if (!isDegenerate(mesh, t) && isFinite(mesh, t)) given.push_back(t);
         }
     }
     if (!any) return found;
     // By the first of all vertices at the same place.
-    std::vector<uint32_t> order(mesh.positions.size()), place(mesh.positions.size());
-    std::iota(order.begin(), order.end(), 0u);
+    std::vector<uint32_t> order, place(mesh.positions.size());
+    for (uint32_t i = 0; i < mesh.positions.size(); ++i)
+        if (isFinite(mesh.positions[i])) order.push_back(i);
     const auto before = [&](uint32_t a, uint32_t b) {
         const glm::vec3 &p = mesh.positions[a], &q = mesh.positions[b];
         return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z != q.z ? p.z < q.z : a < b;
@@ -125,13 +136,13 @@ struct Writer {
                 continue;
             }
             Box3f extent;
-            for (const uint32_t triangle : job) extent.grow(cornerSum(mesh, triangle));
+            for (const uint32_t triangle : job) extent.grow(middleOf(mesh, triangle));
             const glm::vec3 size = extent.size();
             const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
             const size_t half = (job.size() / 2 + most - 1) / most * most;  // whole clusters, as far as they go
             std::nth_element(job.begin(), job.begin() + static_cast<ptrdiff_t>(half), job.end(),
                              [&](uint32_t a, uint32_t b) {
-                                 const float at_a = cornerSum(mesh, a)[axis], at_b = cornerSum(mesh, b)[axis];
+                                 const float at_a = middleOf(mesh, a)[axis], at_b = middleOf(mesh, b)[axis];
                                  return at_a != at_b ? at_a < at_b : a < b;
                              });
             jobs.push_back(job.subspan(half));

@@ -243,6 +243,44 @@ TEST(ClusterStage, WhatIsLeftDrawsTheWholeImage) {
     EXPECT_GT(objects_culled, 10u);
 }
 
+TEST(ClusterStage, TriangleWithoutAPlaceLoseNobodyElse) {
+    Random random(12);
+    const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 3e38f,
+                         -3e38f};
+    for (int i = 0; i < 40; ++i) {
+        TestMesh ball = makeBall(4, 8, 0.1, i % 2 == 0, i % 3 == 0);
+        for (int k = 0; k < 1 + i / 4; ++k)
+            ball.positions[random.below(ball.positions.size())][static_cast<int>(random.below(3))] =
+                bad[random.below(4)];
+        const DrawClusters clusters = prepareDrawClusters(ball.view(), ball.parts);
+        std::vector<uint32_t> triangles(clusters.triangles.begin(), clusters.triangles.end());
+        std::sort(triangles.begin(), triangles.end());
+        ASSERT_EQ(triangles.size(), ball.indices.size() / 3);
+        for (uint32_t t = 0; t < triangles.size(); ++t) ASSERT_EQ(triangles[t], t);
+        World world;
+        ObjectDef def;
+        def.bounds = {glm::dvec3(-1.2), glm::dvec3(1.2)};
+        def.clusters = world.addClusters(clusters);
+        world.add(def);
+        Query query;
+        View view;
+        view.projection = perspective(1.0, 1.6, 0.1);
+        view.view = lookAt({0, 0, 3}, glm::dvec3(0.0), {0, 1, 0});
+        const VisibleSet set = query.visible(world.commit(), view);
+        std::vector<uint8_t> drawn(triangles.size(), 0);
+        for (const DrawRange& range : set.ranges)
+            for (uint32_t t = range.first; t < range.first + range.count; ++t) drawn[clusters.triangles[t]] = 1;
+        for (uint32_t t = 0; t < drawn.size(); ++t) {
+            const glm::dvec3 a(ball.positions[ball.indices[3 * t]]), b(ball.positions[ball.indices[3 * t + 1]]),
+                c(ball.positions[ball.indices[3 * t + 2]]);
+            if (glm::dot(glm::cross(b - a, c - a), glm::dvec3(0, 0, 3) - a) > 1e-9 && glm::length(a) < 2 &&
+                glm::length(b) < 2 && glm::length(c) < 2) {
+                ASSERT_TRUE(drawn[t]) << "round " << i << " triangle " << t;
+            }
+        }
+    }
+}
+
 TEST(ClusterStage, DoubleSidedSolidsHaveBacksFromOutside) {
     const TestMesh ball = makeBall(4, 8, 0.1, false, true), open = makeBall(2, 9, 0.02, true, true);
     EXPECT_EQ(ball.clusters.closed.size(), 1u);
