@@ -54,15 +54,15 @@ TEST(ViewLimits, TellWhatIsWholeAndWhatReachesIn) {
         const auto [low, high] = reach(plane, box, transform);
         const double doubt = 1e-4;  // single precision of some tens of units
         if (i % 2) {
-            if (low < 0) ASSERT_FALSE(isWhole(limits, packed, transform)) << "case " << i;
-            if (low > doubt) ASSERT_TRUE(isWhole(limits, packed, transform)) << "case " << i;
+            if (low < 0) { ASSERT_FALSE(isWhole(limits, packed, transform)) << "case " << i; }
+            if (low > doubt) { ASSERT_TRUE(isWhole(limits, packed, transform)) << "case " << i; }
             ++(low < 0 ? cut : whole);
             ASSERT_EQ(isWhole(limits, Box3f{packed.min, packed.min}, transform),
                       isWhole(limits, packed.min, transform));
             ASSERT_TRUE(reachesWindow(limits, box, transform)) << "a section is no window";
         } else {
-            if (high < 0) ASSERT_FALSE(reachesWindow(limits, box, transform)) << "case " << i;
-            if (high > doubt) ASSERT_TRUE(reachesWindow(limits, box, transform)) << "case " << i;
+            if (high < 0) { ASSERT_FALSE(reachesWindow(limits, box, transform)) << "case " << i; }
+            if (high > doubt) { ASSERT_TRUE(reachesWindow(limits, box, transform)) << "case " << i; }
             ++(high < 0 ? beside : in);
             ASSERT_TRUE(isWhole(limits, packed, transform)) << "a window cuts nothing";
         }

@@ -75,7 +75,7 @@ TEST(QueryRefinement, CullsMoreAndNeverWhatTouchesTheView) {
                     const bool touches = !testBound(volume, box).outside && !separated(exact, box, kAll[2]);
                     ASSERT_TRUE(first[i] || !touches)
                         << "seed " << seed << " frame " << frame << " how " << how << " box " << i;
-                    if (!before.empty()) ASSERT_LE(first[i], before[i]);
+                    if (!before.empty()) { ASSERT_LE(first[i], before[i]); }
                     culled[how] += !first[i];
                     wrong_of_planes += how == 0 && first[i] && !touches;
                 }
