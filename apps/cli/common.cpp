@@ -211,6 +211,13 @@ void addQueryOptions(CLI::App& verb, RunOptions& options) {
         ->type_name("N")
         ->capture_default_str()
         ->group("Culling");
+    verb.add_option(
+            "--hysteresis", options.hysteresis,
+            "keep what the frame before kept until it is so much farther or smaller than the limits of --distance "
+            "and --contribution; that frame is asked each time for that")
+        ->check(CLI::Range(0.0, 1.0))
+        ->type_name("SHARE")
+        ->group("Culling");
     verb.add_flag("--last-visible-first", options.last_visible_first,
                   "begin with what the frame before kept, which is asked each time for that")
         ->group("Culling");
@@ -220,6 +227,9 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     if (Status size = readSize("--size", options.size, options.width, options.height); !size) return size;
     if (std::isnan(options.jitter)) return usage("--jitter: not a number");  // no range leaves it out
     if (std::isnan(options.stereo)) return usage("--stereo: not a number");
+    if (std::isnan(options.hysteresis)) return usage("--hysteresis: not a number");
+    if (options.hysteresis > 0 && !(options.max_distance > 0) && !(options.contribution > 0))
+        return usage("--hysteresis: there is no limit; see --distance and --contribution");
     if (std::isnan(options.occluder_error)) return usage("--occluder-error: not a number");
     if (options.query_threads > 1 && options.bins == 1 && options.stereo == 0)
         return usage("--query-threads: one bin has nothing to share; see --bins");

@@ -39,6 +39,7 @@ struct RunOptions {
     double occluder_error = 0;  ///< View::occluder_error; 0: no simpler occluders are prepared
     double stereo = 0;          ///< distance of the eyes  [world units]; 0: one eye
     bool last_visible_first = false;
+    double hysteresis = 0;
     bool no_faces = false, no_second_look = false;
     uint32_t second_look_polygons = View().second_look_polygons;
     bool masked = false;

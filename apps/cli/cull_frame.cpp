@@ -66,8 +66,9 @@ View viewOf(const CameraFrame& camera, const CullRun& run) {
 void cullFrame(const Snapshot& now, const CullRun& run, const CameraFrame* before, Query& query, FrameResult& frame) {
     View view = viewOf(frame.camera, run);
     view.last_visible_first = run.last_visible_first && before;
+    if (before) view.hysteresis = run.hysteresis;
     const auto answer = [&] {
-        if (view.last_visible_first) ask(now, run, viewOf(*before, run), query);
+        if (view.last_visible_first || view.hysteresis > 0) ask(now, run, viewOf(*before, run), query);
         return ask(now, run, view, query);
     };
     std::vector<double> times;

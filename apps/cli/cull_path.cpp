@@ -140,6 +140,7 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     if (run.occluder_error > 0) command += fmt::format(" --occluder-error {}", run.occluder_error);
     if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
     if (run.last_visible_first) command += " --last-visible-first";
+    if (run.hysteresis > 0) command += fmt::format(" --hysteresis {}", run.hysteresis);
     if (run.occlusion_size != View().occlusion_size) command += fmt::format(" --occlusion-size {}", run.occlusion_size);
     if (run.masked) command += " --masked";
     if (run.close_gaps > 0) command += fmt::format(" --close-gaps {:g}", run.close_gaps);
@@ -189,6 +190,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.occluder_error = options.occluder_error;
     run.stereo = options.stereo;
     run.last_visible_first = options.last_visible_first;
+    run.hysteresis = options.hysteresis;
     run.masked = options.masked;
     run.close_gaps = options.close_gaps;
     run.occlusion_size = options.occlusion_size;
@@ -287,7 +289,7 @@ Status explainFalseCulls(const Scene& scene, const RunOptions& options, const Cu
         if (!frame.verification || frame.verification->rows.empty()) continue;
         const std::string file = fmt::format("{}replay-frame-{}.json", directoryOfOutputs(options), i);
         CameraPath path;
-        if (run.last_visible_first && i > 0) path.frames.push_back(run.frames[i - 1].camera);
+        if ((run.last_visible_first || run.hysteresis > 0) && i > 0) path.frames.push_back(run.frames[i - 1].camera);
         path.frames.push_back(frame.camera);
         if (Status written = writeFileAside(file, cameraPathJson(path)); !written) return written;
         const auto& rows = frame.verification->rows;

@@ -52,6 +52,14 @@ void addSums(std::string& text, const Verification& sum, const CullRun& run) {
                        run.frames.size());
 }
 
+void addChanges(std::string& text, const CullRun& run) {
+    if (const auto changes = sumChanges(run))
+        fmt::format_to(std::back_inserter(text),
+                       "changed      {:>10} pixels   {:7.4f} %: what distance and contribution culling cost\n",
+                       grouped(changes->changed),
+                       share(static_cast<double>(changes->changed), static_cast<double>(changes->pixels)));
+}
+
 /// What the stage of clusters left of the triangles of kept objects.
 void addClusters(std::string& text, const CullRun& run) {
     ClusterRow sum;
@@ -116,11 +124,7 @@ void printSummary(std::FILE* out, const CullRun& run) {
     if (budget_spent)
         fmt::format_to(std::back_inserter(text),
                        "the work budget was spent in some frames: more was kept than need be\n");
-    if (const auto changes = sumChanges(run))
-        fmt::format_to(std::back_inserter(text),
-                       "changed      {:>10} pixels   {:7.4f} %: what distance and contribution culling cost\n",
-                       grouped(changes->changed),
-                       share(static_cast<double>(changes->changed), static_cast<double>(changes->pixels)));
+    addChanges(text, run);
     if (const auto sum = sumVerification(run)) addSums(text, *sum, run);
     tell(out, text);
 }
@@ -139,6 +143,7 @@ void printVerdicts(std::FILE* out, const CullRun& run) {
                        row.false_culls == 0 ? paint(out, Tone::kGood, "sound") : paint(out, Tone::kBad, "WRONG"),
                        row.false_culls, frame.visible.size(), row.exactly_visible, one.overEstimate());
     }
+    addChanges(text, run);
     if (const auto sum = sumVerification(run)) addSums(text, *sum, run);
     tell(out, text);
 }
@@ -161,6 +166,7 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     if (options.occluder_error > 0) command += fmt::format(" --occluder-error {}", options.occluder_error);
     if (options.stereo > 0) command += fmt::format(" --stereo {}", options.stereo);
     if (options.last_visible_first) command += " --last-visible-first";
+    if (options.hysteresis > 0) command += fmt::format(" --hysteresis {}", options.hysteresis);
     if (options.occlusion_size != View().occlusion_size)
         command += fmt::format(" --occlusion-size {}", options.occlusion_size);
     if (options.masked) command += " --masked";

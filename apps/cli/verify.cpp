@@ -8,6 +8,7 @@
 #include "apps/cli/apart.h"
 #include "apps/cli/common.h"
 #include "apps/cli/cull_path.h"
+#include "apps/cli/size_options.h"
 #include "apps/cli/summary.h"
 #include "apps/cli/verbs.h"
 #include "sightline/report/output_file.h"
@@ -32,6 +33,7 @@ Result<int> runVerify(const CLI::App& verb, RunOptions& options) {
 
     CullRun run = cullPath(*scene, *path, options);
     if (run.frames.empty()) return exitCodeOf(run, path->frames.size(), true);
+    countChanges(*scene, options, run);
     verifyPath(*scene, options, run);
 
     printVerdicts(options.json == "-" ? stderr : stdout, run);

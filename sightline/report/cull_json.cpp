@@ -94,6 +94,7 @@ Json headJson(const CullRun& run, const Scene& scene) {
     if (run.occluder_error > 0) head["occluder_error"] = run.occluder_error;
     if (run.max_distance > 0) head["max_distance"] = run.max_distance;
     if (run.contribution > 0) head["contribution"] = run.contribution;
+    if (run.hysteresis > 0) head["hysteresis"] = run.hysteresis;
     for (const glm::dvec4& plane : run.sections.all()) head["sections"].push_back({plane.x, plane.y, plane.z, plane.w});
     if (run.stereo > 0) head["stereo"] = run.stereo;
     if (run.last_visible_first) head["last_visible_first"] = true;

@@ -98,7 +98,8 @@ struct CullRun {
     uint32_t stages =
         kDefaultStages & ~(kLossyStages | stageBit(Stage::kClusters));  ///< bits of Stage in use: stagesInUse()
     double max_distance = 0, contribution = 0;                          ///< View
-    ViewPlanes sections;                                                ///< View
+    double hysteresis = 0;            ///< View, towards the frame before, which was asked without any
+    ViewPlanes sections;              ///< View
     double stereo = 0;                ///< distance of the two eyes  [world units]; 0: there is one
     bool last_visible_first = false;  ///< each frame drew first what the one before it kept
     uint32_t occlusion_size = View().occlusion_size;

@@ -182,6 +182,11 @@ void readFrame(const At& at, CullRun& run, uint32_t& stages, FrameResult& frame,
     frame.visible = keysOf(visible);
     if (frame.visible.size() > run.objects) visible.fail("more than the scene has");
     frame.objects_visible = frame.visible.size();
+    if (const auto eyes = at.maybe("eyes")) {
+        if (eyes->size() != frame.visible.size()) eyes->fail("not one for each that is visible");
+        for (size_t i = 0; i < eyes->size(); ++i)
+            frame.eyes.push_back(static_cast<uint8_t>(eyes->element(i).whole(1, 3)));
+    }
     readStages(at.member("stages"), frame, stages);
     frame.triangles = at.member("triangles").whole();
     if (const auto clusters = at.maybe("clusters")) frame.clusters = clustersOf(*clusters);
@@ -267,6 +272,9 @@ RunFile readHead(const At& head) {
             sections->element(i).numbers(&plane.x, 4);
             if (!run.sections.add(plane)) sections->fail("too many planes");
         }
+    if (const auto share = head.maybe("hysteresis")) run.hysteresis = share->positive();
+    if (const auto stereo = head.maybe("stereo")) run.stereo = stereo->positive();
+    if (const auto first = head.maybe("last_visible_first")) run.last_visible_first = first->flag();
     if (const auto error = head.maybe("occluder_error")) run.occluder_error = error->positive();
     if (const auto faces = head.maybe("faces")) run.faces = faces->flag();
     if (const auto masked = head.maybe("masked")) run.masked = masked->flag();

@@ -1,5 +1,7 @@
 // Distance and contribution culling on the command line: what they cost is told, and they are never called false culls.
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/tool.h"
@@ -67,6 +69,15 @@ TEST_F(SizeOptions, ProofHoldsTheOtherStagesAndDoesNotCallTheseWrong) {
     EXPECT_GT(run["verification"]["lossy_seen"].get<uint64_t>(), 0u) << "what they left out was to be seen";
 }
 
+TEST_F(SizeOptions, ProofTellsThePixelsToo) {
+    const std::string arguments =
+        " city:1:400 --frames 2 --seed 1 --contribution 4px --size 320x180 --rays 2000 --json -";
+    const Outcome culled = run("cull" + arguments + " --repeat 1 --verify"), judged = run("verify" + arguments);
+    ASSERT_EQ(judged.exit_code, 0) << judged.err;
+    EXPECT_EQ(json::parse(judged.out)["changes"], json::parse(culled.out)["changes"]);
+    EXPECT_NE(judged.err.find("changed "), std::string::npos) << judged.err;
+}
+
 TEST_F(SizeOptions, AreTheSameForAnyNumberOfThreads) {
     const std::string arguments = "city:1:1000 --frames 6 --seed 2 --contribution 2px --distance 300 --threads ";
     const json one = cull(arguments + "1"), three = cull(arguments + "3");
@@ -74,6 +85,34 @@ TEST_F(SizeOptions, AreTheSameForAnyNumberOfThreads) {
         EXPECT_EQ(one["frames"][i]["visible"], three["frames"][i]["visible"]) << i;
         EXPECT_EQ(one["frames"][i]["changed_pixels"], three["frames"][i]["changed_pixels"]) << i;
     }
+}
+
+TEST_F(SizeOptions, HysteresisKeepsWhatTheFrameBeforeShowed) {
+    // Backwards along a street: things become smaller.
+    json camera_path = {{"frames", json::array()}};
+    const json forwards = cull("city:1:1000 --frames 24");
+    for (size_t i = 24; i-- > 0;) camera_path["frames"].push_back(forwards["frames"][i]["camera"]);
+    write("back.json", camera_path.dump());
+    const std::string arguments = "city:1:1000 --cameras back.json --contribution 6px --threads ";
+    const json plain = cull(arguments + "2"), kept = cull(arguments + "2 --hysteresis 0.9");
+    EXPECT_EQ(kept["hysteresis"], 0.9);
+    EXPECT_EQ(kept["frames"][0]["visible"], plain["frames"][0]["visible"]) << "there is none before the first";
+    size_t more = 0;
+    for (size_t i = 1; i < 24; ++i) {
+        const auto before = plain["frames"][i - 1]["visible"].get<std::vector<uint64_t>>();
+        const auto less = plain["frames"][i]["visible"].get<std::vector<uint64_t>>();
+        // What is drawn besides may hide some that were seen past its place.
+        for (const uint64_t key : kept["frames"][i]["visible"].get<std::vector<uint64_t>>()) {
+            if (std::binary_search(less.begin(), less.end(), key)) continue;
+            ++more;
+            EXPECT_TRUE(std::binary_search(before.begin(), before.end(), key)) << "frame " << i << ", object " << key;
+        }
+    }
+    EXPECT_GT(more, 10u);
+    const json other = cull(arguments + "1 --hysteresis 0.9");
+    for (size_t i = 0; i < 24; ++i) EXPECT_EQ(other["frames"][i]["visible"], kept["frames"][i]["visible"]) << i;
+    expectError("cull city:1:10 --hysteresis 0.1", 2, "--hysteresis");
+    expectError("cull city:1:10 --distance 5 --hysteresis 1.5", 2, "--hysteresis");
 }
 
 TEST_F(SizeOptions, ExplainNamesThem) {

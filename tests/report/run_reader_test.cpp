@@ -31,6 +31,10 @@ TEST(RunReader, ReadsBackWhatWasWritten) {
     run.frames[2].verification->kept_unseen = {0};
     run.frames[2].verification->rows.push_back({1, 3, 1.5, 2.5, "rays"});
     run.frames[2].verification->false_culls = 1;
+    run.stereo = 0.065;
+    run.last_visible_first = true;
+    run.hysteresis = 0.25;
+    for (FrameResult& frame : run.frames) frame.eyes.assign(frame.visible.size(), 2);
     run.frames[0].camera.view = lookAt({1, 2, 3}, {4, 5, -6}, {0, 1, 0});
     run.frames[0].camera.projection = perspective(1.0, 1.5, 0.1);
     const Result<RunFile> read = parseRun(cullJson(run, scene), "run.json");
@@ -48,6 +52,10 @@ TEST(RunReader, ReadsBackWhatWasWritten) {
         EXPECT_EQ(read->run.frames[i].query_microseconds, run.frames[i].query_microseconds);
         EXPECT_EQ(read->run.frames[i].verification->exactly_visible, 2u);
     }
+    EXPECT_EQ(read->run.stereo, 0.065);
+    EXPECT_TRUE(read->run.last_visible_first);
+    EXPECT_EQ(read->run.hysteresis, 0.25);
+    EXPECT_EQ(read->run.frames[1].eyes, run.frames[1].eyes);
     EXPECT_EQ(read->run.frames[0].camera.view, run.frames[0].camera.view);
     EXPECT_EQ(read->run.frames[1].nodes_visited, 77u);
     EXPECT_EQ(read->run.frames[1].thread, 3u);
@@ -94,6 +102,9 @@ TEST(RunReader, NamesThePlaceOfAFault) {
     EXPECT_EQ(faultOf([](json& run) { run["frames"][0]["visible"] = {uint64_t{1} << 63}; }),
               "run.json: frames[0].visible[0]: not between 0 and 9223372036854775807");
     EXPECT_EQ(parseRun("1e999", "run.json").error().message, "run.json: not JSON: number overflow parsing '1e999'");
+    EXPECT_EQ(faultOf([](json& run) { run["frames"][1]["eyes"] = {1, 2, 3, 1, 2, 3, 1, 2, 3}; }),
+              "run.json: frames[1].eyes: not one for each that is visible");
+    EXPECT_EQ(faultOf([](json& run) { run["hysteresis"] = -1; }), "run.json: hysteresis: negative");
     EXPECT_EQ(faultOf([](json& run) { run["frames"][1]["visible"][0] = -1; }),
               "run.json: frames[1].visible[0]: not a whole number");
     EXPECT_EQ(faultOf([](json& run) {
