@@ -254,11 +254,12 @@ size_t remainingRanges(const FacingClusters& clusters, std::span<const uint8_t> 
 const uint64_t* backTriangles(const FacingClusters& clusters, size_t cluster, const FacingEye& eye) {
     if (clusters.mask_steps == 0 || !eye.known() || eye.front == FrontFace::kClockwise) return nullptr;
     const TriangleMasks& masks = clusters.masks[cluster];
-    const glm::dvec3 q = eye.point - eye.w * (clusters.origin + glm::dvec3(masks.center));
+    const glm::dvec3 shape = clusters.mask_shape;
+    const glm::dvec3 q = (eye.point - eye.w * (clusters.origin + glm::dvec3(masks.center))) / shape;
     const glm::dvec3 size = glm::abs(q);
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const double far_away = glm::length(eye.point) + eye.w * (glm::length(clusters.origin) + clusters.reach);
-    const double doubt = 0x1p-50 * far_away + eye.error;
+    const double doubt = (0x1p-50 * far_away + eye.error) / std::min({shape.x, shape.y, shape.z});
     if (masks.half < 0 || !(size[axis] - doubt > eye.w * masks.half)) return nullptr;
     // The sectors' masks hold for this much more than the sectors themselves.
     if (!(doubt < 0x1p-18 * size[axis])) return nullptr;

@@ -47,7 +47,7 @@ size_t remainingRanges(const FacingClusters& clusters, std::span<const uint8_t> 
                        std::span<TriangleRange> ranges);
 
 /// The bits of a cluster's triangles that are seen from their backs, (size + 63) / 64 words; null if nothing is known: no
-/// masks, an eye in the cube around the cluster, or clockwise fronts.
+/// masks, an eye in the box around the cluster, or clockwise fronts.
 const uint64_t* backTriangles(const FacingClusters& clusters, size_t cluster, const FacingEye& eye);
 
 }  // namespace sightline

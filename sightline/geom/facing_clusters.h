@@ -43,13 +43,14 @@ struct TurnedBox {
 };
 static_assert(sizeof(TurnedBox) == 60);
 
-/// From where single triangles are seen from their backs: space around a cube is cut into sectors by the cube's faces, each
-/// in steps * steps cells; a sector has a bit for each triangle that is a back face for every eye in it.
+/// From where single triangles are seen from their backs: space around a box, of the shape that is the same for all, is cut into
+/// sectors by the box's faces, each in steps * steps cells; a sector has a bit for each triangle that is a back face for every
+/// eye in it.
 struct TriangleMasks {
     static constexpr uint32_t kMaxSteps = 4;
 
-    glm::vec3 center{0.0f};   ///< of the cube that holds the cluster, relative to FacingClusters::origin
-    float half = -1.0f;       ///< its half side; negative: no masks
+    glm::vec3 center{0.0f};   ///< of the box that holds the cluster, relative to FacingClusters::origin
+    float half = -1.0f;       ///< its half sides over mask_shape; negative: no masks
     uint32_t first_word = 0;  ///< in FacingClusters::mask_words: of the first sector; one after the other
 };
 
@@ -73,6 +74,7 @@ struct FacingClusters {
     Array<float> cones;    ///< FacingCone  [size: kConeRows * stride, or 0]
 
     uint32_t mask_steps = 0;     ///< sectors: 6 * steps * steps; 0: there are no masks
+    glm::dvec3 mask_shape{1.0};  ///< of the boxes: their sides over the longest; eyes are expected alike on all faces
     Array<TriangleMasks> masks;  ///< per cluster; or empty
     Array<uint64_t> mask_words;  ///< (size of the cluster + 63) / 64 for each sector
 

@@ -89,6 +89,8 @@ FacingClusters describeClusters(const MeshView& mesh, std::span<const uint32_t> 
     out.mask_steps = settings.mask_steps;
     const glm::dvec3 half = 0.5 * (box.max - box.min);
     if (!triangles.empty()) out.reach = sumOf(half) * (1.0 + 1e-12);
+    const double longest = std::max({half.x, half.y, half.z});
+    if (longest > 0) out.mask_shape = glm::max(half / longest, glm::dvec3(1.0 / 32));
     out.first.push_back(0);
     for (size_t i = 0; i < sizes.size(); ++i) {
         const std::span<const uint32_t> members = triangles.subspan(out.first.back(), sizes[i]);
@@ -104,7 +106,7 @@ FacingClusters describeClusters(const MeshView& mesh, std::span<const uint32_t> 
         if (settings.mask_steps) {
             std::vector<Facet> all;
             for (const uint32_t triangle : members) all.push_back(facetOf(mesh, triangle, out.origin));
-            out.masks.push_back(addTriangleMasks(all, settings.mask_steps, out.mask_words));
+            out.masks.push_back(addTriangleMasks(all, out.mask_shape, settings.mask_steps, out.mask_words));
         }
         out.first.push_back(out.first.back() + sizes[i]);
     }

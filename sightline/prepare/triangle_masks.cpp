@@ -10,7 +10,8 @@
 
 namespace sightline {
 
-TriangleMasks addTriangleMasks(std::span<const Facet> facets, uint32_t steps, Array<uint64_t>& words) {
+TriangleMasks addTriangleMasks(std::span<const Facet> facets, const glm::dvec3& shape, uint32_t steps,
+                               Array<uint64_t>& words) {
     TriangleMasks masks;
     masks.first_word = static_cast<uint32_t>(words.size());
     const size_t words_each = (facets.size() + 63) / 64;
@@ -23,10 +24,13 @@ TriangleMasks addTriangleMasks(std::span<const Facet> facets, uint32_t steps, Ar
     const glm::dvec3 center(masks.center);
     double half = 0;
     for (int axis = 0; axis < 3; ++axis)
-        half = std::max({half, box.max[axis] - center[axis], center[axis] - box.min[axis]});
+        half = std::max(
+            {half, (box.max[axis] - center[axis]) / shape[axis], (center[axis] - box.min[axis]) / shape[axis]});
     masks.half = roundUp(half * (1.0 + 0x1p-20));
     // The eye's sector is found in float: each is as much wider.
     constexpr double kWider = 0x1p-16;
+    // Normals and distances are off by kNormalError, of which a flat shape makes more.
+    constexpr double kDoubt = 256.0 * kNormalError;
     for (uint32_t sector = 0; sector < 6 * steps * steps; ++sector) {
         const uint32_t face = sector / (steps * steps), row = sector / steps % steps, column = sector % steps;
         const int axis = static_cast<int>(face / 2);
@@ -43,13 +47,16 @@ TriangleMasks addTriangleMasks(std::span<const Facet> facets, uint32_t steps, Ar
         for (size_t i = 0; i < facets.size(); ++i) {
             const Facet& facet = facets[i];
             if (facet.normal == glm::dvec3(0.0)) continue;
-            const glm::dvec3 from = center - facet.corner[0];
-            const double at = glm::dot(facet.normal, from);
+            // In the space where the box is a cube.
+            const glm::dvec3 scaled = facet.normal * shape, from = (center - facet.corner[0]) / shape;
+            const double size = glm::length(scaled);
+            const glm::dvec3 n = scaled / size;
+            const double at = glm::dot(n, from);
             bool back = true;
             for (const glm::dvec3& d : corner) {
-                const double along = glm::dot(facet.normal, d);
-                back &= along <= -8.0 * kNormalError;
-                back &= at + masks.half * along <= -8.0 * kNormalError * (glm::length(from) + masks.half);
+                const double along = glm::dot(n, d);
+                back &= along <= -kDoubt;
+                back &= at + masks.half * along <= -kDoubt * (glm::length(from) + masks.half);
             }
             if (back) bits[i / 64] |= uint64_t{1} << i % 64;
         }

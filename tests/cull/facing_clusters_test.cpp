@@ -222,7 +222,11 @@ TEST(TriangleMasks, ABitIsABackFaceForEveryEyeOfTheSector) {
     size_t worlds = test::casesToMake(1000000) / (20 * clusters * eyes), bits = 0, backs = 0, inside = 0;
     for (size_t w = 0; w < worlds && !HasFailure(); ++w) {
         const glm::dvec3 middle = test::randomVector(random, w % 2 ? 10.0 : 1e3);
-        const World world(random, clusters, middle);
+        World world(random, clusters, middle);
+        if (w % 3 == 1) {  // a flat world has flat boxes
+            for (glm::vec3& p : world.mesh.positions)
+                p = glm::vec3(middle + glm::dvec3(1.0, 0.01, 0.2) * (glm::dvec3(p) - middle));
+        }
         FacingSettings settings;
         settings.mask_steps = 1 + static_cast<uint32_t>(w % TriangleMasks::kMaxSteps);
         const FacingClusters made = describeClusters(world.mesh.view(), world.triangles, world.sizes, settings);
