@@ -13,7 +13,11 @@
 
 namespace sightline::test {
 
+#ifdef __SIZEOF_FLOAT128__
 __extension__ typedef __float128 Quad;
+#else
+typedef long double Quad;  // has as many bits where the other is not known
+#endif
 
 struct QuadVector {
     Quad x, y, z;
