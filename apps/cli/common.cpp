@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "apps/cli/session.h"
+#include "apps/cli/cluster_options.h"
 #include "apps/cli/section_options.h"
 #include "apps/cli/size_options.h"
 #include "apps/cli/verbs.h"
@@ -136,6 +137,7 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
     verb.add_option("--skip", options.skip, "not these stages")->delimiter(',')->type_name("LIST")->group("Culling");
     addSizeOptions(verb, options);
     addSectionOptions(verb, options);
+    addClusterOptions(verb, options);
     verb.add_option("--jitter", options.jitter, "largest shift of the image that the answer must hold for")
         ->check(CLI::Range(0.0, 1024.0))
         ->type_name("PX")
@@ -239,6 +241,7 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     // Clusters take long to prepare: they are for those who ask for them.
     options.stages = (options.use.empty() ? kDefaultStages & ~stageBit(Stage::kClusters) : *use) & ~*skip;
     if (Status sizes = finishSizeOptions(options); !sizes) return sizes;
+    if (Status clusters = finishClusterOptions(options); !clusters) return clusters;
     options.seed_given = verb.count("--seed") > 0;
     if (!options.cameras.empty() && (options.frames > 0 || options.seed_given))
         return usage("--cameras excludes --frames and --seed");

@@ -9,6 +9,7 @@
 #include "apps/cli/scene_choice.h"
 #include "sightline/base/result.h"
 #include "sightline/geom/view.h"
+#include "sightline/prepare/merge_facing.h"
 #include "sightline/scene/camera_path.h"
 #include "sightline/scene/scene.h"
 
@@ -30,10 +31,13 @@ struct RunOptions {
     uint32_t threads = 0;                 ///< 0: all cores
     int repeat = 3;
     std::vector<std::string> use, skip;
-    uint32_t stages = 0;      ///< from `use` and `skip`
-    double max_distance = 0;  ///< View; 0: not given
-    double contribution = 0;  ///< the same
-    ViewPlanes sections;      ///< View
+    uint32_t stages = 0;                      ///< from `use` and `skip`
+    double max_distance = 0;                  ///< View; 0: not given
+    double contribution = 0;                  ///< the same
+    ViewPlanes sections;                      ///< View
+    double cluster_test = FacingCost().test;  ///< of a cluster  [triangles]
+    std::string calibration;                  ///< file that says so; empty: none
+    bool dear_shading = false;                ///< which of its figures
     double jitter = 0.5;
     uint32_t occluder_triangles = View().occluder_triangles;
     double occluder_error = 0;  ///< View::occluder_error; 0: no simpler occluders are prepared

@@ -18,6 +18,7 @@
 #include "apps/cli/cull_frame.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/session.h"
+#include "apps/cli/cluster_options.h"
 #include "apps/cli/section_options.h"
 #include "apps/cli/size_options.h"
 #include "apps/cli/verbs.h"
@@ -136,7 +137,8 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     if (run.jitter != View().jitter) command += fmt::format(" --jitter {}", run.jitter);
     if (run.occluder_triangles != View().occluder_triangles)
         command += fmt::format(" --occluder-triangles {}", run.occluder_triangles);
-    command += sizeOptionsOf(run.max_distance, run.contribution) + sectionOptionsOf(run.sections);
+    command += sizeOptionsOf(run.max_distance, run.contribution) + sectionOptionsOf(run.sections) +
+               clusterOptionsOf(run.cluster_test);
     if (run.occluder_error > 0) command += fmt::format(" --occluder-error {}", run.occluder_error);
     if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
     if (run.last_visible_first) command += " --last-visible-first";
@@ -152,7 +154,7 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     View asked;
     asked.max_distance = run.max_distance;
     asked.contribution = run.contribution;
-    const uint32_t stages = stagesInUse(asked);  // if none are named
+    const uint32_t stages = stagesInUse(asked) & ~stageBit(Stage::kClusters);  // if none are named
     std::string used, skipped;
     for (int stage = 0; stage < kStageCount; ++stage) {
         const bool uses = run.stages >> stage & 1;
@@ -186,6 +188,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.max_distance = options.max_distance;
     run.contribution = options.contribution;
     run.sections = options.sections;
+    run.cluster_test = options.cluster_test;
     run.occluder_triangles = options.occluder_triangles;
     run.occluder_error = options.occluder_error;
     run.stereo = options.stereo;
@@ -206,7 +209,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
         return loadWorld(
             scene, [&](size_t done, size_t total) { progress.set(done, total); },
             loadSettings((options.stages & stageBit(Stage::kVolumes)) != 0, options.occluder_error,
-                         (options.stages & stageBit(Stage::kClusters)) != 0));
+                         (options.stages & stageBit(Stage::kClusters)) != 0, options.cluster_test));
     }();
     const Snapshot now = loaded.world.commit();
 

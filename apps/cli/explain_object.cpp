@@ -108,7 +108,8 @@ AskedScene::AskedScene(const Scene& from, const RunOptions& options) : scene(fro
     Progress progress("preparing", "meshes", scene.meshes.size());
     loaded = loadWorld(
         scene, [&](size_t done, size_t total) { progress.set(done, total); },
-        loadSettings(true, options.occluder_error, (options.stages & stageBit(Stage::kClusters)) != 0));
+        loadSettings(true, options.occluder_error, (options.stages & stageBit(Stage::kClusters)) != 0,
+                     options.cluster_test));
     now = loaded.world.commit();
 }
 

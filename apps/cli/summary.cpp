@@ -11,6 +11,7 @@
 
 #include "apps/cli/cull_path.h"
 #include "apps/cli/session.h"
+#include "apps/cli/cluster_options.h"
 #include "apps/cli/section_options.h"
 #include "apps/cli/size_options.h"
 #include "sightline/scene/one_line.h"
@@ -159,7 +160,8 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     };
     list("--use", options.use);
     list("--skip", options.skip);
-    command += sizeOptionsOf(options.max_distance, options.contribution) + sectionOptionsOf(options.sections);
+    command += sizeOptionsOf(options.max_distance, options.contribution) + sectionOptionsOf(options.sections) +
+               clusterOptionsOf(options.cluster_test);
     if (options.jitter != View().jitter) command += fmt::format(" --jitter {}", options.jitter);
     if (options.occluder_triangles != View().occluder_triangles)
         command += fmt::format(" --occluder-triangles {}", options.occluder_triangles);

@@ -47,18 +47,19 @@ Forms formsOf(const Scene& scene, const Mesh& mesh, const LoadSettings& settings
             parts.push_back({primitive.first_triangle, primitive.triangle_count,
                              scene.materials[primitive.material].double_sided,
                              scene.materials[primitive.material].hides()});
-        forms.clusters = world.addClusters(prepareDrawClusters(view, parts));
+        forms.clusters = world.addClusters(prepareDrawClusters(view, parts, settings.draw_clusters));
     }
     return forms;
 }
 
 }  // namespace
 
-LoadSettings loadSettings(bool volumes, double occluder_error, bool clusters) {
+LoadSettings loadSettings(bool volumes, double occluder_error, bool clusters, double cluster_test) {
     LoadSettings settings;
     settings.volumes = volumes;
     settings.inner = occluder_error > 0;
     settings.clusters = clusters;
+    settings.draw_clusters.cost.test = cluster_test;
     return settings;
 }
 

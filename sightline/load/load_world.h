@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "sightline/prepare/draw_clusters.h"
 #include "sightline/prepare/inner.h"
 #include "sightline/run/world.h"
 #include "sightline/scene/scene.h"
@@ -23,11 +24,14 @@ struct LoadSettings {
     bool inner = false;  ///< prepare simpler occluders for dense meshes, too: prepareInner()
     InnerSettings inner_occluders;
     bool clusters = false;  ///< prepare clusters of meshes of some size, too: prepareDrawClusters()
+    DrawClusterSettings draw_clusters;
 };
 
 /// What the tool loads with.
 /// @param occluder_error  View::occluder_error of the queries to come; 0: no simpler occluders are prepared
-LoadSettings loadSettings(bool volumes, double occluder_error, bool clusters = false);
+/// @param clusters        prepare them, for a test that costs so many triangles: FacingCost::test
+LoadSettings loadSettings(bool volumes, double occluder_error, bool clusters = false,
+                          double cluster_test = FacingCost().test);
 
 /// Deforming meshes and materials that do not hide give no occluder triangles.
 /// @param progress  called with (done, total) meshes now and then; may be empty

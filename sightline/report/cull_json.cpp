@@ -96,6 +96,7 @@ Json headJson(const CullRun& run, const Scene& scene) {
     if (run.contribution > 0) head["contribution"] = run.contribution;
     if (run.hysteresis > 0) head["hysteresis"] = run.hysteresis;
     for (const glm::dvec4& plane : run.sections.all()) head["sections"].push_back({plane.x, plane.y, plane.z, plane.w});
+    if (run.stages & stageBit(Stage::kClusters)) head["cluster_test"] = run.cluster_test;
     if (run.stereo > 0) head["stereo"] = run.stereo;
     if (run.last_visible_first) head["last_visible_first"] = true;
     head["occlusion_size"] = run.occlusion_size;

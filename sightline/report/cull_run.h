@@ -100,6 +100,7 @@ struct CullRun {
     double max_distance = 0, contribution = 0;                          ///< View
     double hysteresis = 0;            ///< View, towards the frame before, which was asked without any
     ViewPlanes sections;              ///< View
+    double cluster_test = 0;          ///< FacingCost::test that clusters were prepared for, with that stage
     double stereo = 0;                ///< distance of the two eyes  [world units]; 0: there is one
     bool last_visible_first = false;  ///< each frame drew first what the one before it kept
     uint32_t occlusion_size = View().occlusion_size;

@@ -272,6 +272,7 @@ RunFile readHead(const At& head) {
             sections->element(i).numbers(&plane.x, 4);
             if (!run.sections.add(plane)) sections->fail("too many planes");
         }
+    if (const auto test = head.maybe("cluster_test")) run.cluster_test = test->positive();
     if (const auto share = head.maybe("hysteresis")) run.hysteresis = share->positive();
     if (const auto stereo = head.maybe("stereo")) run.stereo = stereo->positive();
     if (const auto first = head.maybe("last_visible_first")) run.last_visible_first = first->flag();
