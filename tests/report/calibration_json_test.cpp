@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
 #include "sightline/base/random.h"
 
 namespace sightline {
@@ -49,6 +53,21 @@ TEST(Calibration, WhatIsWrongIsNamed) {
         EXPECT_EQ(read.error().message.substr(0, 7), "c.json:") << read.error().message;
         EXPECT_NE(read.error().message.find(what), std::string::npos) << read.error().message;
     }
+}
+
+TEST(Calibration, ReplaysTheCorpusOfTheFuzzer) {
+    const std::filesystem::path corpus = std::filesystem::path(__FILE__).parent_path() / "../fuzz/corpus/calibration";
+    size_t files = 0, read = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
+        std::stringstream text;
+        text << std::ifstream(entry.path(), std::ios::binary).rdbuf();
+        const Result<FacingCosts> costs = parseCalibration(text.str(), "c.json");
+        if (!costs.ok()) { EXPECT_EQ(costs.error().message.substr(0, 8), "c.json: "); }
+        read += costs.ok();
+        ++files;
+    }
+    EXPECT_GE(files, 3u);
+    EXPECT_GE(read, 1u);
 }
 
 TEST(Calibration, NoBytesCrashTheReader) {
