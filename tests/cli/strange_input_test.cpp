@@ -161,7 +161,7 @@ TEST_F(StrangeInput, AConfigurationOfManyKeysIsReadOnce) {
 }
 
 TEST_F(StrangeInput, SeedsOfTheConfigurationsFuzzerAreReadOrRefused) {
-    const std::filesystem::path corpus = std::filesystem::path(__FILE__).parent_path() / "../fuzz/corpus/config";
+    const std::filesystem::path corpus = std::filesystem::path(SIGHTLINE_FUZZ_CORPUS) / "config";
     int seeds = 0;
     for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
         ++seeds;

@@ -56,7 +56,7 @@ TEST(Calibration, WhatIsWrongIsNamed) {
 }
 
 TEST(Calibration, ReplaysTheCorpusOfTheFuzzer) {
-    const std::filesystem::path corpus = std::filesystem::path(__FILE__).parent_path() / "../fuzz/corpus/calibration";
+    const std::filesystem::path corpus = std::filesystem::path(SIGHTLINE_FUZZ_CORPUS) / "calibration";
     size_t files = 0, read = 0;
     for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
         std::stringstream text;

@@ -144,7 +144,7 @@ TEST(RunReader, TakesDeepNestingWithoutAStackOverflow) {
 }
 
 TEST(RunReader, ReplaysTheCorpusOfTheFuzzer) {
-    const std::filesystem::path corpus = std::filesystem::path(__FILE__).parent_path() / "../fuzz/corpus/run";
+    const std::filesystem::path corpus = std::filesystem::path(SIGHTLINE_FUZZ_CORPUS) / "run";
     size_t files = 0, good = 0;
     for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
         std::stringstream text;

@@ -243,8 +243,7 @@ TEST(OcclusionRecording, TakesNoMoreMemoryThanAFewTimesItsFile) {
 }
 
 TEST(OcclusionRecording, CorpusOfTheFuzzerIsReadAndReplayed) {
-    const std::filesystem::path corpus =
-        std::filesystem::path(__FILE__).parent_path() / "../fuzz/corpus/occlusion_recording";
+    const std::filesystem::path corpus = std::filesystem::path(SIGHTLINE_FUZZ_CORPUS) / "occlusion_recording";
     int recordings = 0, others = 0;
     for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
         std::ifstream in(entry.path(), std::ios::binary);
