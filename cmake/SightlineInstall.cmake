@@ -19,11 +19,11 @@ endfunction()
 set(SIGHTLINE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/sightline)
 
 sightline_install(EXPORT sightline-runtime LIBRARIES run
-  FOLDERS base math geom space raster cull prepare run)
+  FOLDERS base math geom space raster cull prepare visfile run)
 sightline_install(EXPORT sightline-hidden LIBRARIES hidden FOLDERS hidden)
 if(SIGHTLINE_TOOLS)
-  sightline_install(EXPORT sightline-tools LIBRARIES scene import truth report
-    FOLDERS scene load import truth report)
+  sightline_install(EXPORT sightline-tools LIBRARIES scene import bake truth report
+    FOLDERS scene load import bake truth report)
   install(TARGETS sightline)
   if(TARGET sightline_pages)
     set(pages ${PROJECT_BINARY_DIR}/apps/cli/pages)

@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: MIT
+#include "sightline/bake/cell_visibility.h"
+
+namespace sightline {
+
+}  // namespace sightline
