@@ -39,23 +39,28 @@ bool CellGraph::addPortal(uint32_t a, uint32_t b, std::span<const glm::dvec3> ou
     const glm::dvec3 area = outline.size() < 3 ? glm::dvec3(0) : areaOf(outline);
     const double length = glm::length(area);
     if (!(length > 0) || !std::isfinite(length)) return false;
-    CellPortal portal;
-    portal.cells[0] = a;
-    portal.cells[1] = b;
-    portal.door = door;
-    portal.first = static_cast<uint32_t>(points.size());
-    portal.count = static_cast<uint32_t>(outline.size());
     const glm::dvec3 normal = area / length;
     glm::dvec3 middle(0);
     for (const glm::dvec3& point : outline) middle += point - outline[0];
     middle = outline[0] + middle / static_cast<double>(outline.size());
-    portal.plane = glm::dvec4(normal, -glm::dot(normal, middle));
+    const glm::dvec4 plane(normal, -glm::dot(normal, middle));
+    if (!std::isfinite(plane.w)) return false;
+    addPortal(a, b, outline, plane);
+    portals.back().door = door;
+    return true;
+}
+
+void CellGraph::addPortal(uint32_t a, uint32_t b, std::span<const glm::dvec3> outline, const glm::dvec4& plane) {
+    CellPortal portal;
+    portal.cells[0] = a;
+    portal.cells[1] = b;
+    portal.first = static_cast<uint32_t>(points.size());
+    portal.count = static_cast<uint32_t>(outline.size());
+    portal.plane = plane;
     for (const glm::dvec3& point : outline)
-        portal.thickness = std::max(portal.thickness, std::abs(heightOf(portal.plane, point)));
-    if (!std::isfinite(portal.plane.w)) return false;
+        portal.thickness = std::max(portal.thickness, std::abs(heightOf(plane, point)));
     points.insert(points.end(), outline.begin(), outline.end());
     portals.push_back(portal);
-    return true;
 }
 
 CellFaults checkCells(const CellGraph& graph, double tolerance) {

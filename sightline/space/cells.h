@@ -43,6 +43,10 @@ struct CellGraph {
     /// @param outline  counter-clockwise as seen from a  [size: 3 or more]
     /// @return         false, and nothing is added, if it has no area or is not finite
     bool addPortal(uint32_t a, uint32_t b, std::span<const glm::dvec3> outline, uint32_t door = CellPortal::kNone);
+    /// Adds a portal whose plane is known better than a thin outline would tell.
+    /// @param outline  counter-clockwise as seen from a  [size: 3 or more] [finite]
+    /// @param plane    its unit normal points into a
+    void addPortal(uint32_t a, uint32_t b, std::span<const glm::dvec3> outline, const glm::dvec4& plane);
 };
 
 /// What is wrong with a graph, or odd about it. Visibility is conservative in any case, as the checks say.
