@@ -7,6 +7,7 @@
 #include <string>
 
 #include "sightline/import/prt.h"
+#include "sightline/import/quake_bsp.h"
 
 namespace sightline::test {
 
@@ -18,7 +19,8 @@ inline std::span<const unsigned char> bytesOf(const std::string& text) {
 inline std::string lineFault(const Error& error, const std::string& file) {
     if (error.message.rfind(file + ": ", 0) != 0) return "does not begin with the file: " + error.message;
     for (const char c : error.message)
-        if (c < ' ' || c > '~') return "is not one printable line: " + error.message;
+        if (static_cast<unsigned char>(c) < ' ' || c == '\x7f')
+            return "is not one line that can be printed: " + error.message;
     return error.kind == Error::Kind::kInput ? "" : "is not the input's fault";
 }
 
@@ -43,6 +45,63 @@ inline std::string graphFault(const CellGraph& graph) {
 inline std::string prtFault(const std::string& bytes) {
     const Result<CellGraph> graph = parsePrt(bytesOf(bytes), "fuzz.prt");
     return graph.ok() ? graphFault(*graph) : lineFault(graph.error(), "fuzz.prt");
+}
+
+inline std::string faceFault(const QuakeMapFile& map, const QuakeFace& face) {
+    if (face.texture >= map.textures.size()) return "a face's texture is out of range";
+    if (face.model != QuakeFace::kNone && face.model >= map.models.size()) return "a face's model is out of range";
+    if (uint64_t(face.first_point) + face.point_count > map.points.size()) return "a face's points are out of range";
+    if (uint64_t(face.first_index) + face.index_count > map.indices.size()) return "a face's indices are out of range";
+    for (uint32_t i = 0; i < face.index_count; ++i)
+        if (map.indices[face.first_index + i] >= face.point_count) return "an index of a face is out of range";
+    if (face.kind != QuakeFace::Kind::kNothing && face.point_count < 3) return "a face is drawn of two points";
+    if (face.kind == QuakeFace::Kind::kPatch && face.patch_width * face.patch_height != face.point_count)
+        return "a patch is no rectangle";
+    return "";
+}
+
+/// Empty, or why the tree is none: parents first, each node once, within the promised depth.
+inline std::string treeFault(const LeafTree& tree) {
+    std::vector<uint32_t> depth(tree.nodes.size(), 0);
+    for (size_t i = 0; i < tree.nodes.size(); ++i) {
+        if (i > 0 && depth[i] == 0) return "a node comes before its parent, or has none";
+        if (depth[i] >= QuakeMapFile::kDeepest) return "the tree is too deep";
+        const LeafTreeNode& node = tree.nodes[i];
+        if (!(std::abs(glm::length(glm::dvec3(node.plane)) - 1) < 1e-3)) return "a plane has no unit normal";
+        for (const uint32_t child : node.child) {
+            if (child >= LeafTreeNode::kLeaf) {
+                if (child - LeafTreeNode::kLeaf >= tree.contents.size()) return "a leaf is out of range";
+                continue;
+            }
+            if (child <= i || child >= tree.nodes.size() || depth[child] != 0) return "a node has two parents";
+            depth[child] = depth[i] + 1;
+        }
+    }
+    return tree.bounds.finite() ? "" : "the tree's bounds are not finite";
+}
+
+/// Empty, or what is wrong with a map.
+inline std::string mapFault(const QuakeMapFile& map) {
+    for (const QuakeFace& face : map.faces)
+        if (const std::string fault = faceFault(map, face); !fault.empty()) return fault;
+    for (const glm::vec3& point : map.points)
+        for (int axis = 0; axis < 3; ++axis)
+            if (!std::isfinite(point[axis])) return "a point is not finite";
+    const size_t leaves = map.tree.contents.size();
+    if (map.cluster_of_leaf.size() != leaves || map.faces_of_leaf.size() != leaves) return "leaves are missing";
+    for (const uint32_t cluster : map.cluster_of_leaf)
+        if (cluster != QuakeMapFile::kNoCluster && cluster >= map.clusters) return "a cluster is out of range";
+    for (const QuakeLeafFaces& faces : map.faces_of_leaf)
+        if (uint64_t(faces.first) + faces.count > map.leaf_faces.size()) return "a leaf's faces are out of range";
+    for (const uint32_t face : map.leaf_faces)
+        if (face >= map.faces.size()) return "a leaf's face is out of range";
+    return treeFault(map.tree);
+}
+
+/// Empty, or what is wrong with the answer to these bytes.
+inline std::string bspFault(const std::string& bytes) {
+    const Result<QuakeMapFile> map = parseQuakeBsp(bytesOf(bytes), "fuzz.bsp");
+    return map.ok() ? mapFault(*map) : lineFault(map.error(), "fuzz.bsp");
 }
 
 }  // namespace sightline::test

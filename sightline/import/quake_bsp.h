@@ -1,0 +1,100 @@
+// Compiled maps of the Quake family (.bsp): their tree, faces, visibility and entities, as plain data.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "sightline/base/result.h"
+#include "sightline/geom/leaf_tree.h"
+#include "sightline/math/box.h"
+
+namespace sightline {
+
+enum class QuakeFormat : uint8_t {
+    kQuake,     ///< version 29
+    kBsp2,      ///< "BSP2": version 29 with wide numbers
+    kPsb2,      ///< "2PSB": the same but for its boxes
+    kHalfLife,  ///< version 30
+    kQuake2,    ///< "IBSP" 38
+    kQuake3,    ///< "IBSP" 46
+};
+
+/// "Quake (version 29)".
+const char* quakeFormatName(QuakeFormat format);
+
+/// What faces look like. Texture, flags and contents tell what may hide, and nothing else is taken of them.
+struct QuakeTexture {
+    std::string name;            ///< empty: the file does not hold it
+    uint32_t surface_flags = 0;  ///< the file's own; of Quake and Half-Life texinfo's
+    uint32_t contents = 0;       ///< Quake 3: of the shader
+};
+
+struct QuakeFace {
+    enum class Kind : uint8_t {
+        kPolygon,    ///< an outline, counter-clockwise as seen from its front; drawn as the fan around its first point
+        kTriangles,  ///< indices into its points
+        kPatch,      ///< Quake 3: control points of biquadratic patches, row by row
+        kNothing,    ///< fewer than three points, or a flare: not drawn
+    };
+    static constexpr uint32_t kNone = ~0u;
+
+    Kind kind = Kind::kNothing;
+    uint32_t texture = 0;                        ///< index into QuakeMapFile::textures
+    uint32_t model = kNone;                      ///< 0: the world; else of an entity, which may move; kNone: of none
+    uint32_t first_point = 0, point_count = 0;   ///< in QuakeMapFile::points
+    uint32_t first_index = 0, index_count = 0;   ///< in QuakeMapFile::indices, which count from the first point
+    uint32_t patch_width = 0, patch_height = 0;  ///< odd; points = width * height
+};
+
+struct QuakeModel {
+    uint32_t first_face = 0, face_count = 0;
+    Box3d bounds;  ///< as the file says
+};
+
+/// A run of QuakeMapFile::leaf_faces.
+struct QuakeLeafFaces {
+    uint32_t first = 0, count = 0;
+};
+
+/// A `.bsp`, turned from z up to y up: (x, y, z) became (x, z, -y); units stay. All indices are in range, all numbers
+/// finite, and the tree of the world is one: at most kDeepest nodes lie above a leaf, and no open leaf hangs in it twice.
+///
+/// A cluster is what has a row of visibility: in Quake and Half-Life the world's leaf i + 1, without the solid leaf 0.
+struct QuakeMapFile {
+    static constexpr uint32_t kNoCluster = ~0u;
+    static constexpr uint32_t kDeepest = 4096;
+
+    QuakeFormat format = QuakeFormat::kQuake;
+    LeafTree tree;  ///< of the world, model 0; `contents` are of all leaves of the file
+    uint32_t clusters = 0;
+    std::vector<uint32_t> cluster_of_leaf;  ///< kNoCluster: solid, or not of the world
+
+    std::vector<QuakeFace> faces;
+    std::vector<glm::vec3> points;
+    std::vector<uint32_t> indices;
+    std::vector<QuakeTexture> textures;
+    std::vector<QuakeModel> models;
+    std::vector<QuakeLeafFaces> faces_of_leaf;
+    std::vector<uint32_t> leaf_faces;  ///< faces; of the world and of entities that stood there
+
+    std::string entities;                   ///< their text
+    std::vector<unsigned char> visibility;  ///< the lump; sightline/import/quake_visibility.h reads it
+    std::vector<int32_t> row_offsets;       ///< Quake, Half-Life: where in it a cluster's row begins; < 0: nowhere
+};
+
+/// Reads a `.bsp` of any of these formats; a file is one by its first bytes.
+///
+/// Errors (kInput) are one line with the name and the place: what is no such file, lumps beyond the file's end or of a
+/// size that is no multiple of their records', indices out of range, numbers that are not finite or beyond 1e9, planes
+/// without a direction, a tree with a cycle, a shared node or more than kDeepest levels, a face of two models.
+Result<QuakeMapFile> parseQuakeBsp(std::span<const unsigned char> bytes, const std::string& name);
+
+/// The leaf of `tree` that a point is in; on a plane, the one in front. O(depth).
+uint32_t leafAt(const LeafTree& tree, const glm::dvec3& point);
+
+}  // namespace sightline
