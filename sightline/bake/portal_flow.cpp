@@ -1,0 +1,286 @@
+// The search: portals clipped between the planes that separate the two before, until nothing that is asked for is left.
+// SPDX-License-Identifier: MIT
+#include "sightline/bake/portal_flow.h"
+
+#include <algorithm>
+#include <bit>
+
+#define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sightline/bake/portal_flow.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "sightline/bake/window-inl.h"
+
+#ifndef SIGHTLINE_BAKE_PORTAL_FLOW_ONCE
+#define SIGHTLINE_BAKE_PORTAL_FLOW_ONCE
+namespace sightline {
+
+/// With so few targets left, each is clipped by all planes, and not only held to each one.
+constexpr uint32_t kFewTargets = 4;
+
+struct PortalFlow::State {
+    uint32_t portal = 0;
+    Window source, window;          ///< what is left of the first portal and of this one
+    Separators onward;              ///< of the two
+    /// What may follow every portal of the chain and leads into cells that are asked for and not yet reached: the words
+    /// of the row that are not zero.
+    uint32_t words = 0;
+    std::vector<uint32_t> word;
+    std::vector<uint64_t> targets;
+};
+
+struct PortalFlow::Scratch {
+    Scratch(const FlowPlaces& flow_places, const BitMatrix& matrix)
+        : places(flow_places), may(matrix), rays(flow_places.directed), asked(matrix.wordsPerRow()) {}
+
+    State& at(uint32_t depth) {
+        while (states.size() <= depth) {
+            State& state = *states.emplace_back(std::make_unique<State>());
+            state.word.resize(may.wordsPerRow());
+            state.targets.resize(may.wordsPerRow());
+        }
+        return *states[depth];
+    }
+    bool isAsked(uint32_t portal) const { return asked[portal / 64] >> (portal % 64) & 1; }
+
+    const FlowPlaces& places;
+    const BitMatrix& may;
+    WitnessRays rays;
+    std::vector<std::unique_ptr<State>> states;
+    std::vector<uint64_t> asked;  ///< portals into cells that are asked for and not yet reached
+    FlowAnswer* answer = nullptr;
+    uint64_t budget = 0;
+};
+
+}  // namespace sightline
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::HWY_NAMESPACE {
+
+class Chase {
+public:
+    explicit Chase(PortalFlow::Scratch& scratch)
+        : s_(scratch),
+          directed_(scratch.places.directed),
+          precision_{directed_.precision, directed_.rounding} {}
+
+    void into(uint32_t depth) {
+        s_.at(depth + 1);
+        const uint32_t cell = directed_.portals[s_.states[depth]->portal].to;
+        const uint32_t first = directed_.first_of_cell[cell], end = directed_.first_of_cell[cell + 1];
+        for (uint32_t w = first / 64; w * 64 < end; ++w) {
+            // What may follow every portal of the chain.
+            uint64_t may = ~uint64_t(0);
+            if (w == first / 64) may &= ~uint64_t(0) << (first % 64);
+            if (w == end / 64) may &= ~(~uint64_t(0) << (end % 64));
+            for (uint32_t i = depth + 1; i-- > 0 && may;) may &= s_.may.row(s_.states[i]->portal)[w];
+            for (; may; may &= may - 1) {
+                const uint32_t q = w * 64 + static_cast<uint32_t>(std::countr_zero(may));
+                if (enter(depth, q)) into(depth + 1);
+                if (s_.answer->spent) return;
+            }
+        }
+    }
+
+private:
+    using State = PortalFlow::State;
+
+    static glm::dvec4 planeOf(const DirectedPortal& portal) { return glm::dvec4(portal.normal, portal.offset); }
+
+    /// @return whether there is more to look for beyond it
+    bool enter(uint32_t depth, uint32_t next) {
+        const State& now = *s_.states[depth];
+        State& then = *s_.states[depth + 1];
+        const std::span<const uint64_t> row = s_.may.row(next);
+        const bool asked = s_.isAsked(next);
+        uint32_t words = 0;
+        for (uint32_t i = 0; i < now.words; ++i) {
+            const uint32_t w = now.word[i];
+            then.word[words] = w;
+            then.targets[words] = now.targets[i] & row[w] & s_.asked[w];
+            words += then.targets[words] != 0;
+        }
+        then.words = words;
+        if (words == 0 && !asked) return false;
+        if (s_.budget && s_.answer->steps >= s_.budget) {
+            s_.answer->spent = true;
+            return false;
+        }
+        ++s_.answer->steps;
+        then.portal = next;
+        if (!then.window.assign(directed_.outline(next))) {
+            s_.answer->spent = true;  // no room: given up, and all that is asked for is visible
+            return false;
+        }
+        if (!clipBoth(now, then)) return false;
+        if (asked) {
+            reach(then);
+            for (uint32_t i = 0; i < then.words; ++i) then.targets[i] &= s_.asked[then.word[i]];
+        }
+        if (words == 0) return false;
+        separate(then.source, planeOf(directed_.portals[s_.states[0]->portal]), then.window,
+                 planeOf(directed_.portals[next]), 1, precision_, then.onward);
+        return keepTargets(then);
+    }
+
+    /// What of the portal is lit through the window before it, and what of the source lights it.
+    bool clipBoth(const State& now, State& then) const {
+        const DirectedPortal &first = directed_.portals[s_.states[0]->portal], &last = directed_.portals[now.portal],
+                             &portal = directed_.portals[then.portal];
+        const double points = precision_.points;
+        // A line comes out of a portal upwards, so the next one's crossing is above its plane, and not in it.
+        if (clip(then.window, planeOf(first), -points, points) == Clipped::kGone) return false;
+        if (now.portal != s_.states[0]->portal && clip(then.window, planeOf(last), -points, points) == Clipped::kGone)
+            return false;
+        then.source.assign(now.source);
+        if (clip(then.source, -planeOf(portal), -points, points) == Clipped::kGone) return false;
+        if (now.portal == s_.states[0]->portal) return true;
+        // What only touches a plane stays: a line that grazes is a line that sees.
+        if (clip(then.window, now.onward, -points, -points) == Clipped::kGone) return false;
+        Separators backward;
+        separate(then.window, -planeOf(portal), now.window, -planeOf(last), -1, precision_, backward);
+        return clip(then.source, backward, -points, -points) != Clipped::kGone;
+    }
+
+    /// Clears the targets that lie wholly below one of the planes; of few targets also those that lie below them taken
+    /// together.
+    /// @return whether some are left
+    bool keepTargets(State& state) const {
+        uint32_t left = 0, words = 0;
+        for (uint32_t i = 0; i < state.words; ++i) {
+            uint64_t word = state.targets[i];
+            for (uint64_t bits = word; bits; bits &= bits - 1)
+                if (isBelow(targetOf(state.word[i], bits), state.onward)) word &= ~(bits & -bits);
+            state.word[words] = state.word[i];
+            state.targets[words] = word;
+            words += word != 0;
+            left += static_cast<uint32_t>(std::popcount(word));
+        }
+        state.words = words;
+        if (left == 0 || left > kFewTargets) return left != 0;
+        for (uint32_t i = 0; i < words; ++i)
+            for (uint64_t bits = state.targets[i]; bits; bits &= bits - 1) {
+                Window part;
+                if (!part.assign(directed_.outline(targetOf(state.word[i], bits)))) continue;
+                if (clip(part, state.onward, -precision_.points, -precision_.points) != Clipped::kGone) continue;
+                state.targets[i] &= ~(bits & -bits);
+                --left;
+            }
+        return left != 0;
+    }
+
+    static uint32_t targetOf(uint32_t word, uint64_t bits) {
+        return word * 64 + static_cast<uint32_t>(std::countr_zero(bits));
+    }
+
+    bool isBelow(uint32_t q, const Separators& planes) const {
+        const Doubles d;
+        const glm::dvec4& sphere = s_.places.spheres[q];
+        const auto touching = hn::Set(d, -precision_.points);
+        for (size_t i = 0; i < planes.count; i += hn::Lanes(d)) {
+            const auto x = hn::LoadU(d, planes.x + i), y = hn::LoadU(d, planes.y + i), z = hn::LoadU(d, planes.z + i),
+                       w = hn::LoadU(d, planes.w + i);
+            const auto heightOf = [&](const glm::dvec3& p) {
+                return hn::Add(
+                    hn::Add(hn::Add(hn::Mul(x, hn::Set(d, p.x)), hn::Mul(y, hn::Set(d, p.y))), hn::Mul(z, hn::Set(d, p.z))),
+                    w);
+            };
+            const auto inside = hn::FirstN(d, planes.count - i);
+            const auto height = heightOf(glm::dvec3(sphere));
+            const auto radius = hn::Set(d, sphere.w);
+            if (!hn::AllFalse(d, hn::And(inside, hn::Lt(hn::Add(height, radius), touching)))) return true;
+            if (hn::AllFalse(d, hn::And(inside, hn::Lt(hn::Sub(height, radius), touching)))) continue;
+            auto high = hn::Set(d, -1e300);
+            for (const glm::dvec3& point : directed_.outline(q)) high = hn::Max(high, heightOf(point));
+            if (!hn::AllFalse(d, hn::And(inside, hn::Lt(high, touching)))) return true;
+        }
+        return false;
+    }
+
+    void reach(const State& state) {
+        FlowAnswer& answer = *s_.answer;
+        const uint32_t cell = directed_.portals[state.portal].to;
+        answer.reached[cell / 64] |= uint64_t(1) << (cell % 64);
+        for (uint32_t i = s_.places.entering_first[cell]; i < s_.places.entering_first[cell + 1]; ++i) {
+            const uint32_t p = s_.places.entering[i];
+            s_.asked[p / 64] &= ~(uint64_t(1) << (p % 64));
+        }
+        const glm::dvec3 a = state.source.center(), b = state.window.center();
+        const std::vector<uint32_t>& run = s_.rays.through(state.portal, b, b - a);
+        if (run.size() < 2) return;
+        answer.seen.insert(answer.seen.end(), run.begin(), run.end());
+        answer.seen_first.push_back(static_cast<uint32_t>(answer.seen.size()));
+    }
+
+    PortalFlow::Scratch& s_;
+    const DirectedPortals& directed_;
+    const Precision precision_;
+};
+
+void chase(PortalFlow::Scratch& scratch) { Chase(scratch).into(0); }
+
+}  // namespace sightline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline {
+
+HWY_EXPORT(chase);
+
+FlowPlaces::FlowPlaces(const DirectedPortals& all) : directed(all), entering_first(all.cells() + 1, 0) {
+    for (const DirectedPortal& portal : all.portals) {
+        spheres.emplace_back(portal.center, portal.radius);
+        ++entering_first[portal.to + 1];
+    }
+    for (uint32_t c = 0; c < all.cells(); ++c) entering_first[c + 1] += entering_first[c];
+    std::vector<uint32_t> next(entering_first.begin(), entering_first.end() - 1);
+    entering.resize(all.size());
+    for (uint32_t p = 0; p < all.size(); ++p) entering[next[all.portals[p].to]++] = p;
+}
+
+PortalFlow::PortalFlow(const FlowPlaces& places, const BitMatrix& may)
+    : scratch_(std::make_unique<Scratch>(places, may)) {}
+PortalFlow::~PortalFlow() = default;
+
+void PortalFlow::from(uint32_t portal, std::span<const uint64_t> asked, uint64_t budget, FlowAnswer& answer) {
+    Scratch& s = *scratch_;
+    const DirectedPortals& directed = s.places.directed;
+    answer.reached.assign(asked.size(), 0);
+    answer.seen.clear();
+    answer.seen_first.assign(1, 0);
+    answer.steps = 0;
+    answer.spent = false;
+    s.answer = &answer;
+    s.budget = budget;
+
+    State& first = s.at(0);
+    first.portal = portal;
+    const std::span<const uint64_t> row = s.may.row(portal);
+    first.words = 0;
+    for (uint32_t w = 0; w < row.size(); ++w) {
+        uint64_t targets = 0;
+        for (uint64_t left = row[w]; left; left &= left - 1) {
+            const auto q = w * 64 + static_cast<uint32_t>(std::countr_zero(left));
+            const uint32_t cell = directed.portals[q].to;
+            if (asked[cell / 64] >> (cell % 64) & 1) targets |= left & -left;
+        }
+        s.asked[w] = first.targets[first.words] = targets;
+        first.word[first.words] = w;
+        first.words += targets != 0;
+    }
+    if (first.words == 0) return;
+    if (first.source.assign(directed.outline(portal))) {
+        first.window.assign(first.source);
+        first.onward.count = 0;
+        HWY_DYNAMIC_DISPATCH(chase)(s);
+    } else {
+        answer.spent = true;
+    }
+    if (answer.spent) answer.reached.assign(asked.begin(), asked.end());
+}
+
+}  // namespace sightline
+#endif  // HWY_ONCE

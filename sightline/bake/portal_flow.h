@@ -1,0 +1,59 @@
+// Light from one portal: the cells that it can fall into, through portals clipped to what can pass the ones before.
+// SPDX-License-Identifier: MIT
+//
+// Seth Teller, Carlo Sequin. Visibility Preprocessing for Interactive Walkthroughs. 1991.
+// Michael Abrash. Inside Quake: Visible-Surface Determination. 1996.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sightline/bake/directed_portals.h"
+#include "sightline/bake/window.h"
+#include "sightline/bake/witness_rays.h"
+#include "sightline/base/bit_matrix.h"
+
+namespace sightline {
+
+/// What a flow found. Rows are over cells.
+struct FlowAnswer {
+    std::vector<uint64_t> reached;     ///< cells that light of the portal may reach, of those that were asked for
+    std::vector<uint32_t> seen;        ///< runs of cells on lines that pass, one after the other ...
+    std::vector<uint32_t> seen_first;  ///< ... and where each begins, and where the last ends
+    uint64_t steps = 0;                ///< portals that were clipped
+    bool spent = false;                ///< the budget: then all that were asked for count as reached
+};
+
+/// The lists that flows read: what lies where, for vectors.
+class FlowPlaces {
+public:
+    explicit FlowPlaces(const DirectedPortals& directed);
+
+    const DirectedPortals& directed;
+    std::vector<glm::dvec4> spheres;       ///< per portal: center and radius
+    std::vector<uint32_t> entering;        ///< portals by the cell that they enter
+    std::vector<uint32_t> entering_first;  ///< per cell, and the end
+};
+
+/// A thread's own scratch for flows.
+class PortalFlow {
+public:
+    /// @param may  per directed portal what may follow it; may change between flows
+    PortalFlow(const FlowPlaces& places, const BitMatrix& may);
+    ~PortalFlow();
+
+    /// Chases light from a portal into the cells that are asked for.
+    /// @param asked   [size: words of a row of cells]
+    /// @param budget  steps; 0: no limit
+    void from(uint32_t portal, std::span<const uint64_t> asked, uint64_t budget, FlowAnswer& answer);
+
+    struct State;    ///< of the search
+    struct Scratch;  ///< of a thread
+
+private:
+    std::unique_ptr<Scratch> scratch_;
+};
+
+}  // namespace sightline

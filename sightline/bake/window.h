@@ -1,0 +1,66 @@
+// The part of a portal that light of a chain of portals can fall through: a convex polygon, clipped again and again.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <glm/glm.hpp>
+
+namespace sightline {
+
+/// A convex polygon with room for a few dozen corners; coordinate by coordinate, for vectors of corners.
+struct Window {
+    static constexpr uint32_t kMost = 40;
+    static constexpr uint32_t kRoom = kMost + 8;  ///< vectors may reach beyond the last corner; the first stands there again
+
+    uint32_t count = 0;
+    double x[kRoom], y[kRoom], z[kRoom];
+
+    glm::dvec3 corner(uint32_t i) const { return {x[i], y[i], z[i]}; }
+    void add(const glm::dvec3& point) {
+        x[count] = point.x;
+        y[count] = point.y;
+        z[count++] = point.z;
+    }
+    /// To be called when the last corner is there.
+    void close() {
+        x[count] = x[0];
+        y[count] = y[0];
+        z[count] = z[0];
+    }
+    /// @return false if it has too many corners
+    bool assign(std::span<const glm::dvec3> outline) {
+        count = 0;
+        if (outline.size() > kMost) return false;
+        for (const glm::dvec3& point : outline) add(point);
+        close();
+        return true;
+    }
+    void assign(const Window& other) {
+        count = other.count;
+        for (uint32_t i = 0; i <= count; ++i) {
+            x[i] = other.x[i];
+            y[i] = other.y[i];
+            z[i] = other.z[i];
+        }
+    }
+    glm::dvec3 center() const {
+        glm::dvec3 sum(0);
+        for (uint32_t i = 0; i < count; ++i) sum += corner(i);
+        return sum / static_cast<double>(count);
+    }
+};
+
+/// Planes that two windows lie on either side of: no point of the first is above, none of the second below. Along a line
+/// from a point of the first through a point of the second the height grows, and beyond the second it is not negative.
+struct Separators {
+    static constexpr uint32_t kRoom = 2 * Window::kMost + 8;
+
+    uint32_t count = 0;
+    double x[kRoom], y[kRoom], z[kRoom], w[kRoom];  ///< unit normal and distance
+};
+
+enum class Clipped : uint8_t { kWhole, kCut, kGone };
+
+}  // namespace sightline
