@@ -9,6 +9,20 @@
 namespace sightline {
 namespace {
 
+/// Quake 2 and 3: the lump begins with the number of clusters, and has room for what each must have there.
+void countClusters(quake::Bytes lump, QuakeMapFile& map) {
+    if (lump.empty()) return;
+    const bool second = map.format == QuakeFormat::kQuake2;
+    ByteCursor cursor({reinterpret_cast<const char*>(lump.data()), lump.size()});
+    const auto count = cursor.take<uint32_t>();
+    if (count < map.clusters) quake::fail("", "its visibility lump is of {} clusters, not {}", count, map.clusters);
+    const uint64_t each = second ? 8 : cursor.take<uint32_t>();
+    const bool whole = second ? cursor.left() / 8 >= count
+                              : each * 8 >= count && (count == 0 || cursor.left() / count >= each) && lump.size() >= 8;
+    if (!whole) quake::fail("", "its visibility lump has {} bytes, too few for {} clusters", lump.size(), count);
+    map.clusters = count;
+}
+
 QuakeMapFile readMap(quake::Bytes bytes) {
     using namespace quake;
     const Directory directory = readDirectory(bytes);
@@ -22,6 +36,7 @@ QuakeMapFile readMap(quake::Bytes bytes) {
     if (const size_t end = map.entities.find('\0'); end != std::string::npos) map.entities.resize(end);
     const Bytes visibility = lumpBytes(bytes, directory, Lump::kVisibility);
     map.visibility.assign(visibility.begin(), visibility.end());
+    if (map.format == QuakeFormat::kQuake2 || map.format == QuakeFormat::kQuake3) countClusters(visibility, map);
     return map;
 }
 

@@ -65,6 +65,7 @@ public:
     Records(Bytes bytes, const char* name, size_t stride) : bytes_(bytes), name_(name), stride_(stride) {}
 
     const char* name() const { return name_; }
+    size_t stride() const { return stride_; }
     uint32_t count() const { return static_cast<uint32_t>(bytes_.size() / stride_); }
     /// The record as numbers to be taken one by one, from byte `skip` on.
     ByteCursor record(uint64_t index, size_t skip = 0) const {

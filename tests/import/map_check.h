@@ -7,7 +7,7 @@
 #include <string>
 
 #include "sightline/import/prt.h"
-#include "sightline/import/quake_bsp.h"
+#include "sightline/import/quake_visibility.h"
 
 namespace sightline::test {
 
@@ -101,7 +101,16 @@ inline std::string mapFault(const QuakeMapFile& map) {
 /// Empty, or what is wrong with the answer to these bytes.
 inline std::string bspFault(const std::string& bytes) {
     const Result<QuakeMapFile> map = parseQuakeBsp(bytesOf(bytes), "fuzz.bsp");
-    return map.ok() ? mapFault(*map) : lineFault(map.error(), "fuzz.bsp");
+    if (!map.ok()) return lineFault(map.error(), "fuzz.bsp");
+    if (const std::string fault = mapFault(*map); !fault.empty()) return fault;
+    const Result<QuakeVisibility> seen = readQuakeVisibility(*map, "fuzz.bsp");
+    if (!seen.ok()) return lineFault(seen.error(), "fuzz.bsp");
+    const Result<std::vector<unsigned char>> out = replaceQuakeVisibility(bytesOf(bytes), "fuzz.bsp", seen->seen);
+    if (!out.ok()) return lineFault(out.error(), "fuzz.bsp");
+    const Result<QuakeMapFile> again = parseQuakeBsp(*out, "fuzz.bsp");
+    if (!again.ok()) return "what was written is not read: " + again.error().message;
+    const Result<QuakeVisibility> same = readQuakeVisibility(*again, "fuzz.bsp");
+    return same.ok() && same->seen == seen->seen ? "" : "what was written says something else";
 }
 
 }  // namespace sightline::test

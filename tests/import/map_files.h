@@ -50,8 +50,7 @@ MadeLump lumpOf(const std::string& bytes, int number);
 /// Overwrites a number in the bytes.
 template <class T>
 std::string patched(std::string bytes, size_t at, T value) {
-    std::memcpy(bytes.data() + at, &value, sizeof value);
-    return bytes;
+    return bytes.replace(at, sizeof value, reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 }  // namespace sightline::test
