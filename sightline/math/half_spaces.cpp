@@ -94,7 +94,7 @@ bool shutBetween(const Plane& plane, const Plane& a, const Plane& b) {
         // |minor of b| a + |minor of a| b + (something) plane = 0 in the normals: what is left of the distances?
         const int m = largestOf(plane);
         Expansion sum;
-        const auto add = [&](const Plane& weight, int sign, const Plane& other) {
+        const auto add = [&, i = i, j = j](const Plane& weight, int sign, const Plane& other) {
             for (const double side : {1.0, -1.0}) {
                 const double left = sign * side * (side > 0 ? weight[i] : weight[j]);
                 const double right = side > 0 ? plane[j] : plane[i];

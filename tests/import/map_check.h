@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "sightline/import/game_archive.h"
 #include "sightline/import/prt.h"
 #include "sightline/import/quake_visibility.h"
 
@@ -111,6 +112,20 @@ inline std::string bspFault(const std::string& bytes) {
     if (!again.ok()) return "what was written is not read: " + again.error().message;
     const Result<QuakeVisibility> same = readQuakeVisibility(*again, "fuzz.bsp");
     return same.ok() && same->seen == seen->seen ? "" : "what was written says something else";
+}
+
+/// Empty, or what is wrong with how an archive of these bytes is listed and unpacked.
+inline std::string archiveFault(const std::string& bytes) {
+    const Result<std::vector<ArchiveEntry>> entries = listArchive(bytesOf(bytes), "fuzz.pk3");
+    if (!entries.ok()) return lineFault(entries.error(), "fuzz.pk3");
+    for (const ArchiveEntry& entry : *entries) {
+        if (entry.zipped && entry.name.ends_with('/')) return "a folder is listed";
+        const Result<std::vector<unsigned char>> out = unpackEntry(bytesOf(bytes), "fuzz.pk3", entry);
+        const std::string fault = out.ok() ? out->size() == entry.size ? "" : "an entry has another size"
+                                           : lineFault(out.error(), "fuzz.pk3");
+        if (!fault.empty()) return fault;
+    }
+    return "";
 }
 
 }  // namespace sightline::test
