@@ -87,8 +87,9 @@ void flood(const detail::FloodPlaces& places, uint32_t p, detail::FloodScratch& 
             const auto other = hn::LoadU(d, places.radius.data() + i);
             const auto above = heightOf(nx, ny, nz, offset, hn::LoadU(d, places.x.data() + i),
                                         hn::LoadU(d, places.y.data() + i), hn::LoadU(d, places.z.data() + i));
-            const auto behind = hn::Neg(heightOf(hn::LoadU(d, places.nx.data() + i), hn::LoadU(d, places.ny.data() + i),
-                                                 hn::LoadU(d, places.nz.data() + i), hn::LoadU(d, places.offset.data() + i), x, y, z));
+            const auto behind =
+                hn::Neg(heightOf(hn::LoadU(d, places.nx.data() + i), hn::LoadU(d, places.ny.data() + i),
+                                 hn::LoadU(d, places.nz.data() + i), hn::LoadU(d, places.offset.data() + i), x, y, z));
             const auto may = hn::And(hn::FirstN(d, end - i), hn::And(hn::Gt(hn::Add(above, other), room),
                                                                      hn::Gt(hn::Add(behind, radius), room)));
             // The center itself is above.
@@ -165,8 +166,7 @@ BitMatrix reversed(const DirectedPortals& directed, const BitMatrix& in) {
 /// Follows steps that are left: q follows r only if r's own row has it.
 class Steps {
 public:
-    Steps(const DirectedPortals& directed, const BitMatrix& may)
-        : directed_(directed), may_(may) {}
+    Steps(const DirectedPortals& directed, const BitMatrix& may) : directed_(directed), may_(may) {}
 
     /// What of p's row is reached from p by steps within the row.
     void from(uint32_t p, std::span<uint64_t> out) {
@@ -189,8 +189,7 @@ private:
             if (w == first / 64) fresh &= ~uint64_t(0) << (first % 64);
             if (w == end / 64) fresh &= ~(~uint64_t(0) << (end % 64));
             out[w] |= fresh;
-            for (; fresh; fresh &= fresh - 1)
-                stack_.push_back(w * 64 + static_cast<uint32_t>(std::countr_zero(fresh)));
+            for (; fresh; fresh &= fresh - 1) stack_.push_back(w * 64 + static_cast<uint32_t>(std::countr_zero(fresh)));
         }
     }
 

@@ -3,168 +3,203 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
-#include <cstdio>
 #include <numeric>
+#include <span>
+#include <vector>
 
 #include "sightline/bake/base_visibility.h"
-#include "sightline/bake/portal_flow.h"
+#include "sightline/bake/flow_pool.h"
+#include "sightline/bake/random_point.h"
 #include "sightline/bake/witness_rays.h"
-#include "sightline/base/random.h"
 
 namespace sightline {
 namespace {
 
+constexpr uint32_t kRaysPerPortal = 8;
+constexpr uint32_t kRayTask = 64;  // portals
+/// Flows that read the same frozen knowledge. Their number is part of the answer: it does not depend on the threads.
+constexpr uint32_t kBatch = 64;
+
+template <class Visit>
+void forEachBit(std::span<const uint64_t> row, Visit&& visit) {
+    for (size_t w = 0; w < row.size(); ++w)
+        for (uint64_t left = row[w]; left; left &= left - 1)
+            visit(static_cast<uint32_t>(w * 64) + static_cast<uint32_t>(std::countr_zero(left)));
+}
+
+uint32_t bitsOf(std::span<const uint64_t> row) {
+    uint32_t bits = 0;
+    for (const uint64_t word : row) bits += static_cast<uint32_t>(std::popcount(word));
+    return bits;
+}
+
+bool has(std::span<const uint64_t> row, uint32_t i) { return row[i / 64] >> (i % 64) & 1; }
+
+/// All cells of a ray see one another.
 void markRun(BitMatrix& witnessed, std::span<const uint32_t> run) {
     for (const uint32_t a : run)
         for (const uint32_t b : run) witnessed.set(a, b);
 }
 
-/// Uniform in a convex polygon: in a triangle of its fan, chosen by area.
-glm::dvec3 randomPoint(std::span<const glm::dvec3> outline, Random& random) {
-    double total = 0;
-    for (size_t i = 1; i + 1 < outline.size(); ++i)
-        total += glm::length(glm::cross(outline[i] - outline[0], outline[i + 1] - outline[0]));
-    double chosen = random.uniform() * total;
-    size_t i = 1;
-    for (; i + 2 < outline.size(); ++i) {
-        chosen -= glm::length(glm::cross(outline[i] - outline[0], outline[i + 1] - outline[0]));
-        if (chosen < 0) break;
+/// Runs of cells, one after the other.
+struct Runs {
+    std::vector<uint32_t> cells;
+    std::vector<uint32_t> first{0};
+
+    void add(std::span<const uint32_t> run) {
+        cells.insert(cells.end(), run.begin(), run.end());
+        first.push_back(static_cast<uint32_t>(cells.size()));
     }
-    double u = random.uniform(), v = random.uniform();
-    if (u + v > 1) {
-        u = 1 - u;
-        v = 1 - v;
-    }
-    return outline[0] + u * (outline[i] - outline[0]) + v * (outline[i + 1] - outline[0]);
+};
+
+void markRuns(BitMatrix& witnessed, std::span<const uint32_t> cells, std::span<const uint32_t> first) {
+    for (size_t i = 0; i + 1 < first.size(); ++i) markRun(witnessed, cells.subspan(first[i], first[i + 1] - first[i]));
 }
 
-struct Timer {
-    std::chrono::steady_clock::time_point t = std::chrono::steady_clock::now();
-    void lap(const char* what) {
-        auto n = std::chrono::steady_clock::now();
-        std::fprintf(stderr, "%-10s %.3f s\n", what, std::chrono::duration<double>(n - t).count());
-        t = n;
+class Bake {
+public:
+    Bake(const CellGraph& graph, const CellVisibilitySettings& settings)
+        : settings_(settings), directed_(directPortals(graph)), rays_(directed_), places_(directed_) {}
+
+    CellVisibility run() {
+        if (settings_.resume) {
+            state_ = std::move(*settings_.resume);
+        } else {
+            tell("base", 0);
+            state_.may = baseVisibility(directed_, settings_.jobs);
+            tightenBase(directed_, state_.may, settings_.jobs);
+            state_.witnessed = BitMatrix(directed_.cells(), directed_.cells());
+            state_.reached = BitMatrix(directed_.cells(), directed_.cells());
+            for (uint32_t cell = 0; cell < directed_.cells(); ++cell) state_.witnessed.set(cell, cell);
+            tell("rays", 0);
+            castRays();
+            orderFlows();
+        }
+        flow();
+        return join();
     }
+
+private:
+    void tell(const char* step, double done) const {
+        if (settings_.progress) settings_.progress({step, done});
+    }
+
+    /// From points of each portal to points of others that may follow it.
+    void castRays() {
+        const uint32_t tasks = (directed_.size() + kRayTask - 1) / kRayTask;
+        std::vector<Runs> found(tasks);
+        runJobs(settings_.jobs, tasks, [&](uint32_t task) {
+            std::vector<uint32_t> may, run;
+            for (uint32_t p = task * kRayTask; p < std::min(directed_.size(), (task + 1) * kRayTask); ++p) {
+                may.clear();
+                forEachBit(state_.may.row(p), [&](uint32_t q) { may.push_back(q); });
+                Random random(mixSeed(1, p));
+                for (uint32_t i = 0; i < kRaysPerPortal; ++i) {
+                    const glm::dvec3 from = randomPoint(directed_.outline(p), random);
+                    const glm::dvec3 to = may.empty()
+                                              ? from + directed_.portals[p].normal
+                                              : randomPoint(directed_.outline(may[random.below(may.size())]), random);
+                    rays_.through(p, from, to - from, run);
+                    if (run.size() > 1) found[task].add(run);
+                }
+            }
+        });
+        for (const Runs& runs : found) markRuns(state_.witnessed, runs.cells, runs.first);
+    }
+
+    /// Portals from which little may be seen come first: what they learn serves the others.
+    void orderFlows() {
+        std::vector<uint32_t> sizes(directed_.size());
+        for (uint32_t p = 0; p < directed_.size(); ++p) sizes[p] = bitsOf(state_.may.row(p));
+        state_.order.resize(directed_.size());
+        std::iota(state_.order.begin(), state_.order.end(), 0);
+        std::stable_sort(state_.order.begin(), state_.order.end(),
+                         [&](uint32_t a, uint32_t b) { return sizes[a] < sizes[b]; });
+    }
+
+    void flow() {
+        FlowPool pool(places_, rays_, state_.may);
+        std::vector<FlowAnswer> answers(kBatch);
+        std::vector<std::vector<uint64_t>> asked(kBatch);
+        const size_t words = state_.witnessed.wordsPerRow();
+        while (state_.flowed < state_.order.size()) {
+            if (settings_.stop && settings_.stop()) {
+                stopped_ = true;
+                break;
+            }
+            const auto batch = std::span<const uint32_t>(state_.order)
+                                   .subspan(state_.flowed)
+                                   .first(std::min<size_t>(kBatch, state_.order.size() - state_.flowed));
+            runJobs(settings_.jobs, static_cast<uint32_t>(batch.size()), [&](uint32_t i) {
+                const uint32_t from = directed_.portals[batch[i]].from;
+                asked[i].resize(words);
+                for (size_t w = 0; w < words; ++w) asked[i][w] = ~state_.witnessed.row(from)[w];
+                pool.from(batch[i], asked[i], settings_.budget, answers[i]);
+            });
+            for (uint32_t i = 0; i < batch.size(); ++i) apply(batch[i], asked[i], answers[i]);
+            state_.flowed += batch.size();
+            tell("flow", shareOf(state_.flowed));
+            if (settings_.checkpoint) settings_.checkpoint(state_);
+        }
+    }
+
+    /// Late flows have more to do than early ones.
+    double shareOf(uint64_t flowed) const {
+        const double share = static_cast<double>(flowed) / static_cast<double>(state_.order.size());
+        return share * share;
+    }
+
+    void apply(uint32_t p, std::span<const uint64_t> asked, const FlowAnswer& answer) {
+        state_.steps += answer.steps;
+        state_.over_budget += answer.spent;
+        const DirectedPortal& portal = directed_.portals[p];
+        const std::span<uint64_t> reached = state_.reached.row(portal.from);
+        for (size_t w = 0; w < reached.size(); ++w) reached[w] |= answer.reached[w];
+        state_.reached.set(portal.from, portal.to);
+        markRuns(state_.witnessed, answer.seen, answer.seen_first);
+        if (answer.spent) return;
+        // What was asked for and not reached does not follow.
+        forEachBit(state_.may.row(p), [&](uint32_t q) {
+            const uint32_t to = directed_.portals[q].to;
+            if (!has(asked, to) || has(answer.reached, to)) return;
+            state_.may.clear(p, q);
+            state_.may.clear(directed_.portals[q].reverse, portal.reverse);
+        });
+    }
+
+    CellVisibility join() {
+        // What has not flowed may be seen.
+        for (size_t i = state_.flowed; i < state_.order.size(); ++i) {
+            const DirectedPortal& portal = directed_.portals[state_.order[i]];
+            state_.reached.set(portal.from, portal.to);
+            forEachBit(state_.may.row(state_.order[i]),
+                       [&](uint32_t q) { state_.reached.set(portal.from, directed_.portals[q].to); });
+        }
+        CellVisibility answer;
+        answer.over_budget = state_.over_budget;
+        answer.steps = state_.steps;
+        answer.stopped = stopped_;
+        answer.visible = state_.witnessed;
+        for (uint32_t a = 0; a < directed_.cells(); ++a)
+            forEachBit(state_.reached.row(a), [&](uint32_t b) {
+                if (state_.reached.at(b, a)) answer.visible.set(a, b);
+            });
+        answer.witnessed = std::move(state_.witnessed);
+        return answer;
+    }
+
+    const CellVisibilitySettings& settings_;
+    const DirectedPortals directed_;
+    const WitnessRays rays_;
+    const FlowPlaces places_;
+    CellVisibilityState state_;
+    bool stopped_ = false;
 };
 
 }  // namespace
 
 CellVisibility bakeCellVisibility(const CellGraph& graph, const CellVisibilitySettings& settings) {
-    Timer timer;
-    const DirectedPortals directed = directPortals(graph);
-    const uint32_t cells = graph.cells, portals = directed.size();
-    timer.lap("direct");
-    BitMatrix may = baseVisibility(directed, settings.jobs);
-    timer.lap("base");
-    tightenBase(directed, may, settings.jobs);
-    timer.lap("tighten");
-
-    CellVisibility answer;
-    answer.witnessed = BitMatrix(cells, cells);
-    for (uint32_t c = 0; c < cells; ++c) answer.witnessed.set(c, c);
-    // Rays from portals to portals that may follow.
-    WitnessRays rays(directed);
-    std::vector<uint32_t> list;
-    for (uint32_t p = 0; p < portals; ++p) {
-        list.clear();
-        const auto row = may.row(p);
-        for (size_t w = 0; w < row.size(); ++w)
-            for (uint64_t left = row[w]; left; left &= left - 1)
-                list.push_back(static_cast<uint32_t>(w * 64 + static_cast<size_t>(std::countr_zero(left))));
-        Random random(mixSeed(1, p));
-        for (int i = 0; i < 8; ++i) {
-            const glm::dvec3 a = randomPoint(directed.outline(p), random);
-            const glm::dvec3 b = list.empty() ? a + directed.portals[p].normal
-                                              : randomPoint(directed.outline(list[random.below(list.size())]), random);
-            markRun(answer.witnessed, rays.through(p, a, b - a));
-        }
-    }
-    timer.lap("rays");
-    std::fprintf(stderr, "witnessed %llu\n", (unsigned long long)answer.witnessed.count());
-
-    // Rounds: one ray for each pair of cells that is not settled.
-    const int rounds = getenv("ROUNDS") ? atoi(getenv("ROUNDS")) : 0;
-    for (int round = 0; round < rounds; ++round) {
-        uint64_t before = answer.witnessed.count(), shot = 0;
-        std::vector<uint32_t> into(cells), by(cells);
-        for (uint32_t cell = 0; cell < cells; ++cell) {
-            // Candidates per cell: a portal of this cell and a portal into that one, chosen at random among those seen.
-            Random random(mixSeed(77 + round, cell));
-            std::fill(into.begin(), into.end(), ~0u);
-            std::vector<uint32_t> chances(cells, 0), order;
-            for (uint32_t p = directed.first_of_cell[cell]; p < directed.first_of_cell[cell + 1]; ++p) {
-                const auto row = may.row(p);
-                for (size_t w = 0; w < row.size(); ++w)
-                    for (uint64_t left = row[w]; left; left &= left - 1) {
-                        const auto q = static_cast<uint32_t>(w * 64 + static_cast<size_t>(std::countr_zero(left)));
-                        const uint32_t to = directed.portals[q].to;
-                        if (answer.witnessed.at(cell, to)) continue;
-                        if (!chances[to]) order.push_back(to);
-                        if (random.below(++chances[to]) == 0) { into[to] = q; by[to] = p; }
-                    }
-            }
-            for (uint32_t to : order) {
-                if (answer.witnessed.at(cell, to)) continue;
-                const glm::dvec3 a = randomPoint(directed.outline(by[to]), random);
-                const glm::dvec3 b = randomPoint(directed.outline(into[to]), random);
-                markRun(answer.witnessed, rays.through(by[to], a, b - a));
-                ++shot;
-            }
-        }
-        uint64_t after = answer.witnessed.count();
-        std::fprintf(stderr, "round %d shot %llu found %llu\n", round, (unsigned long long)shot, (unsigned long long)(after - before));
-        timer.lap("round");
-    }
-
-    // Flow, from portals that may see little to those that may see much.
-    std::vector<uint32_t> order(portals), sizes(portals);
-    std::iota(order.begin(), order.end(), 0);
-    for (uint32_t p = 0; p < portals; ++p) {
-        uint32_t size = 0;
-        for (uint64_t w : may.row(p)) size += static_cast<uint32_t>(std::popcount(w));
-        sizes[p] = size;
-    }
-    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return sizes[a] < sizes[b]; });
-    const FlowPlaces places(directed);
-    PortalFlow flow(places, may);
-    BitMatrix through(cells, cells);  // reached from cell through any of its portals
-    FlowAnswer found;
-    const size_t words = answer.witnessed.wordsPerRow();
-    std::vector<uint64_t> asked(words);
-    uint64_t steps = 0;
-    for (uint32_t p : order) {
-        const uint32_t from = directed.portals[p].from;
-        for (size_t w = 0; w < words; ++w) asked[w] = ~answer.witnessed.row(from)[w];
-        flow.from(p, asked, settings.budget, found);
-        steps += found.steps;
-        answer.over_budget += found.spent;
-        for (size_t w = 0; w < words; ++w) through.row(from)[w] |= found.reached[w];
-        // first step
-        if (bool(asked[directed.portals[p].to / 64] >> (directed.portals[p].to % 64) & 1))
-            through.set(from, directed.portals[p].to);
-        for (size_t i = 0; i + 1 < found.seen_first.size(); ++i)
-            markRun(answer.witnessed, std::span(found.seen).subspan(found.seen_first[i], found.seen_first[i + 1] - found.seen_first[i]));
-        const auto row = may.row(p);
-        for (size_t w = 0; w < row.size(); ++w)
-            for (uint64_t left = row[w]; left; left &= left - 1) {
-                const auto q = static_cast<uint32_t>(w * 64 + static_cast<size_t>(std::countr_zero(left)));
-                const uint32_t to = directed.portals[q].to;
-                if (!(asked[to / 64] >> (to % 64) & 1) || (found.reached[to / 64] >> (to % 64) & 1)) continue;
-                row[w] &= ~(left & -left);
-                may.clear(directed.portals[q].reverse, directed.portals[p].reverse);
-            }
-    }
-    timer.lap("flow");
-    answer.visible = BitMatrix(cells, cells);
-    for (uint32_t a = 0; a < cells; ++a)
-        for (uint32_t b = 0; b < cells; ++b)
-            if (answer.witnessed.at(a, b) || (through.at(a, b) && through.at(b, a))) answer.visible.set(a, b);
-    timer.lap("join");
-    uint64_t v = answer.visible.count(), wi = answer.witnessed.count();
-    std::fprintf(stderr, "visible %llu witnessed %llu unresolved %.2f%% steps %llu\n", (unsigned long long)v,
-                 (unsigned long long)wi, 100.0 * double(v - wi) / double(v), (unsigned long long)steps);
-    return answer;
+    return Bake(graph, settings).run();
 }
 
 }  // namespace sightline

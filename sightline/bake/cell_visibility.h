@@ -19,6 +19,18 @@ struct BakeProgress {
     double done = 0;        ///< share of the step's work, in [0, 1]
 };
 
+/// What a bake knows between two pieces of its work: a bake of the same graph with the same budget goes on from here, and
+/// ends with the same answer.
+struct CellVisibilityState {
+    uint64_t flowed = 0;       ///< portals and directions whose flow is done, in the bake's own order
+    uint64_t over_budget = 0;  ///< of these
+    uint64_t steps = 0;
+    BitMatrix may;                ///< [directed portals x directed portals] what may follow what
+    BitMatrix witnessed;          ///< [cells x cells]
+    BitMatrix reached;            ///< [cells x cells] by the flows of the row's cell
+    std::vector<uint32_t> order;  ///< of the flows, by directed portals
+};
+
 struct CellVisibilitySettings {
     Jobs* jobs = nullptr;  ///< threads to share the work out to; the answer is the same with any
     uint64_t budget = 0;   ///< steps of the flow for each portal and direction: what is not settled then stays visible,
@@ -26,6 +38,10 @@ struct CellVisibilitySettings {
     /// Asked between pieces of work; true: stop, and leave what is not settled visible. Not the same on every run.
     std::function<bool()> stop;
     std::function<void(const BakeProgress&)> progress;
+    /// Called between pieces of work with all that is known: whoever writes it down can go on after a crash.
+    std::function<void(const CellVisibilityState&)> checkpoint;
+    /// Where to go on, or null: what a checkpoint of this graph got. Taken apart by the bake.
+    CellVisibilityState* resume = nullptr;
 };
 
 /// Every ordered pair of cells is witnessed (a ray passes from one into the other with room to spare), proved hidden, or
@@ -34,10 +50,16 @@ struct CellVisibility {
     BitMatrix visible;         ///< [cells x cells], symmetric; each cell sees itself
     BitMatrix witnessed;       ///< [cells x cells], symmetric; within `visible`
     uint64_t over_budget = 0;  ///< portals and directions whose flow ended by its budget
+    uint64_t steps = 0;        ///< portals that were clipped
     bool stopped = false;      ///< by the settings' stop
 };
 
-/// @param graph  finite
+/// The promise: a line that passes from cell to cell through the graph's portals, where these are known to within
+/// 2^-38 of the largest coordinate, is within `visible` for all cells on it; lines that only touch portals' outlines
+/// count. docs/techniques/pvs.md has the argument.
+///
+/// The same bits for any number of threads, any instruction set, and with or without a resume.
+/// @param graph  finite; cells that are not convex are taken as empty within: what stands in them hides nothing
 CellVisibility bakeCellVisibility(const CellGraph& graph, const CellVisibilitySettings& settings = {});
 
 }  // namespace sightline

@@ -25,10 +25,8 @@ public:
     void weld() {
         for (uint32_t i = 0; i < points_.size(); ++i) {
             const uint32_t same = find(i);
-            if (same != i)
-                points_[i] = points_[same];
-            else
-                cells_.emplace(keyOf(placeOf(points_[i])), i);
+            if (same != i) points_[i] = points_[same];
+            else cells_.emplace(keyOf(placeOf(points_[i])), i);
         }
     }
 
@@ -71,9 +69,8 @@ std::vector<glm::dvec3> hullOf(std::span<const glm::dvec3> outline, const glm::d
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     const double sign = normal[axis] < 0 ? -1 : 1;
     std::vector<glm::dvec3> sorted(outline.begin(), outline.end()), hull;
-    std::sort(sorted.begin(), sorted.end(), [&](const glm::dvec3& a, const glm::dvec3& b) {
-        return a[u] != b[u] ? a[u] < b[u] : a[v] < b[v];
-    });
+    std::sort(sorted.begin(), sorted.end(),
+              [&](const glm::dvec3& a, const glm::dvec3& b) { return a[u] != b[u] ? a[u] < b[u] : a[v] < b[v]; });
     sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
     for (int pass = 0; pass < 2; ++pass) {
         const size_t begin = hull.size();
@@ -155,7 +152,8 @@ bool findPlane(std::span<const glm::dvec3> outline, DirectedPortal& portal) {
     portal.normal = area / length;
     portal.offset = -glm::dot(portal.normal, portal.center);
     double squared = 0;
-    for (const glm::dvec3& point : outline) squared = std::max(squared, glm::dot(point - portal.center, point - portal.center));
+    for (const glm::dvec3& point : outline)
+        squared = std::max(squared, glm::dot(point - portal.center, point - portal.center));
     portal.radius = std::sqrt(squared) * (1 + 0x1p-40);
     return true;
 }

@@ -17,12 +17,13 @@ struct DirectedPortal {
     glm::dvec3 normal{0.0};
     double offset = 0;  ///< dot(normal, p) + offset: the height of p, negative in the cell that is left
     glm::dvec3 center{0.0};
-    double radius = 0;              ///< no point of the outline is farther from the center
-    uint32_t first = 0, count = 0;  ///< of DirectedPortals::points; counter-clockwise as seen from the tip of the normal
-    uint32_t from = 0, to = 0;      ///< cells
-    uint32_t reverse = 0;           ///< the other way through it
-    uint32_t portal = 0;            ///< of the graph
-    uint32_t sheet = 0;             ///< portals of one sheet lie in one plane, exactly: none of them is passed after another
+    double radius = 0;  ///< no point of the outline is farther from the center
+    uint32_t first = 0,
+             count = 0;         ///< of DirectedPortals::points; counter-clockwise as seen from the tip of the normal
+    uint32_t from = 0, to = 0;  ///< cells
+    uint32_t reverse = 0;       ///< the other way through it
+    uint32_t portal = 0;        ///< of the graph
+    uint32_t sheet = 0;  ///< portals of one sheet lie in one plane, exactly: none of them is passed after another
 
     double height(const glm::dvec3& point) const { return glm::dot(normal, point) + offset; }
 };
@@ -32,8 +33,8 @@ struct DirectedPortals {
     std::vector<uint32_t> first_of_cell;  ///< [size: cells + 1] the portals that leave cell c: from first_of_cell[c] on
     std::vector<glm::dvec3> points;       ///< about `center`: the graph's less that
     glm::dvec3 center{0.0};
-    double extent = 0;     ///< no coordinate of a point is larger
-    double rounding = 0;   ///< what sums of three products of coordinates with unit vectors may be off by  [world units]
+    double extent = 0;    ///< no coordinate of a point is larger
+    double rounding = 0;  ///< what sums of three products of coordinates with unit vectors may be off by  [world units]
     double precision = 0;  ///< how well points are known: nearer ones are one, and lie in one plane  [world units]
 
     uint32_t cells() const { return static_cast<uint32_t>(first_of_cell.size()) - 1; }

@@ -20,10 +20,13 @@ namespace sightline {
 /// With so few targets left, each is clipped by all planes, and not only held to each one.
 constexpr uint32_t kFewTargets = 4;
 
+constexpr double kTowardsEdge = 0.9;  // of a window's middle and a place on its outline
+constexpr int kPasses = 3;
+
 struct PortalFlow::State {
     uint32_t portal = 0;
-    Window source, window;          ///< what is left of the first portal and of this one
-    Separators onward;              ///< of the two
+    Window source, window;  ///< what is left of the first portal and of this one
+    Separators onward;      ///< of the two
     /// What may follow every portal of the chain and leads into cells that are asked for and not yet reached: the words
     /// of the row that are not zero.
     uint32_t words = 0;
@@ -32,8 +35,8 @@ struct PortalFlow::State {
 };
 
 struct PortalFlow::Scratch {
-    Scratch(const FlowPlaces& flow_places, const BitMatrix& matrix)
-        : places(flow_places), may(matrix), rays(flow_places.directed), asked(matrix.wordsPerRow()) {}
+    Scratch(const FlowPlaces& flow_places, const WitnessRays& witness_rays, const BitMatrix& matrix)
+        : places(flow_places), rays(witness_rays), may(matrix), asked(matrix.wordsPerRow()) {}
 
     State& at(uint32_t depth) {
         while (states.size() <= depth) {
@@ -46,9 +49,10 @@ struct PortalFlow::Scratch {
     bool isAsked(uint32_t portal) const { return asked[portal / 64] >> (portal % 64) & 1; }
 
     const FlowPlaces& places;
+    const WitnessRays& rays;
     const BitMatrix& may;
-    WitnessRays rays;
     std::vector<std::unique_ptr<State>> states;
+    std::vector<uint32_t> run;    ///< cells of a ray
     std::vector<uint64_t> asked;  ///< portals into cells that are asked for and not yet reached
     FlowAnswer* answer = nullptr;
     uint64_t budget = 0;
@@ -63,9 +67,7 @@ namespace sightline::HWY_NAMESPACE {
 class Chase {
 public:
     explicit Chase(PortalFlow::Scratch& scratch)
-        : s_(scratch),
-          directed_(scratch.places.directed),
-          precision_{directed_.precision, directed_.rounding} {}
+        : s_(scratch), directed_(scratch.places.directed), precision_{directed_.precision, directed_.rounding} {}
 
     void into(uint32_t depth) {
         s_.at(depth + 1);
@@ -117,7 +119,7 @@ private:
         }
         if (!clipBoth(now, then)) return false;
         if (asked) {
-            reach(then);
+            reach(depth, then);
             for (uint32_t i = 0; i < then.words; ++i) then.targets[i] &= s_.asked[then.word[i]];
         }
         if (words == 0) return false;
@@ -184,9 +186,9 @@ private:
             const auto x = hn::LoadU(d, planes.x + i), y = hn::LoadU(d, planes.y + i), z = hn::LoadU(d, planes.z + i),
                        w = hn::LoadU(d, planes.w + i);
             const auto heightOf = [&](const glm::dvec3& p) {
-                return hn::Add(
-                    hn::Add(hn::Add(hn::Mul(x, hn::Set(d, p.x)), hn::Mul(y, hn::Set(d, p.y))), hn::Mul(z, hn::Set(d, p.z))),
-                    w);
+                return hn::Add(hn::Add(hn::Add(hn::Mul(x, hn::Set(d, p.x)), hn::Mul(y, hn::Set(d, p.y))),
+                                       hn::Mul(z, hn::Set(d, p.z))),
+                               w);
             };
             const auto inside = hn::FirstN(d, planes.count - i);
             const auto height = heightOf(glm::dvec3(sphere));
@@ -200,7 +202,7 @@ private:
         return false;
     }
 
-    void reach(const State& state) {
+    void reach(uint32_t depth, const State& state) {
         FlowAnswer& answer = *s_.answer;
         const uint32_t cell = directed_.portals[state.portal].to;
         answer.reached[cell / 64] |= uint64_t(1) << (cell % 64);
@@ -208,11 +210,61 @@ private:
             const uint32_t p = s_.places.entering[i];
             s_.asked[p / 64] &= ~(uint64_t(1) << (p % 64));
         }
-        const glm::dvec3 a = state.source.center(), b = state.window.center();
-        const std::vector<uint32_t>& run = s_.rays.through(state.portal, b, b - a);
-        if (run.size() < 2) return;
-        answer.seen.insert(answer.seen.end(), run.begin(), run.end());
+        prove(depth, state);
+    }
+
+    /// Looks for a line that passes the whole chain, with room to spare.
+    void prove(uint32_t depth, const State& state) {
+        const glm::dvec3 middle = state.source.center();
+        if (shoot(middle, state.window.center(), state) || improve(depth, state, middle)) return;
+        const uint32_t corners = state.source.count;
+        for (uint32_t i = 0; i < corners; ++i) {
+            const glm::dvec3 corner = state.source.corner(i), next = state.source.corner(i + 1 == corners ? 0 : i + 1);
+            if (improve(depth, state, middle + kTowardsEdge * (corner - middle))) return;
+            if (improve(depth, state, middle + kTowardsEdge * (0.5 * (corner + next) - middle))) return;
+        }
+    }
+
+    /// From a point of the source: what it sees of the window; from the middle of that, what it sees of the source; and so on.
+    bool improve(uint32_t depth, const State& state, glm::dvec3 u) {
+        for (int pass = 0; pass < kPasses; ++pass) {
+            Window there;
+            there.assign(state.window);
+            if (!narrow(depth, u, 1, there)) return false;
+            const glm::dvec3 v = there.center();
+            if (shoot(u, v, state)) return true;
+            Window here;
+            here.assign(state.source);
+            if (!narrow(depth, v, -1, here)) return false;
+            u = here.center();
+            if (shoot(u, v, state)) return true;
+        }
+        return false;
+    }
+
+    /// What of a window is seen from a point through the portals between.
+    bool narrow(uint32_t depth, const glm::dvec3& from, double sign, Window& window) const {
+        for (uint32_t i = 1; i <= depth; ++i) {
+            const std::span<const glm::dvec3> outline = directed_.outline(s_.states[i]->portal);
+            for (size_t k = 0; k < outline.size(); ++k) {
+                const glm::dvec3 normal =
+                    sign * glm::cross(outline[k] - from, outline[k + 1 == outline.size() ? 0 : k + 1] - from);
+                if (clip(window, glm::dvec4(normal, -glm::dot(normal, from)), 0, 0) == Clipped::kGone) return false;
+            }
+        }
+        return true;
+    }
+
+    /// Follows one ray; what it passes is noted whether or not it gets there.
+    bool shoot(const glm::dvec3& from, const glm::dvec3& to, const State& state) {
+        s_.rays.through(state.portal, to, to - from, s_.run);
+        if (s_.run.size() < 2) return false;
+        FlowAnswer& answer = *s_.answer;
+        answer.seen.insert(answer.seen.end(), s_.run.begin(), s_.run.end());
         answer.seen_first.push_back(static_cast<uint32_t>(answer.seen.size()));
+        const uint32_t first = directed_.portals[s_.states[0]->portal].from, last = directed_.portals[state.portal].to;
+        return std::find(s_.run.begin(), s_.run.end(), first) != s_.run.end() &&
+               std::find(s_.run.begin(), s_.run.end(), last) != s_.run.end();
     }
 
     PortalFlow::Scratch& s_;
@@ -241,8 +293,8 @@ FlowPlaces::FlowPlaces(const DirectedPortals& all) : directed(all), entering_fir
     for (uint32_t p = 0; p < all.size(); ++p) entering[next[all.portals[p].to]++] = p;
 }
 
-PortalFlow::PortalFlow(const FlowPlaces& places, const BitMatrix& may)
-    : scratch_(std::make_unique<Scratch>(places, may)) {}
+PortalFlow::PortalFlow(const FlowPlaces& places, const WitnessRays& rays, const BitMatrix& may)
+    : scratch_(std::make_unique<Scratch>(places, rays, may)) {}
 PortalFlow::~PortalFlow() = default;
 
 void PortalFlow::from(uint32_t portal, std::span<const uint64_t> asked, uint64_t budget, FlowAnswer& answer) {

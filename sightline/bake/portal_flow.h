@@ -41,7 +41,7 @@ public:
 class PortalFlow {
 public:
     /// @param may  per directed portal what may follow it; may change between flows
-    PortalFlow(const FlowPlaces& places, const BitMatrix& may);
+    PortalFlow(const FlowPlaces& places, const WitnessRays& rays, const BitMatrix& may);
     ~PortalFlow();
 
     /// Chases light from a portal into the cells that are asked for.

@@ -34,10 +34,11 @@ HWY_INLINE Clipped clip(Window& window, const glm::dvec4& plane, double lowest, 
     heights[0] = 0;
     const auto x = hn::Set(d, plane.x), y = hn::Set(d, plane.y), z = hn::Set(d, plane.z), w = hn::Set(d, plane.w);
     for (size_t i = 0; i < window.count; i += lanes)
-        hn::StoreU(hn::Add(hn::Add(hn::Add(hn::Mul(x, hn::LoadU(d, window.x + i)), hn::Mul(y, hn::LoadU(d, window.y + i))),
-                                   hn::Mul(z, hn::LoadU(d, window.z + i))),
-                           w),
-                   d, heights + i);
+        hn::StoreU(
+            hn::Add(hn::Add(hn::Add(hn::Mul(x, hn::LoadU(d, window.x + i)), hn::Mul(y, hn::LoadU(d, window.y + i))),
+                            hn::Mul(z, hn::LoadU(d, window.z + i))),
+                    w),
+            d, heights + i);
     double high = heights[0], low = heights[0];
     for (uint32_t i = 1; i < window.count; ++i) {
         high = std::max(high, heights[i]);
@@ -112,8 +113,8 @@ constexpr double kShortestShared = 0x1p16;  // [precisions]
 /// the largest c that one of them asks for is the plane that touches.
 /// @param turning  1: own's corners run counter-clockwise about the normal; -1: clockwise
 /// @param over     the planes are turned over, and put under own
-HWY_INLINE void addEdgePlanes(const Window& own, const glm::dvec4& plane, double turning, const Window& other, bool over,
-                              const Precision& precision, Separators& out) {
+HWY_INLINE void addEdgePlanes(const Window& own, const glm::dvec4& plane, double turning, const Window& other,
+                              bool over, const Precision& precision, Separators& out) {
     const Doubles d;
     const size_t lanes = hn::Lanes(d);
     double heights[Window::kMost], inverse[Window::kMost];

@@ -12,7 +12,8 @@ namespace sightline {
 /// A convex polygon with room for a few dozen corners; coordinate by coordinate, for vectors of corners.
 struct Window {
     static constexpr uint32_t kMost = 40;
-    static constexpr uint32_t kRoom = kMost + 8;  ///< vectors may reach beyond the last corner; the first stands there again
+    static constexpr uint32_t kRoom =
+        kMost + 8;  ///< vectors may reach beyond the last corner; the first stands there again
 
     uint32_t count = 0;
     double x[kRoom], y[kRoom], z[kRoom];

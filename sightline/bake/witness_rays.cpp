@@ -38,22 +38,23 @@ bool WitnessRays::passes(uint32_t portal, const glm::dvec3& at, const glm::dvec3
     return true;
 }
 
-const std::vector<uint32_t>& WitnessRays::through(uint32_t portal, const glm::dvec3& at, const glm::dvec3& direction) {
-    cells_.clear();
+void WitnessRays::through(uint32_t portal, const glm::dvec3& at, const glm::dvec3& direction,
+                          std::vector<uint32_t>& cells) const {
+    cells.clear();
     double along;
-    if (!passes(portal, at, direction, along)) return cells_;
-    walk(directed_.portals[portal].reverse, at, -direction);
-    walk(portal, at, direction);
-    return cells_;
+    if (!passes(portal, at, direction, along)) return;
+    walk(directed_.portals[portal].reverse, at, -direction, cells);
+    walk(portal, at, direction, cells);
 }
 
-void WitnessRays::walk(uint32_t portal, const glm::dvec3& at, const glm::dvec3& direction) {
+void WitnessRays::walk(uint32_t portal, const glm::dvec3& at, const glm::dvec3& direction,
+                       std::vector<uint32_t>& cells) const {
     double before = 0;
     const double least = margin_ / glm::length(direction);
     // A line passes a plane once: no way is longer than the planes are many. Cells that are not convex may be met twice.
     for (uint32_t steps = 0; steps <= directed_.size(); ++steps) {
         const uint32_t cell = directed_.portals[portal].to;
-        cells_.push_back(cell);
+        cells.push_back(cell);
         uint32_t next = directed_.size();
         double nearest = 0;
         for (uint32_t q = directed_.first_of_cell[cell]; q < directed_.first_of_cell[cell + 1]; ++q) {

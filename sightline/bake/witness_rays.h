@@ -19,25 +19,21 @@ class WitnessRays {
 public:
     explicit WitnessRays(const DirectedPortals& directed);
 
-    /// The cells on the line through a point of a portal: those behind it in the order backward, then those in front.
+    /// The cells on the line through a point of a portal: those behind it, the nearest first, then those in front of it.
     /// @param at         on the portal's plane
     /// @param direction  not zero; along the portal's normal
-    /// @return           the cells; empty if the line does not pass the portal itself
-    const std::vector<uint32_t>& through(uint32_t portal, const glm::dvec3& at, const glm::dvec3& direction);
-
-    /// Whether a line passes a portal, and where.
-    bool passes(uint32_t portal, const glm::dvec3& at, const glm::dvec3& direction, double& along) const;
-
-    double margin() const { return margin_; }
+    /// @param cells      empty if the line does not pass the portal itself
+    void through(uint32_t portal, const glm::dvec3& at, const glm::dvec3& direction,
+                 std::vector<uint32_t>& cells) const;
 
 private:
-    void walk(uint32_t portal, const glm::dvec3& at, const glm::dvec3& direction);
+    bool passes(uint32_t portal, const glm::dvec3& at, const glm::dvec3& direction, double& along) const;
+    void walk(uint32_t portal, const glm::dvec3& at, const glm::dvec3& direction, std::vector<uint32_t>& cells) const;
 
     const DirectedPortals& directed_;
     /// Per point of an outline the edge from it on: inward unit normal in the portal's plane, and its offset less the margin.
     std::vector<glm::dvec4> edges_;
     double margin_;
-    std::vector<uint32_t> cells_;
 };
 
 }  // namespace sightline

@@ -1,0 +1,41 @@
+// As many flows as there are threads that work at once, whichever threads these are.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include "sightline/bake/portal_flow.h"
+
+namespace sightline {
+
+/// Hands out a flow that nobody else uses now; without waiting. A flow's answer does not depend on what it did before.
+class FlowPool {
+public:
+    FlowPool(const FlowPlaces& places, const WitnessRays& rays, const BitMatrix& may)
+        : places_(places), rays_(rays), may_(may) {}
+
+    void from(uint32_t portal, std::span<const uint64_t> asked, uint64_t budget, FlowAnswer& answer) {
+        for (Place& place : held_) {
+            if (place.busy.exchange(true, std::memory_order_acquire)) continue;
+            if (!place.flow) place.flow = std::make_unique<PortalFlow>(places_, rays_, may_);
+            place.flow->from(portal, asked, budget, answer);
+            place.busy.store(false, std::memory_order_release);
+            return;
+        }
+        PortalFlow(places_, rays_, may_).from(portal, asked, budget, answer);
+    }
+
+private:
+    struct Place {
+        std::atomic<bool> busy{false};
+        std::unique_ptr<PortalFlow> flow;
+    };
+
+    const FlowPlaces& places_;
+    const WitnessRays& rays_;
+    const BitMatrix& may_;
+    Place held_[256];
+};
+
+}  // namespace sightline
