@@ -17,13 +17,15 @@ inline glm::dvec3 randomIn(Random& random, const Box3d& box) {
 
 /// Planes of every unpleasant kind: through points of a lattice, the same once more, turned round, moved by the rounding
 /// of a float or of a double, nearly parallel, of no normal at all. Within +-4 of `center`.
-inline LeafTree randomLeafTree(uint64_t seed, int depth, const glm::dvec3& center = glm::dvec3(0.0)) {
+/// @param repeated  whether planes come again, moved or not: leaves may then be thinner than rounding
+inline LeafTree randomLeafTree(uint64_t seed, int depth, const glm::dvec3& center = glm::dvec3(0.0),
+                               bool repeated = true) {
     Random random(seed);
     LeafTree tree;
     tree.bounds = {center - 4.0, center + 4.0};
     std::vector<glm::dvec4> used;
     const auto plane = [&]() {
-        const uint64_t kind = random.below(20);
+        const uint64_t kind = random.below(repeated ? 20 : 12);
         if (kind >= 12 && !used.empty()) {
             glm::dvec4 again = used[random.below(used.size())];
             const double up = random.below(2) ? 1 : -1;
@@ -35,7 +37,8 @@ inline LeafTree randomLeafTree(uint64_t seed, int depth, const glm::dvec3& cente
             return again;
         }
         glm::dvec3 normal(0.0), point = center;
-        for (int i = 0; i < 3; ++i) point[i] += static_cast<double>(random.below(7)) - 3;
+        for (int i = 0; i < 3; ++i)
+            point[i] += repeated ? static_cast<double>(random.below(7)) - 3 : random.uniform(-3, 3);
         if (kind < 7) {
             normal[static_cast<int>(random.below(3))] = random.below(2) ? 1 : -1;
         } else if (kind < 11) {
@@ -43,7 +46,7 @@ inline LeafTree randomLeafTree(uint64_t seed, int depth, const glm::dvec3& cente
                 for (int i = 0; i < 3; ++i) normal[i] = static_cast<double>(random.below(5)) - 2;
             normal = glm::normalize(normal);
             for (int i = 0; i < 3; ++i) normal[i] = static_cast<float>(normal[i]);
-        } else if (random.below(8) != 0) {
+        } else if (!repeated || random.below(8) != 0) {
             for (int i = 0; i < 3; ++i) normal[i] = random.uniform(-1, 1);
             normal = glm::normalize(normal);
         }
