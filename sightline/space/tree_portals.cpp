@@ -61,8 +61,12 @@ private:
 
     void numberCells() {
         graph_.cell_of_leaf.assign(tree_.contents.size(), CellGraph::kNoCell);
+        std::vector<bool> hangs(tree_.contents.size(), tree_.nodes.empty());
+        for (const LeafTreeNode& node : tree_.nodes)
+            for (const uint32_t child : node.child)
+                if ((child & LeafTreeNode::kLeaf) != 0) hangs[child & ~LeafTreeNode::kLeaf] = true;
         for (uint32_t leaf = 0; leaf < tree_.contents.size(); ++leaf)
-            if (passes(leaf)) graph_.cell_of_leaf[leaf] = graph_.cells++;
+            if (hangs[leaf] && passes(leaf)) graph_.cell_of_leaf[leaf] = graph_.cells++;
         open_.assign(tree_.nodes.size(), false);
         for (uint32_t node = static_cast<uint32_t>(tree_.nodes.size()); node-- > 0;)
             for (uint32_t side = 0; side < 2; ++side) {

@@ -26,7 +26,8 @@ struct TreePortalCounts {
     uint64_t same_leaf = 0;  ///< faces between parts of one leaf: no portals
 };
 
-/// A cell of each leaf that is not solid, numbered as the leaves are, and a portal of each face that two of them share.
+/// A cell of each leaf of the tree that is not solid, numbered as the leaves are, and a portal of each face that two of them
+/// share. Leaves that no node names are none of it.
 ///
 /// A face is what the closed regions of two leaves have in common of a node's plane, within the tree's bounds, the
 /// planes being exactly as they are given. Each face of positive area becomes one portal, convex, in the plane of its

@@ -283,6 +283,11 @@ TEST(TreePortals, HeedContents) {
     EXPECT_EQ(cellsOfTree(tree, {.contents_stop = true}).portals.size(), 4u);
     EXPECT_EQ(cellsOfTree(tree, {.sky_is_open = true, .contents_stop = true}).portals.size(), 4u);
 
+    tree.contents.push_back(LeafContents::kEmpty);  // of another tree
+    graph = cellsOfTree(tree);
+    EXPECT_EQ(graph.cells, 6u);
+    EXPECT_EQ(graph.cell_of_leaf[8], CellGraph::kNoCell);
+
     LeafTree one;
     one.contents = {LeafContents::kEmpty};
     graph = cellsOfTree(one);
