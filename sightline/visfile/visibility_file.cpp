@@ -1,0 +1,101 @@
+// Writes and opens visibility files.
+// SPDX-License-Identifier: MIT
+#include "sightline/visfile/visibility_file.h"
+
+#include <utility>
+
+#include "sightline/base/bytes.h"
+#include "sightline/visfile/leaf_cells.h"
+#include "sightline/visfile/packed_rows.h"
+
+namespace sightline {
+
+using namespace visibility_file;
+
+namespace {
+
+constexpr size_t kMapBytes = 16;  // before the name
+
+Array<char> mapSection(const VisibilityContent& content, Memory* memory) {
+    Array<char> bytes(memory);
+    ByteWriter out(bytes);
+    out.put(static_cast<uint32_t>(content.cell_of_leaf.size()));
+    out.put(uint32_t{0});
+    out.put(content.map_hash);
+    bytes.insert(bytes.end(), content.map_name.begin(), content.map_name.end());
+    return bytes;
+}
+
+/// A section in place, or what a packed one unpacks to.
+struct Section {
+    std::span<const char> bytes;
+    uint64_t at = 0;
+};
+
+template <class Unpack>
+Result<Section> eitherForm(const SectionFile& sections, uint32_t in_place, uint32_t packed, std::string_view file,
+                           Array<char>& unpacked, Unpack unpack) {
+    const std::span<const char> plain = sections.find(in_place), coded = sections.find(packed);
+    if (!plain.empty() && !coded.empty())
+        return faultAt(file, "a section that is there twice, packed and not", sections.placeOf(coded));
+    if (coded.empty()) return Section{plain, sections.placeOf(plain)};
+    Result<Array<char>> bytes = unpack(coded, file, sections.placeOf(coded), unpacked.get_allocator().resource());
+    if (!bytes) return bytes.error();
+    unpacked = std::move(*bytes);
+    return Section{unpacked, sections.placeOf(coded)};
+}
+
+}  // namespace
+
+Result<Array<char>> visibilityFile(const VisibilityContent& content, VisibilityForm form, Memory* memory) {
+    Result<Array<char>> rows = tiledRows(content.visible, memory);
+    if (!rows) return rows;
+    for (const uint32_t cell : content.cell_of_leaf)
+        if (cell >= content.visible.rows() && cell != CellGraph::kNoCell)
+            return Error{Error::Kind::kUsage, "a leaf of a cell that there is not"};
+    SectionWriter writer(memory);
+    writer.add(kMap, mapSection(content, memory));
+    if (form == VisibilityForm::kInPlace) {
+        writer.add(kRows, std::move(*rows));
+        writer.add(kLeaves, leafCells(content.cell_of_leaf, memory));
+    } else {
+        const Result<VisibleRows> opened = VisibleRows::open(*rows, "rows");
+        if (!opened) return opened.error();
+        writer.add(kPackedRows, packedRows(*opened, memory));
+        writer.add(kPackedLeaves, packedLeafCells(content.cell_of_leaf, memory));
+    }
+    return writer.file();
+}
+
+Result<VisibilityFile> VisibilityFile::open(std::span<const char> bytes, std::string_view file, Memory* memory) {
+    const Result<SectionFile> sections = SectionFile::open(bytes, file);
+    if (!sections) return sections.error();
+    VisibilityFile opened(memory);
+    const std::span<const char> map = sections->find(kMap);
+    if (map.size() < kMapBytes) return faultAt(file, "no word on the map", sections->placeOf(map));
+    ByteCursor head(map);
+    const uint32_t leaves = head.take<uint32_t>();
+    if (head.take<uint32_t>() != 0) return faultAt(file, "a mark that is not known", sections->placeOf(map) + 4);
+    opened.map_hash_ = head.take<uint64_t>();
+    opened.map_name_ = {map.data() + kMapBytes, map.size() - kMapBytes};
+
+    const Result<Section> rows = eitherForm(*sections, kRows, kPackedRows, file, opened.unpacked_rows_, unpackedRows);
+    if (!rows) return rows.error();
+    if (rows->bytes.empty()) return faultAt(file, "no rows", bytes.size());
+    const Result<VisibleRows> view = VisibleRows::open(rows->bytes, file, rows->at);
+    if (!view) return view.error();
+    opened.rows_ = *view;
+
+    const Result<Section> numbers =
+        eitherForm(*sections, kLeaves, kPackedLeaves, file, opened.unpacked_leaves_, unpackedLeafCells);
+    if (!numbers) return numbers.error();
+    if (numbers->bytes.size() != 2 * uint64_t{leaves})
+        return faultAt(file, "not as many leaves as it says", numbers->at);
+    opened.cell_of_leaf_ = PlacedNumbers<uint16_t>(numbers->bytes);
+    for (uint32_t leaf = 0; leaf < leaves; ++leaf)
+        if (const uint16_t cell = opened.cell_of_leaf_[leaf]; cell >= view->cells() && cell != kNoCellInFile)
+            return faultAt(file, "a leaf of a cell that there is not", numbers->at);
+    return opened;
+}
+
+}  // namespace sightline

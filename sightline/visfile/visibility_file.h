@@ -1,0 +1,85 @@
+// The visibility file: which cells of a map see one another, and which leaf of it lies in which cell.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "sightline/base/bit_matrix.h"
+#include "sightline/base/memory.h"
+#include "sightline/base/result.h"
+#include "sightline/space/cells.h"
+#include "sightline/visfile/section_file.h"
+#include "sightline/visfile/visible_rows.h"
+
+namespace sightline {
+
+namespace visibility_file {
+
+/// Sections. A reader passes over those that it does not know.
+inline constexpr uint32_t kMap = section_file::tagOf("map ");         ///< leaves (4 bytes), 4 of zero, hash (8), name
+inline constexpr uint32_t kRows = section_file::tagOf("rows");        ///< as tiledRows() writes them
+inline constexpr uint32_t kPackedRows = section_file::tagOf("prow");  ///< as packedRows() does; instead of kRows
+inline constexpr uint32_t kLeaves = section_file::tagOf("leaf");      ///< as leafCells() does
+inline constexpr uint32_t kPackedLeaves =
+    section_file::tagOf("plef");  ///< as packedLeafCells() does; instead of kLeaves
+
+}  // namespace visibility_file
+
+/// What a visibility file is written from.
+struct VisibilityContent {
+    const BitMatrix& visible;                ///< [cells x cells], symmetric, its diagonal set
+    std::span<const uint32_t> cell_of_leaf;  ///< of the map; CellGraph::kNoCell: none; may be empty
+    std::string_view map_name;               ///< for people
+    uint64_t map_hash = 0;                   ///< contentHash() of the file that the cells are of; 0: not known
+};
+
+enum class VisibilityForm {
+    kInPlace,  ///< answers as it lies in memory or in a mapped file
+    kPacked,   ///< a third of the bytes or less; unpacked when it is opened
+};
+
+/// The bytes of the file: the same for the same content, on every machine.
+/// Errors (kUsage): as tiledRows(), or a leaf of a cell that there is not.
+Result<Array<char>> visibilityFile(const VisibilityContent& content, VisibilityForm form,
+                                   Memory* memory = defaultMemory());
+
+/// A visibility file that was opened. Any number of threads may ask at once.
+class VisibilityFile {
+public:
+    /// Of a file in place nothing is copied; of a packed one its sections are unpacked. The bytes must outlive it.
+    /// Nothing in them is believed: whatever they are, they are opened so that every question has an answer, or refused.
+    /// O(bytes) in place; packed, also O(cells^2 / 128).
+    /// @param file  what errors call the bytes
+    /// Errors (kInput): one line with the file, what is wrong, and at which byte.
+    static Result<VisibilityFile> open(std::span<const char> bytes, std::string_view file,
+                                       Memory* memory = defaultMemory());
+
+    const VisibleRows& rows() const { return rows_; }
+    uint32_t leaves() const { return static_cast<uint32_t>(cell_of_leaf_.size()); }
+    /// CellGraph::kNoCell if it is in none.
+    /// @pre leaf < leaves()
+    uint32_t cellOfLeaf(uint32_t leaf) const {
+        const uint16_t cell = cell_of_leaf_[leaf];
+        return cell < rows_.cells() ? cell : CellGraph::kNoCell;
+    }
+    std::string_view mapName() const { return map_name_; }
+    uint64_t mapHash() const { return map_hash_; }
+    /// What answers are read from: rows and leaves.
+    size_t residentBytes() const { return rows_.bytes() + 2 * cell_of_leaf_.size(); }
+
+    VisibilityFile(VisibilityFile&&) = default;
+    VisibilityFile& operator=(VisibilityFile&&) = delete;
+
+private:
+    explicit VisibilityFile(Memory* memory) : unpacked_rows_(memory), unpacked_leaves_(memory) {}
+
+    Array<char> unpacked_rows_, unpacked_leaves_;
+    VisibleRows rows_;
+    PlacedNumbers<uint16_t> cell_of_leaf_;
+    std::string_view map_name_;
+    uint64_t map_hash_ = 0;
+};
+
+}  // namespace sightline

@@ -1,0 +1,51 @@
+// Writes seeds for the fuzzer of visibility files: sightline_visibility_corpus tests/fuzz/corpus/visibility_file
+// SPDX-License-Identifier: MIT
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/visfile/made_file.h"
+#include "tests/visfile/seal.h"
+
+namespace sightline::test {
+namespace {
+
+bool write(const std::filesystem::path& file, const Array<char>& bytes) {
+    std::ofstream out(file, std::ios::binary);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush();
+    if (!out) std::fprintf(stderr, "%s: cannot be written\n", file.c_str());
+    return bool(out);
+}
+
+bool writeAll(const std::filesystem::path& folder) {
+    const Array<char> plain = MadeFile(1, 40).bytes(VisibilityForm::kInPlace),
+                      packed = MadeFile(2, 60).bytes(VisibilityForm::kPacked),
+                      one = MadeFile(3, 1).bytes(VisibilityForm::kInPlace),
+                      many = MadeFile(4, 200).bytes(VisibilityForm::kPacked);
+    Array<char> cut = plain, damaged = packed, no_tiles = plain, many_cells = packed;
+    cut.resize(cut.size() / 2);
+    damaged[damaged.size() / 2] ^= 1;
+    const uint64_t rows =
+        SectionFile::open(plain, "")->placeOf(SectionFile::open(plain, "")->find(visibility_file::kRows));
+    no_tiles[rows + 8] = 0;
+    seal(no_tiles);
+    const SectionFile sections = *SectionFile::open(packed, "");
+    const uint64_t coded = sections.placeOf(sections.find(visibility_file::kPackedRows));
+    for (const uint64_t at : {coded, coded + 1, coded + 4, coded + 5}) many_cells[at] = '\xff';
+    seal(many_cells);
+    return write(folder / "in_place.see", plain) && write(folder / "packed.see", packed) &&
+           write(folder / "one_cell.see", one) && write(folder / "many.see", many) && write(folder / "cut.see", cut) &&
+           write(folder / "damaged.see", damaged) && write(folder / "no_tiles.see", no_tiles) &&
+           write(folder / "many_cells.see", many_cells);
+}
+
+}  // namespace
+}  // namespace sightline::test
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::fprintf(stderr, "usage: sightline_visibility_corpus FOLDER\n");
+        return 2;
+    }
+    return sightline::test::writeAll(argv[1]) ? 0 : 4;
+}
