@@ -30,6 +30,7 @@ constexpr Case kCases[] = {
     {"inner", benchInner},
     {"occlusion", benchOcclusion},
     {"order", benchOrder},
+    {"rows", benchRows},
     {"shadow", benchShadow},
     {"volumes", benchVolumes},
 };

@@ -47,6 +47,10 @@ Table benchOcclusion(const Options& options);
 /// hierarchy beside Embree's.
 Table benchOrder(const Options& options);
 
+/// The rows of visibility of real maps, where ../shared/maps is there, and of rooms in a grid: their bytes on disk and in memory, and
+/// what a row and a pair cost, beside the run-length lump.
+Table benchRows(const Options& options);
+
 /// A city under a low sun, from its streets: the casters of a shadow map beside those in the light's frustum, and the pixels
 /// that the reference renderer lights otherwise without the rest.
 Table benchShadow(const Options& options);
