@@ -8,6 +8,7 @@
 
 #include "sightline/import/game_archive.h"
 #include "sightline/import/prt.h"
+#include "sightline/import/quake_map.h"
 #include "sightline/import/quake_visibility.h"
 
 namespace sightline::test {
@@ -112,6 +113,35 @@ inline std::string bspFault(const std::string& bytes) {
     if (!again.ok()) return "what was written is not read: " + again.error().message;
     const Result<QuakeVisibility> same = readQuakeVisibility(*again, "fuzz.bsp");
     return same.ok() && same->seen == seen->seen ? "" : "what was written says something else";
+}
+
+/// Empty, or what is wrong with the answer to these bytes, the source of a map.
+inline std::string sourceFault(const std::string& bytes) {
+    const Result<QuakeMap> map = parseQuakeMap(bytesOf(bytes), "fuzz.map");
+    if (!map.ok()) return lineFault(map.error(), "fuzz.map");
+    uint64_t pairs = 0, brushes = 0, sides = 0;
+    for (const QuakeMapEntity& entity : map->entities) {
+        if (entity.first_pair != pairs || entity.first_brush != brushes) return "an entity's things are out of order";
+        pairs += entity.pair_count;
+        brushes += entity.brush_count;
+        (void)map->valueOf(entity, "origin");
+    }
+    if (pairs != map->pairs.size() || brushes != map->brushes.size()) return "an entity's things are out of range";
+    for (const QuakeMapBrush& brush : map->brushes) {
+        if (brush.first_side != sides) return "a brush's sides are out of order";
+        sides += brush.side_count;
+    }
+    if (sides != map->sides.size()) return "a brush's sides are out of range";
+    for (const QuakeMapSide& side : map->sides) {
+        if (side.texture >= map->textures.size()) return "a side's texture is out of range";
+        for (const glm::dvec3& point : side.points)
+            for (int axis = 0; axis < 3; ++axis)
+                if (!(std::abs(point[axis]) <= 1e9)) return "a point is not finite, or too far";
+    }
+    for (const QuakeMapPair& pair : map->pairs)
+        if (const auto vector = quakeVector(pair.value); vector && !(std::abs(vector->x) <= 1e9))
+            return "a vector is not finite, or too far";
+    return "";
 }
 
 /// Empty, or what is wrong with how an archive of these bytes is listed and unpacked.

@@ -1,0 +1,15 @@
+// Whatever the bytes are, the reader of sources of maps answers with a sound record or with one line.
+// SPDX-License-Identifier: MIT
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+
+#include "../import/map_check.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    const std::string fault = sightline::test::sourceFault({reinterpret_cast<const char*>(data), size});
+    if (fault.empty()) return 0;
+    std::fprintf(stderr, "%s\n", fault.c_str());
+    std::abort();
+}
