@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "sightline/base/random.h"
+#include "sightline/geom/outline_hull.h"
 
 namespace sightline {
 namespace {
@@ -59,35 +60,6 @@ private:
     double size_;
     std::unordered_multimap<uint64_t, uint32_t> cells_;
 };
-
-/// The convex hull in the plane, counter-clockwise as seen from the normal's tip (Andrew's chains), without points that
-/// lie on its edges.
-std::vector<glm::dvec3> hullOf(std::span<const glm::dvec3> outline, const glm::dvec3& normal) {
-    int axis = 0;
-    for (int i = 1; i < 3; ++i)
-        if (std::abs(normal[i]) > std::abs(normal[axis])) axis = i;
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const double sign = normal[axis] < 0 ? -1 : 1;
-    std::vector<glm::dvec3> sorted(outline.begin(), outline.end()), hull;
-    std::sort(sorted.begin(), sorted.end(),
-              [&](const glm::dvec3& a, const glm::dvec3& b) { return a[u] != b[u] ? a[u] < b[u] : a[v] < b[v]; });
-    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-    for (int pass = 0; pass < 2; ++pass) {
-        const size_t begin = hull.size();
-        for (const glm::dvec3& point : sorted) {
-            while (hull.size() >= begin + 2) {
-                const glm::dvec3 &a = hull[hull.size() - 2], &b = hull.back();
-                if ((b[u] - a[u]) * (point[v] - a[v]) - (b[v] - a[v]) * (point[u] - a[u]) > 0) break;
-                hull.pop_back();
-            }
-            hull.push_back(point);
-        }
-        hull.pop_back();
-        std::reverse(sorted.begin(), sorted.end());
-    }
-    if (sign < 0) std::reverse(hull.begin(), hull.end());
-    return hull;
-}
 
 /// Numbers for planes: portals of one number lie in one plane to within the precision.
 class Sheets {
@@ -191,7 +163,7 @@ DirectedPortals directPortals(const CellGraph& graph) {
         const CellPortal& portal = graph.portals[i];
         const std::span<const glm::dvec3> given{points.data() + portal.first, portal.count};
         // The graph's normal points into cells[0]: this is the way from cells[1].
-        std::vector<glm::dvec3> hull = hullOf(given, glm::dvec3(portal.plane));
+        std::vector<glm::dvec3> hull = outlineHull(given, glm::dvec3(portal.plane));
         if (hull.size() < 3) hull.assign(given.begin(), given.end());
         DirectedPortal way;
         if (!findPlane(hull, way)) {  // no area is left: as the graph has it

@@ -14,11 +14,17 @@ namespace sightline {
 /// led out of it. Cells need not be convex any more, nor hang together; visibility through portals holds for them all the
 /// same, as a cell that is entered is left through any of its portals.
 ///
-/// Some portals of a merged pair may lie side by side in one plane: they stay apart, for their union need not be convex.
+/// Some portals of a merged pair may lie side by side in one plane: they stay apart, for their union need not be convex;
+/// joinPortals() makes them one.
 /// O(portals).
 /// @param cell_of_cell  the new number of each cell, or CellGraph::kNoCell: it is a wall from now on  [size: graph.cells]
 /// @param cells         how many there are then; every number is less
 CellGraph mergeCells(const CellGraph& graph, std::span<const uint32_t> cell_of_cell, uint32_t cells);
+
+/// The graph with all portals of one pair of cells that lie in one plane, the same to the last bit, made one: their convex hull. There are
+/// fewer chains of portals then, and more gets through them: visibility is a superset. Doors stay portals of their own.
+/// O(portals log portals).
+CellGraph joinPortals(const CellGraph& graph);
 
 /// The new number of each cell from new numbers of the leaves, as a compiler's list of clusters has them. A cell whose
 /// leaves were given several numbers takes the first; one without leaves, or whose leaves have none, takes kNoCell.
