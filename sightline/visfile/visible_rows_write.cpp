@@ -15,8 +15,8 @@ namespace {
 Status checkMatrix(const BitMatrix& visible) {
     const auto wrong = [](const char* what) { return Error{Error::Kind::kUsage, what}; };
     const size_t n = visible.rows();
-    if (n != visible.columns()) return wrong("a matrix of visibility that is not square");
     if (n > kMostOrderedRows) return wrong("a matrix of visibility of more than 65535 cells");
+    if (n != visible.columns()) return wrong("a matrix of visibility that is not square");
     for (size_t i = 0; i < n; ++i) {
         if (!visible.at(i, i)) return wrong("a matrix of visibility in which a cell does not see itself");
         const std::span<const uint64_t> row = visible.row(i);

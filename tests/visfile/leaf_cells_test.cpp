@@ -58,6 +58,10 @@ TEST(LeafCells, OfWhatWasNeverPutAreRefusedOrNumbers) {
         ASSERT_EQ(plain.error().message.rfind("f: packed leaves", 0), 0u) << plain.error().message;
     }
     EXPECT_GT(unpacked, 100);
+    Array<char> longer = packedLeafCells(someLeaves(1, 40, 30));
+    longer.push_back(0);
+    EXPECT_EQ(unpackedLeafCells(longer, "f", 10).error().message,
+              "f: packed leaves that do not end with their bytes at byte " + std::to_string(10 + longer.size()));
     Array<char> many(4, '\xff');  // four thousand million leaves, and not a bit for them
     EXPECT_FALSE(unpackedLeafCells(many, "f").ok());
     EXPECT_FALSE(unpackedLeafCells({}, "f").ok());

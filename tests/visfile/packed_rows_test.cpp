@@ -36,6 +36,15 @@ TEST(PackedRows, TakeNoMoreThanTheBitsOfHalfTheMatrix) {
     EXPECT_LT(packed(*tiledRows(grouped)).size(), 9000u);
 }
 
+TEST(PackedRows, EndWithTheirBytes) {
+    Array<char> bytes = packed(*tiledRows(groupedRows(100, 9, 0.02, 1)));
+    bytes.push_back(0);  // past the end there is only zero anyway
+    const Result<Array<char>> tiled = unpackedRows(bytes, "f", 40);
+    ASSERT_FALSE(tiled.ok());
+    EXPECT_EQ(tiled.error().message,
+              "f: packed rows that do not end with their bytes at byte " + std::to_string(40 + bytes.size()));
+}
+
 TEST(PackedRows, OfWhatWasNeverPutAreRefusedOrUnpackToWhatCanBeLookedAt) {
     Random random(3);
     int unpacked = 0, opened = 0;
@@ -82,6 +91,13 @@ TEST(PackedRows, PromisesOfFewBytesTakeLittle) {
         EXPECT_FALSE(unpackedRows(bytes, "rows", 0, &counted).ok());
         EXPECT_LT(counted.most, 4u << 20);
     }
+    // A sound list of cells, and then no tiles, of which there would be 70 thousand.
+    Array<char> no_tiles = packed(*tiledRows(onlyThemselves(3000)));
+    const size_t whole = no_tiles.size();
+    no_tiles.resize(whole - whole / 4);
+    Counted counted;
+    EXPECT_FALSE(unpackedRows(no_tiles, "rows", 0, &counted).ok());
+    EXPECT_LT(counted.most, 150u << 10);
 }
 
 }  // namespace

@@ -130,6 +130,18 @@ TEST(VisibilityFile, SaysInOneLineWhatIsMissing) {
     EXPECT_EQ(without(0, kRows), "f: a section that is there twice, packed and not");
 }
 
+TEST(VisibilityFile, HasNoLeafOfACellThatThereIsNot) {
+    const MadeFile made(6);
+    Array<char> bytes = made.bytes(VisibilityForm::kInPlace);
+    const SectionFile sections = *SectionFile::open(bytes, "f");
+    const uint64_t leaves = sections.placeOf(sections.find(visibility_file::kLeaves));
+    bytes[leaves + 2] = 70;
+    seal(bytes);
+    const Result<VisibilityFile> file = VisibilityFile::open(bytes, "f");
+    ASSERT_FALSE(file.ok());
+    EXPECT_EQ(file.error().message, "f: a leaf of a cell that there is not at byte " + std::to_string(leaves));
+}
+
 TEST(VisibilityFile, PassesOverSectionsThatItDoesNotKnow) {
     using namespace visibility_file;
     const MadeFile made(5);

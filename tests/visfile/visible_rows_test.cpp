@@ -66,7 +66,7 @@ TEST(VisibleRows, AreOfSymmetricMatricesOnly) {
     EXPECT_EQ(message(one_way), "a matrix of visibility that is not symmetric");
     EXPECT_EQ(message(BitMatrix(3, 3)), "a matrix of visibility in which a cell does not see itself");
     EXPECT_EQ(message(BitMatrix(3, 4)), "a matrix of visibility that is not square");
-    EXPECT_EQ(message(BitMatrix(65536, 0)), "a matrix of visibility that is not square");
+    EXPECT_EQ(message(BitMatrix(65536, 0)), "a matrix of visibility of more than 65535 cells");
 }
 
 template <class T>
