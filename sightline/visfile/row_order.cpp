@@ -6,8 +6,55 @@
 #include <bit>
 #include <numeric>
 
+#define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sightline/visfile/row_order.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// In how many bits two rows differ.
+/// @param words  a multiple of 8
+uint32_t differingBits(const uint64_t* HWY_RESTRICT a, const uint64_t* HWY_RESTRICT b, size_t words) {
+    const hn::CappedTag<uint64_t, 8> d;
+    auto bits = hn::Zero(d);
+    for (size_t i = 0; i < words; i += hn::Lanes(d))
+        bits = hn::Add(bits, hn::PopulationCount(hn::Xor(hn::LoadU(d, a + i), hn::LoadU(d, b + i))));
+    return static_cast<uint32_t>(hn::GetLane(hn::SumOfLanes(d, bits)));
+}
+
+/// Which of the rows `left` differs the least from row `here`: the first of several.
+/// @param rows  each `words` long, a multiple of 8
+/// @param ones  per row
+/// @returns     its place in `left`
+size_t nearestKernel(const uint64_t* HWY_RESTRICT rows, size_t words, const uint32_t* HWY_RESTRICT ones, uint16_t here,
+                     const uint16_t* HWY_RESTRICT left, size_t count) {
+    size_t nearest = 0;
+    uint32_t least = ~0u;
+    for (size_t i = 0; i < count; ++i) {
+        const uint32_t a = ones[here], b = ones[left[i]];
+        if ((a > b ? a - b : b - a) >= least) continue;
+        const uint32_t bits = differingBits(rows + here * words, rows + left[i] * words, words);
+        if (bits >= least) continue;
+        least = bits;
+        nearest = i;
+    }
+    return nearest;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sightline
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace sightline {
 namespace {
+
+HWY_EXPORT(nearestKernel);
 
 constexpr size_t kMostCandidates = 4096;
 
@@ -46,44 +93,24 @@ Classes classesOf(const BitMatrix& rows, Memory* memory) {
     return classes;
 }
 
-uint32_t onesOf(std::span<const uint64_t> row) {
-    uint32_t ones = 0;
-    for (const uint64_t word : row) ones += static_cast<uint32_t>(std::popcount(word));
-    return ones;
-}
-
-/// In how many bits two rows differ; at least `enough` if that is reached.
-uint32_t distance(std::span<const uint64_t> a, std::span<const uint64_t> b, uint32_t enough) {
-    uint32_t bits = 0;
-    for (size_t word = 0; word < a.size() && bits < enough;) {
-        const size_t end = std::min(a.size(), word + 8);
-        for (; word < end; ++word) bits += static_cast<uint32_t>(std::popcount(a[word] ^ b[word]));
-    }
-    return bits;
-}
-
 /// The classes' numbers in the order of the walk.
 Array<uint16_t> walk(const BitMatrix& rows, const Classes& classes, Memory* memory) {
-    const size_t count = classes.begin.size();
+    const size_t count = classes.begin.size(), words = (rows.wordsPerRow() + 7) / 8 * 8;
+    Array<uint64_t> row_of(count * words, 0, memory);  // a row of each class, side by side
+    Array<uint32_t> ones(count, 0, memory);
+    for (size_t of = 0; of < count; ++of) {
+        const std::span<const uint64_t> row = rows.row(classes.sorted[classes.begin[of]]);
+        std::copy(row.begin(), row.end(), row_of.begin() + static_cast<std::ptrdiff_t>(of * words));
+        for (const uint64_t word : row) ones[of] += static_cast<uint32_t>(std::popcount(word));
+    }
     Array<uint16_t> path(memory), left(count, memory);
-    Array<uint32_t> ones(memory);
-    const auto rowOf = [&](uint16_t of) { return rows.row(classes.sorted[classes.begin[of]]); };
-    for (size_t i = 0; i < count; ++i) ones.push_back(onesOf(rowOf(static_cast<uint16_t>(i))));
     std::iota(left.begin(), left.end(), uint16_t{0});
     for (size_t nearest = 0; !left.empty();) {
         const uint16_t here = left[nearest];
         path.push_back(here);
         left.erase(left.begin() + static_cast<std::ptrdiff_t>(nearest));
-        nearest = 0;
-        uint32_t least = ~0u;
-        for (size_t i = 0; i < std::min(left.size(), kMostCandidates); ++i) {
-            const uint32_t a = ones[here], b = ones[left[i]];
-            if (std::max(a, b) - std::min(a, b) >= least) continue;
-            const uint32_t bits = distance(rowOf(here), rowOf(left[i]), least);
-            if (bits >= least) continue;
-            least = bits;
-            nearest = i;
-        }
+        nearest = HWY_DYNAMIC_DISPATCH(nearestKernel)(row_of.data(), words, ones.data(), here, left.data(),
+                                                      std::min(left.size(), kMostCandidates));
     }
     return path;
 }
@@ -103,3 +130,4 @@ RowOrder orderRows(const BitMatrix& rows, Memory* memory) {
 }
 
 }  // namespace sightline
+#endif  // HWY_ONCE

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "tests/support_targets.h"
 #include "tests/visfile/made_rows.h"
 
 namespace sightline::test {
@@ -56,6 +57,20 @@ TEST(RowOrder, GoesOnToTheNearestClass) {
                 ASSERT_TRUE(far > step || rowOf(other) > next);
             }
         }
+    }
+}
+
+TEST(RowOrder, IsTheSameOnEveryInstructionSet) {
+    std::vector<MadeRows> made = manyRows();
+    made.push_back({"1100 nearly grouped", groupedRows(1100, 90, 0.002, 8)});
+    for (const MadeRows& rows : made) {
+        const RowOrder wanted = orderRows(rows.matrix);
+        const int targets = forEachTarget([&](const std::string& target) {
+            const RowOrder order = orderRows(rows.matrix);
+            EXPECT_EQ(order.cell_at, wanted.cell_at) << rows.name << " on " << target;
+            EXPECT_EQ(order.first, wanted.first) << rows.name << " on " << target;
+        });
+        EXPECT_GE(targets, 1);
     }
 }
 
