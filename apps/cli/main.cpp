@@ -104,6 +104,7 @@ int runTool(int count, char** words) {
     addRender(tool, exit_code);
     addExplain(tool, exit_code);
     addReplay(tool, exit_code);
+    addVis(tool, exit_code);
     addCalibrate(tool, exit_code);
     addReport(tool, exit_code);
     addInfo(tool, exit_code);

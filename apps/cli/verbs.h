@@ -23,6 +23,7 @@ void addCull(CLI::App& tool, int& exit_code);
 void addVerify(CLI::App& tool, int& exit_code);
 void addRender(CLI::App& tool, int& exit_code);
 void addExplain(CLI::App& tool, int& exit_code);
+void addVis(CLI::App& tool, int& exit_code);
 void addReplay(CLI::App& tool, int& exit_code);
 void addCalibrate(CLI::App& tool, int& exit_code);
 void addReport(CLI::App& tool, int& exit_code);

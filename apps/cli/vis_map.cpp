@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include "apps/cli/vis_map.h"
+
+#include <algorithm>
+#include <bit>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sightline/base/bytes.h"
+#include "sightline/import/map_source.h"
+#include "sightline/import/prt.h"
+#include "sightline/scene/text_file.h"
+#include "sightline/space/merge_cells.h"
+#include "sightline/space/open_groups.h"
+#include "sightline/space/tree_portals.h"
+
+namespace sightline::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string kindOf(const std::string& name) {
+    std::string kind = fs::path(splitMapName(name).file).extension().string();
+    std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) { return std::tolower(c); });
+    return kind;
+}
+
+/// The file of the same name with another end, if there is one.
+std::string beside(const std::string& name, const char* end) {
+    const fs::path other = fs::path(name).replace_extension(end);
+    std::error_code error;
+    return fs::is_regular_file(other, error) ? other.string() : "";
+}
+
+uint64_t hashOfBytes(std::span<const unsigned char> bytes) {
+    return contentHash({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+Status readMap(const std::string& name, VisMap& out) {
+    Result<MapBytes> file = readMapBytes(name);
+    if (!file) return file.error();
+    Result<QuakeMapFile> map = parseQuakeBsp(file->bytes, file->name);
+    if (!map) return map.error();
+    out.map = std::move(*map);
+    out.map_name = file->name;
+    out.map_bytes = std::move(file->bytes);
+    out.content_hash = hashOfBytes(out.map_bytes);
+    return success();
+}
+
+/// Numbers by what they stand for, from 0 in the order of their coming.
+class Numbers {
+public:
+    uint32_t of(uint64_t key) {
+        const auto [found, fresh] = known_.emplace(key, count_);
+        count_ += fresh;
+        return found->second;
+    }
+    uint32_t ofNobody() { return count_++; }
+    uint32_t count() const { return count_; }
+
+private:
+    std::map<uint64_t, uint32_t> known_;
+    uint32_t count_ = 0;
+};
+
+/// Cells of leaves that have the same key; leaves without one stay alone.
+template <class KeyOfLeaf>
+CellGraph mergeLeaves(const CellGraph& graph, KeyOfLeaf&& key_of_leaf) {
+    Numbers numbers;
+    std::vector<uint32_t> number(graph.cells, CellGraph::kNoCell);
+    for (uint32_t leaf = 0; leaf < graph.cell_of_leaf.size(); ++leaf) {
+        const uint32_t cell = graph.cell_of_leaf[leaf];
+        if (cell == CellGraph::kNoCell) continue;
+        const std::optional<uint64_t> key = key_of_leaf(leaf);
+        number[cell] = key ? numbers.of(*key) : numbers.ofNobody();
+    }
+    return joinPortals(mergeCells(graph, number, numbers.count()));
+}
+
+/// The clusters of a portal file, if it is one of this map.
+Status mergeByPortalFile(const std::string& name, VisMap& out) {
+    const Result<CellGraph> portals = readPrt(name);
+    if (!portals) return portals.error();
+    const std::vector<uint32_t>& cell_of_leaf = portals->cell_of_leaf;
+    if (cell_of_leaf.size() > out.graph.cell_of_leaf.size())
+        return Error{Error::Kind::kInput, fmt::format("{}: has {} leaves, and {} has {}", name, cell_of_leaf.size() - 1,
+                                                      out.map_name, out.graph.cell_of_leaf.size() - 1)};
+    out.graph = mergeLeaves(out.graph, [&](uint32_t leaf) -> std::optional<uint64_t> {
+        if (leaf >= cell_of_leaf.size() || cell_of_leaf[leaf] == CellGraph::kNoCell) return std::nullopt;
+        return cell_of_leaf[leaf];
+    });
+    out.cells_are = "clusters of " + name;
+    return success();
+}
+
+/// Whether leaves share rows of the lump: then these are clusters, as a compiler made them.
+bool hasSharedRows(const QuakeMapFile& map) {
+    std::vector<int32_t> rows;
+    for (const int32_t row : map.row_offsets)
+        if (row >= 0) rows.push_back(row);
+    const size_t all = rows.size();
+    std::sort(rows.begin(), rows.end());
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+    return all >= 2 && rows.size() > 1 && rows.size() < all;
+}
+
+void mergeByRows(VisMap& out) {
+    const QuakeMapFile& map = *out.map;
+    out.graph = mergeLeaves(out.graph, [&](uint32_t leaf) -> std::optional<uint64_t> {
+        const uint32_t cluster = map.cluster_of_leaf[leaf];
+        if (cluster == QuakeMapFile::kNoCluster || map.row_offsets[cluster] < 0) return std::nullopt;
+        return static_cast<uint64_t>(map.row_offsets[cluster]);
+    });
+    out.cells_are = "leaves that share a row of the file";
+}
+
+void mergeByFileClusters(VisMap& out) {
+    const QuakeMapFile& map = *out.map;
+    out.graph = mergeLeaves(out.graph, [&](uint32_t leaf) -> std::optional<uint64_t> {
+        const uint32_t cluster = map.cluster_of_leaf[leaf];
+        if (cluster == QuakeMapFile::kNoCluster) return std::nullopt;
+        return cluster;
+    });
+    out.cells_are = "clusters of the file";
+}
+
+void mergeOpen(const LeafTree& tree, VisMap& out) {
+    const OpenGroups groups = groupOpenCells(tree, out.graph);
+    out.graph = joinPortals(mergeCells(out.graph, groups.group_of_cell, groups.groups));
+    out.cells_are = "groups of leaves that are open to one another";
+}
+
+Status findCells(const VisMapChoice& choice, VisMap& out) {
+    const QuakeMapFile& map = *out.map;
+    TreePortalSettings settings;
+    settings.contents_stop = choice.water_is_opaque;
+    out.graph = cellsOfTree(map.tree, settings);
+    out.portals_are_of_tree = true;
+    out.contents_stop = settings.contents_stop;
+    if (choice.cells == VisCells::kLeaves) {
+        out.cells_are = "leaves";
+        return success();
+    }
+    if (choice.cells == VisCells::kGroups) {
+        mergeOpen(map.tree, out);
+        return success();
+    }
+    const std::string prt = !choice.prt.empty() ? choice.prt : beside(splitMapName(choice.name).file, ".prt");
+    const bool by_clusters = map.format == QuakeFormat::kQuake2 || map.format == QuakeFormat::kQuake3;
+    if (!prt.empty() && !by_clusters) return mergeByPortalFile(prt, out);
+    if (by_clusters && map.clusters > 0) mergeByFileClusters(out);
+    else if (hasSharedRows(map)) mergeByRows(out);
+    else mergeOpen(map.tree, out);
+    return success();
+}
+
+Result<VisMap> loadPortalFile(const VisMapChoice& choice) {
+    VisMap out;
+    Result<CellGraph> graph = readPrt(choice.name);
+    if (!graph) return graph.error();
+    out.graph = std::move(*graph);
+    out.cells_are = "clusters of the file";
+    const std::string bsp = !choice.bsp.empty() ? choice.bsp : choice.needs_bsp ? beside(choice.name, ".bsp") : "";
+    if (choice.needs_bsp && bsp.empty())
+        return Error{Error::Kind::kUsage, choice.name +
+                                              ": no .bsp lies beside it to write rows into: name one with --bsp, or an "
+                                              "output that does not end in .bsp"};
+    if (bsp.empty()) return out;
+    if (Status read = readMap(bsp, out); !read) return read.error();
+    const size_t leaves = out.map->cluster_of_leaf.size();
+    if (out.graph.cell_of_leaf.size() > leaves)
+        return Error{Error::Kind::kInput, fmt::format("{}: has {} leaves, and {} has {}", choice.name,
+                                                      out.graph.cell_of_leaf.size() - 1, bsp, leaves - 1)};
+    return out;
+}
+
+}  // namespace
+
+Result<VisMap> loadVisMap(const VisMapChoice& choice) {
+    const auto usage = [&](const char* what) { return Error{Error::Kind::kUsage, what}; };
+    const std::string kind = kindOf(choice.name);
+    const bool is_prt = kind == ".prt";
+    if (is_prt && choice.cells != VisCells::kClusters)
+        return usage("--cells needs a .bsp: a .prt has no cells but its own");
+    if (is_prt && !choice.prt.empty()) return usage("--prt goes with a .bsp");
+    if (is_prt && choice.water_is_opaque)
+        return usage("--opaque-water needs a .bsp: the portals of a .prt say what is seen through");
+    if (!is_prt && !choice.bsp.empty()) return usage("--bsp goes with a .prt");
+    VisMap out;
+    if (is_prt) {
+        Result<VisMap> map = loadPortalFile(choice);
+        if (!map) return map;
+        out = std::move(*map);
+        const Result<std::string> text = readTextFile(choice.name);
+        if (!text) return text.error();
+        out.content_hash = contentHash(*text);
+    } else {
+        if (Status read = readMap(choice.name, out); !read) return read.error();
+        if (Status found = findCells(choice, out); !found) return found.error();
+    }
+    for (const uint32_t cell : out.graph.cell_of_leaf) out.leaves += cell != CellGraph::kNoCell;
+    return out;
+}
+
+uint64_t leafPairs(const VisMap& map, const BitMatrix& cells) {
+    std::vector<uint64_t> leaves(cells.rows(), 0);
+    for (const uint32_t cell : map.graph.cell_of_leaf)
+        if (cell != CellGraph::kNoCell) ++leaves[cell];
+    uint64_t pairs = 0;
+    for (size_t a = 0; a < cells.rows(); ++a) {
+        uint64_t seen = 0;
+        const std::span<const uint64_t> row = cells.row(a);
+        for (size_t w = 0; w < row.size(); ++w)
+            for (uint64_t left = row[w]; left; left &= left - 1)
+                seen += leaves[w * 64 + static_cast<size_t>(std::countr_zero(left))];
+        pairs += leaves[a] * seen;
+    }
+    return pairs;
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,51 @@
+// A map as `vis` bakes it: its cells and portals, which leaf lies in which cell, and the file that rows can be written into.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sightline/base/bit_matrix.h"
+#include "sightline/base/result.h"
+#include "sightline/import/quake_bsp.h"
+#include "sightline/space/cells.h"
+
+namespace sightline::cli {
+
+/// What becomes a cell of a compiled map.
+enum class VisCells {
+    kClusters,  ///< leaves that a portal file, the file's own clusters, or rows that it shares put together; else open groups
+    kLeaves,  ///< each leaf: the tightest rows, and the most work
+    kGroups,  ///< leaves that are open to one another
+};
+
+struct VisMapChoice {
+    std::string name;  ///< .prt, .bsp, .map, or in an archive
+    std::string bsp;   ///< for a .prt: the map that it belongs to; empty: none was named
+    std::string prt;   ///< for a .bsp: the portal file that tells its clusters; empty: none was named
+    VisCells cells = VisCells::kClusters;
+    bool water_is_opaque = false;
+    bool needs_bsp = false;  ///< its lump is to be written
+};
+
+struct VisMap {
+    CellGraph graph;
+    uint32_t leaves = 0;               ///< that can have a row
+    std::string cells_are;             ///< where the cells come from, for people
+    uint64_t content_hash = 0;         ///< of the file that the cells are of
+    std::optional<QuakeMapFile> map;   ///< of a .bsp
+    bool portals_are_of_tree = false;  ///< of that map: its rays judge
+    bool contents_stop = false;        ///< TreePortalSettings
+    std::string map_name;              ///< of its bytes
+    std::vector<unsigned char> map_bytes;
+};
+
+/// Errors: of the readers, of files that do not belong together (kInput), of what cannot be asked of a file of its kind (kUsage).
+Result<VisMap> loadVisMap(const VisMapChoice& choice);
+
+/// How many ordered pairs of leaves a matrix of cells stands for.
+uint64_t leafPairs(const VisMap& map, const BitMatrix& cells);
+
+}  // namespace sightline::cli

@@ -1,0 +1,25 @@
+// What a bake knows between two pieces of its work, as bytes: for going on after the end of a process.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "sightline/bake/cell_visibility.h"
+#include "sightline/base/result.h"
+
+namespace sightline {
+
+/// A number that two graphs share only if they are the same: cells, portals and points, to the last bit.
+uint64_t hashOf(const CellGraph& graph);
+
+/// The bytes: small where the matrices are empty far and wide.
+std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash, uint64_t budget);
+
+/// The state again. Errors (kInput): one line with the file: no such file, of another graph or budget, damaged.
+/// @param name  what errors call the bytes
+Result<CellVisibilityState> readBakeState(std::span<const char> bytes, const std::string& name, const CellGraph& graph,
+                                          uint64_t budget);
+
+}  // namespace sightline

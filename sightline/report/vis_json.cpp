@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "sightline/report/vis_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace sightline {
+
+std::string visJson(const VisSummary& summary) {
+    using Json = nlohmann::ordered_json;
+    Json out;
+    out["schema"] = "sightline.vis/1";
+    out["map"] = summary.map;
+    out["clusters_are"] = summary.cells_are;
+    out["leafs"] = summary.leafs;
+    out["clusters"] = summary.clusters;
+    out["portals"] = summary.portals;
+    out["visible_leaf_pairs"] = summary.visible_leaf_pairs;
+    out["witnessed_pairs"] = summary.witnessed_pairs;
+    out["unresolved_pairs"] = summary.unresolved_pairs;
+    out["visible_cluster_pairs"] = summary.visible_cluster_pairs;
+    out["witnessed_cluster_pairs"] = summary.witnessed_cluster_pairs;
+    out["pvs_bytes"] = summary.pvs_bytes;
+    out["resident_bytes"] = summary.resident_bytes;
+    out["lump_bytes"] = summary.lump_bytes;
+    out["steps"] = summary.steps;
+    out["over_budget"] = summary.over_budget;
+    out["stopped"] = summary.stopped;
+    out["threads"] = summary.threads;
+    out["cpu_seconds"] = summary.cpu_seconds;
+    out["wall_seconds"] = summary.wall_seconds;
+    if (summary.verification) {
+        const VisSummary::Verification& verified = *summary.verification;
+        Json examples = Json::array();
+        for (const VisSummary::Verification::Example& e : verified.examples)
+            examples.push_back({{"from_leaf", e.from_leaf},
+                                {"to_leaf", e.to_leaf},
+                                {"from", {e.from.x, e.from.y, e.from.z}},
+                                {"to", {e.to.x, e.to.y, e.to.z}}});
+        out["verification"] = {{"segments", verified.segments},
+                               {"false_negatives", verified.false_negatives},
+                               {"doubtful", verified.doubtful},
+                               {"examples", examples}};
+    }
+    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace sightline
