@@ -134,6 +134,7 @@ private:
                 const uint32_t from = directed_.portals[batch[i]].from;
                 asked[i].resize(words);
                 for (size_t w = 0; w < words; ++w) asked[i][w] = ~state_.witnessed.row(from)[w];
+                if (directed_.cells() % 64 != 0) asked[i].back() &= ~(~uint64_t(0) << (directed_.cells() % 64));
                 pool.from(batch[i], asked[i], settings_.budget, answers[i]);
             });
             for (uint32_t i = 0; i < batch.size(); ++i) apply(batch[i], asked[i], answers[i]);
