@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "sightline/import/map_source.h"
+
 namespace sightline::cli {
 namespace {
 
@@ -31,7 +33,8 @@ void ApartFiles::take(const std::string& option, const std::filesystem::path& na
     if (name.empty() || name == "-") return;
     std::error_code ignored;
     if (exists(name, ignored) && !is_regular_file(name, ignored)) return;
-    const std::filesystem::path place = placeOf(name);
+    const std::filesystem::path place =
+        placeOf(written ? name : std::filesystem::path(splitMapName(name.string()).file));
     for (const Named& other : taken_)
         if (status_ && written && other.place == place)
             status_ =

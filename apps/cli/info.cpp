@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,10 @@
 
 #include "apps/cli/apart.h"
 #include "apps/cli/common.h"
+#include "apps/cli/info_map.h"
 #include "apps/cli/verbs.h"
 #include "sightline/import/foreign.h"
+#include "sightline/import/map_source.h"
 #include "sightline/import/scene_kind.h"
 #include "sightline/report/cull_run.h"
 #include "sightline/scene/one_line.h"
@@ -94,17 +97,19 @@ TreeFacts countTree(const Scene& scene) {
 struct FileFacts {
     std::string name, format, reader;
     uint64_t first_key = 0, bytes = 0;
+    std::optional<MapReport> map;
 };
 
 std::vector<FileFacts> countFiles(const Scene& scene) {
     std::vector<FileFacts> out;
     for (const SceneFile& file : scene.files) {
-        FileFacts facts{file.name, "procedural", "sightline", file.first_key, 0};
+        FileFacts facts{file.name, "procedural", "sightline", file.first_key, 0, {}};
         if (const Result<SceneKind> kind = fileKind(file.name); kind && kind->format) {
             facts.format = kind->format->name;
             facts.reader = kind->format->ours ? "sightline" : "assimp";
             std::error_code error;
-            facts.bytes = std::filesystem::file_size(file.name, error);
+            facts.bytes = std::filesystem::file_size(splitMapName(file.name).file, error);
+            facts.map = reportMap(file.name);
         }
         out.push_back(facts);
     }
@@ -142,12 +147,14 @@ Json infoJson(const SceneReport& report) {
     out["schema"] = "sightline.info/1";
     out["file"] = report.title;
     out["files"] = Json::array();
-    for (const FileFacts& file : report.files)
+    for (const FileFacts& file : report.files) {
         out["files"].push_back({{"name", file.name},
                                 {"format", file.format},
                                 {"reader", file.reader},
                                 {"bytes", file.bytes},
                                 {"first_key", file.first_key}});
+        if (file.map) out["files"].back()["map"] = file.map->json;
+    }
     out["objects"] = facts.keys;
     out["instances"] = facts.objects;
     out["deforming"] = facts.deforming_objects;
@@ -176,8 +183,10 @@ Json infoJson(const SceneReport& report) {
 }
 
 void printFiles(std::FILE* out, const SceneReport& report) {
-    if (report.files.size() == 1)
+    if (report.files.size() == 1) {
         fmt::print(out, "  format              {} (read by {})\n", report.files[0].format, report.files[0].reader);
+        if (report.files[0].map) fmt::print(out, "{}", report.files[0].map->text);
+    }
     if (report.files.size() < 2) return;
     fmt::print(out, "  files                   first key\n");
     for (const FileFacts& file : report.files)
@@ -248,6 +257,15 @@ Status printFormats(const std::string& json) {
     return writeText(json, Json{{"schema", "sightline.formats/1"}, {"formats", list}}.dump(1) + "\n");
 }
 
+/// Of a file of portals, which is no scene.
+Status runPortals(const InfoOptions& options) {
+    const Result<MapReport> report = reportPortals(options.scene.names[0]);
+    if (!report) return report.error();
+    if (options.json != "-") fmt::print(options.objects ? stderr : stdout, "{}", report->text);
+    if (options.json.empty()) return success();
+    return writeText(options.json, report->json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
 Status runInfo(const CLI::App& verb, const InfoOptions& options) {
     if (options.json.empty() && verb.count("--json") > 0)
         return Error{Error::Kind::kUsage, "--json: the name is empty"};
@@ -257,6 +275,7 @@ Status runInfo(const CLI::App& verb, const InfoOptions& options) {
     for (const std::string& name : options.scene.names) files.read("SCENE", name);
     files.write("--json", options.json);
     if (!files.status()) return files.status();
+    if (options.scene.names.size() == 1 && isPortalFile(options.scene.names[0])) return runPortals(options);
     const Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
     const SceneReport report{

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sightline/import/gltf_container.h"
+#include "sightline/import/map_source.h"
 
 namespace sightline::cli {
 namespace {
@@ -106,7 +107,8 @@ std::optional<std::vector<std::string>> objLibraries(const fs::path& file) {
 
 }  // namespace
 
-std::vector<std::string> filesOfScene(const std::string& name) {
+std::vector<std::string> filesOfScene(const std::string& scene) {
+    const std::string name = splitMapName(scene).file;  // of a map in an archive, the archive
     const fs::path file = name;
     const fs::path directory = file.parent_path();
     const std::string suffix = suffixOf(file);
@@ -116,6 +118,7 @@ std::vector<std::string> filesOfScene(const std::string& name) {
         others.emplace();  // a pipe would have us wait, a device never end
     else if (suffix == ".gltf" || suffix == ".glb") others = gltfBuffers(file);
     else if (suffix == ".obj") others = objLibraries(file);
+    else if (suffix == ".bsp" || suffix == ".pak" || suffix == ".pk3") others.emplace();  // all is in it
     std::vector<std::string> files = {name};
     if (others) {
         for (const std::string& other : *others)

@@ -39,7 +39,7 @@ std::string listed(const std::vector<const ArchiveEntry*>& maps) {
     constexpr size_t kMost = 10;
     std::string out;
     for (size_t i = 0; i < std::min(maps.size(), kMost); ++i)
-        out += (i == 0 ? "" : ", ") + gltf::printable(maps[i]->name);
+        out += fmt::format("{}{}", i == 0 ? "" : ", ", gltf::printable(maps[i]->name));
     if (maps.size() > kMost) out += fmt::format(" and {} more", maps.size() - kMost);
     return out;
 }
@@ -89,7 +89,8 @@ Result<MapBytes> readMapBytes(const std::string& name) {
     const Result<std::string> text = readTextFile(parts.file);
     if (!text) return text.error();
     const std::span<const unsigned char> bytes(reinterpret_cast<const unsigned char*>(text->data()), text->size());
-    if (!parts.entry.empty() || isArchiveName(parts.file)) return fromArchive(parts, bytes);
+    const bool archive = text->starts_with("PACK") || text->starts_with("PK\3\4") || text->starts_with("PK\5\6");
+    if (!parts.entry.empty() || archive) return fromArchive(parts, bytes);
     return MapBytes{name, {bytes.begin(), bytes.end()}};
 }
 

@@ -109,7 +109,10 @@ void readQuake3Faces(Bytes bytes, const Directory& directory, QuakeMapFile& map)
             face.patch_height = surface.height;
         } else if (drawn) {
             readIndices(indices, surface, i, face, map);
-            face.kind = face.index_count > 0 ? QuakeFace::Kind::kTriangles : QuakeFace::Kind::kNothing;
+            const bool flat = surface.type == kPolygonSurface;
+            face.kind = face.index_count == 0 ? QuakeFace::Kind::kNothing
+                        : flat                ? QuakeFace::Kind::kPolygon
+                                              : QuakeFace::Kind::kTriangles;
         }
         map.faces.push_back(face);
     }

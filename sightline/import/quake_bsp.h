@@ -36,8 +36,9 @@ struct QuakeTexture {
 
 struct QuakeFace {
     enum class Kind : uint8_t {
-        kPolygon,    ///< an outline, counter-clockwise as seen from its front; drawn as the fan around its first point
-        kTriangles,  ///< indices into its points
+        kPolygon,  ///< flat; without indices an outline, counter-clockwise as seen from its front, and drawn as the fan
+                   ///< around its first point; else (Quake 3) these triangles
+        kTriangles,  ///< Quake 3: a mesh
         kPatch,      ///< Quake 3: control points of biquadratic patches, row by row
         kNothing,    ///< fewer than three points, or a flare: not drawn
     };

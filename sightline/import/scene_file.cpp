@@ -14,6 +14,8 @@
 
 #include "sightline/import/foreign.h"
 #include "sightline/import/gltf.h"
+#include "sightline/import/map_source.h"
+#include "sightline/import/quake_scene.h"
 #include "sightline/import/scene_kind.h"
 
 namespace sightline {
@@ -41,6 +43,8 @@ Result<std::string> headOf(const std::string& file) {
     return head;
 }
 
+bool isMapSuffix(const std::string& suffix) { return suffix == "bsp" || suffix == "pak" || suffix == "pk3"; }
+
 /// A scale that takes objects out of the range of numbers is the settings' fault, but shows in the scene.
 bool inRange(const Scene& scene) {
     const Box3d bounds = worldBounds(scene);
@@ -49,7 +53,8 @@ bool inRange(const Scene& scene) {
 
 }  // namespace
 
-Result<SceneKind> fileKind(const std::string& file) {
+Result<SceneKind> fileKind(const std::string& name) {
+    const std::string file = splitMapName(name).file;  // of a map in an archive, the archive
     const Result<std::string> head = headOf(file);
     if (!head) return head.error();
     std::error_code error;
@@ -62,8 +67,9 @@ Result<Scene> loadSceneFile(const std::string& file, const ImportSettings& setti
     const Result<SceneKind> kind = fileKind(file);
     if (!kind) return kind.error();
     if (!kind->format) return inputError(file, kind->refusal);
-    Result<Scene> scene =
-        kind->format->ours ? loadGltf(file, settings.progress) : loadForeign(file, kind->suffix, settings);
+    Result<Scene> scene = !kind->format->ours         ? loadForeign(file, kind->suffix, settings)
+                          : isMapSuffix(kind->suffix) ? loadQuakeScene(file)
+                                                      : loadGltf(file, settings.progress);
     if (!scene) return scene;
     scene->name = file;
     scene->files = {{file, 0}};

@@ -35,6 +35,8 @@ constexpr std::array kFormats = std::to_array<SceneFormat>({
     {"dxf", "AutoCAD DXF (3D faces and meshes)", false, true, kBoth},
     {"amf", "Additive Manufacturing File", false, true, kBoth},
     {"ac acc ac3d", "AC3D", false, true, kBoth},
+    {"bsp", "Compiled map of Quake, Half-Life, Quake 2 or 3", true, true, kSaid},
+    {"pk3 pak", "Archive of Quake with a map in it", true, true, kSaid},
     {"ase ask", "3D Studio ASCII export", false, false, kSaid},
     {"b3d", "Blitz3D", false, false, kSaid},
     {"blend", "Blender, before 2.8", false, false, kBoth},
@@ -90,9 +92,13 @@ constexpr std::array kMagics = std::to_array<Magic>({
     {"QC4DC4D6"sv, "", "is a Cinema 4D scene, which is not read: export it as glTF or FBX"},
     {"\xff\xfe\xff\x0eS\0k\0e\0t\0c\0h\0U\0p\0"sv, "", "is a SketchUp model, which is not read: export it as glTF"},
     {"AC10"sv, "", "is an AutoCAD drawing (DWG), which is not read: export it as glTF, FBX or DXF"},
-    {"IBSP"sv, "", "is a game map, which is not read yet"},
-    {"VBSP"sv, "", "is a game map, which is not read yet"},
-    {"PRT1"sv, "", "holds a map's portals, which are not read yet"},
+    {"IBSP"sv, "bsp", ""},
+    {"BSP2"sv, "bsp", ""},
+    {"2PSB"sv, "bsp", ""},
+    {"PACK"sv, "pak", ""},
+    {"VBSP"sv, "", "is a map of Source, which is not read"},
+    {"PRT1"sv, "", "holds a map's portals, not a scene: name the .bsp"},
+    {"PRT2"sv, "", "holds a map's portals, not a scene: name the .bsp"},
     {"LASF"sv, "", "is a point cloud: it has no surfaces that could hide anything"},
     {"# .PCD"sv, "", "is a point cloud: it has no surfaces that could hide anything"},
     {"\x89PNG"sv, "", "is a picture, not a scene"},
@@ -123,8 +129,9 @@ constexpr std::array kRefused = std::to_array<Refused>({
      "is a CAD model, which is not read: export it as glTF or IFC"},
     {"nwd nwc nwf", "is a Navisworks file, which is not read: export it as IFC or FBX"},
     {"ifcxml", "is IFC as XML, which is not read: export it as .ifc"},
-    {"map bsp prt", "is a game map or a part of one, which is not read yet"},
-    {"pk3 wad", "is an archive of a game, which is not read"},
+    {"map", "is the source of a game map, which is not read yet: name the .bsp"},
+    {"prt", "holds a map's portals, not a scene: name the .bsp"},
+    {"wad", "is an archive of a game's textures, which is not read"},
     {"md2 md3 mdl mdc smd vta 3d",
      "moves its vertices from frame to frame, so that its bounds are not known: export it as glTF"},
     {"bvh csm", "is a motion without a surface"},
@@ -200,7 +207,7 @@ SceneKind stepKind(const std::string& head) {
 }
 
 SceneKind zipKind(std::string_view head, std::string_view suffix) {
-    for (const char* zipped : {"3mf", "zae", "ifczip"})
+    for (const char* zipped : {"3mf", "zae", "ifczip", "pk3"})
         if (suffix == zipped) return read(zipped);
     if (suffix == "skp") return refuse("is a SketchUp model, which is not read: export it as glTF or IFC");
     if (suffix == "usdz") return refuse("is USD, which is not read: export it as glTF");
@@ -259,6 +266,8 @@ bool looksLike(std::string_view suffix, std::string_view head, const std::string
     if (suffix == "dxf") return has("section") || head.starts_with("AutoCAD Binary DXF");
     if (suffix == "dae" || suffix == "x3d" || suffix == "amf") return has("<");
     if (suffix == "3mf" || suffix == "zae" || suffix == "ifczip") return head.starts_with("PK");
+    if (suffix == "bsp") return head.size() >= 4 && (head[0] == 29 || head[0] == 30) && head.substr(1, 3) == "\0\0\0"sv;
+    if (suffix == "pk3" || suffix == "pak") return head.starts_with("PK");
     if (suffix == "glb") return head.starts_with("glTF"sv.substr(0, head.size()));
     return true;
 }

@@ -6,9 +6,11 @@
 #include <span>
 #include <string>
 
+#include "gltf_check.h"
 #include "sightline/import/game_archive.h"
 #include "sightline/import/prt.h"
 #include "sightline/import/quake_map.h"
+#include "sightline/import/quake_scene.h"
 #include "sightline/import/quake_visibility.h"
 
 namespace sightline::test {
@@ -105,6 +107,10 @@ inline std::string bspFault(const std::string& bytes) {
     const Result<QuakeMapFile> map = parseQuakeBsp(bytesOf(bytes), "fuzz.bsp");
     if (!map.ok()) return lineFault(map.error(), "fuzz.bsp");
     if (const std::string fault = mapFault(*map); !fault.empty()) return fault;
+    const Result<Scene> scene = quakeScene(*map, "fuzz.bsp");
+    if (const std::string fault = scene.ok() ? sceneFault(*scene) : lineFault(scene.error(), "fuzz.bsp");
+        !fault.empty())
+        return fault;
     const Result<QuakeVisibility> seen = readQuakeVisibility(*map, "fuzz.bsp");
     if (!seen.ok()) return lineFault(seen.error(), "fuzz.bsp");
     const Result<std::vector<unsigned char>> out = replaceQuakeVisibility(bytesOf(bytes), "fuzz.bsp", seen->seen);

@@ -52,7 +52,8 @@ TEST(QuakeBsp, SixFormatsSayTheSame) {
         ASSERT_EQ(map->faces.size(), made.faces.size()) << name;
         for (size_t i = 0; i < made.faces.size(); ++i) {
             const QuakeFace& face = map->faces[i];
-            EXPECT_EQ(face.kind, third ? QuakeFace::Kind::kTriangles : QuakeFace::Kind::kPolygon) << name;
+            EXPECT_EQ(face.kind, QuakeFace::Kind::kPolygon) << name;
+            EXPECT_EQ(face.index_count, third ? 3 * (face.point_count - 2) : 0) << name;
             EXPECT_EQ(face.model, i + 1 == made.faces.size() ? 1u : 0u) << name;
             EXPECT_EQ(map->textures[face.texture].name, made.textures[static_cast<size_t>(made.faces[i].texture)]);
             std::vector<glm::vec3> wanted;
