@@ -68,6 +68,7 @@ std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash
     out.put(state.flowed);
     out.put(state.over_budget);
     out.put(state.steps);
+    out.put(state.empty_chains);
     for (const uint32_t p : state.order) out.put(p);
     putMatrix(out, state.may);
     putMatrix(out, state.witnessed);
@@ -78,7 +79,7 @@ std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash
 
 Result<CellVisibilityState> readBakeState(std::span<const char> bytes, const std::string& name, const CellGraph& graph,
                                           uint64_t budget) {
-    constexpr size_t kHead = 6 * 8, kEnd = 8;
+    constexpr size_t kHead = 7 * 8, kEnd = 8;
     const size_t ways = 2 * graph.portals.size();
     ByteCursor in(bytes);
     if (bytes.size() < kHead + kEnd || in.take<uint64_t>() != kMagic) return wrong(name, "no state of a bake");
@@ -90,6 +91,7 @@ Result<CellVisibilityState> readBakeState(std::span<const char> bytes, const std
     state.flowed = in.take<uint64_t>();
     state.over_budget = in.take<uint64_t>();
     state.steps = in.take<uint64_t>();
+    state.empty_chains = in.take<uint64_t>();
     if (state.flowed > ways || in.left() < 4 * ways) return wrong(name, "damaged");
     std::vector<uint8_t> seen(ways, 0);
     for (size_t i = 0; i < ways; ++i) {

@@ -153,6 +153,7 @@ private:
     void apply(uint32_t p, std::span<const uint64_t> asked, const FlowAnswer& answer) {
         state_.steps += answer.steps;
         state_.over_budget += answer.spent;
+        state_.empty_chains += answer.empty_chains;
         const DirectedPortal& portal = directed_.portals[p];
         const std::span<uint64_t> reached = state_.reached.row(portal.from);
         for (size_t w = 0; w < reached.size(); ++w) reached[w] |= answer.reached[w];
@@ -179,6 +180,7 @@ private:
         CellVisibility answer;
         answer.over_budget = state_.over_budget;
         answer.steps = state_.steps;
+        answer.empty_chains = state_.empty_chains;
         answer.stopped = stopped_;
         answer.visible = state_.witnessed;
         for (uint32_t a = 0; a < directed_.cells(); ++a)

@@ -25,6 +25,7 @@ struct CellVisibilityState {
     uint64_t flowed = 0;       ///< portals and directions whose flow is done, in the bake's own order
     uint64_t over_budget = 0;  ///< of these
     uint64_t steps = 0;
+    uint64_t empty_chains = 0;
     BitMatrix may;                ///< [directed portals x directed portals] what may follow what
     BitMatrix witnessed;          ///< [cells x cells]
     BitMatrix reached;            ///< [cells x cells] by the flows of the row's cell
@@ -47,11 +48,12 @@ struct CellVisibilitySettings {
 /// Every ordered pair of cells is witnessed (a ray passes from one into the other with room to spare), proved hidden, or
 /// unresolved: visible as far as one knows.
 struct CellVisibility {
-    BitMatrix visible;         ///< [cells x cells], symmetric; each cell sees itself
-    BitMatrix witnessed;       ///< [cells x cells], symmetric; within `visible`
-    uint64_t over_budget = 0;  ///< portals and directions whose flow ended by its budget
-    uint64_t steps = 0;        ///< portals that were clipped
-    bool stopped = false;      ///< by the settings' stop
+    BitMatrix visible;          ///< [cells x cells], symmetric; each cell sees itself
+    BitMatrix witnessed;        ///< [cells x cells], symmetric; within `visible`
+    uint64_t over_budget = 0;   ///< portals and directions whose flow ended by its budget
+    uint64_t steps = 0;         ///< portals that were clipped
+    uint64_t empty_chains = 0;  ///< of portals, that no line passes though clipping left something: by Teller's test
+    bool stopped = false;       ///< by the settings' stop
 };
 
 /// The promise: a line that passes from cell to cell through the graph's portals, where these are known to within

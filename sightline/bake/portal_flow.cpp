@@ -52,6 +52,8 @@ struct PortalFlow::Scratch {
     const WitnessRays& rays;
     const BitMatrix& may;
     std::vector<std::unique_ptr<State>> states;
+    StabbingChain chain;
+    std::vector<glm::dvec3> corners;
     std::vector<uint32_t> run;    ///< cells of a ray
     std::vector<uint64_t> asked;  ///< portals into cells that are asked for and not yet reached
     FlowAnswer* answer = nullptr;
@@ -119,7 +121,11 @@ private:
         }
         if (!clipBoth(now, then)) return false;
         if (asked) {
-            reach(depth, then);
+            if (!prove(depth, then) && isEmpty(depth, then)) {
+                ++s_.answer->empty_chains;
+                return false;
+            }
+            reach(then);
             for (uint32_t i = 0; i < then.words; ++i) then.targets[i] &= s_.asked[then.word[i]];
         }
         if (words == 0) return false;
@@ -202,7 +208,7 @@ private:
         return false;
     }
 
-    void reach(uint32_t depth, const State& state) {
+    void reach(const State& state) {
         FlowAnswer& answer = *s_.answer;
         const uint32_t cell = directed_.portals[state.portal].to;
         answer.reached[cell / 64] |= uint64_t(1) << (cell % 64);
@@ -210,19 +216,37 @@ private:
             const uint32_t p = s_.places.entering[i];
             s_.asked[p / 64] &= ~(uint64_t(1) << (p % 64));
         }
-        prove(depth, state);
     }
 
     /// Looks for a line that passes the whole chain, with room to spare.
-    void prove(uint32_t depth, const State& state) {
+    bool prove(uint32_t depth, const State& state) {
         const glm::dvec3 middle = state.source.center();
-        if (shoot(middle, state.window.center(), state) || improve(depth, state, middle)) return;
+        if (shoot(middle, state.window.center(), state) || improve(depth, state, middle)) return true;
         const uint32_t corners = state.source.count;
         for (uint32_t i = 0; i < corners; ++i) {
             const glm::dvec3 corner = state.source.corner(i), next = state.source.corner(i + 1 == corners ? 0 : i + 1);
-            if (improve(depth, state, middle + kTowardsEdge * (corner - middle))) return;
-            if (improve(depth, state, middle + kTowardsEdge * (0.5 * (corner + next) - middle))) return;
+            if (improve(depth, state, middle + kTowardsEdge * (corner - middle))) return true;
+            if (improve(depth, state, middle + kTowardsEdge * (0.5 * (corner + next) - middle))) return true;
         }
+        return false;
+    }
+
+    /// Whether it is proved that no line passes the whole chain: the last word, where clipping leaves something and no ray is found.
+    bool isEmpty(uint32_t depth, const State& state) {
+        const DirectedPortal& first = directed_.portals[s_.states[0]->portal];
+        double rise = 1e300;
+        for (uint32_t i = 0; i < state.window.count; ++i) rise = std::min(rise, first.height(state.window.corner(i)));
+        if (!(rise > 0)) return false;
+        const auto add = [&](const Window& window) {
+            s_.corners.clear();
+            for (uint32_t i = 0; i < window.count; ++i) s_.corners.push_back(window.corner(i));
+            s_.chain.add(s_.corners);
+        };
+        s_.chain.begin(first.normal, directed_.extent, precision_.points);
+        add(state.source);
+        for (uint32_t i = 1; i <= depth; ++i) s_.chain.add(directed_.outline(s_.states[i]->portal));
+        add(state.window);
+        return s_.chain.isProvedEmpty(rise, 4 * directed_.extent);
     }
 
     /// From a point of the source: what it sees of the window; from the middle of that, what it sees of the source; and so on.
@@ -305,6 +329,7 @@ void PortalFlow::from(uint32_t portal, std::span<const uint64_t> asked, uint64_t
     answer.seen_first.assign(1, 0);
     answer.steps = 0;
     answer.spent = false;
+    answer.empty_chains = 0;
     s.answer = &answer;
     s.budget = budget;
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sightline/bake/directed_portals.h"
+#include "sightline/bake/stabbing.h"
 #include "sightline/bake/window.h"
 #include "sightline/bake/witness_rays.h"
 #include "sightline/base/bit_matrix.h"
@@ -23,6 +24,7 @@ struct FlowAnswer {
     std::vector<uint32_t> seen;        ///< runs of cells on lines that pass, one after the other ...
     std::vector<uint32_t> seen_first;  ///< ... and where each begins, and where the last ends
     uint64_t steps = 0;                ///< portals that were clipped
+    uint64_t empty_chains = 0;         ///< that Teller's test proved to be passed by no line
     bool spent = false;                ///< the budget: then all that were asked for count as reached
 };
 
