@@ -252,8 +252,9 @@ private:
                 both += where == 3;
             }
             const bool axial = std::abs(tried.x) == 1 || std::abs(tried.y) == 1 || std::abs(tried.z) == 1;
-            const double cost = 8.0 * static_cast<double>(both) + static_cast<double>(std::abs(front - behind)) -
-                                2.0 * sides + (axial ? 0 : 5);
+            // Cells are what counts: few brushes divided, then many sides in one plane. Balance only decides between equals.
+            const double cost = 8.0 * static_cast<double>(both) - 2.0 * sides + (axial ? 0 : 10) +
+                                1e-3 * static_cast<double>(std::abs(front - behind));
             if (cost >= best) continue;
             best = cost;
             number = candidate;
@@ -272,7 +273,8 @@ private:
         for (int axis = 0; axis < 3; ++axis) {
             const double middle = std::round(box.center()[axis] / block) * block;
             const double least = 0.125 * block;
-            if (box.size()[axis] <= length || middle - box.min[axis] < least || box.max[axis] - middle < least)
+            if (box.size()[axis] <= std::max(block, length) || middle - box.min[axis] < least ||
+                box.max[axis] - middle < least)
                 continue;
             longest = axis;
             at = middle;

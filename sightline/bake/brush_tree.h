@@ -17,8 +17,9 @@ struct BrushTreeSettings {
     /// Planes of brushes that are so close, and all but parallel, are one: what was drawn on two grids closes. It moves faces, by so
     /// much at most near the origin: what is known of the result is known of the moved brushes. [world units]
     double snap_distance = 0.01;
-    double block =
-        1024;  ///< regions larger than this are first divided along this grid, whatever is in them [world units]
+    /// Regions larger than this are first divided along this grid, whatever is in them: small ones are faster, and make
+    /// more cells. [world units]
+    double block = 4096;
     double margin = 24;        ///< how far the bounds reach beyond the brushes: there it is outside [world units] [> 0]
     uint32_t candidates = 64;  ///< planes that are tried for each division [>= 1]
 };
@@ -41,7 +42,7 @@ struct BrushTree {
 /// largest coordinate; what is only detail, moves, or is no obstacle, is not in it: more may then be seen through it than in truth, never
 /// less. Where brushes overlap, solid is stronger than sky and sky than liquids.
 ///
-/// The planes are those of the brushes, the one that has the best of balance and few divided brushes first, axial ones
+/// The planes are those of the brushes: first the one that divides the fewest of them and has the most sides in it, axial ones
 /// before others. Deterministic. O(brushes * depth * candidates), as maps are.
 BrushTree treeOfBrushes(const QuakeMap& map, const BrushTreeSettings& settings = {});
 

@@ -145,7 +145,7 @@ std::string pointFile(const MapLeak& leak, double step) {
     std::string text;
     const auto add = [&](const glm::dvec3& point) {
         char line[128];
-        std::snprintf(line, sizeof line, "%.3f %.3f %.3f\n", point.x, -point.z, point.y);
+        std::snprintf(line, sizeof line, "%.3f %.3f %.3f\n", point.x, 0 - point.z, point.y);
         text += line;
     };
     for (size_t i = 0; i + 1 < leak.path.size(); ++i) {

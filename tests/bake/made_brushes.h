@@ -67,8 +67,7 @@ public:
             glm::dvec3 a = low - thick, b = high + thick;
             const int axis = wall / 2;
             if (wall % 2 == 0) b[axis] = low[axis];
-            else
-                a[axis] = high[axis];
+            else a[axis] = high[axis];
             box(a, b, "brick", turn);
         }
     }

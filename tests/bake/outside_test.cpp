@@ -24,11 +24,12 @@ void expectWay(const QuakeMap& map, const BrushTree& brushes, const MapLeak& lea
     for (size_t i = 0; i + 1 < leak.path.size(); ++i)
         for (int k = 0; k <= 100; ++k) {
             const glm::dvec3 point = leak.path[i] + k / 100.0 * (leak.path[i + 1] - leak.path[i]);
-            for (const QuakeMapEntity& entity : map.entities)
-                for (const QuakeMapBrush& brush : map.brushesOf(entity))
-                    if (const BrushRole role = roleOf(map, entity, brush);
-                        role == BrushRole::kSolid || role == BrushRole::kSky)
-                        ASSERT_LT(depthIn(map, brush, point), 0.05);
+            for (const QuakeMapEntity& entity : map.entities) {
+                for (const QuakeMapBrush& brush : map.brushesOf(entity)) {
+                    if (roleOf(map, entity, brush) > BrushRole::kSky) continue;
+                    ASSERT_LT(depthIn(map, brush, point), 0.05);
+                }
+            }
         }
     const Box3d& bounds = brushes.tree.bounds;
     double least = 1e30;
@@ -109,8 +110,7 @@ TEST(Outside, HeedsWhoStandsThere) {
 TEST(Outside, AWayIsWrittenInTheMapsAxes) {
     MapLeak leak;
     leak.path = {{0, 0, 0}, {16, 0, 0}, {16, 4, -2}};
-    EXPECT_EQ(pointFile(leak),
-              "0.000 0.000 0.000\n8.000 0.000 0.000\n16.000 0.000 0.000\n16.000 2.000 4.000\n");
+    EXPECT_EQ(pointFile(leak), "0.000 0.000 0.000\n8.000 0.000 0.000\n16.000 0.000 0.000\n16.000 2.000 4.000\n");
 }
 
 TEST(OutsideMaps, SealedOnesAreAndTheLeakyOneIsNot) {
@@ -128,7 +128,7 @@ TEST(OutsideMaps, SealedOnesAreAndTheLeakyOneIsNot) {
         const BrushTree brushes = treeOfBrushes(*map);
         const MapCells cells = cellsInside(*map, brushes);
         EXPECT_EQ(cells.leaks.size(), name == "leaky_junction" ? 1u : 0u) << name;
-        EXPECT_GT(cells.graph.cells, 400u) << name;
+        EXPECT_GT(cells.graph.cells, 300u) << name;
         EXPECT_GT(cells.graph.portals.size(), cells.graph.cells) << name;
         for (const MapLeak& leak : cells.leaks) expectWay(*map, brushes, leak);
         ++maps;
