@@ -1,4 +1,4 @@
-// The verb `info`: what a scene holds, and what can be read.
+// The verb `info`: what a scene or a visibility file holds, and what can be read.
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cstdio>
@@ -15,6 +15,7 @@
 #include "apps/cli/apart.h"
 #include "apps/cli/common.h"
 #include "apps/cli/info_map.h"
+#include "apps/cli/info_visibility.h"
 #include "apps/cli/verbs.h"
 #include "sightline/import/foreign.h"
 #include "sightline/import/map_source.h"
@@ -276,6 +277,10 @@ Status runInfo(const CLI::App& verb, const InfoOptions& options) {
     files.write("--json", options.json);
     if (!files.status()) return files.status();
     if (options.scene.names.size() == 1 && isPortalFile(options.scene.names[0])) return runPortals(options);
+    if (options.scene.names.size() == 1 && isVisibilityFile(options.scene.names[0])) {
+        if (options.objects) return Error{Error::Kind::kUsage, "--objects: a visibility file has none"};
+        return infoOfVisibility(options.scene.names[0], options.json);
+    }
     const Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
     const SceneReport report{
@@ -289,7 +294,7 @@ Status runInfo(const CLI::App& verb, const InfoOptions& options) {
 }  // namespace
 
 void addInfo(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("info", "what a scene holds, and what can be read");
+    CLI::App* verb = tool.add_subcommand("info", "what a scene or a visibility file holds, and what can be read");
     const auto options = std::make_shared<InfoOptions>();
     addSceneChoice(*verb, options->scene);
     verb->get_option("SCENE")->required(false);  // --formats needs none
