@@ -188,6 +188,7 @@ private:
                 if (state_.reached.at(b, a)) answer.visible.set(a, b);
             });
         answer.witnessed = std::move(state_.witnessed);
+        if (settings_.keep_follows) answer.follows = std::move(state_.may);
         return answer;
     }
 

@@ -43,6 +43,7 @@ struct CellVisibilitySettings {
     std::function<void(const CellVisibilityState&)> checkpoint;
     /// Where to go on, or null: what a checkpoint of this graph got. Taken apart by the bake.
     CellVisibilityState* resume = nullptr;
+    bool keep_follows = false;  ///< fill CellVisibility::follows
 };
 
 /// Every ordered pair of cells is witnessed (a ray passes from one into the other with room to spare), proved hidden, or
@@ -50,6 +51,7 @@ struct CellVisibilitySettings {
 struct CellVisibility {
     BitMatrix visible;          ///< [cells x cells], symmetric; each cell sees itself
     BitMatrix witnessed;        ///< [cells x cells], symmetric; within `visible`
+    BitMatrix follows;          ///< what portals may follow what, for what is baked from it; or empty
     uint64_t over_budget = 0;   ///< portals and directions whose flow ended by its budget
     uint64_t steps = 0;         ///< portals that were clipped
     uint64_t empty_chains = 0;  ///< of portals, that no line passes though clipping left something: by Teller's test

@@ -16,17 +16,26 @@ public:
         : places_(places), rays_(rays), may_(may) {}
 
     void from(uint32_t portal, std::span<const uint64_t> asked, uint64_t budget, FlowAnswer& answer) {
-        for (Place& place : held_) {
-            if (place.busy.exchange(true, std::memory_order_acquire)) continue;
-            if (!place.flow) place.flow = std::make_unique<PortalFlow>(places_, rays_, may_);
-            place.flow->from(portal, asked, budget, answer);
-            place.busy.store(false, std::memory_order_release);
-            return;
-        }
-        PortalFlow(places_, rays_, may_).from(portal, asked, budget, answer);
+        withFlow([&](PortalFlow& flow) { flow.from(portal, asked, budget, answer); });
+    }
+    void find(uint32_t portal, const FlowBoxes& boxes, uint64_t budget, FlowAnswer& answer) {
+        withFlow([&](PortalFlow& flow) { flow.find(portal, boxes, budget, answer); });
     }
 
 private:
+    template <class Work>
+    void withFlow(Work&& work) {
+        for (Place& place : held_) {
+            if (place.busy.exchange(true, std::memory_order_acquire)) continue;
+            if (!place.flow) place.flow = std::make_unique<PortalFlow>(places_, rays_, may_);
+            work(*place.flow);
+            place.busy.store(false, std::memory_order_release);
+            return;
+        }
+        PortalFlow flow(places_, rays_, may_);
+        work(flow);
+    }
+
     struct Place {
         std::atomic<bool> busy{false};
         std::unique_ptr<PortalFlow> flow;

@@ -54,8 +54,10 @@ struct PortalFlow::Scratch {
     std::vector<std::unique_ptr<State>> states;
     StabbingChain chain;
     std::vector<glm::dvec3> corners;
-    std::vector<uint32_t> run;    ///< cells of a ray
-    std::vector<uint64_t> asked;  ///< portals into cells that are asked for and not yet reached
+    std::vector<uint32_t> run;         ///< cells of a ray
+    std::vector<uint64_t> asked;       ///< portals into cells that are asked for and not yet reached
+    const FlowBoxes* boxes = nullptr;  ///< what is looked for; null: cells
+    std::vector<Box3d> left;           ///< per cell: around its boxes that were not found when the flow began
     FlowAnswer* answer = nullptr;
     uint64_t budget = 0;
 };
@@ -120,6 +122,7 @@ private:
             return false;
         }
         if (!clipBoth(now, then)) return false;
+        if (s_.boxes) return enterForBoxes(then, asked);
         if (asked) {
             if (!prove(depth, then) && isEmpty(depth, then)) {
                 ++s_.answer->empty_chains;
@@ -132,6 +135,63 @@ private:
         separate(then.source, planeOf(directed_.portals[s_.states[0]->portal]), then.window,
                  planeOf(directed_.portals[next]), 1, precision_, then.onward);
         return keepTargets(then);
+    }
+
+    /// The same where boxes are looked for.
+    bool enterForBoxes(State& then, bool asked) {
+        separate(then.source, planeOf(directed_.portals[s_.states[0]->portal]), then.window,
+                 planeOf(directed_.portals[then.portal]), 1, precision_, then.onward);
+        if (asked) {
+            const uint32_t cell = directed_.portals[then.portal].to;
+            bool all = true;
+            for (uint32_t i = s_.boxes->first[cell]; i < s_.boxes->first[cell + 1]; ++i) {
+                const uint32_t box = s_.boxes->inside[i];
+                uint8_t& found = s_.boxes->found[box];
+                found = found || reachesAbove(s_.boxes->boxes[box], then.onward, directed_.portals[then.portal]);
+                all = all && found;
+            }
+            if (all) settle(cell);
+            for (uint32_t i = 0; i < then.words; ++i) then.targets[i] &= s_.asked[then.word[i]];
+        }
+        return then.words != 0 && keepTargets(then) && keepBoxes(then);
+    }
+
+    /// Clears the targets whose cells' boxes lie wholly below one of the planes.
+    bool keepBoxes(State& state) const {
+        uint32_t words = 0;
+        for (uint32_t i = 0; i < state.words; ++i) {
+            uint64_t word = state.targets[i];
+            for (uint64_t bits = word; bits; bits &= bits - 1) {
+                const uint32_t cell = directed_.portals[targetOf(state.word[i], bits)].to;
+                if (!reachesAbove(s_.left[cell], state.onward, directed_.portals[state.portal]))
+                    word &= ~(bits & -bits);
+            }
+            state.word[words] = state.word[i];
+            state.targets[words] = word;
+            words += word != 0;
+        }
+        state.words = words;
+        return words != 0;
+    }
+
+    bool reachesAbove(const Box3d& box, const Separators& planes, const DirectedPortal& portal) const {
+        const glm::dvec3 center = box.center(), half = 0.5 * box.size();
+        // Rounding of the center and the size is far below the precision.
+        const auto isBelow = [&](const glm::dvec3& normal, double offset) {
+            return glm::dot(normal, center) + glm::dot(glm::abs(normal), half) + offset < -2 * precision_.points;
+        };
+        if (isBelow(portal.normal, portal.offset)) return false;
+        for (uint32_t i = 0; i < planes.count; ++i)
+            if (isBelow({planes.x[i], planes.y[i], planes.z[i]}, planes.w[i])) return false;
+        return true;
+    }
+
+    /// Nothing more is asked for in a cell.
+    void settle(uint32_t cell) {
+        for (uint32_t i = s_.places.entering_first[cell]; i < s_.places.entering_first[cell + 1]; ++i) {
+            const uint32_t p = s_.places.entering[i];
+            s_.asked[p / 64] &= ~(uint64_t(1) << (p % 64));
+        }
     }
 
     /// What of the portal is lit through the window before it, and what of the source lights it.
@@ -212,10 +272,7 @@ private:
         FlowAnswer& answer = *s_.answer;
         const uint32_t cell = directed_.portals[state.portal].to;
         answer.reached[cell / 64] |= uint64_t(1) << (cell % 64);
-        for (uint32_t i = s_.places.entering_first[cell]; i < s_.places.entering_first[cell + 1]; ++i) {
-            const uint32_t p = s_.places.entering[i];
-            s_.asked[p / 64] &= ~(uint64_t(1) << (p % 64));
-        }
+        settle(cell);
     }
 
     /// Looks for a line that passes the whole chain, with room to spare.
@@ -321,42 +378,75 @@ PortalFlow::PortalFlow(const FlowPlaces& places, const WitnessRays& rays, const 
     : scratch_(std::make_unique<Scratch>(places, rays, may)) {}
 PortalFlow::~PortalFlow() = default;
 
-void PortalFlow::from(uint32_t portal, std::span<const uint64_t> asked, uint64_t budget, FlowAnswer& answer) {
-    Scratch& s = *scratch_;
-    const DirectedPortals& directed = s.places.directed;
-    answer.reached.assign(asked.size(), 0);
+void PortalFlow::begin(uint32_t portal, uint64_t budget, FlowAnswer& answer) {
+    answer.reached.clear();
     answer.seen.clear();
     answer.seen_first.assign(1, 0);
     answer.steps = 0;
     answer.spent = false;
     answer.empty_chains = 0;
-    s.answer = &answer;
-    s.budget = budget;
+    scratch_->answer = &answer;
+    scratch_->budget = budget;
+    scratch_->at(0).portal = portal;
+}
 
+/// @return false if there is nothing to look for
+template <class IsAsked>
+bool PortalFlow::chaseFrom(uint32_t portal, IsAsked&& is_asked) {
+    Scratch& s = *scratch_;
     State& first = s.at(0);
-    first.portal = portal;
+    const DirectedPortals& directed = s.places.directed;
     const std::span<const uint64_t> row = s.may.row(portal);
     first.words = 0;
     for (uint32_t w = 0; w < row.size(); ++w) {
         uint64_t targets = 0;
         for (uint64_t left = row[w]; left; left &= left - 1) {
             const auto q = w * 64 + static_cast<uint32_t>(std::countr_zero(left));
-            const uint32_t cell = directed.portals[q].to;
-            if (asked[cell / 64] >> (cell % 64) & 1) targets |= left & -left;
+            if (is_asked(directed.portals[q].to)) targets |= left & -left;
         }
         s.asked[w] = first.targets[first.words] = targets;
         first.word[first.words] = w;
         first.words += targets != 0;
     }
-    if (first.words == 0) return;
+    if (first.words == 0) return false;
     if (first.source.assign(directed.outline(portal))) {
         first.window.assign(first.source);
         first.onward.count = 0;
         HWY_DYNAMIC_DISPATCH(chase)(s);
     } else {
-        answer.spent = true;
+        s.answer->spent = true;
     }
+    return true;
+}
+
+void PortalFlow::from(uint32_t portal, std::span<const uint64_t> asked, uint64_t budget, FlowAnswer& answer) {
+    begin(portal, budget, answer);
+    answer.reached.assign(asked.size(), 0);
+    scratch_->boxes = nullptr;
+    chaseFrom(portal, [&](uint32_t cell) { return asked[cell / 64] >> (cell % 64) & 1; });
     if (answer.spent) answer.reached.assign(asked.begin(), asked.end());
+}
+
+void PortalFlow::find(uint32_t portal, const FlowBoxes& boxes, uint64_t budget, FlowAnswer& answer) {
+    begin(portal, budget, answer);
+    scratch_->boxes = &boxes;
+    const auto forBoxesOf = [&](uint32_t cell, auto&& visit) {
+        for (uint32_t i = boxes.first[cell]; i < boxes.first[cell + 1]; ++i) visit(boxes.inside[i]);
+    };
+    // All of the cell behind the portal may be seen through it.
+    const DirectedPortals& directed = scratch_->places.directed;
+    forBoxesOf(directed.portals[portal].to, [&](uint32_t box) { boxes.found[box] = 1; });
+    scratch_->left.assign(directed.cells(), Box3d());
+    for (uint32_t cell = 0; cell < directed.cells(); ++cell)
+        forBoxesOf(cell, [&](uint32_t box) {
+            if (!boxes.found[box]) scratch_->left[cell].grow(boxes.boxes[box]);
+        });
+    chaseFrom(portal, [&](uint32_t cell) { return !scratch_->left[cell].empty(); });
+    if (!answer.spent) return;
+    const std::span<const uint64_t> row = scratch_->may.row(portal);
+    for (uint32_t q = 0; q < directed.size(); ++q)
+        if (row[q / 64] >> (q % 64) & 1)
+            forBoxesOf(directed.portals[q].to, [&](uint32_t box) { boxes.found[box] = 1; });
 }
 
 }  // namespace sightline

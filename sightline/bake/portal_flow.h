@@ -15,6 +15,7 @@
 #include "sightline/bake/window.h"
 #include "sightline/bake/witness_rays.h"
 #include "sightline/base/bit_matrix.h"
+#include "sightline/math/box.h"
 
 namespace sightline {
 
@@ -26,6 +27,14 @@ struct FlowAnswer {
     uint64_t steps = 0;                ///< portals that were clipped
     uint64_t empty_chains = 0;         ///< that Teller's test proved to be passed by no line
     bool spent = false;                ///< the budget: then all that were asked for count as reached
+};
+
+/// Boxes in cells, and which of them have been found.
+struct FlowBoxes {
+    std::span<const Box3d> boxes;     ///< about DirectedPortals::center
+    std::span<const uint32_t> first;  ///< per cell where its boxes begin in `inside`, and the end
+    std::span<const uint32_t> inside;
+    std::span<uint8_t> found;  ///< per box
 };
 
 /// The lists that flows read: what lies where, for vectors.
@@ -51,10 +60,19 @@ public:
     /// @param budget  steps; 0: no limit
     void from(uint32_t portal, std::span<const uint64_t> asked, uint64_t budget, FlowAnswer& answer);
 
+    /// Chases light from a portal to boxes that are not found yet: a box is found if it reaches above all planes that bound
+    /// the light in one of its cells. Of the answer, `reached` and `seen` stay empty; if the budget is spent, all boxes in cells that the
+    /// portal may lead to count as found.
+    void find(uint32_t portal, const FlowBoxes& boxes, uint64_t budget, FlowAnswer& answer);
+
     struct State;    ///< of the search
     struct Scratch;  ///< of a thread
 
 private:
+    void begin(uint32_t portal, uint64_t budget, FlowAnswer& answer);
+    template <class IsAsked>
+    bool chaseFrom(uint32_t portal, IsAsked&& is_asked);
+
     std::unique_ptr<Scratch> scratch_;
 };
 
