@@ -20,6 +20,8 @@
 #include "apps/cli/vis_bake.h"
 #include "apps/cli/vis_map.h"
 #include "apps/cli/vis_verify.h"
+#include "sightline/bake/box_visibility.h"
+#include "sightline/bake/outside.h"
 #include "sightline/base/thread_pool.h"
 #include "sightline/import/map_source.h"
 #include "sightline/import/quake_visibility.h"
@@ -42,6 +44,8 @@ struct VisOptions {
     uint32_t threads = 0;  ///< 0: all cores
     VisBakeOptions bake;
     bool in_place = false;
+    bool objects = false;
+    std::string leak;  ///< file, or empty
     bool verify = false;
     uint64_t rays = 1000000;
 };
@@ -56,9 +60,10 @@ Status checkFiles(const VisOptions& options) {
     files.write("-o", options.output);
     files.write("--json", options.json);
     files.write("--state", options.bake.state);
+    files.write("--leak", options.leak);
     if (!options.report.empty()) files.write("--report", std::filesystem::path(options.report) / "index.html");
     if (!files.status()) return files.status();
-    for (const std::string& name : {options.output, options.bake.state})
+    for (const std::string& name : {options.output, options.bake.state, options.leak})
         if (!name.empty())
             if (Status writable = canWriteFile(name); !writable) return writable;
     if (!options.json.empty() && options.json != "-")
@@ -125,6 +130,23 @@ Status writeOutput(const VisOptions& options, const VisOutputs& outputs) {
     return writeFileAside(options.output, {bytes.data(), bytes.size()});
 }
 
+VisSummary::Objects bakeObjects(const VisMap& map, const CellVisibility& visibility, const VisOptions& options,
+                                Jobs& jobs) {
+    const std::clock_t begin = std::clock();
+    const CellBoxes faces = facesOf(map);
+    Progress progress("visibility, objects", "cells", map.graph.cells);
+    CellVisibilitySettings settings;
+    settings.jobs = &jobs;
+    settings.budget = options.bake.budget;
+    settings.stop = [] { return interrupted(); };
+    settings.progress = [&](const BakeProgress& now) {
+        progress.set(static_cast<size_t>(now.done * static_cast<double>(map.graph.cells)), map.graph.cells);
+    };
+    const BoxVisibility boxes = bakeBoxVisibility(map.graph, visibility, faces, settings);
+    return {faces.boxes.size(), boxes.visible.count(), boxes.by_cells,
+            static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC};
+}
+
 std::string share(uint64_t part, uint64_t whole) {
     return fmt::format("{:.2f} %", whole ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0.0);
 }
@@ -142,6 +164,17 @@ void printSummary(std::FILE* out, const VisSummary& s) {
         tell(out,
              fmt::format("  portals over budget   {}: what they may see counts as visible\n", grouped(s.over_budget)));
     if (s.stopped) tell(out, "  stopped by the time limit: what was not settled counts as visible\n");
+    for (const VisSummary::Leak& leak : s.leaks)
+        tell(out,
+             fmt::format("leaks: from {} at {:g} {:g} {:g} there is a way of {} points to the outside, which stays in "
+                         "the rows (--leak "
+                         "writes it)\n",
+                         leak.from, leak.path.front().x + 0.0, leak.path.front().y + 0.0, leak.path.front().z + 0.0,
+                         leak.path.size()));
+    if (s.objects)
+        tell(out, fmt::format("faces: {} pairs of cells and faces, {} of those in visible cells, in {:.2f} s of CPU\n",
+                              grouped(s.objects->visible_pairs),
+                              share(s.objects->visible_pairs, s.objects->pairs_by_cells), s.objects->cpu_seconds));
     if (s.lump_bytes)
         tell(out, fmt::format("bytes: {} packed, {} resident; run-length lump {}\n", grouped(s.pvs_bytes),
                               grouped(s.resident_bytes), grouped(s.lump_bytes)));
@@ -161,6 +194,10 @@ Result<int> runVis(VisOptions& options) {
     if (Status good = checkFiles(options); !good) return good.error();
     const Result<VisMap> map = loadVisMap(options.map);
     if (!map) return map.error();
+    if (options.objects && !map->map) return Error{Error::Kind::kUsage, "--objects needs a .bsp: it has the faces"};
+    options.bake.keep_follows = options.objects;
+    if (!options.leak.empty() && !map->leaks.empty())
+        if (Status written = writeFileAside(options.leak, pointFile(map->leaks[0])); !written) return written.error();
 
     const uint32_t threads = options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
     ThreadPool pool(threads);
@@ -196,6 +233,8 @@ Result<int> runVis(VisOptions& options) {
     summary.threads = threads;
     summary.cpu_seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
     summary.wall_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    for (const MapLeak& leak : map->leaks) summary.leaks.push_back({leak.what, leak.path});
+    if (options.objects) summary.objects = bakeObjects(*map, *visibility, options, pool);
     if (options.verify) summary.verification = verifyVis(*map, visibility->visible, options.rays, pool);
 
     if (!options.report.empty())
@@ -214,7 +253,7 @@ Result<int> runVis(VisOptions& options) {
 void addVis(CLI::App& tool, int& exit_code) {
     CLI::App* verb = tool.add_subcommand("vis", "which leaves of a Quake-family map see one another");
     const auto options = std::make_shared<VisOptions>();
-    verb->add_option("MAP", options->map.name, "a .prt, a .bsp, or a .bsp in a .pak or .pk3 (x.pk3:maps/y.bsp)")
+    verb->add_option("MAP", options->map.name, "a .prt, a .bsp, a .bsp in a .pak or .pk3 (x.pk3:maps/y.bsp), or a .map")
         ->required()
         ->type_name("FILE");
     verb->add_option("-o,--output", options->output,
@@ -253,6 +292,10 @@ void addVis(CLI::App& tool, int& exit_code) {
     verb->add_option("--report", options->report, "write pictures and a page")->type_name("DIR");
     verb->add_flag("--in-place", options->in_place,
                    "write the visibility file's larger form, which answers without being unpacked");
+    verb->add_flag("--objects", options->objects,
+                   "tell also which faces each cell sees: takes longer than the cells do");
+    verb->add_option("--leak", options->leak, "write the way by which a .map leaks, as engines draw it (.pts)")
+        ->type_name("FILE");
     verb->add_flag("--verify", options->verify, "hold the rows against rays through the map, and through its portals");
     verb->add_option("--rays", options->rays, "of --verify")
         ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))

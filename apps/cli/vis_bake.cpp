@@ -56,6 +56,7 @@ Result<CellVisibility> bakeVis(const CellGraph& graph, const VisBakeOptions& opt
     CellVisibilitySettings settings;
     settings.jobs = &jobs;
     settings.budget = options.budget;
+    settings.keep_follows = options.keep_follows;
     settings.resume = left ? &*left : nullptr;
     settings.stop = [&] {
         return !failed || interrupted() || (options.time_limit > 0 && secondsSince(begin) > options.time_limit);

@@ -11,9 +11,10 @@
 namespace sightline::cli {
 
 struct VisBakeOptions {
-    uint64_t budget = 0;    ///< CellVisibilitySettings
-    double time_limit = 0;  ///< [s]; 0: none
-    std::string state;      ///< file; empty: none
+    uint64_t budget = 0;        ///< CellVisibilitySettings
+    double time_limit = 0;      ///< [s]; 0: none
+    std::string state;          ///< file; empty: none
+    bool keep_follows = false;  ///< CellVisibilitySettings
 };
 
 /// Bakes; goes on from the state's file if there is one of this graph and budget, and writes it now and then. Ctrl-C stops

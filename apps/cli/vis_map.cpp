@@ -10,9 +10,11 @@
 
 #include <fmt/format.h>
 
+#include "sightline/bake/brush_tree.h"
 #include "sightline/base/bytes.h"
 #include "sightline/import/map_source.h"
 #include "sightline/import/prt.h"
+#include "sightline/import/quake_map.h"
 #include "sightline/scene/text_file.h"
 #include "sightline/space/merge_cells.h"
 #include "sightline/space/open_groups.h"
@@ -140,7 +142,7 @@ Status findCells(const VisMapChoice& choice, VisMap& out) {
     TreePortalSettings settings;
     settings.contents_stop = choice.water_is_opaque;
     out.graph = cellsOfTree(map.tree, settings);
-    out.portals_are_of_tree = true;
+    out.tree = map.tree;
     out.contents_stop = settings.contents_stop;
     if (choice.cells == VisCells::kLeaves) {
         out.cells_are = "leaves";
@@ -179,32 +181,80 @@ Result<VisMap> loadPortalFile(const VisMapChoice& choice) {
     return out;
 }
 
+/// The source of a map, by our own tree of its brushes.
+Result<VisMap> loadSource(const VisMapChoice& choice) {
+    const Result<std::string> text = readTextFile(choice.name);
+    if (!text) return text.error();
+    const Result<QuakeMap> source =
+        parseQuakeMap({reinterpret_cast<const unsigned char*>(text->data()), text->size()}, choice.name);
+    if (!source) return source.error();
+    VisMap out;
+    out.content_hash = contentHash(*text);
+    BrushTree brushes = treeOfBrushes(*source);
+    MapCells cells = cellsInside(*source, brushes);
+    out.graph = std::move(cells.graph);
+    out.leaks = std::move(cells.leaks);
+    out.tree = std::move(brushes.tree);
+    out.cells_are = "of the brushes";
+    return out;
+}
+
 }  // namespace
 
 Result<VisMap> loadVisMap(const VisMapChoice& choice) {
     const auto usage = [&](const char* what) { return Error{Error::Kind::kUsage, what}; };
     const std::string kind = kindOf(choice.name);
-    const bool is_prt = kind == ".prt";
+    const bool is_prt = kind == ".prt", is_source = kind == ".map";
     if (is_prt && choice.cells != VisCells::kClusters)
         return usage("--cells needs a .bsp: a .prt has no cells but its own");
     if (is_prt && !choice.prt.empty()) return usage("--prt goes with a .bsp");
     if (is_prt && choice.water_is_opaque)
         return usage("--opaque-water needs a .bsp: the portals of a .prt say what is seen through");
+    if (is_source && choice.cells != VisCells::kClusters)
+        return usage("--cells needs a .bsp: a .map has the cells of its brushes");
+    if (is_source && !choice.prt.empty()) return usage("--prt goes with a .bsp");
+    if (is_source && choice.water_is_opaque) return usage("--opaque-water needs a .bsp");
+    if (is_source && choice.needs_bsp)
+        return usage("a .map has no lump to write: name an output that does not end in .bsp, or give the compiled map");
     if (!is_prt && !choice.bsp.empty()) return usage("--bsp goes with a .prt");
     VisMap out;
-    if (is_prt) {
-        Result<VisMap> map = loadPortalFile(choice);
+    if (is_prt || is_source) {
+        Result<VisMap> map = is_prt ? loadPortalFile(choice) : loadSource(choice);
         if (!map) return map;
         out = std::move(*map);
-        const Result<std::string> text = readTextFile(choice.name);
-        if (!text) return text.error();
-        out.content_hash = contentHash(*text);
+        if (is_prt) {
+            const Result<std::string> text = readTextFile(choice.name);
+            if (!text) return text.error();
+            out.content_hash = contentHash(*text);
+        }
     } else {
         if (Status read = readMap(choice.name, out); !read) return read.error();
         if (Status found = findCells(choice, out); !found) return found.error();
     }
     for (const uint32_t cell : out.graph.cell_of_leaf) out.leaves += cell != CellGraph::kNoCell;
     return out;
+}
+
+CellBoxes facesOf(const VisMap& map) {
+    const QuakeMapFile& file = *map.map;
+    std::vector<std::vector<uint32_t>> cells(file.faces.size());
+    for (size_t leaf = 0; leaf < map.graph.cell_of_leaf.size() && leaf < file.faces_of_leaf.size(); ++leaf) {
+        const uint32_t cell = map.graph.cell_of_leaf[leaf];
+        if (cell == CellGraph::kNoCell) continue;
+        const QuakeLeafFaces& run = file.faces_of_leaf[leaf];
+        for (uint32_t i = run.first; i < run.first + run.count; ++i) cells[file.leaf_faces[i]].push_back(cell);
+    }
+    CellBoxes boxes;
+    for (size_t face = 0; face < file.faces.size(); ++face) {
+        std::sort(cells[face].begin(), cells[face].end());
+        cells[face].erase(std::unique(cells[face].begin(), cells[face].end()), cells[face].end());
+        Box3d box;
+        const QuakeFace& points = file.faces[face];
+        for (uint32_t k = 0; k < points.point_count; ++k) box.grow(glm::dvec3(file.points[points.first_point + k]));
+        // Faces of things that move are in no leaf, and drawn with the things.
+        if (!cells[face].empty()) boxes.add(box, cells[face]);
+    }
+    return boxes;
 }
 
 uint64_t leafPairs(const VisMap& map, const BitMatrix& cells) {

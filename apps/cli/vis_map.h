@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "sightline/bake/box_visibility.h"
+#include "sightline/bake/outside.h"
 #include "sightline/base/bit_matrix.h"
 #include "sightline/base/result.h"
 #include "sightline/import/quake_bsp.h"
@@ -32,18 +34,22 @@ struct VisMapChoice {
 
 struct VisMap {
     CellGraph graph;
-    uint32_t leaves = 0;               ///< that can have a row
-    std::string cells_are;             ///< where the cells come from, for people
-    uint64_t content_hash = 0;         ///< of the file that the cells are of
-    std::optional<QuakeMapFile> map;   ///< of a .bsp
-    bool portals_are_of_tree = false;  ///< of that map: its rays judge
-    bool contents_stop = false;        ///< TreePortalSettings
-    std::string map_name;              ///< of its bytes
+    uint32_t leaves = 0;              ///< that can have a row
+    std::string cells_are;            ///< where the cells come from, for people
+    uint64_t content_hash = 0;        ///< of the file that the cells are of
+    std::optional<QuakeMapFile> map;  ///< of a .bsp
+    std::optional<LeafTree> tree;     ///< that the portals were made from, and rays judge; of a .prt none
+    bool contents_stop = false;       ///< TreePortalSettings
+    std::vector<MapLeak> leaks;       ///< of a .map
+    std::string map_name;             ///< of its bytes
     std::vector<unsigned char> map_bytes;
 };
 
 /// Errors: of the readers, of files that do not belong together (kInput), of what cannot be asked of a file of its kind (kUsage).
 Result<VisMap> loadVisMap(const VisMapChoice& choice);
+
+/// The faces of a .bsp as boxes in cells.
+CellBoxes facesOf(const VisMap& map);
 
 /// How many ordered pairs of leaves a matrix of cells stands for.
 uint64_t leafPairs(const VisMap& map, const BitMatrix& cells);

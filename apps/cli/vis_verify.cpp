@@ -30,16 +30,16 @@ VisSummary::Verification verifyVis(const VisMap& map, const BitMatrix& visible, 
             leaf_of_cell[graph.cell_of_leaf[leaf]] = static_cast<uint32_t>(leaf);
     RowCheckSettings settings;
     settings.jobs = &jobs;
-    settings.segments = map.map ? std::max<uint64_t>(1, rays / 2) : rays;
+    settings.segments = map.tree ? std::max<uint64_t>(1, rays / 2) : rays;
     double largest = 1;
     for (const glm::dvec3& p : graph.points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     add(checkCellRows(GraphRays(graph, largest * 0x1p-36), visible, settings), out, leaf_of_cell);
-    if (map.map && map.portals_are_of_tree) {
+    if (map.tree) {
         AimedHoles holes;
         for (const CellPortal& portal : graph.portals) holes.add(graph.outline(portal));
         TreeRaySettings through;
         through.contents_stop = map.contents_stop;
-        add(checkLeafRows(TreeRays(map.map->tree, through), visible, graph.cell_of_leaf, holes, settings), out,
+        add(checkLeafRows(TreeRays(*map.tree, through), visible, graph.cell_of_leaf, holes, settings), out,
             leaf_of_cell);
     }
     return out;

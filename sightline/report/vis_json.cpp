@@ -28,14 +28,24 @@ std::string visJson(const VisSummary& summary) {
     out["threads"] = summary.threads;
     out["cpu_seconds"] = summary.cpu_seconds;
     out["wall_seconds"] = summary.wall_seconds;
+    const auto vector = [](const glm::dvec3& p) { return Json{p.x, p.y, p.z}; };
+    out["leaks"] = Json::array();
+    for (const VisSummary::Leak& leak : summary.leaks) {
+        Json path = Json::array();
+        for (const glm::dvec3& point : leak.path) path.push_back(vector(point));
+        out["leaks"].push_back({{"from", leak.from}, {"path", path}});
+    }
+    if (summary.objects)
+        out["objects"] = {{"count", summary.objects->objects},
+                          {"visible_pairs", summary.objects->visible_pairs},
+                          {"pairs_by_cells", summary.objects->pairs_by_cells},
+                          {"cpu_seconds", summary.objects->cpu_seconds}};
     if (summary.verification) {
         const VisSummary::Verification& verified = *summary.verification;
         Json examples = Json::array();
         for (const VisSummary::Verification::Example& e : verified.examples)
-            examples.push_back({{"from_leaf", e.from_leaf},
-                                {"to_leaf", e.to_leaf},
-                                {"from", {e.from.x, e.from.y, e.from.z}},
-                                {"to", {e.to.x, e.to.y, e.to.z}}});
+            examples.push_back(
+                {{"from_leaf", e.from_leaf}, {"to_leaf", e.to_leaf}, {"from", vector(e.from)}, {"to", vector(e.to)}});
         out["verification"] = {{"segments", verified.segments},
                                {"false_negatives", verified.false_negatives},
                                {"doubtful", verified.doubtful},

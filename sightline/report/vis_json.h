@@ -28,6 +28,18 @@ struct VisSummary {
     double cpu_seconds = 0, wall_seconds = 0;
     uint32_t threads = 1;
 
+    struct Leak {
+        std::string from;  ///< the class of what stands at its beginning
+        std::vector<glm::dvec3> path;
+    };
+    std::vector<Leak> leaks;  ///< ways out of a map that is not sealed; one is told
+
+    struct Objects {
+        uint64_t objects = 0, visible_pairs = 0, pairs_by_cells = 0;  ///< cells and objects; what lies in visible cells
+        double cpu_seconds = 0;
+    };
+    std::optional<Objects> objects;
+
     struct Verification {
         uint64_t segments = 0, false_negatives = 0, doubtful = 0;
         struct Example {
