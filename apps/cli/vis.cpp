@@ -99,15 +99,13 @@ Result<VisOutputs> makeOutputs(const VisOptions& options, const VisMap& map, con
     const std::string name = std::filesystem::path(splitMapName(options.map.name).file).filename().string();
     const VisibilityContent content{visibility.visible, map.graph.cell_of_leaf, name, map.content_hash};
     if (write_rows || !options.json.empty()) {
-        Result<Array<char>> packed = visibilityFile(content, VisibilityForm::kPacked);
-        if (!packed) return packed.error();
-        out.packed = std::move(*packed);
         Result<Array<char>> in_place = visibilityFile(content, VisibilityForm::kInPlace);
         if (!in_place) return in_place.error();
         out.in_place = std::move(*in_place);
         const Result<VisibilityFile> file = VisibilityFile::open(out.in_place, name);
         if (!file) return file.error();
         out.resident_bytes = file->residentBytes();
+        out.packed = packedFile(*file);
     }
     if (write_map || !options.json.empty()) {
         const BitMatrix rows = leafRows(map, visibility.visible);

@@ -16,13 +16,13 @@ namespace {
 
 constexpr size_t kMapBytes = 16;  // before the name
 
-Array<char> mapSection(const VisibilityContent& content, Memory* memory) {
+Array<char> mapSection(size_t leaves, uint64_t hash, std::string_view name, Memory* memory) {
     Array<char> bytes(memory);
     ByteWriter out(bytes);
-    out.put(static_cast<uint32_t>(content.cell_of_leaf.size()));
+    out.put(static_cast<uint32_t>(leaves));
     out.put(uint32_t{0});
-    out.put(content.map_hash);
-    bytes.insert(bytes.end(), content.map_name.begin(), content.map_name.end());
+    out.put(hash);
+    bytes.insert(bytes.end(), name.begin(), name.end());
     return bytes;
 }
 
@@ -54,16 +54,23 @@ Result<Array<char>> visibilityFile(const VisibilityContent& content, VisibilityF
         if (cell >= content.visible.rows() && cell != CellGraph::kNoCell)
             return Error{Error::Kind::kUsage, "a leaf of a cell that there is not"};
     SectionWriter writer(memory);
-    writer.add(kMap, mapSection(content, memory));
-    if (form == VisibilityForm::kInPlace) {
-        writer.add(kRows, std::move(*rows));
-        writer.add(kLeaves, leafCells(content.cell_of_leaf, memory));
-    } else {
-        const Result<VisibleRows> opened = VisibleRows::open(*rows, "rows");
-        if (!opened) return opened.error();
-        writer.add(kPackedRows, packedRows(*opened, memory));
-        writer.add(kPackedLeaves, packedLeafCells(content.cell_of_leaf, memory));
-    }
+    writer.add(kMap, mapSection(content.cell_of_leaf.size(), content.map_hash, content.map_name, memory));
+    writer.add(kRows, std::move(*rows));
+    writer.add(kLeaves, leafCells(content.cell_of_leaf, memory));
+    Array<char> bytes = writer.file();
+    if (form == VisibilityForm::kInPlace) return bytes;
+    const Result<VisibilityFile> opened = VisibilityFile::open(bytes, "what was written", memory);
+    if (!opened) return opened.error();
+    return packedFile(*opened, memory);
+}
+
+Array<char> packedFile(const VisibilityFile& file, Memory* memory) {
+    Array<uint32_t> cell_of_leaf(file.leaves(), 0, memory);
+    for (uint32_t leaf = 0; leaf < file.leaves(); ++leaf) cell_of_leaf[leaf] = file.cellOfLeaf(leaf);
+    SectionWriter writer(memory);
+    writer.add(kMap, mapSection(file.leaves(), file.mapHash(), file.mapName(), memory));
+    writer.add(kPackedRows, packedRows(file.rows(), memory));
+    writer.add(kPackedLeaves, packedLeafCells(cell_of_leaf, memory));
     return writer.file();
 }
 

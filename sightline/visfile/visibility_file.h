@@ -82,4 +82,8 @@ private:
     uint64_t map_hash_ = 0;
 };
 
+/// The packed form of an opened file: the bytes that visibilityFile() writes of the same content, without putting its rows
+/// in order again, which is most of the time.
+Array<char> packedFile(const VisibilityFile& file, Memory* memory = defaultMemory());
+
 }  // namespace sightline

@@ -48,6 +48,17 @@ TEST(VisibilityFile, AnswersAsWhatItWasWrittenFrom) {
     }
 }
 
+TEST(VisibilityFile, PacksToTheSameBytesFromEitherForm) {
+    for (const size_t cells : {1, 70, 300}) {
+        const MadeFile made(cells, cells);
+        const Array<char> packed = made.bytes(VisibilityForm::kPacked);
+        for (const VisibilityForm form : kForms) {
+            const Array<char> bytes = made.bytes(form);
+            EXPECT_EQ(packedFile(*VisibilityFile::open(bytes, "f")), packed);
+        }
+    }
+}
+
 TEST(VisibilityFile, AnswersWhereverItIsMoved) {
     const MadeFile made(1);
     for (const VisibilityForm form : kForms) {
