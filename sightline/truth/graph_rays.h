@@ -33,8 +33,8 @@ public:
     double margin() const { return margin_; }
 
     /// All cells that a line reaches from a point in a cell, where parameters are above 0. From a convex cell a line goes
-    /// on through one portal at most; from a cell that is a union of others, through each that it crosses after it has
-    /// entered: steps are then a tree. Portals that the line crosses at a slope of less than 1e-9 are passed by.
+    /// on through one portal, or through two that overlap by a tolerance; from a cell that is a union of others, through each
+    /// that it crosses after it has entered: steps are a tree. Portals that the line crosses at a slope of less than 1e-9 are passed by.
     /// @param steps  receives the cell itself first
     void follow(uint32_t cell, const glm::dvec3& point, const glm::dvec3& direction,
                 std::vector<GraphStep>& steps) const;

@@ -107,6 +107,49 @@ TEST(Outside, HeedsWhoStandsThere) {
     EXPECT_EQ(cells.graph.cells, 0u);  // all of it is outside
 }
 
+TEST(Outside, StandsBrushesOfAnyPlanes) {
+    uint64_t solid = 0, leaks = 0;
+    for (uint64_t seed = 1; seed <= 60; ++seed) {
+        // Sides through points of a small lattice: in a line, facing anywhere, again and again; brushes without end.
+        Random random(seed);
+        BrushMaker maker;
+        maker.map.textures = {"brick", "*water", "sky"};
+        const auto point = [&] {
+            return glm::dvec3(double(random.below(5)), double(random.below(5)), double(random.below(5))) * 16.0;
+        };
+        for (uint64_t b = 0; b < 30; ++b) {
+            QuakeMapBrush brush;
+            brush.first_side = static_cast<uint32_t>(maker.map.sides.size());
+            const uint32_t texture = random.below(3) == 0 ? static_cast<uint32_t>(random.below(3)) : 0;
+            for (uint64_t k = 1 + random.below(9); k > 0; --k)
+                maker.map.sides.push_back({{point(), point(), point()}, texture, 0, 0});
+            brush.side_count = static_cast<uint32_t>(maker.map.sides.size()) - brush.first_side;
+            maker.map.brushes.push_back(brush);
+            ++maker.map.entities.back().brush_count;
+        }
+        for (int i = 0; i < 5; ++i)
+            addLight(maker, std::to_string(random.below(80)) + " " + std::to_string(random.below(80)) + " 33");
+        const BrushTree brushes = treeOfBrushes(maker.map);
+        std::vector<bool> seen(brushes.tree.nodes.size(), false);
+        for (uint32_t n = 0; n < brushes.tree.nodes.size(); ++n)
+            for (const uint32_t child : brushes.tree.nodes[n].child) {
+                if ((child & LeafTreeNode::kLeaf) != 0) {
+                    ASSERT_LT(child & ~LeafTreeNode::kLeaf, brushes.tree.contents.size());
+                    continue;
+                }
+                ASSERT_GT(child, n);
+                ASSERT_FALSE(seen.at(child));
+                seen[child] = true;
+            }
+        for (const LeafContents contents : brushes.tree.contents) solid += contents == LeafContents::kSolid;
+        const MapCells cells = cellsInside(maker.map, brushes);
+        for (const CellPortal& portal : cells.graph.portals) ASSERT_LT(portal.thickness, 1e-9);
+        leaks += cells.leaks.size();
+    }
+    EXPECT_GT(solid, 50u);
+    EXPECT_GT(leaks, 5u);
+}
+
 TEST(Outside, AWayIsWrittenInTheMapsAxes) {
     MapLeak leak;
     leak.path = {{0, 0, 0}, {16, 0, 0}, {16, 4, -2}};
