@@ -21,7 +21,7 @@ struct FloodPlaces {
     static constexpr size_t kBeyond = 8;  ///< vectors may reach this far beyond the last
 
     explicit FloodPlaces(const DirectedPortals& all) : directed(all) {
-        for (std::vector<double>* list : {&x, &y, &z, &radius, &nx, &ny, &nz, &offset})
+        for (std::vector<double>* list : {&x, &y, &z, &radius, &nx, &ny, &nz, &offset, &above})
             list->reserve(all.size() + kBeyond);
         for (const DirectedPortal& portal : all.portals) {
             x.push_back(portal.center.x);
@@ -32,14 +32,15 @@ struct FloodPlaces {
             ny.push_back(portal.normal.y);
             nz.push_back(portal.normal.z);
             offset.push_back(portal.offset);
+            above.push_back(portal.above);
         }
-        for (std::vector<double>* list : {&x, &y, &z, &radius, &nx, &ny, &nz, &offset})
+        for (std::vector<double>* list : {&x, &y, &z, &radius, &nx, &ny, &nz, &offset, &above})
             list->resize(all.size() + kBeyond);
     }
 
     const DirectedPortals& directed;
     std::vector<double> x, y, z, radius;
-    std::vector<double> nx, ny, nz, offset;
+    std::vector<double> nx, ny, nz, offset, above;
 };
 
 /// A thread's own.
@@ -48,10 +49,10 @@ struct FloodScratch {
     std::vector<uint32_t> cells;  ///< still to be left
 };
 
-/// Whether some point of q lies higher than the precision above p's plane; below it, if the sign is -1.
+/// Whether some point of q lies above p, or below it if the sign is -1.
 inline bool reachesAbove(const DirectedPortals& directed, const DirectedPortal& p, uint32_t q, double sign) {
     for (const glm::dvec3& point : directed.outline(q))
-        if (sign * p.height(point) > directed.precision) return true;
+        if (sign * p.height(point) > p.above) return true;
     return false;
 }
 
@@ -72,7 +73,7 @@ void flood(const detail::FloodPlaces& places, uint32_t p, detail::FloodScratch& 
                offset = hn::Set(d, source.offset);
     const auto x = hn::Set(d, source.center.x), y = hn::Set(d, source.center.y), z = hn::Set(d, source.center.z),
                radius = hn::Set(d, source.radius);
-    const auto room = hn::Set(d, directed.precision);
+    const auto least = hn::Set(d, source.above);
     const auto heightOf = [](auto ax, auto ay, auto az, auto w, auto bx, auto by, auto bz) {
         return hn::Add(hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz)), w);
     };
@@ -84,16 +85,16 @@ void flood(const detail::FloodPlaces& places, uint32_t p, detail::FloodScratch& 
         scratch.cells.pop_back();
         const uint32_t end = directed.first_of_cell[cell + 1];
         for (uint32_t i = directed.first_of_cell[cell]; i < end; i += static_cast<uint32_t>(hn::Lanes(d))) {
-            const auto other = hn::LoadU(d, places.radius.data() + i);
+            const auto other = hn::LoadU(d, places.radius.data() + i), lowest = hn::LoadU(d, places.above.data() + i);
             const auto above = heightOf(nx, ny, nz, offset, hn::LoadU(d, places.x.data() + i),
                                         hn::LoadU(d, places.y.data() + i), hn::LoadU(d, places.z.data() + i));
             const auto behind =
                 hn::Neg(heightOf(hn::LoadU(d, places.nx.data() + i), hn::LoadU(d, places.ny.data() + i),
                                  hn::LoadU(d, places.nz.data() + i), hn::LoadU(d, places.offset.data() + i), x, y, z));
-            const auto may = hn::And(hn::FirstN(d, end - i), hn::And(hn::Gt(hn::Add(above, other), room),
-                                                                     hn::Gt(hn::Add(behind, radius), room)));
+            const auto may = hn::And(hn::FirstN(d, end - i), hn::And(hn::Gt(hn::Add(above, other), least),
+                                                                     hn::Gt(hn::Add(behind, radius), lowest)));
             // The center itself is above.
-            const auto sure = hn::And(hn::Gt(above, room), hn::Gt(behind, room));
+            const auto sure = hn::And(hn::Gt(above, least), hn::Gt(behind, lowest));
             uint8_t may_bits[8] = {}, sure_bits[8] = {};
             hn::StoreMaskBits(d, may, may_bits);
             hn::StoreMaskBits(d, sure, sure_bits);

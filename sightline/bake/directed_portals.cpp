@@ -89,6 +89,12 @@ public:
         return number;
     }
 
+    /// In no plane.
+    uint32_t ofItsOwn() {
+        sheets_.emplace_back(0.0);
+        return static_cast<uint32_t>(sheets_.size()) - 1;
+    }
+
 private:
     static int64_t floorOf(double value) { return static_cast<int64_t>(std::floor(value)); }
     static double firstSign(const glm::dvec3& normal) {
@@ -174,7 +180,12 @@ DirectedPortals directPortals(const CellGraph& graph) {
             for (const glm::dvec3& point : hull) way.radius = std::max(way.radius, glm::length(point - way.center));
         }
         way.portal = i;
-        way.sheet = sheets.of(way, hull);
+        for (const glm::dvec3& point : hull) way.bend = std::max(way.bend, std::abs(way.height(point)));
+        // A line that comes out of a flat portal rises, so that what is passed later is passed higher; out of a bent one it may
+        // have come lower down.
+        const bool flat = way.bend <= directed.precision;
+        way.above = flat ? directed.precision : -way.bend;
+        way.sheet = flat ? sheets.of(way, hull) : sheets.ofItsOwn();
         const uint32_t there = next[portal.cells[1]]++, back = next[portal.cells[0]]++;
         way.count = static_cast<uint32_t>(hull.size());
         for (const bool forward : {true, false}) {

@@ -94,6 +94,7 @@ public:
 private:
     using State = PortalFlow::State;
 
+    double lowest(const DirectedPortal& portal) const { return -std::max(portal.bend, precision_.points); }
     static glm::dvec4 planeOf(const DirectedPortal& portal) { return glm::dvec4(portal.normal, portal.offset); }
 
     /// @return whether there is more to look for beyond it
@@ -200,12 +201,12 @@ private:
                              &portal = directed_.portals[then.portal];
         const double points = precision_.points;
         // A line comes out of a portal upwards, so the next one's crossing is above its plane, and not in it.
-        if (clip(then.window, planeOf(first), -points, points) == Clipped::kGone) return false;
-        if (now.portal != s_.states[0]->portal && clip(then.window, planeOf(last), -points, points) == Clipped::kGone)
-            return false;
+        if (clip(then.window, planeOf(first), lowest(first), first.above) == Clipped::kGone) return false;
+        const bool far = now.portal != s_.states[0]->portal;
+        if (far && clip(then.window, planeOf(last), lowest(last), last.above) == Clipped::kGone) return false;
         then.source.assign(now.source);
-        if (clip(then.source, -planeOf(portal), -points, points) == Clipped::kGone) return false;
-        if (now.portal == s_.states[0]->portal) return true;
+        if (clip(then.source, -planeOf(portal), lowest(portal), portal.above) == Clipped::kGone) return false;
+        if (!far) return true;
         // What only touches a plane stays: a line that grazes is a line that sees.
         if (clip(then.window, now.onward, -points, -points) == Clipped::kGone) return false;
         Separators backward;
@@ -293,6 +294,7 @@ private:
         const DirectedPortal& first = directed_.portals[s_.states[0]->portal];
         double rise = 1e300;
         for (uint32_t i = 0; i < state.window.count; ++i) rise = std::min(rise, first.height(state.window.corner(i)));
+        rise -= first.bend;
         if (!(rise > 0)) return false;
         const auto add = [&](const Window& window) {
             s_.corners.clear();

@@ -162,12 +162,18 @@ HWY_INLINE void addEdgePlanes(const Window& own, const glm::dvec4& plane, double
         valid = hn::And(valid, hn::Or(hn::Not(shared), hn::Gt(length, hn::Set(d, kShortestShared * precision.points))));
         valid = hn::And(valid, hn::Lt(hn::Abs(c), hn::Set(d, 1e5)));
         if (hn::AllFalse(d, valid)) continue;
-        // Held to the numbers as they are.
+        // Held to the numbers as they are: rounding may have bent the outline outward beside a short edge.
+        auto bulge = hn::Zero(d);
+        for (uint32_t k = 0; k < own.count; ++k) {
+            const auto x = hn::Add(hn::Add(hn::Mul(mx, hn::Set(d, own.x[k])), hn::Mul(my, hn::Set(d, own.y[k]))),
+                                   hn::Mul(mz, hn::Set(d, own.z[k])));
+            bulge = hn::Max(bulge, hn::Sub(x, ma));
+        }
         auto low = hn::Set(d, 1e300);
         for (uint32_t k = 0; k < other.count; ++k)
             low = hn::Min(low, hn::Add(hn::Mul(c, hn::Set(d, heights[k])), beyond[k]));
         const auto one = hn::Set(d, 1.0);
-        const auto noise = hn::Add(hn::Mul(hn::Abs(c), hn::Set(d, bend)),
+        const auto noise = hn::Add(hn::Add(hn::Mul(hn::Abs(c), hn::Set(d, bend)), bulge),
                                    hn::Mul(hn::Add(hn::Abs(c), one), hn::Set(d, precision.rounding)));
         valid = hn::And(valid, hn::Gt(low, hn::Add(noise, noise)));
         auto px = hn::Add(hn::Mul(c, nx), mx), py = hn::Add(hn::Mul(c, ny), my), pz = hn::Add(hn::Mul(c, nz), mz);
