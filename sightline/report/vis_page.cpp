@@ -14,6 +14,7 @@
 #include "sightline/report/png.h"
 #include "sightline/report/pvs_picture.h"
 #include "sightline/truth/graph_rays.h"
+#include "sightline/visfile/row_order.h"
 
 namespace sightline {
 namespace {
@@ -122,9 +123,17 @@ Status writeVisPage(const CellGraph& graph, const BitMatrix& visible, const BitM
     VisPage page(directory);
     const std::string title = sceneTitle(summary.map);
     page.text("<main><h1>Visibility of " + title + "</h1>\n" + figures(summary));
-    page.picture("matrix", pvsMatrixPicture(visible, witnessed),
-                 "Who sees whom: a row and a column a cell. Blue: a ray proves it. Orange: not proved hidden. Pale: "
-                 "proved hidden.");
+    if (visible.rows() > 0)
+        page.picture(
+            "matrix", pvsMatrixPicture(visible, witnessed),
+            "Who sees whom: a row and a column a cell. Blue: a ray proves it. Orange: not proved hidden. Pale: "
+            "proved hidden.");
+    if (visible.rows() > 0 && visible.rows() <= kMostOrderedRows) {
+        const RowOrder alike = orderRows(visible);
+        const std::vector<uint32_t> order(alike.cell_at.begin(), alike.cell_at.end());
+        page.picture("matrix-alike", pvsMatrixPicture(visible, witnessed, order),
+                     "The same, cells that see alike side by side: in this order the visibility file stores it.");
+    }
     if (!graph.portals.empty()) {
         const CellPlan plan(graph, cellPlanArea(graph), kPlanWidth);
         page.picture("graph", plan.graph(), "From above: cells, and the portals between them.");

@@ -13,7 +13,7 @@ CellGraph rowOfRooms(uint32_t rooms) {
     graph.cells = rooms;
     for (uint32_t i = 0; i + 1 < rooms; ++i) {
         const double x = 10 * (i + 1);
-        const glm::dvec3 outline[] = {{x, 0, 0}, {x, 3, 0}, {x, 3, 10}, {x, 0, 10}};
+        const glm::dvec3 outline[] = {{x, 0, 0}, {x, 0, 10}, {x, 3, 10}, {x, 3, 0}};
         EXPECT_TRUE(graph.addPortal(i, i + 1, outline));
     }
     return graph;
