@@ -262,7 +262,7 @@ Status printFormats(const std::string& json) {
 Status runPortals(const InfoOptions& options) {
     const Result<MapReport> report = reportPortals(options.scene.names[0]);
     if (!report) return report.error();
-    if (options.json != "-") fmt::print(options.objects ? stderr : stdout, "{}", report->text);
+    if (options.json != "-") fmt::print("{}", report->text);
     if (options.json.empty()) return success();
     return writeText(options.json, report->json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
@@ -276,7 +276,10 @@ Status runInfo(const CLI::App& verb, const InfoOptions& options) {
     for (const std::string& name : options.scene.names) files.read("SCENE", name);
     files.write("--json", options.json);
     if (!files.status()) return files.status();
-    if (options.scene.names.size() == 1 && isPortalFile(options.scene.names[0])) return runPortals(options);
+    if (options.scene.names.size() == 1 && isPortalFile(options.scene.names[0])) {
+        if (options.objects) return Error{Error::Kind::kUsage, "--objects: a file of portals has none"};
+        return runPortals(options);
+    }
     if (options.scene.names.size() == 1 && isVisibilityFile(options.scene.names[0])) {
         if (options.objects) return Error{Error::Kind::kUsage, "--objects: a visibility file has none"};
         return infoOfVisibility(options.scene.names[0], options.json);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/cli/info_map.h"
 
+#include <filesystem>
 #include <fstream>
 #include <string_view>
 
@@ -77,6 +78,8 @@ std::optional<MapReport> reportMap(const std::string& name) {
 }
 
 bool isPortalFile(const std::string& name) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(name, ignored)) return false;  // a pipe would have us wait
     std::ifstream in(name, std::ios::binary);
     char letters[4] = {};
     in.read(letters, sizeof letters);
@@ -93,15 +96,15 @@ Result<MapReport> reportPortals(const std::string& name) {
     MapReport out;
     out.json = {{"schema", "sightline.info/1"},
                 {"file", name},
-                {"portals", Json{{"kind", notes.kind},
-                                 {"leafs", notes.leaves},
-                                 {"clusters", graph->cells},
-                                 {"portals", graph->portals.size()},
-                                 {"points", graph->points.size()},
-                                 {"without_area", notes.flat_lines.size()},
-                                 {"bent", faults.bent_portals},
-                                 {"concave_portals", faults.concave_portals},
-                                 {"concave_clusters", faults.concave_cells}}}};
+                {"portal_file", Json{{"kind", notes.kind},
+                                     {"leafs", notes.leaves},
+                                     {"clusters", graph->cells},
+                                     {"portals", graph->portals.size()},
+                                     {"points", graph->points.size()},
+                                     {"without_area", notes.flat_lines.size()},
+                                     {"bent", faults.bent_portals},
+                                     {"concave_portals", faults.concave_portals},
+                                     {"concave_clusters", faults.concave_cells}}}};
     out.text =
         fmt::format("{}\n  format              {}, the portals of a Quake-family map\n", oneLine(name), notes.kind);
     row(out.text, "leaves", notes.leaves);

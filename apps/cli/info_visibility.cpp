@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <vector>
@@ -51,6 +52,8 @@ VisibilityFacts countPairs(const VisibilityFile& file) {
 }  // namespace
 
 bool isVisibilityFile(const std::string& file) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) return false;  // a pipe would have us wait
     char first[sizeof section_file::kMagic] = {};
     std::ifstream in(file, std::ios::binary);
     in.read(first, sizeof first);

@@ -66,7 +66,7 @@ TEST_F(Maps, ArchivesAreNamedWithTheMapInThem) {
 TEST_F(Maps, InfoTellsOfPortals) {
     write("m.prt",
           "PRT2\n3\n2\n2\n4 0 1 (8 0 0) (8 0 4) (8 4 4) (8 4 0)\n3 0 1 (0 0 0) (1 1 1) (2 2 2)\n0 2 -1\n1 -1\n");
-    const json facts = info("m.prt")["portals"];
+    const json facts = info("m.prt")["portal_file"];
     EXPECT_EQ(facts["kind"], "PRT2");
     EXPECT_EQ(facts["leafs"], 3);
     EXPECT_EQ(facts["clusters"], 2);
@@ -75,6 +75,7 @@ TEST_F(Maps, InfoTellsOfPortals) {
     EXPECT_NE(run("info m.prt").out.find("PRT2, the portals of a Quake-family map"), std::string::npos);
     write("bad.prt", "PRT1\n2\n1\n");
     expectError("info bad.prt", 3, "bad.prt: line 4: the file's end is no count of points");
+    expectError("info m.prt --objects", 2, "--objects: a file of portals has none");
     expectError("cull m.prt", 3, "m.prt: holds a map's portals, not a scene: name the .bsp");
 }
 
