@@ -1,0 +1,110 @@
+// Maps of games: no ray passes between cells that do not see one another, and no more pairs see than the maps' own rows say.
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <thread>
+
+#include "sightline/base/thread_pool.h"
+#include "sightline/import/prt.h"
+#include "sightline/import/quake_bsp.h"
+#include "sightline/import/quake_visibility.h"
+#include "sightline/scene/text_file.h"
+#include "sightline/space/tree_portals.h"
+#include "sightline/truth/tree_rays.h"
+#include "tests/bake/visibility_laws.h"
+
+namespace sightline::test {
+namespace {
+
+/// SIGHTLINE_LONG_TESTS=1 holds each map against as many rays as the promise says: a hundred million.
+bool isLong() {
+    const char* wish = std::getenv("SIGHTLINE_LONG_TESTS");
+    return wish && *wish && *wish != '0';
+}
+uint64_t raysToCast() { return isLong() ? 100000000 : 200000; }
+
+ThreadPool& pool() {
+    static ThreadPool threads(std::max(1u, std::thread::hardware_concurrency()));
+    return threads;
+}
+
+std::string fileOf(const std::string& map, const char* ending) {
+    return std::string(SIGHTLINE_SHARED_DIR) + "/maps/" + map + ending;
+}
+
+class Maps : public ::testing::TestWithParam<const char*> {
+protected:
+    void SetUp() override {
+        const Result<CellGraph> graph = readPrt(fileOf(GetParam(), ".prt"));
+        if (!graph) GTEST_SKIP() << "there is no such map: " << fileOf(GetParam(), ".prt");
+        if (graph->cells > 2000 && !isLong()) GTEST_SKIP() << "it takes long: SIGHTLINE_LONG_TESTS=1 bakes it";
+        graph_ = *graph;
+    }
+
+    /// False: skipped.
+    bool readBsp(QuakeMapFile& map) const {
+        const std::string file = fileOf(GetParam(), ".vis.bsp");
+        const Result<std::string> text = readTextFile(file);
+        if (!text) return false;
+        const Result<QuakeMapFile> read =
+            parseQuakeBsp({reinterpret_cast<const unsigned char*>(text->data()), text->size()}, file);
+        EXPECT_TRUE(read.ok());
+        if (read) map = *read;
+        return read.ok();
+    }
+
+    CellGraph graph_;
+};
+
+uint64_t pairsOf(const BitMatrix& rows) { return rows.count() - rows.rows(); }
+
+TEST_P(Maps, SeeWhatRaysSee) {
+    const CellVisibility answer = bakeCellVisibility(graph_);
+    expectLaws(graph_, answer, raysToCast(), GetParam(), nullptr, &pool());
+    EXPECT_EQ(answer.over_budget, 0u);
+    // Unresolved: 3 % of what is visible.
+    EXPECT_LE(100 * (answer.visible.count() - answer.witnessed.count()), 3 * pairsOf(answer.visible));
+}
+
+TEST_P(Maps, SeeNoMoreThanTheRowsThatTheyCameWith) {
+    QuakeMapFile map;
+    if (!readBsp(map)) GTEST_SKIP() << "there is no such map: " << fileOf(GetParam(), ".vis.bsp");
+    const Result<QuakeVisibility> lump = readQuakeVisibility(map, GetParam());
+    ASSERT_TRUE(lump.ok());
+    const CellVisibility answer = bakeCellVisibility(graph_);
+    std::vector<uint32_t> leaf_of(graph_.cells, 0);
+    for (uint32_t leaf = 1; leaf < graph_.cell_of_leaf.size(); ++leaf) leaf_of[graph_.cell_of_leaf[leaf]] = leaf;
+    uint64_t theirs = 0;
+    for (const uint32_t a : leaf_of)
+        for (const uint32_t b : leaf_of) theirs += a != b && lump->seen.at(a - 1, b - 1);
+    EXPECT_LE(pairsOf(answer.visible), theirs);
+}
+
+INSTANTIATE_TEST_SUITE_P(Real, Maps, ::testing::Values("lq_e4m1", "lq_e2m2", "lqdm3", "lq_e1m5", "lq_e4m4"),
+                         [](const auto& map) { return std::string(map.param); });
+
+/// Maps whose leaves are few enough to be cells.
+class SmallMaps : public Maps {};
+
+TEST_P(SmallMaps, SeeByTheirTreesPortalsWhatTheirTreesSee) {
+    QuakeMapFile map;
+    if (!readBsp(map)) GTEST_SKIP() << "there is no such map: " << fileOf(GetParam(), ".vis.bsp");
+    const CellGraph graph = cellsOfTree(map.tree);
+    const CellVisibility answer = bakeCellVisibility(graph);
+    expectLaws(graph, answer, raysToCast(), GetParam(), nullptr, &pool());
+    AimedHoles holes;
+    for (const CellPortal& portal : graph.portals) holes.add(graph.outline(portal));
+    const RowReport report = checkLeafRows(TreeRays(map.tree), answer.visible, graph.cell_of_leaf, holes,
+                                           {.segments = raysToCast(), .jobs = &pool()});
+    EXPECT_EQ(report.misses, 0u) << "the first: " << report.examples[0].row << ", " << report.examples[0].column;
+    EXPECT_EQ(report.unmapped, 0u);
+    EXPECT_LE(100 * (answer.visible.count() - answer.witnessed.count()), 3 * pairsOf(answer.visible));
+}
+
+INSTANTIATE_TEST_SUITE_P(Real, SmallMaps, ::testing::Values("lq_e2m2"),
+                         [](const auto& map) { return std::string(map.param); });
+
+}  // namespace
+}  // namespace sightline::test
