@@ -76,7 +76,8 @@ TEST_F(Maps, InfoTellsOfPortals) {
     write("bad.prt", "PRT1\n2\n1\n");
     expectError("info bad.prt", 3, "bad.prt: line 4: the file's end is no count of points");
     expectError("info m.prt --objects", 2, "--objects: a file of portals has none");
-    expectError("cull m.prt", 3, "m.prt: holds a map's portals, not a scene: name the .bsp");
+    expectError("cull m.prt", 3,
+                "m.prt: holds a map's portals, which vis and info read, and is no scene: name the .bsp");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "map_corpus.h"
 #include "map_files.h"
 #include "sightline/base/random.h"
+#include "sightline/import/map_source.h"
 #include "sightline/import/quake_patch.h"
 #include "sightline/import/quake_scene.h"
 #include "sightline/import/quake_surface.h"
@@ -233,6 +234,41 @@ TEST(QuakeSceneOfRealMaps, MostOfTheWorldHides) {
         EXPECT_GT(hiding, world / 10 * 9) << name;
         EXPECT_LT(hiding, world) << name;
         EXPECT_FALSE(scene->cameras.empty()) << name;
+    }
+}
+
+/// quakeSurface() looks behind the middles of triangles. At random points of what it lets hide, nothing but what is solid
+/// lies behind, up to the edges of wedges: no face has liquid or sky behind two of its points.
+TEST(QuakeSceneOfRealMaps, BehindWhatHidesIsSolid) {
+    for (const char* name : {"lq_e1m5", "lq_e2m2", "lq_e4m1", "lqdm3"}) {
+        const std::string file = fmt::format("{}/maps/{}.vis.bsp", SIGHTLINE_SHARED_DIR, name);
+        if (!std::filesystem::exists(file)) GTEST_SKIP() << "the shared maps are not there";
+        const Result<QuakeMapFile> map = readQuakeMap(file);
+        ASSERT_TRUE(map.ok()) << map.error().message;
+        Random random(1);
+        uint64_t points = 0, solid = 0;
+        for (const QuakeFace& face : map->faces) {
+            if (quakeSurface(*map, face) != QuakeSurface::kSolid) continue;
+            const glm::vec3* const corner = map->points.data() + face.first_point;
+            uint64_t open = 0;  // liquid or sky
+            glm::dvec3 area(0);
+            for (uint32_t i = 1; i + 1 < face.point_count; ++i)
+                area += glm::cross(glm::dvec3(corner[i] - corner[0]), glm::dvec3(corner[i + 1] - corner[0]));
+            for (uint32_t i = 1; i + 1 < face.point_count; ++i) {
+                const glm::dvec3 a = corner[0], u = glm::dvec3(corner[i]) - a, v = glm::dvec3(corner[i + 1]) - a;
+                for (int k = 0; k < 4; ++k, ++points) {
+                    const double s = random.uniform(), t = random.uniform();
+                    const glm::dvec3 point = s + t > 1 ? a + (1 - s) * u + (1 - t) * v : a + s * u + t * v;
+                    const uint32_t leaf = leafAt(map->tree, point - 0.03 * glm::normalize(area));
+                    const LeafContents contents = map->tree.contents[leaf];
+                    solid += contents == LeafContents::kSolid;
+                    open += contents == LeafContents::kLiquid || contents == LeafContents::kSky;
+                }
+            }
+            EXPECT_LE(open, 1u) << name << " face " << &face - map->faces.data();
+        }
+        EXPECT_GT(points, 60000u) << name;
+        EXPECT_GT(double(solid), 0.998 * double(points)) << name;
     }
 }
 
