@@ -28,10 +28,7 @@ TreeRays::TreeRays(const LeafTree& tree, const TreeRaySettings& settings)
     for (uint32_t i = 0; i < tree.nodes.size(); ++i) {
         const LeafTreeNode& from = tree.nodes[i];
         Node node{};
-        node.axis = 3;
         for (int k = 0; k < 4; ++k) node.plane[k] = from.plane[k];
-        for (int k = 0; k < 3; ++k)
-            if (from.plane[(k + 1) % 3] == 0 && from.plane[(k + 2) % 3] == 0) node.axis = k;
         for (uint32_t side = 0; side < 2; ++side) {
             node.child[side] = from.child[side];
             if ((from.child[side] & kLeaf) == 0) above_[from.child[side]] = i << 1 | side;
@@ -59,14 +56,7 @@ void TreeRays::follow(const glm::dvec3& a, const glm::dvec3& b, TreeWalk& walk) 
     for (;;) {
         while ((child & kLeaf) == 0) {
             const Node& node = nodes_[child];
-            double at_a, at_b;
-            if (node.axis < 3) {
-                at_a = node.plane[node.axis] * a[node.axis] + node.plane[3];
-                at_b = node.plane[node.axis] * b[node.axis] + node.plane[3];
-            } else {
-                at_a = heightAt(node.plane, a);
-                at_b = heightAt(node.plane, b);
-            }
+            const double at_a = heightAt(node.plane, a), at_b = heightAt(node.plane, b);
             const double slope = at_b - at_a;
             const uint32_t near = at_a + from * slope >= 0, far = at_a + to * slope >= 0;
             if (near != far) {
@@ -140,12 +130,12 @@ public:
 
     void uniform(Random& random) {
         if (left_from_here_ == 0) {
-            // A place in the open is dear to find: eight segments leave from it.
+            // A place in the open is dear to find: sixteen segments leave from it.
             for (int tries = 0; tries < 1000; ++tries) {
                 start_ = pointInBounds(random);
                 if (rays_.passes(rays_.leafAt(start_))) break;
             }
-            left_from_here_ = 8;
+            left_from_here_ = 16;
         }
         --left_from_here_;
         pass(start_, pointInBounds(random));
@@ -163,13 +153,25 @@ public:
             const double distance = glm::distance(at, through);
             if (distance > 1e-9 * diagonal_) direction = (at - through) / distance;
         }
-        // Backward as far as it goes; from there on, forward: one segment, walked as a whole.
+        // Both ways from the hole, as far as they go; together they are one segment.
         const glm::dvec3 back = endOf(through, -direction), to = endOf(through, direction);
-        rays_.follow(through, back, walk_);
-        if (walk_.stretches.empty()) return;
-        const TreeStretch& last = walk_.stretches.back();
-        const double reach = last.from + 0.5 * (last.to - last.from);
-        pass(through + reach * (back - through), to);
+        rays_.follow(through, back, back_walk_);
+        rays_.follow(through, to, walk_);
+        if (back_walk_.stretches.empty() || walk_.stretches.empty()) return;
+        const glm::dvec3 from = middleOf(back_walk_.stretches.back(), through, back);
+        places_.clear();
+        const double least_back = leastOf(through, back), least = leastOf(through, to);
+        for (size_t i = back_walk_.stretches.size(); i-- > 0;) addPlace(back_walk_.stretches[i], least_back);
+        for (const TreeStretch& stretch : walk_.stretches) addPlace(stretch, least);
+        const glm::dvec3 end = middleOf(walk_.stretches.back(), through, to);
+        seen_.assign(places_.begin(), places_.end());
+        bool walked = false;
+        judge_.judge(seen_, from, end, [&](size_t i, size_t j) {
+            // Only an alarm needs the walk as a whole. If that finds other places, the segment passes a corner too closely.
+            if (!walked) walkWhole(from, to);
+            walked = true;
+            return places_ == seen_ && rays_.stands(from, to, walk_, stretch_[i], stretch_[j]);
+        });
     }
 
     const RowJudge& judge() const { return judge_; }
@@ -193,24 +195,36 @@ private:
         return from + reach * direction;
     }
 
-    void pass(const glm::dvec3& a, const glm::dvec3& b) {
+    double leastOf(const glm::dvec3& a, const glm::dvec3& b) const {
+        return rays_.margin() / std::max(glm::distance(a, b), rays_.margin());
+    }
+    static glm::dvec3 middleOf(const TreeStretch& stretch, const glm::dvec3& a, const glm::dvec3& b) {
+        return a + 0.5 * (stretch.from + stretch.to) * (b - a);
+    }
+
+    /// Adds where a stretch lies, unless it is too short to tell or goes on where the last one was. True if it was added.
+    bool addPlace(const TreeStretch& stretch, double least) {
+        if (!(stretch.to - stretch.from > least)) return false;
+        const uint32_t row = row_of_leaf_.empty() ? stretch.leaf : row_of_leaf_[stretch.leaf];
+        if (!places_.empty() && places_.back() == row) return false;
+        places_.push_back(row);
+        return true;
+    }
+
+    void walkWhole(const glm::dvec3& a, const glm::dvec3& b) {
         rays_.follow(a, b, walk_);
         places_.clear();
         stretch_.clear();
-        const double least = rays_.margin() / std::max(glm::distance(a, b), rays_.margin());
-        for (uint32_t i = 0; i < walk_.stretches.size(); ++i) {
-            const uint32_t leaf = walk_.stretches[i].leaf;
-            if (!(walk_.stretches[i].to - walk_.stretches[i].from > least)) continue;
-            const uint32_t row = row_of_leaf_.empty() ? leaf : row_of_leaf_[leaf];
-            if (!places_.empty() && places_.back() == row) continue;
-            places_.push_back(row);
-            stretch_.push_back(i);
-        }
+        const double least = leastOf(a, b);
+        for (uint32_t i = 0; i < walk_.stretches.size(); ++i)
+            if (addPlace(walk_.stretches[i], least)) stretch_.push_back(i);
+    }
+
+    void pass(const glm::dvec3& a, const glm::dvec3& b) {
+        walkWhole(a, b);
         if (places_.empty()) return;
         // To the middle of the last stretch: the way back is a segment, too.
-        const TreeStretch& last = walk_.stretches.back();
-        const glm::dvec3 end = a + 0.5 * (last.from + last.to) * (b - a);
-        judge_.judge(places_, a, end,
+        judge_.judge(places_, a, middleOf(walk_.stretches.back(), a, b),
                      [&](size_t i, size_t j) { return rays_.stands(a, b, walk_, stretch_[i], stretch_[j]); });
     }
 
@@ -221,8 +235,8 @@ private:
     double diagonal_ = 0;
     glm::dvec3 start_{0.0};
     int left_from_here_ = 0;
-    TreeWalk walk_;
-    std::vector<uint32_t> places_, stretch_;
+    TreeWalk walk_, back_walk_;
+    std::vector<uint32_t> places_, seen_, stretch_;
 };
 
 }  // namespace

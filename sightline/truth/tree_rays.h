@@ -64,7 +64,6 @@ private:
     struct Node {
         double plane[4];
         uint32_t child[2];
-        int32_t axis;  // whose axis the normal is, or 3
     };
     bool isInside(uint32_t place, uint32_t but, const glm::dvec3& point) const;
 
