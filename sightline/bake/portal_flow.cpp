@@ -125,7 +125,7 @@ private:
         if (!clipBoth(now, then)) return false;
         if (s_.boxes) return enterForBoxes(then, asked);
         if (asked) {
-            if (!prove(depth, then) && isEmpty(depth, then)) {
+            if (!mayPass(depth, then)) {
                 ++s_.answer->empty_chains;
                 return false;
             }
@@ -276,17 +276,19 @@ private:
         settle(cell);
     }
 
-    /// Looks for a line that passes the whole chain, with room to spare.
-    bool prove(uint32_t depth, const State& state) {
+    /// Looks for a line that passes the whole chain, with room to spare, and, when none is found at once, for a proof that there is none.
+    /// @return false if there is such a proof
+    bool mayPass(uint32_t depth, const State& state) {
         const glm::dvec3 middle = state.source.center();
         if (shoot(middle, state.window.center(), state) || improve(depth, state, middle)) return true;
+        if (isEmpty(depth, state)) return false;
         const uint32_t corners = state.source.count;
         for (uint32_t i = 0; i < corners; ++i) {
             const glm::dvec3 corner = state.source.corner(i), next = state.source.corner(i + 1 == corners ? 0 : i + 1);
-            if (improve(depth, state, middle + kTowardsEdge * (corner - middle))) return true;
-            if (improve(depth, state, middle + kTowardsEdge * (0.5 * (corner + next) - middle))) return true;
+            if (improve(depth, state, middle + kTowardsEdge * (corner - middle))) break;
+            if (improve(depth, state, middle + kTowardsEdge * (0.5 * (corner + next) - middle))) break;
         }
-        return false;
+        return true;
     }
 
     /// Whether it is proved that no line passes the whole chain: the last word, where clipping leaves something and no ray is found.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <span>
 
 #include <glm/glm.hpp>
@@ -40,10 +41,10 @@ struct Window {
     }
     void assign(const Window& other) {
         count = other.count;
-        for (uint32_t i = 0; i <= count; ++i) {
-            x[i] = other.x[i];
-            y[i] = other.y[i];
-            z[i] = other.z[i];
+        for (uint32_t i = 0; i <= count; i += 8) {  // in blocks of a known size
+            std::memcpy(x + i, other.x + i, 8 * sizeof(double));
+            std::memcpy(y + i, other.y + i, 8 * sizeof(double));
+            std::memcpy(z + i, other.z + i, 8 * sizeof(double));
         }
     }
     glm::dvec3 center() const {
