@@ -40,9 +40,10 @@ bool VisibleRows::sees(uint32_t a, uint32_t b) const {
 
 void VisibleRows::spread(uint32_t column, uint64_t bits, uint64_t* out) const {
     if (column + 1 == side_) bits &= 0xffu >> (8 * side_ - classes_);
-    for (; bits != 0; bits &= bits - 1) {
-        const uint32_t of = 8 * column + static_cast<uint32_t>(std::countr_zero(bits));
-        for (uint32_t i = parts_.first[of]; i < parts_.first[of + 1]; ++i) {
+    for (; bits != 0; bits &= bits + (bits & -bits)) {  // a run of ones a turn: their cells lie side by side
+        const uint32_t begin = 8 * column + static_cast<uint32_t>(std::countr_zero(bits));
+        const uint32_t end = begin + static_cast<uint32_t>(std::countr_one(bits >> (begin - 8 * column)));
+        for (uint32_t i = parts_.first[begin], last = parts_.first[end]; i < last; ++i) {
             const uint32_t cell = parts_.cell_at[i];
             out[cell / 64] |= uint64_t{1} << cell % 64;
         }
