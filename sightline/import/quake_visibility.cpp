@@ -186,12 +186,14 @@ Result<QuakeVisibility> readQuakeVisibility(const QuakeMapFile& map, const std::
 
 BitMatrix clusterRows(const QuakeMapFile& map, const BitMatrix& cells, std::span<const uint32_t> cell_of_leaf) {
     std::vector<std::vector<uint32_t>> clusters_of_cell(cells.rows());
-    std::vector<bool> open(map.clusters);  // sees all
+    std::vector<bool> open(map.clusters);  // sees all, and is seen
+    std::vector<bool> sky(map.clusters);   // sees all
     for (size_t leaf = 0; leaf < map.cluster_of_leaf.size(); ++leaf) {
         const uint32_t cluster = map.cluster_of_leaf[leaf];
         if (cluster == QuakeMapFile::kNoCluster) continue;
         const uint32_t cell = leaf < cell_of_leaf.size() ? cell_of_leaf[leaf] : ~0u;
         if (cell < cells.rows()) clusters_of_cell[cell].push_back(cluster);
+        else if (map.tree.contents[leaf] == LeafContents::kSky) sky[cluster] = true;
         else if (map.tree.contents[leaf] != LeafContents::kSolid) open[cluster] = true;
     }
     for (std::vector<uint32_t>& clusters : clusters_of_cell) {
@@ -210,8 +212,8 @@ BitMatrix clusterRows(const QuakeMapFile& map, const BitMatrix& cells, std::span
             for (size_t word = 0; word < one.wordsPerRow(); ++word) out.row(cluster)[word] |= one.row(0)[word];
     }
     for (uint32_t cluster = 0; cluster < map.clusters; ++cluster) {
+        if (open[cluster] || sky[cluster]) setAll(out, cluster);
         if (!open[cluster]) continue;
-        setAll(out, cluster);
         for (uint32_t other = 0; other < map.clusters; ++other) out.set(other, cluster);
     }
     return out;

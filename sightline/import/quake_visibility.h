@@ -32,7 +32,8 @@ Result<QuakeVisibility> readQuakeVisibility(const QuakeMapFile& map, const std::
 constexpr uint32_t kMostClusters = 65536;
 
 /// What clusters see of one another by what the cells of their leaves see: where cells are leaves or sets of them. A cluster
-/// with an open leaf that has no cell sees all, and is seen by all.
+/// with an open leaf that has no cell sees all, and is seen by all; but of the sky nothing is drawn that is in it, and sight
+/// lines end there: it sees all, and is not seen.
 /// @param cells         [cells x cells]
 /// @param cell_of_leaf  per leaf of the map, as CellGraph has it; missing ones have no cell
 BitMatrix clusterRows(const QuakeMapFile& map, const BitMatrix& cells, std::span<const uint32_t> cell_of_leaf);

@@ -214,7 +214,9 @@ TEST(QuakeVisibility, RowsOfClustersFollowTheCellsOfTheirLeaves) {
         map.clusters = static_cast<uint32_t>(1 + random.below(30));
         std::vector<uint32_t> cell_of_leaf;
         for (uint64_t leaf = 0; leaf < leaves; ++leaf) {
-            map.tree.contents.push_back(random.below(4) ? LeafContents::kEmpty : LeafContents::kSolid);
+            constexpr LeafContents kContents[] = {LeafContents::kEmpty, LeafContents::kLiquid, LeafContents::kSky,
+                                                  LeafContents::kSolid};
+            map.tree.contents.push_back(kContents[random.below(4)]);
             map.cluster_of_leaf.push_back(random.below(5) ? static_cast<uint32_t>(random.below(map.clusters)) : ~0u);
             cell_of_leaf.push_back(random.below(20) ? static_cast<uint32_t>(random.below(cells)) : ~0u);
         }
@@ -226,7 +228,7 @@ TEST(QuakeVisibility, RowsOfClustersFollowTheCellsOfTheirLeaves) {
                 if (map.cluster_of_leaf[a] == ~0u) continue;
                 if (cell_of_leaf[a] == ~0u && map.tree.contents[a] != LeafContents::kSolid) {
                     wanted.set(map.cluster_of_leaf[a], cluster);
-                    wanted.set(cluster, map.cluster_of_leaf[a]);
+                    if (map.tree.contents[a] != LeafContents::kSky) wanted.set(cluster, map.cluster_of_leaf[a]);
                 }
                 for (uint64_t b = 0; b < leaves; ++b)
                     if (map.cluster_of_leaf[b] == cluster && cell_of_leaf[a] != ~0u && cell_of_leaf[b] != ~0u &&
