@@ -289,7 +289,7 @@ void addVis(CLI::App& tool, int& exit_code) {
     verb->add_option("--json", options->json, "write the figures as JSON (-: standard output)")->type_name("FILE");
     verb->add_option("--report", options->report, "write pictures and a page")->type_name("DIR");
     verb->add_flag("--in-place", options->in_place,
-                   "write the visibility file's larger form, which answers without being unpacked");
+                   "of a visibility file the larger form, which answers without being unpacked");
     verb->add_flag("--objects", options->objects,
                    "tell also which faces each cell sees: takes longer than the cells do");
     verb->add_option("--leak", options->leak, "write the way by which a .map leaks, as engines draw it (.pts)")

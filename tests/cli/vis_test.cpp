@@ -1,0 +1,175 @@
+// The verb vis: maps of every kind in, lumps and visibility files out.
+// SPDX-License-Identifier: MIT
+#include <filesystem>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/tool.h"
+#include "tests/import/archive_files.h"
+#include "tests/import/map_files.h"
+
+namespace sightline {
+namespace {
+
+using nlohmann::json;
+using namespace test;
+
+/// Three rooms in a row along x, in the file's axes, with doors that lie aside: the first and the last do not see one another.
+const char* const kRooms =
+    "PRT1\n3\n2\n"
+    "4 0 1 (64 16 0) (64 16 16) (64 0 16) (64 0 0)\n"
+    "4 1 2 (72 128 0) (72 128 16) (72 112 16) (72 112 0)\n";
+
+class Vis : public Tool {
+protected:
+    json vis(const std::string& arguments) const {
+        const Outcome outcome = run("vis " + arguments + " --json -");
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return outcome.exit_code == 0 ? json::parse(outcome.out) : json();
+    }
+    std::string shared(const std::string& name) const { return fmt::format("{}/maps/{}", SIGHTLINE_SHARED_DIR, name); }
+};
+
+TEST_F(Vis, APortalFileGivesRowsAndFigures) {
+    write("rooms.prt", kRooms);
+    const json out = vis("rooms.prt -o rooms.see --verify --rays 20000");
+    EXPECT_EQ(out["schema"], "sightline.vis/1");
+    EXPECT_EQ(out["leafs"], 3);
+    EXPECT_EQ(out["clusters"], 3);
+    EXPECT_EQ(out["portals"], 2);
+    EXPECT_EQ(out["visible_leaf_pairs"], 7);
+    EXPECT_EQ(out["witnessed_pairs"], 7);
+    EXPECT_EQ(out["unresolved_pairs"], 0);
+    EXPECT_EQ(out["verification"]["false_negatives"], 0);
+    EXPECT_EQ(out["pvs_bytes"], std::filesystem::file_size(path("rooms.see")));
+    EXPECT_GT(out["lump_bytes"], 0);
+    EXPECT_GE(out["cpu_seconds"], 0);
+    EXPECT_EQ(run("info rooms.see").exit_code, 0);
+    EXPECT_FALSE(std::filesystem::exists(path("rooms.see.state")));
+}
+
+TEST_F(Vis, BytesAreTheSameForAnyThreads) {
+    write("rooms.prt", kRooms);
+    for (const char* threads : {"1", "2", "8"})
+        ASSERT_EQ(run(fmt::format("vis rooms.prt -o t{}.see --threads {}", threads, threads)).exit_code, 0);
+    EXPECT_EQ(read(path("t1.see")), read(path("t2.see")));
+    EXPECT_EQ(read(path("t1.see")), read(path("t8.see")));
+}
+
+TEST_F(Vis, MapsOfAllFormatsGetTheirLump) {
+    for (const QuakeFormat format : kQuakeFormats) {
+        MadeMap made;
+        madeVisibility(format, false, made);
+        write("m.bsp", mapBytes(format, made));
+        const json out = vis("m.bsp -o n.bsp --verify --rays 20000 --objects");
+        EXPECT_EQ(out["verification"]["false_negatives"], 0) << quakeFormatName(format);
+        EXPECT_GT(out["objects"]["count"], 0);
+        EXPECT_EQ(run("info n.bsp").exit_code, 0);
+        // What is written is read again, and baked to the same.
+        const json again = vis("n.bsp -o o.bsp");
+        EXPECT_EQ(again["visible_leaf_pairs"], out["visible_leaf_pairs"]) << quakeFormatName(format);
+        EXPECT_EQ(read(path("n.bsp")), read(path("o.bsp"))) << quakeFormatName(format);
+    }
+    write("a.pak", pakBytes({{"maps/a.bsp", mapBytes(QuakeFormat::kQuake, {})}}));
+    EXPECT_EQ(vis("a.pak --cells leaves")["leafs"], vis("a.pak:maps/a.bsp --cells groups")["leafs"]);
+}
+
+TEST_F(Vis, ASourceThatLeaksTellsTheWay) {
+    // A floor alone, and somebody who stands on it.
+    write("open.map",
+          "{\n\"classname\" \"worldspawn\"\n{\n"
+          "( -64 -64 -16 ) ( -64 -63 -16 ) ( -64 -64 -15 ) a 0 0 0 1 1\n"
+          "( -64 -64 -16 ) ( -64 -64 -15 ) ( -63 -64 -16 ) a 0 0 0 1 1\n"
+          "( -64 -64 -16 ) ( -63 -64 -16 ) ( -64 -63 -16 ) a 0 0 0 1 1\n"
+          "( 64 64 0 ) ( 64 65 0 ) ( 65 64 0 ) a 0 0 0 1 1\n"
+          "( 64 64 0 ) ( 65 64 0 ) ( 64 64 1 ) a 0 0 0 1 1\n"
+          "( 64 64 0 ) ( 64 64 1 ) ( 64 65 0 ) a 0 0 0 1 1\n"
+          "}\n}\n{\n\"classname\" \"info_player_start\"\n\"origin\" \"0 0 32\"\n}\n");
+    const json out = vis("open.map -o open.see --leak open.pts --verify --rays 20000");
+    ASSERT_EQ(out["leaks"].size(), 1u);
+    EXPECT_EQ(out["leaks"][0]["from"], "info_player_start");
+    EXPECT_GT(out["clusters"], 0);
+    EXPECT_EQ(out["verification"]["false_negatives"], 0);
+    EXPECT_GT(std::filesystem::file_size(path("open.pts")), 0u);
+    EXPECT_NE(run("vis open.map").out.find("leaks: from info_player_start at 0 32 0"), std::string::npos);
+}
+
+TEST_F(Vis, AReportHasItsPictures) {
+    write("rooms.prt", kRooms);
+    ASSERT_EQ(run("vis rooms.prt --report page").exit_code, 0);
+    const std::string page = read(path("page/index.html"));
+    for (const char* name : {"matrix", "graph", "most", "middle", "sightline"}) {
+        EXPECT_NE(page.find(fmt::format("{}.png", name)), std::string::npos) << name;
+        EXPECT_TRUE(std::filesystem::exists(path(fmt::format("page/{}.png", name)))) << name;
+    }
+    EXPECT_EQ(json::parse(read(path("page/vis.json")))["clusters"], 3);
+}
+
+TEST_F(Vis, LimitsLeaveMoreVisible) {
+    write("rooms.prt", kRooms);
+    const json whole = vis("rooms.prt"), spent = vis("rooms.prt --budget 1");
+    EXPECT_GE(spent["visible_leaf_pairs"], whole["visible_leaf_pairs"]);
+    if (!std::filesystem::exists(shared("lq_e2m2.prt"))) GTEST_SKIP() << "the shared maps are not there";
+    const json full = vis(shared("lq_e2m2.prt")), little = vis(shared("lq_e2m2.prt") + " --budget 20");
+    EXPECT_GT(little["over_budget"], 0);
+    EXPECT_GT(little["visible_leaf_pairs"], full["visible_leaf_pairs"]);
+    const json stopped = vis(shared("lq_e2m2.prt") + " --time-limit 1e-9");
+    EXPECT_EQ(stopped["stopped"], true);
+    EXPECT_GT(stopped["visible_leaf_pairs"], full["visible_leaf_pairs"]);
+}
+
+TEST_F(Vis, AStateOfAnotherBakeIsPassedOver) {
+    write("rooms.prt", kRooms);
+    write("old.state", "what is this");
+    const Outcome outcome = run("vis rooms.prt --state old.state --json -");
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_NE(outcome.err.find("old.state: no state of a bake: the bake begins anew"), std::string::npos)
+        << outcome.err;
+    EXPECT_EQ(json::parse(outcome.out)["visible_leaf_pairs"], 7);
+}
+
+TEST_F(Vis, AnInterruptedBakeGoesOnToTheSameBytes) {
+    if (!std::filesystem::exists(shared("lq_e1m5.prt"))) GTEST_SKIP() << "the shared maps are not there";
+    ASSERT_EQ(run("vis " + shared("lq_e1m5.prt") + " -o whole.see").exit_code, 0);
+    // Sooner or later it is interrupted in the midst of its flow.
+    bool left = false;
+    for (const char* after : {"0.1", "0.2", "0.3", "0.4"}) {
+        std::filesystem::remove(path("x.see"));
+        const Outcome outcome = run("vis " + shared("lq_e1m5.prt") + " --threads 1 -o x.see & sleep " + after +
+                                    "; kill -TERM $! ; wait $!");
+        if (!std::filesystem::exists(path("x.see.state"))) continue;
+        EXPECT_EQ(outcome.exit_code, 130);
+        EXPECT_FALSE(std::filesystem::exists(path("x.see")));
+        left = true;
+        const Outcome rest = run("vis " + shared("lq_e1m5.prt") + " -o x.see");
+        EXPECT_EQ(rest.exit_code, 0);
+        EXPECT_NE(rest.err.find("goes on from x.see.state"), std::string::npos) << rest.err;
+        EXPECT_EQ(read(path("x.see")), read(path("whole.see")));
+        EXPECT_FALSE(std::filesystem::exists(path("x.see.state")));
+    }
+    if (!left) GTEST_SKIP() << "the machine was too fast or too slow to interrupt it";
+}
+
+TEST_F(Vis, WhatCannotBeIsOneLine) {
+    write("rooms.prt", kRooms);
+    write("m.bsp", mapBytes(QuakeFormat::kQuake, {}));
+    write("bad.prt", "PRT1\n3\n2\n4 0 9 (64 0 0) (64 0 16) (64 16 16) (64 16 0)\n");
+    expectError("vis none.prt", 3, "none.prt");
+    expectError("vis bad.prt", 3, "bad.prt");
+    expectError("vis m.bsp --prt bad.prt", 3, "bad.prt");
+    expectError("vis rooms.prt -o x.bsp", 2, "--bsp");
+    expectError("vis rooms.prt --cells leaves", 2, "--cells");
+    expectError("vis rooms.prt --prt rooms.prt", 2, "--prt");
+    expectError("vis m.bsp --bsp m.bsp", 2, "--bsp");
+    expectError("vis rooms.prt --objects", 2, "--objects");
+    expectError("vis rooms.prt --in-place", 2, "--in-place");
+    expectError("vis rooms.prt -o rooms.prt", 2, "rooms.prt");
+    expectError("vis rooms.prt -o no-such-folder/x.see", 4, "no-such-folder");
+    expectError("vis rooms.prt --cells rooms", 2, "--cells");
+    expectError("vis rooms.prt --time-limit 0", 2, "--time-limit");
+}
+
+}  // namespace
+}  // namespace sightline
