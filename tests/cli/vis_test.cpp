@@ -16,11 +16,12 @@ namespace {
 using nlohmann::json;
 using namespace test;
 
-/// Three rooms in a row along x, in the file's axes, with doors that lie aside: the first and the last do not see one another.
+/// A corridor along y, in the file's axes, with two rooms on one side that do not see one another, and one on the other.
 const char* const kRooms =
-    "PRT1\n3\n2\n"
+    "PRT1\n4\n3\n"
     "4 0 1 (64 16 0) (64 16 16) (64 0 16) (64 0 0)\n"
-    "4 1 2 (72 128 0) (72 128 16) (72 112 16) (72 112 0)\n";
+    "4 1 2 (64 112 0) (64 112 16) (64 128 16) (64 128 0)\n"
+    "4 1 3 (72 64 0) (72 64 16) (72 48 16) (72 48 0)\n";
 
 class Vis : public Tool {
 protected:
@@ -36,11 +37,11 @@ TEST_F(Vis, APortalFileGivesRowsAndFigures) {
     write("rooms.prt", kRooms);
     const json out = vis("rooms.prt -o rooms.see --verify --rays 20000");
     EXPECT_EQ(out["schema"], "sightline.vis/1");
-    EXPECT_EQ(out["leafs"], 3);
-    EXPECT_EQ(out["clusters"], 3);
-    EXPECT_EQ(out["portals"], 2);
-    EXPECT_EQ(out["visible_leaf_pairs"], 7);
-    EXPECT_EQ(out["witnessed_pairs"], 7);
+    EXPECT_EQ(out["leafs"], 4);
+    EXPECT_EQ(out["clusters"], 4);
+    EXPECT_EQ(out["portals"], 3);
+    EXPECT_EQ(out["visible_leaf_pairs"], 14);
+    EXPECT_EQ(out["witnessed_pairs"], 14);
     EXPECT_EQ(out["unresolved_pairs"], 0);
     EXPECT_EQ(out["verification"]["false_negatives"], 0);
     EXPECT_EQ(out["pvs_bytes"], std::filesystem::file_size(path("rooms.see")));
@@ -104,7 +105,7 @@ TEST_F(Vis, AReportHasItsPictures) {
         EXPECT_NE(page.find(fmt::format("{}.png", name)), std::string::npos) << name;
         EXPECT_TRUE(std::filesystem::exists(path(fmt::format("page/{}.png", name)))) << name;
     }
-    EXPECT_EQ(json::parse(read(path("page/vis.json")))["clusters"], 3);
+    EXPECT_EQ(json::parse(read(path("page/vis.json")))["clusters"], 4);
 }
 
 TEST_F(Vis, LimitsLeaveMoreVisible) {
@@ -127,7 +128,7 @@ TEST_F(Vis, AStateOfAnotherBakeIsPassedOver) {
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_NE(outcome.err.find("old.state: no state of a bake: the bake begins anew"), std::string::npos)
         << outcome.err;
-    EXPECT_EQ(json::parse(outcome.out)["visible_leaf_pairs"], 7);
+    EXPECT_EQ(json::parse(outcome.out)["visible_leaf_pairs"], 14);
 }
 
 TEST_F(Vis, AnInterruptedBakeGoesOnToTheSameBytes) {
@@ -155,7 +156,7 @@ TEST_F(Vis, AnInterruptedBakeGoesOnToTheSameBytes) {
 TEST_F(Vis, WhatCannotBeIsOneLine) {
     write("rooms.prt", kRooms);
     write("m.bsp", mapBytes(QuakeFormat::kQuake, {}));
-    write("bad.prt", "PRT1\n3\n2\n4 0 9 (64 0 0) (64 0 16) (64 16 16) (64 16 0)\n");
+    write("bad.prt", "PRT1\n4\n3\n4 0 9 (64 0 0) (64 0 16) (64 16 16) (64 16 0)\n");
     expectError("vis none.prt", 3, "none.prt");
     expectError("vis bad.prt", 3, "bad.prt");
     expectError("vis m.bsp --prt bad.prt", 3, "bad.prt");
