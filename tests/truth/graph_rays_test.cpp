@@ -122,6 +122,10 @@ TEST(GraphRays, LeaveUnionsOfCellsThroughEachPortal) {
     std::vector<bool> reached(4, false);
     for (const GraphStep& step : steps) reached[step.cell] = true;
     EXPECT_EQ(reached, std::vector<bool>(4, true));
+    // Only forward: 0, the union, from it 2 and 3, from 2 the union again, and from that 3 alone.
+    EXPECT_EQ(steps.size(), 6u);
+    for (const GraphStep& step : steps)
+        EXPECT_TRUE(step.before == GraphStep::kStart || step.at > steps[step.before].at);
     BitMatrix none(4, 4), seen(4, 4);
     const RowReport report = checkCellRows(rays, none, {.segments = 2000}, &seen);
     EXPECT_EQ(seen.count(), 16u);
