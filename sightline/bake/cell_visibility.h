@@ -59,7 +59,7 @@ struct CellVisibility {
 };
 
 /// The promise: a line that passes from cell to cell through the graph's portals, where these are known to within
-/// 2^-38 of the largest coordinate, is within `visible` for all cells on it; lines that only touch portals' outlines
+/// 2^-35 of the largest coordinate, is within `visible` for all cells on it; lines that only touch portals' outlines
 /// count. docs/techniques/pvs.md has the argument.
 ///
 /// The same bits for any number of threads, any instruction set, and with or without a resume.

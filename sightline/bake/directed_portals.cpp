@@ -14,7 +14,7 @@ namespace {
 
 /// Coordinates are known to a few units in the last place of the largest; what a chain of a map compiler's clips adds is
 /// a few thousand times that.
-constexpr double kRelativePrecision = 0x1p-38;
+constexpr double kRelativePrecision = 0x1p-35;
 
 /// Makes near points one: the first that came.
 class Welder {
@@ -136,6 +136,19 @@ bool findPlane(std::span<const glm::dvec3> outline, DirectedPortal& portal) {
     return true;
 }
 
+/// How far a corner lies beyond the line of an edge, at most.
+double bulgeOf(std::span<const glm::dvec3> outline, const glm::dvec3& normal) {
+    double bulge = 0;
+    for (size_t i = 0; i < outline.size(); ++i) {
+        const glm::dvec3 edge = outline[i + 1 == outline.size() ? 0 : i + 1] - outline[i];
+        const double length = glm::length(edge);
+        if (!(length > 0)) continue;
+        const glm::dvec3 outward = glm::cross(edge, normal) / length;
+        for (const glm::dvec3& point : outline) bulge = std::max(bulge, glm::dot(outward, point - outline[i]));
+    }
+    return bulge;
+}
+
 }  // namespace
 
 DirectedPortals directPortals(const CellGraph& graph) {
@@ -181,6 +194,7 @@ DirectedPortals directPortals(const CellGraph& graph) {
         }
         way.portal = i;
         for (const glm::dvec3& point : hull) way.bend = std::max(way.bend, std::abs(way.height(point)));
+        way.straight = bulgeOf(hull, way.normal) <= directed.rounding;
         // A line that comes out of a flat portal rises, so that what is passed later is passed higher; out of a bent one it may
         // have come lower down.
         const bool flat = way.bend <= directed.precision;

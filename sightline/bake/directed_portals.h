@@ -17,9 +17,10 @@ struct DirectedPortal {
     glm::dvec3 normal{0.0};
     double offset = 0;  ///< dot(normal, p) + offset: the height of p, negative in the cell that is left
     glm::dvec3 center{0.0};
-    double radius = 0;  ///< no point of the outline is farther from the center
-    double bend = 0;    ///< no point of the outline is farther from the plane
-    double above = 0;   ///< what reaches no higher than this is not passed after it
+    double radius = 0;      ///< no point of the outline is farther from the center
+    double bend = 0;        ///< no point of the outline is farther from the plane
+    double above = 0;       ///< what reaches no higher than this is not passed after it
+    bool straight = false;  ///< Window::straight
     uint32_t first = 0,
              count = 0;         ///< of DirectedPortals::points; counter-clockwise as seen from the tip of the normal
     uint32_t from = 0, to = 0;  ///< cells

@@ -118,7 +118,7 @@ private:
         }
         ++s_.answer->steps;
         then.portal = next;
-        if (!then.window.assign(directed_.outline(next))) {
+        if (!then.window.assign(directed_.outline(next), directed_.portals[next].straight)) {
             s_.answer->spent = true;  // no room: given up, and all that is asked for is visible
             return false;
         }
@@ -413,7 +413,7 @@ bool PortalFlow::chaseFrom(uint32_t portal, IsAsked&& is_asked) {
         first.words += targets != 0;
     }
     if (first.words == 0) return false;
-    if (first.source.assign(directed.outline(portal))) {
+    if (first.source.assign(directed.outline(portal), directed.portals[portal].straight)) {
         first.window.assign(first.source);
         first.onward.count = 0;
         HWY_DYNAMIC_DISPATCH(chase)(s);

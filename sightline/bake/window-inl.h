@@ -164,7 +164,7 @@ HWY_INLINE void addEdgePlanes(const Window& own, const glm::dvec4& plane, double
         if (hn::AllFalse(d, valid)) continue;
         // Held to the numbers as they are: rounding may have bent the outline outward beside a short edge.
         auto bulge = hn::Zero(d);
-        for (uint32_t k = 0; k < own.count; ++k) {
+        for (uint32_t k = 0; k < own.count && !own.straight; ++k) {
             const auto x = hn::Add(hn::Add(hn::Mul(mx, hn::Set(d, own.x[k])), hn::Mul(my, hn::Set(d, own.y[k]))),
                                    hn::Mul(mz, hn::Set(d, own.z[k])));
             bulge = hn::Max(bulge, hn::Sub(x, ma));

@@ -17,6 +17,7 @@ struct Window {
         kMost + 8;  ///< vectors may reach beyond the last corner; the first stands there again
 
     uint32_t count = 0;
+    bool straight = false;  ///< as it was made: no corner bulges beyond the line of an edge by more than rounding
     double x[kRoom], y[kRoom], z[kRoom];
 
     glm::dvec3 corner(uint32_t i) const { return {x[i], y[i], z[i]}; }
@@ -32,8 +33,9 @@ struct Window {
         z[count] = z[0];
     }
     /// @return false if it has too many corners
-    bool assign(std::span<const glm::dvec3> outline) {
+    bool assign(std::span<const glm::dvec3> outline, bool is_straight = false) {
         count = 0;
+        straight = is_straight;
         if (outline.size() > kMost) return false;
         for (const glm::dvec3& point : outline) add(point);
         close();
@@ -41,6 +43,7 @@ struct Window {
     }
     void assign(const Window& other) {
         count = other.count;
+        straight = other.straight;
         for (uint32_t i = 0; i <= count; i += 8) {  // in blocks of a known size
             std::memcpy(x + i, other.x + i, 8 * sizeof(double));
             std::memcpy(y + i, other.y + i, 8 * sizeof(double));
@@ -60,6 +63,7 @@ struct Separators {
     static constexpr uint32_t kRoom = 2 * Window::kMost + 8;
 
     uint32_t count = 0;
+    bool straight = false;  ///< as it was made: no corner bulges beyond the line of an edge by more than rounding
     double x[kRoom], y[kRoom], z[kRoom], w[kRoom];  ///< unit normal and distance
 };
 
