@@ -32,6 +32,7 @@ constexpr Case kCases[] = {
     {"order", benchOrder},
     {"rows", benchRows},
     {"shadow", benchShadow},
+    {"vis", benchVis},
     {"volumes", benchVolumes},
 };
 

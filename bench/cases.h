@@ -55,6 +55,10 @@ Table benchRows(const Options& options);
 /// that the reference renderer lights otherwise without the rest.
 Table benchShadow(const Options& options);
 
+/// The cells of real maps, where ../shared/maps is there, and of rooms in a grid: baking who sees whom beside classic portal flow,
+/// which is given half a minute, and on two threads beside one.
+Table benchVis(const Options& options);
+
 /// City from its streets and from above, building and terrain: what 1 to 64 occluder volumes cull beside the tiles, alone
 /// and before them, and what the query then costs.
 Table benchVolumes(const Options& options);
