@@ -25,8 +25,10 @@ constexpr int kPasses = 3;
 
 struct PortalFlow::State {
     uint32_t portal = 0;
-    Window source, window;  ///< what is left of the first portal and of this one
-    Separators onward;      ///< of the two
+    Window source, window;   ///< what is left of the first portal and of this one
+    Separators onward;       ///< of the two
+    uint32_t next_word = 0;  ///< of portals that come next ...
+    uint64_t next = 0;       ///< ... and which of its bits are left
     /// What may follow every portal of the chain and leads into cells that are asked for and not yet reached: the words
     /// of the row that are not zero.
     uint32_t words = 0;
@@ -73,21 +75,18 @@ public:
     explicit Chase(PortalFlow::Scratch& scratch)
         : s_(scratch), directed_(scratch.places.directed), precision_{directed_.precision, directed_.rounding} {}
 
-    void into(uint32_t depth) {
-        s_.at(depth + 1);
-        const uint32_t cell = directed_.portals[s_.states[depth]->portal].to;
-        const uint32_t first = directed_.first_of_cell[cell], end = directed_.first_of_cell[cell + 1];
-        for (uint32_t w = first / 64; w * 64 < end; ++w) {
-            // What may follow every portal of the chain.
-            uint64_t may = ~uint64_t(0);
-            if (w == first / 64) may &= ~uint64_t(0) << (first % 64);
-            if (w == end / 64) may &= ~(~uint64_t(0) << (end % 64));
-            for (uint32_t i = depth + 1; i-- > 0 && may;) may &= s_.may.row(s_.states[i]->portal)[w];
-            for (; may; may &= may - 1) {
-                const uint32_t q = w * 64 + static_cast<uint32_t>(std::countr_zero(may));
-                if (enter(depth, q)) into(depth + 1);
-                if (s_.answer->spent) return;
+    /// The whole search, from the first state. Its own stack: chains may be long.
+    void run() {
+        uint32_t depth = 0;
+        open(depth);
+        for (;;) {
+            const uint32_t next = nextOf(depth);
+            if (next == kNoPortal) {
+                if (depth-- == 0) return;
+            } else if (enter(depth, next)) {
+                open(++depth);
             }
+            if (s_.answer->spent) return;
         }
     }
 
@@ -96,6 +95,41 @@ private:
 
     double lowest(const DirectedPortal& portal) const { return -std::max(portal.bend, precision_.points); }
     static glm::dvec4 planeOf(const DirectedPortal& portal) { return glm::dvec4(portal.normal, portal.offset); }
+
+    static constexpr uint32_t kNoPortal = ~0u;
+
+    /// Begins with the portals out of a state's cell.
+    void open(uint32_t depth) {
+        s_.at(depth + 1);
+        State& now = *s_.states[depth];
+        now.next_word = directed_.first_of_cell[directed_.portals[now.portal].to] / 64;
+        now.next = mayFollow(depth, now.next_word);
+    }
+
+    /// One after the other; kNoPortal: there are no more.
+    uint32_t nextOf(uint32_t depth) {
+        State& now = *s_.states[depth];
+        const uint32_t end = directed_.first_of_cell[directed_.portals[now.portal].to + 1];
+        while (now.next == 0) {
+            if (++now.next_word * 64 >= end) return kNoPortal;
+            now.next = mayFollow(depth, now.next_word);
+        }
+        const uint32_t q = now.next_word * 64 + static_cast<uint32_t>(std::countr_zero(now.next));
+        now.next &= now.next - 1;
+        return q;
+    }
+
+    /// Of a word of portals those that leave the cell and may follow every portal of the chain.
+    uint64_t mayFollow(uint32_t depth, uint32_t w) const {
+        const uint32_t cell = directed_.portals[s_.states[depth]->portal].to;
+        const uint32_t first = directed_.first_of_cell[cell], end = directed_.first_of_cell[cell + 1];
+        uint64_t may = ~uint64_t(0);
+        if (w == first / 64) may &= ~uint64_t(0) << (first % 64);
+        if (w == end / 64) may &= ~(~uint64_t(0) << (end % 64));
+        if (w * 64 >= end) may = 0;
+        for (uint32_t i = depth + 1; i-- > 0 && may;) may &= s_.may.row(s_.states[i]->portal)[w];
+        return may;
+    }
 
     /// @return whether there is more to look for beyond it
     bool enter(uint32_t depth, uint32_t next) {
@@ -357,7 +391,7 @@ private:
     const Precision precision_;
 };
 
-void chase(PortalFlow::Scratch& scratch) { Chase(scratch).into(0); }
+void chase(PortalFlow::Scratch& scratch) { Chase(scratch).run(); }
 
 }  // namespace sightline::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
