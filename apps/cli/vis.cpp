@@ -192,6 +192,11 @@ Result<int> runVis(VisOptions& options) {
     if (Status good = checkFiles(options); !good) return good.error();
     const Result<VisMap> map = loadVisMap(options.map);
     if (!map) return map.error();
+    if (map->graph.portals.size() > kMostBakedPortals)
+        return Error{Error::Kind::kInput,
+                     fmt::format("{}: {} portals, and at most {} can be baked at once{}", options.map.name,
+                                 grouped(map->graph.portals.size()), grouped(kMostBakedPortals),
+                                 map->map ? ": --cells groups makes fewer" : "")};
     if (options.objects && !map->map) return Error{Error::Kind::kUsage, "--objects needs a .bsp: it has the faces"};
     options.bake.keep_follows = options.objects;
     if (!options.leak.empty() && !map->leaks.empty())

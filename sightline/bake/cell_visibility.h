@@ -58,12 +58,16 @@ struct CellVisibility {
     bool stopped = false;       ///< by the settings' stop
 };
 
+/// A bake holds three matrices of twice as many rows and columns: of more portals 6 GiB would not do.
+constexpr size_t kMostBakedPortals = 65536;
+
 /// The promise: a line that passes from cell to cell through the graph's portals, where these are known to within
 /// 2^-35 of the largest coordinate, is within `visible` for all cells on it; lines that only touch portals' outlines
 /// count. docs/techniques/pvs.md has the argument.
 ///
 /// The same bits for any number of threads, any instruction set, and with or without a resume.
-/// @param graph  finite; cells that are not convex are taken as empty within: what stands in them hides nothing
+/// @param graph  finite, of at most kMostBakedPortals portals; cells that are not convex are taken as empty within: what
+///               stands in them hides nothing
 CellVisibility bakeCellVisibility(const CellGraph& graph, const CellVisibilitySettings& settings = {});
 
 }  // namespace sightline
