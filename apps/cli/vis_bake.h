@@ -17,8 +17,8 @@ struct VisBakeOptions {
     bool keep_follows = false;  ///< CellVisibilitySettings
 };
 
-/// Bakes; goes on from the state's file if there is one of this graph and budget, and writes it now and then. Ctrl-C stops
-/// it gently, and the state is there for the next time. Errors: a state that cannot be written.
+/// Bakes; goes on from the state's file if there is one of this graph and budget, and writes it now and then. Ctrl-C
+/// stops it gently, and the state is there for the next time. Errors: a state that cannot be written.
 Result<CellVisibility> bakeVis(const CellGraph& graph, const VisBakeOptions& options, Jobs& jobs);
 
 /// Once the result is written.

@@ -1,5 +1,5 @@
-// A map as `vis` bakes it: its cells and portals, which leaf lies in which cell, and the file that rows can be written into.
-// SPDX-License-Identifier: MIT
+// A map as `vis` bakes it: its cells and portals, which leaf lies in which cell, and the file that rows can be
+// written into. SPDX-License-Identifier: MIT
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,8 @@ namespace sightline::cli {
 
 /// What becomes a cell of a compiled map.
 enum class VisCells {
-    kClusters,  ///< leaves that a portal file, the file's own clusters, or rows that it shares put together; else open groups
+    /// Leaves that a portal file, the file's own clusters, or rows that it shares put together; else open groups.
+    kClusters,
     kLeaves,  ///< each leaf: the tightest rows, and the most work
     kGroups,  ///< leaves that are open to one another
 };
@@ -45,7 +46,8 @@ struct VisMap {
     std::vector<unsigned char> map_bytes;
 };
 
-/// Errors: of the readers, of files that do not belong together (kInput), of what cannot be asked of a file of its kind (kUsage).
+/// Errors: of the readers, of files that do not belong together (kInput), of what cannot be asked of a file of its
+/// kind (kUsage).
 Result<VisMap> loadVisMap(const VisMapChoice& choice);
 
 /// The faces of a .bsp as boxes in cells.

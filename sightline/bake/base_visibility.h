@@ -13,8 +13,8 @@ namespace sightline {
 /// @return [size: portals x portals]
 BitMatrix baseVisibility(const DirectedPortals& directed, Jobs* jobs);
 
-/// Makes a matrix of what may follow what smaller where it contradicts itself: q follows p only if p's reverse follows q's,
-/// and only by steps that are left.
+/// Makes a matrix of what may follow what smaller where it contradicts itself: q follows p only if p's reverse
+/// follows q's, and only by steps that are left.
 void tightenBase(const DirectedPortals& directed, BitMatrix& may, Jobs* jobs);
 
 }  // namespace sightline

@@ -16,7 +16,8 @@
 
 namespace sightline {
 
-/// Boxes, and the cells that each of them lies in: all that it reaches into, or else what is seen of it there is missed.
+/// Boxes, and the cells that each of them lies in: all that it reaches into, or else what is seen of it there is
+/// missed.
 struct CellBoxes {
     std::vector<Box3d> boxes;             ///< one that is not finite is seen from everywhere
     std::vector<uint32_t> first_cell{0};  ///< per box where its cells begin, and the end
@@ -37,10 +38,11 @@ struct BoxVisibility {
     bool stopped = false;
 };
 
-/// Teller's cell-to-object visibility, and cell-to-region: a box is visible from a cell if it lies in that cell, or if light that flows from
-/// one of the cell's portals through chains of portals reaches a cell that it lies in, and there the box is not wholly below one of the planes that
-/// separate the first window of the chain from its last: the light's antipenumbra lies above all of them. A superset of
-/// what can be seen; a subset of what lies in visible cells. Same bits for any number of threads.
+/// Teller's cell-to-object visibility, and cell-to-region: a box is visible from a cell if it lies in that cell, or
+/// if light that flows from one of the cell's portals through chains of portals reaches a cell that it lies in, and
+/// there the box is not wholly below one of the planes that separate the first window of the chain from its last: the
+/// light's antipenumbra lies above all of them. A superset of what can be seen; a subset of what lies in visible
+/// cells. Same bits for any number of threads.
 /// @param cells     bakeCellVisibility() of the same graph, with keep_follows
 /// @param settings  jobs, budget, stop and progress count
 BoxVisibility bakeBoxVisibility(const CellGraph& graph, const CellVisibility& cells, const CellBoxes& boxes,

@@ -14,11 +14,12 @@
 
 namespace sightline {
 
-/// Planes that are told apart. Each is kept facing one way; a side is its number times 2, plus 1 if the side faces the other way.
+/// Planes that are told apart. Each is kept facing one way; a side is its number times 2, plus 1 if the side faces
+/// the other way.
 class BrushPlanes {
 public:
-    /// @param snap_distance  planes whose normals are all but the same (1e-5) and that are no farther apart than this, measured
-    ///                       at the point nearest to the origin, are one  [world units]
+    /// @param snap_distance  planes whose normals are all but the same (1e-5) and that are no farther apart than
+    ///                       this, measured at the point nearest to the origin, are one  [world units]
     explicit BrushPlanes(double snap_distance) : snap_(snap_distance) {}
 
     static constexpr uint32_t kNone = ~0u;

@@ -252,7 +252,8 @@ private:
                 both += where == 3;
             }
             const bool axial = std::abs(tried.x) == 1 || std::abs(tried.y) == 1 || std::abs(tried.z) == 1;
-            // Cells are what counts: few brushes divided, then many sides in one plane. Balance only decides between equals.
+            // Cells are what counts: few brushes divided, then many sides in one plane. Balance only decides between
+            // equals.
             const double cost = 8.0 * static_cast<double>(both) - 2.0 * sides + (axial ? 0 : 10) +
                                 1e-3 * static_cast<double>(std::abs(front - behind));
             if (cost >= best) continue;

@@ -14,8 +14,9 @@
 namespace sightline {
 
 struct BrushTreeSettings {
-    /// Planes of brushes that are so close, and all but parallel, are one: what was drawn on two grids closes. It moves faces, by so
-    /// much at most near the origin: what is known of the result is known of the moved brushes. [world units]
+    /// Planes of brushes that are so close, and all but parallel, are one: what was drawn on two grids closes. It
+    /// moves faces, by so much at most near the origin: what is known of the result is known of the moved brushes.
+    /// [world units]
     double snap_distance = 0.01;
     /// Regions larger than this are first divided along this grid, whatever is in them: small ones are faster, and make
     /// more cells. [world units]
@@ -38,12 +39,12 @@ struct BrushTree {
     BrushTreeCounts counts;
 };
 
-/// The tree of the world's brushes. A leaf is solid only if it lies in one solid brush but for the tolerance, 2^-36 of the
-/// largest coordinate; what is only detail, moves, or is no obstacle, is not in it: more may then be seen through it than in truth, never
-/// less. Where brushes overlap, solid is stronger than sky and sky than liquids.
+/// The tree of the world's brushes. A leaf is solid only if it lies in one solid brush but for the tolerance, 2^-36
+/// of the largest coordinate; what is only detail, moves, or is no obstacle, is not in it: more may then be seen
+/// through it than in truth, never less. Where brushes overlap, solid is stronger than sky and sky than liquids.
 ///
-/// The planes are those of the brushes: first the one that divides the fewest of them and has the most sides in it, axial ones
-/// before others. Deterministic. O(brushes * depth * candidates), as maps are.
+/// The planes are those of the brushes: first the one that divides the fewest of them and has the most sides in it,
+/// axial ones before others. Deterministic. O(brushes * depth * candidates), as maps are.
 BrushTree treeOfBrushes(const QuakeMap& map, const BrushTreeSettings& settings = {});
 
 }  // namespace sightline

@@ -1,5 +1,5 @@
-// Which cells of a graph see one another: bounded from below by rays and from above by what light can flow through portals.
-// SPDX-License-Identifier: MIT
+// Which cells of a graph see one another: bounded from below by rays and from above by what light can flow through
+// portals. SPDX-License-Identifier: MIT
 //
 // Seth Teller, Carlo Sequin. Visibility Preprocessing for Interactive Walkthroughs. 1991.
 #pragma once
@@ -19,8 +19,8 @@ struct BakeProgress {
     double done = 0;        ///< share of the step's work, in [0, 1]
 };
 
-/// What a bake knows between two pieces of its work: a bake of the same graph with the same budget goes on from here, and
-/// ends with the same answer.
+/// What a bake knows between two pieces of its work: a bake of the same graph with the same budget goes on from here,
+/// and ends with the same answer.
 struct CellVisibilityState {
     uint64_t flowed = 0;       ///< portals and directions whose flow is done, in the bake's own order
     uint64_t over_budget = 0;  ///< of these
@@ -46,8 +46,8 @@ struct CellVisibilitySettings {
     bool keep_follows = false;  ///< fill CellVisibility::follows
 };
 
-/// Every ordered pair of cells is witnessed (a ray passes from one into the other with room to spare), proved hidden, or
-/// unresolved: visible as far as one knows.
+/// Every ordered pair of cells is witnessed (a ray passes from one into the other with room to spare), proved hidden,
+/// or unresolved: visible as far as one knows.
 struct CellVisibility {
     BitMatrix visible;          ///< [cells x cells], symmetric; each cell sees itself
     BitMatrix witnessed;        ///< [cells x cells], symmetric; within `visible`
@@ -66,8 +66,8 @@ constexpr size_t kMostBakedPortals = 65536;
 /// count. docs/techniques/pvs.md has the argument.
 ///
 /// The same bits for any number of threads, any instruction set, and with or without a resume.
-/// @param graph  finite, of at most kMostBakedPortals portals; cells that are not convex are taken as empty within: what
-///               stands in them hides nothing
+/// @param graph  finite, of at most kMostBakedPortals portals; cells that are not convex are taken as empty within:
+///               what stands in them hides nothing
 CellVisibility bakeCellVisibility(const CellGraph& graph, const CellVisibilitySettings& settings = {});
 
 }  // namespace sightline

@@ -12,8 +12,8 @@
 namespace sightline {
 namespace {
 
-/// Coordinates are known to a few units in the last place of the largest; what a chain of a map compiler's clips adds is
-/// a few thousand times that.
+/// Coordinates are known to a few units in the last place of the largest; what a chain of a map compiler's clips adds
+/// is a few thousand times that.
 constexpr double kRelativePrecision = 0x1p-35;
 
 /// Makes near points one: the first that came.
@@ -195,8 +195,8 @@ DirectedPortals directPortals(const CellGraph& graph) {
         way.portal = i;
         for (const glm::dvec3& point : hull) way.bend = std::max(way.bend, std::abs(way.height(point)));
         way.straight = bulgeOf(hull, way.normal) <= directed.rounding;
-        // A line that comes out of a flat portal rises, so that what is passed later is passed higher; out of a bent one it may
-        // have come lower down.
+        // A line that comes out of a flat portal rises, so that what is passed later is passed higher; out of a bent
+        // one it may have come lower down.
         const bool flat = way.bend <= directed.precision;
         way.above = flat ? directed.precision : -way.bend;
         way.sheet = flat ? sheets.of(way, hull) : sheets.ofItsOwn();

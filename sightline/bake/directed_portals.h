@@ -47,8 +47,8 @@ struct DirectedPortals {
     }
 };
 
-/// Points closer than the precision become one; outlines that are not convex are replaced by their convex hulls, so that
-/// the portals only grow.
+/// Points closer than the precision become one; outlines that are not convex are replaced by their convex hulls, so
+/// that the portals only grow.
 DirectedPortals directPortals(const CellGraph& graph);
 
 }  // namespace sightline

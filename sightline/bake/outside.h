@@ -31,15 +31,17 @@ struct MapCells {
     uint64_t closed = 0;    ///< portals between the inside and the outside that were too narrow to be a way
 };
 
-/// The cells of a tree of brushes without those outside: what is reached from beyond the bounds becomes a wall, unless some
-/// thing of the map stands there. Then there is a leak, it is reported with its way, and all cells stay: the outside is a
-/// place like any other, and what is inside is hidden from it, or not, as it is. Nothing is lost but sharpness.
+/// The cells of a tree of brushes without those outside: what is reached from beyond the bounds becomes a wall,
+/// unless some thing of the map stands there. Then there is a leak, it is reported with its way, and all cells stay:
+/// the outside is a place like any other, and what is inside is hidden from it, or not, as it is. Nothing is lost but
+/// sharpness.
 ///
 /// A thing is an entity with an origin and without brushes, in no solid leaf. Three planes that were to meet in a line
 /// rarely do so in numbers: what is left between them is a portal, but no way. Such portals are closed only between
 /// the inside and the outside; those within are kept. O(portals).
-/// @param least_way  portals that are narrower anywhere across are no way for the flood; compilers of the family leave out
-///                   those of which not three sides are longer than 0.2, and maps are sealed by that measure [world units] [>= 0]
+/// @param least_way  portals that are narrower anywhere across are no way for the flood; compilers of the family
+///                   leave out those of which not three sides are longer than 0.2, and maps are sealed by that
+///                   measure [world units] [>= 0]
 MapCells cellsInside(const QuakeMap& map, const BrushTree& brushes, double least_way = 0.25);
 
 /// A way as the engines of the family draw it (`.pts`): a point a line, in the map's own axes.

@@ -310,7 +310,8 @@ private:
         settle(cell);
     }
 
-    /// Looks for a line that passes the whole chain, with room to spare, and, when none is found at once, for a proof that there is none.
+    /// Looks for a line that passes the whole chain, with room to spare, and, when none is found at once, for a proof
+    /// that there is none.
     /// @return false if there is such a proof
     bool mayPass(uint32_t depth, const State& state) {
         const glm::dvec3 middle = state.source.center();
@@ -325,7 +326,8 @@ private:
         return true;
     }
 
-    /// Whether it is proved that no line passes the whole chain: the last word, where clipping leaves something and no ray is found.
+    /// Whether it is proved that no line passes the whole chain: the last word, where clipping leaves something and
+    /// no ray is found.
     bool isEmpty(uint32_t depth, const State& state) {
         const DirectedPortal& first = directed_.portals[s_.states[0]->portal];
         double rise = 1e300;
@@ -344,7 +346,8 @@ private:
         return s_.chain.isProvedEmpty(rise, 4 * directed_.extent);
     }
 
-    /// From a point of the source: what it sees of the window; from the middle of that, what it sees of the source; and so on.
+    /// From a point of the source: what it sees of the window; from the middle of that, what it sees of the source;
+    /// and so on.
     bool improve(uint32_t depth, const State& state, glm::dvec3 u) {
         for (int pass = 0; pass < kPasses; ++pass) {
             Window there;

@@ -60,9 +60,9 @@ public:
     /// @param budget  steps; 0: no limit
     void from(uint32_t portal, std::span<const uint64_t> asked, uint64_t budget, FlowAnswer& answer);
 
-    /// Chases light from a portal to boxes that are not found yet: a box is found if it reaches above all planes that bound
-    /// the light in one of its cells. Of the answer, `reached` and `seen` stay empty; if the budget is spent, all boxes in cells that the
-    /// portal may lead to count as found.
+    /// Chases light from a portal to boxes that are not found yet: a box is found if it reaches above all planes that
+    /// bound the light in one of its cells. Of the answer, `reached` and `seen` stay empty; if the budget is spent,
+    /// all boxes in cells that the portal may lead to count as found.
     void find(uint32_t portal, const FlowBoxes& boxes, uint64_t budget, FlowAnswer& answer);
 
     struct State;    ///< of the search

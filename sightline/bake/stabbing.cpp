@@ -1,5 +1,5 @@
-// The proof is sought as a least squares problem: of the cone of all forms the point nearest to one that only a proof reaches.
-// SPDX-License-Identifier: MIT
+// The proof is sought as a least squares problem: of the cone of all forms the point nearest to one that only a proof
+// reaches. SPDX-License-Identifier: MIT
 #include "sightline/bake/stabbing.h"
 
 #include <algorithm>
@@ -61,11 +61,12 @@ void StabbingChain::add(std::span<const glm::dvec3> outline) {
     }
 }
 
-// A line (d, m) that is inside of all edges has f . (d, m) >= 0 for each form f, as edges are of length 1 the distance from it
-// times the sine between them. Sought are weights w >= 0 with sum w f = -(n, 0): then 0 <= sum w f . (d, m) = -n . d, but lines go
-// along n. The weights are found by Lawson's and Hanson's active sets, up to a rest r. With |d| = 1, |m| <= sqrt(3) in the scale, so
-// |r . (d, m)| <= 2 |r|; lines closer to an edge than the precision p miss by at most p, in all by p sum w. So if n . d, which is
-// at least rise / distance, is more than 2 |r| + p sum w, there is no line.
+// A line (d, m) that is inside of all edges has f . (d, m) >= 0 for each form f, as edges are of length 1 the
+// distance from it times the sine between them. Sought are weights w >= 0 with sum w f = -(n, 0): then 0 <= sum w f .
+// (d, m) = -n . d, but lines go along n. The weights are found by Lawson's and Hanson's active sets, up to a rest r.
+// With |d| = 1, |m| <= sqrt(3) in the scale, so |r . (d, m)| <= 2 |r|; lines closer to an edge than the precision p
+// miss by at most p, in all by p sum w. So if n . d, which is at least rise / distance, is more than 2 |r| + p sum w,
+// there is no line.
 bool StabbingChain::isProvedEmpty(double rise, double distance) {
     const double goal[kSize] = {-normal_.x, -normal_.y, -normal_.z, 0, 0, 0};
     double columns[kSize][kSize], weights[kSize] = {}, next[kSize];

@@ -14,9 +14,9 @@ namespace sightline {
 
 /// A chain of windows, to be asked whether a line passes them all. Its memory is used again by the next chain.
 ///
-/// A directed line is a point of six coordinates, direction and moment; it passes an edge of a window on the inner side if a linear
-/// form of these is not negative. If no point of all six-dimensional space satisfies all forms, which a combination of them proves, no line does. That
-/// some point does, proves nothing: it need not be a line.
+/// A directed line is a point of six coordinates, direction and moment; it passes an edge of a window on the inner
+/// side if a linear form of these is not negative. If no point of all six-dimensional space satisfies all forms,
+/// which a combination of them proves, no line does. That some point does, proves nothing: it need not be a line.
 class StabbingChain {
 public:
     /// @param normal     of the first window, along the way: lines go that way
@@ -26,8 +26,8 @@ public:
     /// @param outline  convex, counter-clockwise about its normal along the way
     void add(std::span<const glm::dvec3> outline);
 
-    /// True: it is proved that no line through all windows rises by at least `rise` from the first to the last. False: who
-    /// knows. O(edges) for each of some ten steps.
+    /// True: it is proved that no line through all windows rises by at least `rise` from the first to the last.
+    /// False: who knows. O(edges) for each of some ten steps.
     /// @param rise      the height of the last window's lowest corner above the first one's plane  [> 0] [world units]
     /// @param distance  no two points of the first and the last window are farther apart  [world units]
     bool isProvedEmpty(double rise, double distance);

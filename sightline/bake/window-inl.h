@@ -24,8 +24,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Doubles = hn::CappedTag<double, 8>;
 using Double = hn::Vec<Doubles>;
 
-/// Cuts off what lies below `lowest` over the plane, but for rounding: never more. Corners that are made lie on edges. What would
-/// need more corners than there is room for stays.
+/// Cuts off what lies below `lowest` over the plane, but for rounding: never more. Corners that are made lie on
+/// edges. What would need more corners than there is room for stays.
 /// @param touching  a polygon whose highest corner is below this is gone
 HWY_INLINE Clipped clip(Window& window, const glm::dvec4& plane, double lowest, double touching) {
     const Doubles d;
@@ -108,9 +108,9 @@ constexpr double kShortestShared = 0x1p16;  // [precisions]
 
 /// For each edge of one window the plane through it, with that window below, that touches the other from below.
 ///
-/// With n the normal of the window's plane towards the other, and m the direction in the plane out of the edge, all planes through the edge with
-/// the window below are c n + m. A corner of the other at height y and x beyond the edge is above by t if c y + x >= t:
-/// the largest c that one of them asks for is the plane that touches.
+/// With n the normal of the window's plane towards the other, and m the direction in the plane out of the edge, all
+/// planes through the edge with the window below are c n + m. A corner of the other at height y and x beyond the edge
+/// is above by t if c y + x >= t: the largest c that one of them asks for is the plane that touches.
 /// @param turning  1: own's corners run counter-clockwise about the normal; -1: clockwise
 /// @param over     the planes are turned over, and put under own
 HWY_INLINE void addEdgePlanes(const Window& own, const glm::dvec4& plane, double turning, const Window& other,
@@ -198,9 +198,9 @@ HWY_INLINE void addEdgePlanes(const Window& own, const glm::dvec4& plane, double
 
 /// The planes through an edge of one window and a corner of the other that separate them: O(n m).
 ///
-/// They separate in the numbers as they are, not only to within rounding: a plane is turned about its edge until all corners of the other
-/// window are above those of its own by more than rounding can do, and is left out if they are not. Corners that both
-/// windows have (the same numbers) may lie in the plane.
+/// They separate in the numbers as they are, not only to within rounding: a plane is turned about its edge until all
+/// corners of the other window are above those of its own by more than rounding can do, and is left out if they are
+/// not. Corners that both windows have (the same numbers) may lie in the plane.
 /// @param first_plane   of the first window's portal: the normal points towards the second window
 /// @param second_plane  of the second window's portal: the normal points away from the first window
 /// @param turning       1: the corners run counter-clockwise about these normals; -1: clockwise

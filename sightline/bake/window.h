@@ -57,8 +57,9 @@ struct Window {
     }
 };
 
-/// Planes that two windows lie on either side of: no point of the first is above, none of the second below. Along a line
-/// from a point of the first through a point of the second the height grows, and beyond the second it is not negative.
+/// Planes that two windows lie on either side of: no point of the first is above, none of the second below. Along a
+/// line from a point of the first through a point of the second the height grows, and beyond the second it is not
+/// negative.
 struct Separators {
     static constexpr uint32_t kRoom = 2 * Window::kMost + 8;
 

@@ -51,7 +51,8 @@ void WitnessRays::walk(uint32_t portal, const glm::dvec3& at, const glm::dvec3& 
                        std::vector<uint32_t>& cells) const {
     double before = 0;
     const double least = margin_ / glm::length(direction);
-    // A line passes a plane once: no way is longer than the planes are many. Cells that are not convex may be met twice.
+    // A line passes a plane once: no way is longer than the planes are many. Cells that are not convex may be met
+    // twice.
     for (uint32_t steps = 0; steps <= directed_.size(); ++steps) {
         const uint32_t cell = directed_.portals[portal].to;
         cells.push_back(cell);

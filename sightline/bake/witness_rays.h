@@ -19,7 +19,8 @@ class WitnessRays {
 public:
     explicit WitnessRays(const DirectedPortals& directed);
 
-    /// The cells on the line through a point of a portal: those behind it, the nearest first, then those in front of it.
+    /// The cells on the line through a point of a portal: those behind it, the nearest first, then those in front of
+    /// it.
     /// @param at         on the portal's plane
     /// @param direction  not zero; along the portal's normal
     /// @param cells      empty if the line does not pass the portal itself
@@ -31,7 +32,8 @@ private:
     void walk(uint32_t portal, const glm::dvec3& at, const glm::dvec3& direction, std::vector<uint32_t>& cells) const;
 
     const DirectedPortals& directed_;
-    /// Per point of an outline the edge from it on: inward unit normal in the portal's plane, and its offset less the margin.
+    /// Per point of an outline the edge from it on: inward unit normal in the portal's plane, and its offset less the
+    /// margin.
     std::vector<glm::dvec4> edges_;
     double margin_;
 };

@@ -63,7 +63,8 @@ struct QuakeLeafFaces {
 };
 
 /// A `.bsp`, turned from z up to y up: (x, y, z) became (x, z, -y); units stay. All indices are in range, all numbers
-/// finite, and the tree of the world is one: at most kDeepest nodes lie above a leaf, and no open leaf hangs in it twice.
+/// finite, and the tree of the world is one: at most kDeepest nodes lie above a leaf, and no open leaf hangs in it
+/// twice.
 ///
 /// A cluster is what has a row of visibility: in Quake and Half-Life the world's leaf i + 1, without the solid leaf 0.
 struct QuakeMapFile {

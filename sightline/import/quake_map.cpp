@@ -91,7 +91,8 @@ private:
         return word_;
     }
 
-    /// To the closing quote, which a backslash before it makes part of the text, unless it is the line's last: paths end so.
+    /// To the closing quote, which a backslash before it makes part of the text, unless it is the line's last: paths
+    /// end so.
     void readQuoted() {
         const char* first = ++at_;
         for (; at_ < end_ && *at_ != '"' && *at_ != '\n'; ++at_)

@@ -11,8 +11,9 @@
 
 namespace sightline {
 
-/// Fills a mesh's positions, indices and bounds with biquadratic patches, each as 4 x 4 squares. The bounds hold all control
-/// points, and so any finer cut: a Bezier surface lies in the hull of its control points. The mesh deforms: it hides nothing.
+/// Fills a mesh's positions, indices and bounds with biquadratic patches, each as 4 x 4 squares. The bounds hold all
+/// control points, and so any finer cut: a Bezier surface lies in the hull of its control points. The mesh deforms:
+/// it hides nothing.
 /// @param control  row by row  [size: width * height, both odd and at least 3]
 void tessellatePatch(std::span<const glm::vec3> control, uint32_t width, uint32_t height, Mesh& mesh);
 

@@ -16,8 +16,8 @@ Result<QuakeMap> quakeEntities(const QuakeMapFile& map, const std::string& name)
 
 /// An object's key is its face's index, its name the texture's; it hangs in a node for its entity, "worldspawn" or as
 /// "func_door *3", and stands where that entity's `origin` says. quakeSurface() tells what hides: see-through faces are
-/// AlphaMode::kBlend, those of entities transmissive, patches deform within their control points. Faces that are not drawn
-/// are left out. Cameras are the places where players begin, at the height of their eyes.
+/// AlphaMode::kBlend, those of entities transmissive, patches deform within their control points. Faces that are not
+/// drawn are left out. Cameras are the places where players begin, at the height of their eyes.
 ///
 /// Errors (kInput) are one line with the name: entities that cannot be read, an origin that is none, a model that
 /// entities show too often, nothing that is drawn.

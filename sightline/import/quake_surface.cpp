@@ -23,7 +23,8 @@ bool seenThroughByName(std::string_view name, bool half_life) {
                        [&](std::string_view prefix) { return low.starts_with(prefix); });
 }
 
-/// A face parts two contents, the same two everywhere. Close behind the middle of each triangle of its fan must be what is solid.
+/// A face parts two contents, the same two everywhere. Close behind the middle of each triangle of its fan must be
+/// what is solid.
 bool solidBehind(const QuakeMapFile& map, const QuakeFace& face) {
     const glm::vec3* const points = map.points.data() + face.first_point;
     glm::dvec3 area(0);

@@ -16,9 +16,10 @@ enum class QuakeSurface : uint8_t {
     kNotDrawn,
 };
 
-/// Quake, Half-Life: a face of the world is solid if neither its texture's name nor its flag says otherwise and the tree is
-/// solid close behind it. A texture that the file lacks has no name: engines draw such faces as opaque squares. Quake 2: by the
-/// surface's flags. Quake 3: by the flags of a flat surface's shader, whose script is not read. O(points * depth).
+/// Quake, Half-Life: a face of the world is solid if neither its texture's name nor its flag says otherwise and the
+/// tree is solid close behind it. A texture that the file lacks has no name: engines draw such faces as opaque
+/// squares. Quake 2: by the surface's flags. Quake 3: by the flags of a flat surface's shader, whose script is not
+/// read. O(points * depth).
 QuakeSurface quakeSurface(const QuakeMapFile& map, const QuakeFace& face);
 
 }  // namespace sightline

@@ -1,7 +1,8 @@
 // The visibility lump of a compiled map: out of the file as bits, and back into it.
 // SPDX-License-Identifier: MIT
 //
-// Michael Abrash. Graphics Programming Black Book, chapter 70: Quake, a post-mortem and a glimpse into the future. 1997.
+// Michael Abrash. Graphics Programming Black Book, chapter 70: Quake, a post-mortem and a glimpse into the future.
+// 1997.
 #pragma once
 
 #include <cstdint>
@@ -31,9 +32,9 @@ Result<QuakeVisibility> readQuakeVisibility(const QuakeMapFile& map, const std::
 /// A matrix of more would take 512 MiB.
 constexpr uint32_t kMostClusters = 65536;
 
-/// What clusters see of one another by what the cells of their leaves see: where cells are leaves or sets of them. A cluster
-/// with an open leaf that has no cell sees all, and is seen by all; but of the sky nothing is drawn that is in it, and sight
-/// lines end there: it sees all, and is not seen.
+/// What clusters see of one another by what the cells of their leaves see: where cells are leaves or sets of them. A
+/// cluster with an open leaf that has no cell sees all, and is seen by all; but of the sky nothing is drawn that is
+/// in it, and sight lines end there: it sees all, and is not seen.
 /// @param cells         [cells x cells]
 /// @param cell_of_leaf  per leaf of the map, as CellGraph has it; missing ones have no cell
 BitMatrix clusterRows(const QuakeMapFile& map, const BitMatrix& cells, std::span<const uint32_t> cell_of_leaf);

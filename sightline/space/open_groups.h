@@ -23,10 +23,10 @@ struct OpenGroups {
     uint32_t groups = 0;
 };
 
-/// Groups the cells of a tree from the leaves up: what lies on the two sides of a node becomes one group if each side is one, and
-/// the node's section, all that the planes above leave of its plane, is open enough. So a group is a convex part of space less the solid
-/// leaves in it, as a map compiler's clusters are. Two groups see one another if two of their cells do, so that
-/// visibility of groups is a superset. O(nodes * depth + portals).
+/// Groups the cells of a tree from the leaves up: what lies on the two sides of a node becomes one group if each side
+/// is one, and the node's section, all that the planes above leave of its plane, is open enough. So a group is a
+/// convex part of space less the solid leaves in it, as a map compiler's clusters are. Two groups see one another if
+/// two of their cells do, so that visibility of groups is a superset. O(nodes * depth + portals).
 /// @param graph  cellsOfTree() of the tree: a cell a leaf
 OpenGroups groupOpenCells(const LeafTree& tree, const CellGraph& graph, const OpenGroupSettings& settings = {});
 

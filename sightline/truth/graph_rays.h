@@ -32,9 +32,10 @@ public:
     const CellGraph& graph() const { return graph_; }
     double margin() const { return margin_; }
 
-    /// All cells that a line reaches from a point in a cell, where parameters are above 0. From a convex cell a line goes
-    /// on through one portal, or through two that overlap by a tolerance; from a cell that is a union of others, through each
-    /// that it crosses after it has entered: steps are a tree. Portals that the line crosses at a slope of less than 1e-9 are passed by.
+    /// All cells that a line reaches from a point in a cell, where parameters are above 0. From a convex cell a line
+    /// goes on through one portal, or through two that overlap by a tolerance; from a cell that is a union of others,
+    /// through each that it crosses after it has entered: steps are a tree. Portals that the line crosses at a slope
+    /// of less than 1e-9 are passed by.
     /// @param steps  receives the cell itself first
     void follow(uint32_t cell, const glm::dvec3& point, const glm::dvec3& direction,
                 std::vector<GraphStep>& steps) const;
@@ -55,8 +56,8 @@ private:
     std::vector<glm::dvec3> inward_;  // per point of the graph: of the edge that begins there, unit, in the plane
 };
 
-/// Holds rows of cells against lines through points of portals, half of them on to a point of a portal of a cell that the
-/// first one leads to. The steps of a line see one another. Seeded, as checkLeafRows().
+/// Holds rows of cells against lines through points of portals, half of them on to a point of a portal of a cell that
+/// the first one leads to. The steps of a line see one another. Seeded, as checkLeafRows().
 RowReport checkCellRows(const GraphRays& rays, const BitMatrix& rows, const RowCheckSettings& settings = {},
                         BitMatrix* seen = nullptr);
 

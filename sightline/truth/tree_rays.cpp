@@ -167,7 +167,8 @@ public:
         seen_.assign(places_.begin(), places_.end());
         bool walked = false;
         judge_.judge(seen_, from, end, [&](size_t i, size_t j) {
-            // Only an alarm needs the walk as a whole. If that finds other places, the segment passes a corner too closely.
+            // Only an alarm needs the walk as a whole. If that finds other places, the segment passes a corner too
+            // closely.
             if (!walked) walkWhole(from, to);
             walked = true;
             return places_ == seen_ && rays_.stands(from, to, walk_, stretch_[i], stretch_[j]);
@@ -202,7 +203,8 @@ private:
         return a + 0.5 * (stretch.from + stretch.to) * (b - a);
     }
 
-    /// Adds where a stretch lies, unless it is too short to tell or goes on where the last one was. True if it was added.
+    /// Adds where a stretch lies, unless it is too short to tell or goes on where the last one was. True if it was
+    /// added.
     bool addPlace(const TreeStretch& stretch, double least) {
         if (!(stretch.to - stretch.from > least)) return false;
         const uint32_t row = row_of_leaf_.empty() ? stretch.leaf : row_of_leaf_[stretch.leaf];

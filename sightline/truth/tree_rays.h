@@ -51,13 +51,13 @@ public:
     /// Of a point in a plane the leaf in front.
     uint32_t leafAt(const glm::dvec3& point) const;
 
-    /// Follows a segment from `a` towards `b`. In double, so that it may be wrong about what it passes within some 1e-12 of
-    /// the coordinates: stands() tells. Nothing is passed if `a` is in what ends segments.
+    /// Follows a segment from `a` towards `b`. In double, so that it may be wrong about what it passes within some
+    /// 1e-12 of the coordinates: stands() tells. Nothing is passed if `a` is in what ends segments.
     void follow(const glm::dvec3& a, const glm::dvec3& b, TreeWalk& walk) const;
 
     /// Whether the steps of a walk from stretch `i` to stretch `j` are beyond rounding: each crosses a plane at a place
-    /// that is inside all other planes of the two leaves by more than the margin, and both stretches at the ends are longer
-    /// than that.
+    /// that is inside all other planes of the two leaves by more than the margin, and both stretches at the ends are
+    /// longer than that.
     bool stands(const glm::dvec3& a, const glm::dvec3& b, const TreeWalk& walk, size_t i, size_t j) const;
 
 private:
@@ -75,14 +75,15 @@ private:
     std::vector<uint32_t> above_;  // per node: the parent times 2 plus the side
 };
 
-/// Holds rows of leaves, or of what leaves belong to, against segments: between points of the bounds, the first of which is
-/// in a leaf that can be passed; and, aimed, through points of holes, to both sides, half of them on to another hole nearby.
-/// All leaves of a segment see one another, but for those that it passes for less than the margin. Seeded: a report is the same on every machine and with any number of threads.
+/// Holds rows of leaves, or of what leaves belong to, against segments: between points of the bounds, the first of
+/// which is in a leaf that can be passed; and, aimed, through points of holes, to both sides, half of them on to
+/// another hole nearby. All leaves of a segment see one another, but for those that it passes for less than the
+/// margin. Seeded: a report is the same on every machine and with any number of threads.
 /// @param rows         symmetric or not: both directions must be there
 /// @param row_of_leaf  or RowJudge::kNoRow; empty: each leaf is its own row  [size: leaves]
 /// @param holes        without any, no segment is aimed
-/// @param seen         receives a bit for each pair that was seen, if there is one: the truth from below, but for rounding
-///                     where a segment passes a corner  [as large as rows]
+/// @param seen         receives a bit for each pair that was seen, if there is one: the truth from below, but for
+///                     rounding where a segment passes a corner  [as large as rows]
 RowReport checkLeafRows(const TreeRays& rays, const BitMatrix& rows, std::span<const uint32_t> row_of_leaf,
                         const AimedHoles& holes, const RowCheckSettings& settings = {}, BitMatrix* seen = nullptr);
 

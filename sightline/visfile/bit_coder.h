@@ -1,5 +1,5 @@
-// Bits as fractions of bits: what is likely costs little. An arithmetic coder, and models that learn how likely a bit is.
-// SPDX-License-Identifier: MIT
+// Bits as fractions of bits: what is likely costs little. An arithmetic coder, and models that learn how likely a bit
+// is. SPDX-License-Identifier: MIT
 //
 // Jorma Rissanen, Glen Langdon. Arithmetic Coding. 1979.
 #pragma once
@@ -11,8 +11,8 @@
 
 namespace sightline {
 
-/// How likely the next bit is to be one, learnt from those before it: their mean while they are few, and then rather the
-/// later ones'. Never surer than 511 to 1, so that a byte holds at most some 2,800 bits.
+/// How likely the next bit is to be one, learnt from those before it: their mean while they are few, and then rather
+/// the later ones'. Never surer than 511 to 1, so that a byte holds at most some 2,800 bits.
 class BitModel {
 public:
     /// In parts of 65536.

@@ -18,8 +18,8 @@ inline constexpr uint16_t kNoCellInFile = 65535;
 /// @param cell_of_leaf  each CellGraph::kNoCell or below kNoCellInFile
 Array<char> leafCells(std::span<const uint32_t> cell_of_leaf, Memory* memory = defaultMemory());
 
-/// The same as few bytes: the number of leaves in 4 bytes, and as coded bits each leaf by those before it: most belong to the
-/// same cell as the last, or to the first one that no leaf belonged to yet.
+/// The same as few bytes: the number of leaves in 4 bytes, and as coded bits each leaf by those before it: most
+/// belong to the same cell as the last, or to the first one that no leaf belonged to yet.
 Array<char> packedLeafCells(std::span<const uint32_t> cell_of_leaf, Memory* memory = defaultMemory());
 
 /// What leafCells() gave. What the numbers are is still to be looked at.

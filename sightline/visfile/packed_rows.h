@@ -13,13 +13,13 @@
 
 namespace sightline {
 
-/// The bytes: numbers of cells and of classes, of 4 bytes each; then, as coded bits, the list of cells by their steps, and row by
-/// row of tiles first what each tile is, by its four neighbours that are known, and then the bits of the stored ones, by
-/// the bits around them. A tile on the diagonal is coded below it alone.
+/// The bytes: numbers of cells and of classes, of 4 bytes each; then, as coded bits, the list of cells by their
+/// steps, and row by row of tiles first what each tile is, by its four neighbours that are known, and then the bits
+/// of the stored ones, by the bits around them. A tile on the diagonal is coded below it alone.
 Array<char> packedRows(const VisibleRows& rows, Memory* memory = defaultMemory());
 
-/// The tiled form again, byte for byte. Whatever the bytes are, it ends: after at most some 2,800 steps for each of them.
-/// What it gives back is still to be opened by VisibleRows::open().
+/// The tiled form again, byte for byte. Whatever the bytes are, it ends: after at most some 2,800 steps for each of
+/// them. What it gives back is still to be opened by VisibleRows::open().
 /// @param file  what errors call the bytes
 /// @param at    their place in it
 /// Errors (kInput): one line with the file, what is wrong, and at which byte.

@@ -20,12 +20,12 @@ struct RowOrder {
     size_t classes() const { return first.size() - 1; }
 };
 
-/// Classes in the order of a greedy walk: from that of row 0, always on to the class that differs in the fewest bits from the
-/// one before, of several the one with the smallest row. What is seen alike comes to lie together, whatever the rows'
-/// numbers are, so that the matrix falls apart into blocks of zeros, blocks of ones, and little else.
+/// Classes in the order of a greedy walk: from that of row 0, always on to the class that differs in the fewest bits
+/// from the one before, of several the one with the smallest row. What is seen alike comes to lie together, whatever
+/// the rows' numbers are, so that the matrix falls apart into blocks of zeros, blocks of ones, and little else.
 ///
-/// O(classes^2 * words), of which most is spared by the numbers of ones; of more than 4096 classes not yet placed only the
-/// first 4096 are looked at.
+/// O(classes^2 * words), of which most is spared by the numbers of ones; of more than 4096 classes not yet placed
+/// only the first 4096 are looked at.
 /// @param rows  at most kMostOrderedRows
 RowOrder orderRows(const BitMatrix& rows, Memory* memory = defaultMemory());
 

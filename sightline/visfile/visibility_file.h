@@ -49,8 +49,8 @@ Result<Array<char>> visibilityFile(const VisibilityContent& content, VisibilityF
 class VisibilityFile {
 public:
     /// Of a file in place nothing is copied; of a packed one its sections are unpacked. The bytes must outlive it.
-    /// Nothing in them is believed: whatever they are, they are opened so that every question has an answer, or refused.
-    /// O(bytes) in place; packed, also O(cells^2 / 128).
+    /// Nothing in them is believed: whatever they are, they are opened so that every question has an answer, or
+    /// refused. O(bytes) in place; packed, also O(cells^2 / 128).
     /// @param file  what errors call the bytes
     /// Errors (kInput): one line with the file, what is wrong, and at which byte.
     static Result<VisibilityFile> open(std::span<const char> bytes, std::string_view file,
@@ -82,8 +82,8 @@ private:
     uint64_t map_hash_ = 0;
 };
 
-/// The packed form of an opened file: the bytes that visibilityFile() writes of the same content, without putting its rows
-/// in order again, which is most of the time.
+/// The packed form of an opened file: the bytes that visibilityFile() writes of the same content, without putting its
+/// rows in order again, which is most of the time.
 Array<char> packedFile(const VisibilityFile& file, Memory* memory = defaultMemory());
 
 }  // namespace sightline

@@ -18,11 +18,13 @@ namespace sightline {
 
 namespace tiled_rows {
 
-/// The bytes: numbers of cells, of classes and of stored tiles, and a zero, of 4 bytes each; then the arrays below, without gaps.
+/// The bytes: numbers of cells, of classes and of stored tiles, and a zero, of 4 bytes each; then the arrays below,
+/// without gaps.
 ///
-/// Cells with equal rows are one class. The matrix of classes, in the order of orderRows(), is cut into tiles of 8 x 8 bits, bit
-/// 8 * row + column; of two tiles that mirror each other the one below the diagonal counts. Tile (R, C), C <= R, is number
-/// R * (R + 1) / 2 + C; it is all zero, or full, or stored. Bits of classes that there are not do not count.
+/// Cells with equal rows are one class. The matrix of classes, in the order of orderRows(), is cut into tiles of 8 x
+/// 8 bits, bit 8 * row + column; of two tiles that mirror each other the one below the diagonal counts. Tile (R, C),
+/// C <= R, is number R * (R + 1) / 2 + C; it is all zero, or full, or stored. Bits of classes that there are not do
+/// not count.
 struct Layout {
     static constexpr uint64_t kMixedAt = 16;  ///< bit per tile: stored  [64-bit words]
     uint64_t full_at = 0;                     ///< bit per tile: all ones  [64-bit words]
@@ -80,7 +82,8 @@ public:
     /// O(1).
     /// @pre a, b < cells()
     bool sees(uint32_t a, uint32_t b) const;
-    /// Writes a cell's row: bit i % 64 of word i / 64 is whether it sees cell i. O(cells / 64 + classes / 8 + what it sees).
+    /// Writes a cell's row: bit i % 64 of word i / 64 is whether it sees cell i. O(cells / 64 + classes / 8 + what it
+    /// sees).
     /// @pre  cell < cells()
     /// @param out  [size: (cells() + 63) / 64]
     void row(uint32_t cell, std::span<uint64_t> out) const;

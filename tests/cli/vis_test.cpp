@@ -16,7 +16,8 @@ namespace {
 using nlohmann::json;
 using namespace test;
 
-/// A corridor along y, in the file's axes, with two rooms on one side that do not see one another, and one on the other.
+/// A corridor along y, in the file's axes, with two rooms on one side that do not see one another, and one on the
+/// other.
 const char* const kRooms =
     "PRT1\n4\n3\n"
     "4 0 1 (64 16 0) (64 16 16) (64 0 16) (64 0 0)\n"
