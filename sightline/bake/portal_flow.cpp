@@ -333,7 +333,7 @@ private:
         double rise = 1e300;
         for (uint32_t i = 0; i < state.window.count; ++i) rise = std::min(rise, first.height(state.window.corner(i)));
         rise -= first.bend;
-        if (!(rise > 0)) return false;
+        if (depth < 2 || !(rise > 0)) return false;  // of three windows clipping has told all
         const auto add = [&](const Window& window) {
             s_.corners.clear();
             for (uint32_t i = 0; i < window.count; ++i) s_.corners.push_back(window.corner(i));
