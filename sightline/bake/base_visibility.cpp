@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <span>
 #include <vector>
 
@@ -57,34 +56,6 @@ inline bool reachesAbove(const DirectedPortals& directed, const DirectedPortal& 
     return false;
 }
 
-/// Whether q lies in p's plane as well as one knows, and leads the same way.
-inline bool goesOnInPlane(const DirectedPortals& directed, uint32_t p, uint32_t q) {
-    const DirectedPortal &first = directed.portals[p], &next = directed.portals[q];
-    if (!(std::abs(first.height(next.center)) <= std::abs(first.above) + next.radius)) return false;
-    if (!(glm::dot(first.normal, next.normal) > 0)) return false;
-    const bool above = reachesAbove(directed, first, q, 1), behind = reachesAbove(directed, next, p, -1);
-    if (above && behind && first.sheet != next.sheet) return false;
-    return std::any_of(directed.outline(q).begin(), directed.outline(q).end(),
-                       [&](const glm::dvec3& point) { return first.height(point) >= -std::abs(first.above); }) &&
-           std::any_of(directed.outline(p).begin(), directed.outline(p).end(),
-                       [&](const glm::dvec3& point) { return next.height(point) <= std::abs(next.above); });
-}
-
-/// A cell may be thinner than points are known: light that has come in through p goes out again through a portal in the
-/// same plane, and perhaps through the next such cell.
-inline void floodInPlane(const DirectedPortals& directed, uint32_t p, FloodScratch& scratch, std::span<uint64_t> row) {
-    for (size_t i = 0; i < scratch.cells.size(); ++i)
-        for (uint32_t q = directed.first_of_cell[scratch.cells[i]]; q < directed.first_of_cell[scratch.cells[i] + 1];
-             ++q) {
-            if (!goesOnInPlane(directed, p, q)) continue;
-            row[q / 64] |= uint64_t(1) << (q % 64);
-            const uint32_t cell = directed.portals[q].to;
-            if (scratch.seen[cell]) continue;
-            scratch.seen[cell] = 1;
-            scratch.cells.push_back(cell);
-        }
-}
-
 }  // namespace sightline::detail
 #endif
 
@@ -109,7 +80,6 @@ void flood(const detail::FloodPlaces& places, uint32_t p, detail::FloodScratch& 
     scratch.seen.assign(directed.cells(), 0);
     scratch.cells.assign(1, source.to);
     scratch.seen[source.to] = 1;
-    detail::floodInPlane(directed, p, scratch, row);
     while (!scratch.cells.empty()) {
         const uint32_t cell = scratch.cells.back();
         scratch.cells.pop_back();

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
@@ -20,8 +19,6 @@ namespace sightline {
 
 /// With so few targets left, each is clipped by all planes, and not only held to each one.
 constexpr uint32_t kFewTargets = 4;
-/// The cosine of the angle between portals that may be the two sides of a cell thinner than points are known.
-constexpr double kSameWay = 0.5;
 
 constexpr double kTowardsEdge = 0.9;  // of a window's middle and a place on its outline
 constexpr int kPasses = 3;
@@ -232,23 +229,17 @@ private:
         }
     }
 
-    /// How high a portal must reach to be passed after another: above it, but for the far side of a cell that is thinner
-    /// than points are known.
-    static double above(const DirectedPortal& portal, const DirectedPortal& other) {
-        return glm::dot(portal.normal, other.normal) > kSameWay ? -std::abs(portal.above) : portal.above;
-    }
-
     /// What of the portal is lit through the window before it, and what of the source lights it.
     bool clipBoth(const State& now, State& then) const {
         const DirectedPortal &first = directed_.portals[s_.states[0]->portal], &last = directed_.portals[now.portal],
                              &portal = directed_.portals[then.portal];
         const double points = precision_.points;
         // A line comes out of a portal upwards, so the next one's crossing is above its plane, and not in it.
-        if (clip(then.window, planeOf(first), lowest(first), above(first, portal)) == Clipped::kGone) return false;
+        if (clip(then.window, planeOf(first), lowest(first), first.above) == Clipped::kGone) return false;
         const bool far = now.portal != s_.states[0]->portal;
-        if (far && clip(then.window, planeOf(last), lowest(last), above(last, portal)) == Clipped::kGone) return false;
+        if (far && clip(then.window, planeOf(last), lowest(last), last.above) == Clipped::kGone) return false;
         then.source.assign(now.source);
-        if (clip(then.source, -planeOf(portal), lowest(portal), above(portal, first)) == Clipped::kGone) return false;
+        if (clip(then.source, -planeOf(portal), lowest(portal), portal.above) == Clipped::kGone) return false;
         if (!far) return true;
         // What only touches a plane stays: a line that grazes is a line that sees.
         if (clip(then.window, now.onward, -points, -points) == Clipped::kGone) return false;

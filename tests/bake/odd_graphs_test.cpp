@@ -90,21 +90,6 @@ TEST(OddGraphs, AreFarAwayOrTinyOrHuge) {
             }
 }
 
-TEST(OddGraphs, SeeThroughCellsThinnerThanPointsAreKnown) {
-    for (const double gap : {1.0, 1e-3, 1e-6, 1e-9, 1e-10, 1e-11, 1e-12, 1e-15, 0.0})
-        for (uint32_t thin = 1; thin <= 3; ++thin) {
-            CellGraph graph;
-            graph.cells = thin + 4;
-            double x = 1;
-            for (uint32_t i = 0; i + 1 < graph.cells; ++i) {
-                graph.addPortal(i + 1, i, square(x, 0.1 * i, 2 - 0.1 * i));
-                x += i >= 1 && i < 1 + thin ? gap : 1;
-            }
-            const CellVisibility answer = bakeCellVisibility(graph);
-            EXPECT_EQ(answer.visible.count(), uint64_t(graph.cells) * graph.cells) << gap << ", " << thin;
-        }
-}
-
 /// Rooms in a row, whose doors lie to the right and to the left of a line in turn, each `gap` away from it.
 CellGraph zigzag(uint32_t cells, double gap, const glm::dmat3& turn) {
     CellGraph graph;
