@@ -1,5 +1,6 @@
 // The verb `vis`: which leaves of a Quake-family map see one another.
 // SPDX-License-Identifier: MIT
+#include <cctype>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -50,19 +51,32 @@ struct VisOptions {
     uint64_t rays = 1000000;
 };
 
-bool isBsp(const std::string& name) { return std::filesystem::path(name).extension() == ".bsp"; }
+std::string endOf(const std::string& name) {
+    std::string end = std::filesystem::path(name).extension().string();
+    for (char& c : end) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return end;
+}
+
+bool isBsp(const std::string& name) { return endOf(name) == ".bsp"; }
 
 Status checkFiles(const VisOptions& options) {
     ApartFiles files;
     files.read("MAP", splitMapName(options.map.name).file);
     files.read("--bsp", options.map.bsp);
-    files.read("--prt", options.map.prt);
+    files.read("--prt", portalFileOf(options.map));
     files.write("-o", options.output);
     files.write("--json", options.json);
     files.write("--state", options.bake.state);
     files.write("--leak", options.leak);
     if (!options.report.empty()) files.write("--report", std::filesystem::path(options.report) / "index.html");
     if (!files.status()) return files.status();
+    for (const char* end : {".map", ".prt", ".pak", ".pk3"})
+        for (const std::string& name : {options.output, options.json, options.bake.state, options.leak})
+            if (endOf(name) == end)
+                return Error{Error::Kind::kUsage,
+                             name + ": an output of vis does not end in " + end + ", as its inputs do"};
+    if (!options.leak.empty() && endOf(splitMapName(options.map.name).file) != ".map")
+        return Error{Error::Kind::kUsage, "--leak goes with a .map"};
     for (const std::string& name : {options.output, options.bake.state, options.leak})
         if (!name.empty())
             if (Status writable = canWriteFile(name); !writable) return writable;
@@ -128,8 +142,9 @@ Status writeOutput(const VisOptions& options, const VisOutputs& outputs) {
     return writeFileAside(options.output, {bytes.data(), bytes.size()});
 }
 
-VisSummary::Objects bakeObjects(const VisMap& map, const CellVisibility& visibility, const VisOptions& options,
-                                Jobs& jobs) {
+/// None: interrupted.
+std::optional<VisSummary::Objects> bakeObjects(const VisMap& map, const CellVisibility& visibility,
+                                               const VisOptions& options, Jobs& jobs) {
     const std::clock_t begin = std::clock();
     const CellBoxes faces = facesOf(map);
     Progress progress("visibility, objects", "cells", map.graph.cells);
@@ -141,8 +156,9 @@ VisSummary::Objects bakeObjects(const VisMap& map, const CellVisibility& visibil
         progress.set(static_cast<size_t>(now.done * static_cast<double>(map.graph.cells)), map.graph.cells);
     };
     const BoxVisibility boxes = bakeBoxVisibility(map.graph, visibility, faces, settings);
-    return {faces.boxes.size(), boxes.visible.count(), boxes.by_cells,
-            static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC};
+    if (boxes.stopped) return std::nullopt;
+    return VisSummary::Objects{faces.boxes.size(), boxes.visible.count(), boxes.by_cells,
+                               static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC};
 }
 
 std::string share(uint64_t part, uint64_t whole) {
@@ -167,13 +183,13 @@ void printSummary(std::FILE* out, const VisSummary& s) {
              fmt::format("leaks: from {} at {:g} {:g} {:g} there is a way of {} points to the outside, which stays in "
                          "the rows (--leak "
                          "writes it)\n",
-                         leak.from, leak.path.front().x + 0.0, leak.path.front().y + 0.0, leak.path.front().z + 0.0,
+                         leak.from, leak.path.front().x + 0.0, 0.0 - leak.path.front().z, leak.path.front().y + 0.0,
                          leak.path.size()));
     if (s.objects)
         tell(out, fmt::format("faces: {} pairs of cells and faces, {} of those in visible cells, in {:.2f} s of CPU\n",
                               grouped(s.objects->visible_pairs),
                               share(s.objects->visible_pairs, s.objects->pairs_by_cells), s.objects->cpu_seconds));
-    if (s.lump_bytes)
+    if (s.pvs_bytes)
         tell(out, fmt::format("bytes: {} packed, {} resident; run-length lump {}\n", grouped(s.pvs_bytes),
                               grouped(s.resident_bytes), grouped(s.lump_bytes)));
     tell(out, fmt::format("{:.2f} s of CPU, {:.2f} s\n", s.cpu_seconds, s.wall_seconds));
@@ -208,8 +224,10 @@ Result<int> runVis(VisOptions& options) {
     const Result<CellVisibility> visibility = bakeVis(map->graph, options.bake, pool);
     if (!visibility) return visibility.error();
     if (visibility->stopped && interrupted())
-        return reportInterruption(
-            options.bake.state.empty() ? "the bake" : "the bake, which goes on from " + options.bake.state, false);
+        return reportInterruption(options.bake.state.empty()
+                                      ? "a part of the bake"
+                                      : "a part of the bake, which goes on from " + options.bake.state,
+                                  false);
 
     const Result<VisOutputs> outputs = makeOutputs(options, *map, *visibility);
     if (!outputs) return outputs.error();
@@ -238,6 +256,7 @@ Result<int> runVis(VisOptions& options) {
     summary.wall_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     for (const MapLeak& leak : map->leaks) summary.leaks.push_back({leak.what, leak.path});
     if (options.objects) summary.objects = bakeObjects(*map, *visibility, options, pool);
+    if (options.objects && !summary.objects) return reportInterruption("the cells, in the midst of the objects", true);
     if (options.verify) summary.verification = verifyVis(*map, visibility->visible, options.rays, pool);
 
     if (!options.report.empty())

@@ -19,31 +19,37 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kSecondsBetweenStates = 10;
-constexpr size_t kProgressParts = 1000;
+constexpr size_t kProgressParts = 100;
 
 /// The state that was left by an earlier run, if it is one of this bake.
-std::optional<CellVisibilityState> stateLeft(const CellGraph& graph, const VisBakeOptions& options) {
+Result<std::optional<CellVisibilityState>> stateLeft(const CellGraph& graph, const VisBakeOptions& options) {
     std::error_code error;
-    if (options.state.empty() || !std::filesystem::is_regular_file(options.state, error)) return std::nullopt;
+    std::optional<CellVisibilityState> state_left;
+    if (options.state.empty() || !std::filesystem::is_regular_file(options.state, error)) return state_left;
     const Result<std::string> bytes = readTextFile(options.state, size_t(1) << 36);
     if (!bytes) {
         note(bytes.error().message + ": the bake begins anew");
-        return std::nullopt;
+        return state_left;
     }
     Result<CellVisibilityState> state = readBakeState(*bytes, options.state, graph, options.budget);
+    if (!state && !isBakeState(*bytes))
+        return Error{Error::Kind::kOutput, options.state + ": holds something else than the state of a bake"};
     if (!state) {
         note(state.error().message + ": the bake begins anew");
-        return std::nullopt;
+        return state_left;
     }
     note("goes on from " + options.state);
-    return std::move(*state);
+    state_left = std::move(*state);
+    return state_left;
 }
 
 }  // namespace
 
 Result<CellVisibility> bakeVis(const CellGraph& graph, const VisBakeOptions& options, Jobs& jobs) {
     stopGently();
-    std::optional<CellVisibilityState> left = stateLeft(graph, options);
+    Result<std::optional<CellVisibilityState>> found = stateLeft(graph, options);
+    if (!found) return found.error();
+    std::optional<CellVisibilityState>& left = *found;
     const Clock::time_point begin = Clock::now();
     const auto secondsSince = [](Clock::time_point then) {
         return std::chrono::duration<double>(Clock::now() - then).count();
@@ -65,7 +71,7 @@ Result<CellVisibility> bakeVis(const CellGraph& graph, const VisBakeOptions& opt
         if (!progress || step != now.step) {
             step = now.step;
             progress.reset();
-            progress = std::make_unique<Progress>("visibility, " + step, "parts of a thousand", kProgressParts);
+            progress = std::make_unique<Progress>("visibility, " + step, "percent", kProgressParts);
         }
         progress->set(static_cast<size_t>(now.done * static_cast<double>(kProgressParts)), kProgressParts);
     };

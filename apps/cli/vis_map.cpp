@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/cli/session.h"
 #include "sightline/bake/brush_tree.h"
 #include "sightline/base/bytes.h"
 #include "sightline/import/map_source.h"
@@ -89,9 +90,9 @@ Status mergeByPortalFile(const std::string& name, VisMap& out) {
     const Result<CellGraph> portals = readPrt(name);
     if (!portals) return portals.error();
     const std::vector<uint32_t>& cell_of_leaf = portals->cell_of_leaf;
-    if (cell_of_leaf.size() > out.graph.cell_of_leaf.size())
+    if (cell_of_leaf.size() != out.map->clusters + size_t(1))
         return Error{Error::Kind::kInput, fmt::format("{}: has {} leaves, and {} has {}", name, cell_of_leaf.size() - 1,
-                                                      out.map_name, out.graph.cell_of_leaf.size() - 1)};
+                                                      out.map_name, out.map->clusters)};
     out.graph = mergeLeaves(out.graph, [&](uint32_t leaf) -> std::optional<uint64_t> {
         if (leaf >= cell_of_leaf.size() || cell_of_leaf[leaf] == CellGraph::kNoCell) return std::nullopt;
         return cell_of_leaf[leaf];
@@ -152,7 +153,7 @@ Status findCells(const VisMapChoice& choice, VisMap& out) {
         mergeOpen(map.tree, out);
         return success();
     }
-    const std::string prt = !choice.prt.empty() ? choice.prt : beside(splitMapName(choice.name).file, ".prt");
+    const std::string prt = portalFileOf(choice);
     const bool by_clusters = map.format == QuakeFormat::kQuake2 || map.format == QuakeFormat::kQuake3;
     if (!prt.empty() && !by_clusters) return mergeByPortalFile(prt, out);
     if (by_clusters && map.clusters > 0) mergeByFileClusters(out);
@@ -163,8 +164,12 @@ Status findCells(const VisMapChoice& choice, VisMap& out) {
 
 Result<VisMap> loadPortalFile(const VisMapChoice& choice) {
     VisMap out;
-    Result<CellGraph> graph = readPrt(choice.name);
+    PrtNotes notes;
+    Result<CellGraph> graph = readPrt(choice.name, &notes);
     if (!graph) return graph.error();
+    if (!notes.flat_lines.empty())
+        note(fmt::format("{}: line {}: a portal without an area, of {} in all: they are left out", choice.name,
+                         notes.flat_lines[0], notes.flat_lines.size()));
     out.graph = std::move(*graph);
     out.cells_are = "clusters of the file";
     const std::string bsp = !choice.bsp.empty() ? choice.bsp : choice.needs_bsp ? beside(choice.name, ".bsp") : "";
@@ -174,10 +179,10 @@ Result<VisMap> loadPortalFile(const VisMapChoice& choice) {
                                               "output that does not end in .bsp"};
     if (bsp.empty()) return out;
     if (Status read = readMap(bsp, out); !read) return read.error();
-    const size_t leaves = out.map->cluster_of_leaf.size();
-    if (out.graph.cell_of_leaf.size() > leaves)
+    const bool by_clusters = out.map->format == QuakeFormat::kQuake2 || out.map->format == QuakeFormat::kQuake3;
+    if (!by_clusters && out.graph.cell_of_leaf.size() != out.map->clusters + size_t(1))
         return Error{Error::Kind::kInput, fmt::format("{}: has {} leaves, and {} has {}", choice.name,
-                                                      out.graph.cell_of_leaf.size() - 1, bsp, leaves - 1)};
+                                                      out.graph.cell_of_leaf.size() - 1, bsp, out.map->clusters)};
     return out;
 }
 
@@ -233,6 +238,12 @@ Result<VisMap> loadVisMap(const VisMapChoice& choice) {
     }
     for (const uint32_t cell : out.graph.cell_of_leaf) out.leaves += cell != CellGraph::kNoCell;
     return out;
+}
+
+std::string portalFileOf(const VisMapChoice& choice) {
+    if (!choice.prt.empty()) return choice.prt;
+    const bool is_map = kindOf(choice.name) == ".bsp" && choice.cells == VisCells::kClusters;
+    return is_map ? beside(splitMapName(choice.name).file, ".prt") : "";
 }
 
 CellBoxes facesOf(const VisMap& map) {

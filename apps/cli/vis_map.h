@@ -53,6 +53,9 @@ Result<VisMap> loadVisMap(const VisMapChoice& choice);
 /// The faces of a .bsp as boxes in cells.
 CellBoxes facesOf(const VisMap& map);
 
+/// The portal file that tells the clusters of a .bsp: the one that was named, or one beside it; empty: there is none.
+std::string portalFileOf(const VisMapChoice& choice);
+
 /// How many ordered pairs of leaves a matrix of cells stands for.
 uint64_t leafPairs(const VisMap& map, const BitMatrix& cells);
 

@@ -77,6 +77,8 @@ std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash
     return {bytes.begin(), bytes.end()};
 }
 
+bool isBakeState(std::span<const char> bytes) { return ByteCursor(bytes).take<uint64_t>() == kMagic; }
+
 Result<CellVisibilityState> readBakeState(std::span<const char> bytes, const std::string& name, const CellGraph& graph,
                                           uint64_t budget) {
     constexpr size_t kHead = 7 * 8, kEnd = 8;

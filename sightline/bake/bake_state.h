@@ -17,6 +17,9 @@ uint64_t hashOf(const CellGraph& graph);
 /// The bytes: small where the matrices are empty far and wide.
 std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash, uint64_t budget);
 
+/// Whether bytes begin as a state does.
+bool isBakeState(std::span<const char> bytes);
+
 /// The state again. Errors (kInput): one line with the file: no such file, of another graph or budget, damaged.
 /// @param name  what errors call the bytes
 Result<CellVisibilityState> readBakeState(std::span<const char> bytes, const std::string& name, const CellGraph& graph,

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/geom/outline_hull.h"
+
 namespace sightline {
 namespace {
 
@@ -14,6 +16,17 @@ glm::dvec3 areaOf(std::span<const glm::dvec3> outline) {
     for (size_t i = 1; i + 1 < outline.size(); ++i)
         area += glm::cross(outline[i] - outline[0], outline[i + 1] - outline[0]);
     return area;
+}
+
+/// The area of the largest triangle with the first point and the one farthest from it.
+glm::dvec3 largestTriangle(std::span<const glm::dvec3> outline) {
+    glm::dvec3 far(0), best(0);
+    for (const glm::dvec3& point : outline)
+        if (glm::length(point - outline[0]) > glm::length(far)) far = point - outline[0];
+    for (const glm::dvec3& point : outline)
+        if (const glm::dvec3 area = glm::cross(far, point - outline[0]); glm::length(area) > glm::length(best))
+            best = area;
+    return best;
 }
 
 double heightOf(const glm::dvec4& plane, const glm::dvec3& point) {
@@ -38,6 +51,14 @@ double concavityOf(std::span<const glm::dvec3> outline, const glm::dvec3& normal
 bool CellGraph::addPortal(uint32_t a, uint32_t b, std::span<const glm::dvec3> outline, uint32_t door) {
     const glm::dvec3 area = outline.size() < 3 ? glm::dvec3(0) : areaOf(outline);
     const double length = glm::length(area);
+    if (length == 0)
+        if (const glm::dvec3 across = largestTriangle(outline); glm::length(across) > 0) {
+            std::vector<glm::dvec3> hull = outlineHull(outline, across);
+            if (hull.size() < 3 || !(glm::length(areaOf(hull)) > 0)) return false;
+            const bool added = addPortal(a, b, hull, door);
+            std::reverse(hull.begin(), hull.end());
+            return addPortal(a, b, hull, door) || added;
+        }
     if (!(length > 0) || !std::isfinite(length)) return false;
     const glm::dvec3 normal = area / length;
     glm::dvec3 middle(0);

@@ -41,6 +41,8 @@ struct CellGraph {
     }
     /// Adds a portal, and finds its plane: the mean plane of the outline (Newell's), its normal into `a`.
     /// @param outline  counter-clockwise as seen from a  [size: 3 or more]
+    ///                 an outline that crosses itself so that its parts cancel out becomes its hull, and for want of a
+    ///                 sense of rotation two portals, one each way
     /// @return         false, and nothing is added, if it has no area or is not finite
     bool addPortal(uint32_t a, uint32_t b, std::span<const glm::dvec3> outline, uint32_t door = CellPortal::kNone);
     /// Adds a portal whose plane is known better than a thin outline would tell.

@@ -53,12 +53,14 @@ inline void expectShape(const CellVisibility& answer, uint32_t cells, const std:
     }
 }
 
+/// What passes an outline by less than points are known by, twice over, is not promised: portals of trees reach a little
+/// beyond their faces, and lines in the plane of one slip through there.
 /// @param rays  of which none may pass between cells that do not see one another
 inline void expectLaws(const CellGraph& graph, const CellVisibility& answer, uint64_t rays, const std::string& name,
                        BitMatrix* seen = nullptr, Jobs* jobs = nullptr) {
     expectShape(answer, graph.cells, name);
     if (graph.portals.empty()) return;
-    const GraphRays judge(graph, 0x1p-42 * largestCoordinate(graph));
+    const GraphRays judge(graph, 0x1p-34 * largestCoordinate(graph));
     const RowReport report = checkCellRows(judge, answer.visible, {.segments = rays, .jobs = jobs}, seen);
     EXPECT_EQ(report.misses, 0u) << name << ", the first: " << report.examples[0].row << ", "
                                  << report.examples[0].column;

@@ -95,7 +95,7 @@ TEST_F(Vis, ASourceThatLeaksTellsTheWay) {
     EXPECT_GT(out["clusters"], 0);
     EXPECT_EQ(out["verification"]["false_negatives"], 0);
     EXPECT_GT(std::filesystem::file_size(path("open.pts")), 0u);
-    EXPECT_NE(run("vis open.map").out.find("leaks: from info_player_start at 0 32 0"), std::string::npos);
+    EXPECT_NE(run("vis open.map").out.find("leaks: from info_player_start at 0 0 32"), std::string::npos);
 }
 
 TEST_F(Vis, AReportHasItsPictures) {
@@ -124,12 +124,16 @@ TEST_F(Vis, LimitsLeaveMoreVisible) {
 
 TEST_F(Vis, AStateOfAnotherBakeIsPassedOver) {
     write("rooms.prt", kRooms);
-    write("old.state", "what is this");
-    const Outcome outcome = run("vis rooms.prt --state old.state --json -");
+    write("other.txt", "my notes");
+    expectError("vis rooms.prt --state other.txt", 4, "other.txt: holds something else");
+    EXPECT_EQ(read(path("other.txt")), "my notes");
+    write("cut.state", "slsbake1 and cut off");
+    const Outcome outcome = run("vis rooms.prt --state cut.state --json -");
     EXPECT_EQ(outcome.exit_code, 0);
-    EXPECT_NE(outcome.err.find("old.state: no state of a bake: the bake begins anew"), std::string::npos)
+    EXPECT_NE(outcome.err.find("cut.state: no state of a bake: the bake begins anew"), std::string::npos)
         << outcome.err;
     EXPECT_EQ(json::parse(outcome.out)["visible_leaf_pairs"], 14);
+    EXPECT_FALSE(std::filesystem::exists(path("cut.state")));
 }
 
 TEST_F(Vis, AnInterruptedBakeGoesOnToTheSameBytes) {
@@ -170,6 +174,9 @@ TEST_F(Vis, WhatCannotBeIsOneLine) {
     expectError("vis rooms.prt -o rooms.prt", 2, "rooms.prt");
     expectError("vis rooms.prt -o no-such-folder/x.see", 4, "no-such-folder");
     expectError("vis rooms.prt --cells rooms", 2, "--cells");
+    expectError("vis rooms.prt -o new.map", 2, "new.map");
+    expectError("vis rooms.prt --leak x.pts", 2, "--leak");
+    expectError("vis m.bsp --prt rooms.prt", 3, "rooms.prt: has 4 leaves");
     expectError("vis rooms.prt --time-limit 0", 2, "--time-limit");
 }
 
