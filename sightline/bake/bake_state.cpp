@@ -4,6 +4,7 @@
 #include <cstring>
 #include <vector>
 
+#include "sightline/bake/thin_cells.h"
 #include "sightline/base/bytes.h"
 #include "sightline/base/random.h"
 
@@ -82,7 +83,9 @@ bool isBakeState(std::span<const char> bytes) { return ByteCursor(bytes).take<ui
 Result<CellVisibilityState> readBakeState(std::span<const char> bytes, const std::string& name, const CellGraph& graph,
                                           uint64_t budget) {
     constexpr size_t kHead = 7 * 8, kEnd = 8;
-    const size_t ways = 2 * graph.portals.size();
+    const ThinMerged thin = mergeThinCells(graph);
+    const CellGraph& baked = thin.any ? thin.graph : graph;
+    const size_t ways = 2 * baked.portals.size();
     ByteCursor in(bytes);
     if (bytes.size() < kHead + kEnd || in.take<uint64_t>() != kMagic) return wrong(name, "no state of a bake");
     ByteCursor end(bytes.last(kEnd));
@@ -102,8 +105,8 @@ Result<CellVisibilityState> readBakeState(std::span<const char> bytes, const std
         state.order.push_back(p);
     }
     state.may = BitMatrix(ways, ways);
-    state.witnessed = BitMatrix(graph.cells, graph.cells);
-    state.reached = BitMatrix(graph.cells, graph.cells);
+    state.witnessed = BitMatrix(baked.cells, baked.cells);
+    state.reached = BitMatrix(baked.cells, baked.cells);
     for (BitMatrix* matrix : {&state.may, &state.witnessed, &state.reached})
         if (!takeMatrix(in, *matrix)) return wrong(name, "damaged");
     if (in.left() != kEnd) return wrong(name, "damaged");

@@ -6,6 +6,7 @@
 
 #include "sightline/bake/flow_pool.h"
 #include "sightline/bake/portal_flow.h"
+#include "sightline/bake/thin_cells.h"
 #include "sightline/bake/witness_rays.h"
 #include "sightline/base/assert.h"
 
@@ -36,8 +37,11 @@ struct BoxesOfCells {
 
 }  // namespace
 
-BoxVisibility bakeBoxVisibility(const CellGraph& graph, const CellVisibility& cells, const CellBoxes& boxes,
-                                const CellVisibilitySettings& settings) {
+namespace {
+
+/// Of a graph without thin cells.
+BoxVisibility bakeBoxes(const CellGraph& graph, const CellVisibility& cells, const CellBoxes& boxes,
+                        const CellVisibilitySettings& settings) {
     const DirectedPortals directed = directPortals(graph);
     SIGHTLINE_ASSERT(cells.follows.rows() == directed.size());
     const WitnessRays rays(directed);
@@ -89,6 +93,36 @@ BoxVisibility bakeBoxVisibility(const CellGraph& graph, const CellVisibility& ce
         answer.by_cells += by_cells[cell];
         answer.over_budget += spent[cell];
     }
+    return answer;
+}
+
+}  // namespace
+
+BoxVisibility bakeBoxVisibility(const CellGraph& graph, const CellVisibility& cells, const CellBoxes& boxes,
+                                const CellVisibilitySettings& settings) {
+    const ThinMerged thin = mergeThinCells(graph);
+    if (!thin.any) return bakeBoxes(graph, cells, boxes, settings);
+    CellVisibility merged;
+    merged.visible = BitMatrix(thin.graph.cells, thin.graph.cells);
+    merged.follows = cells.follows;
+    for (uint32_t a = 0; a < graph.cells; ++a)
+        for (uint32_t b = 0; b < graph.cells; ++b)
+            if (cells.visible.at(a, b)) merged.visible.set(thin.cell_of_cell[a], thin.cell_of_cell[b]);
+    CellBoxes moved;
+    std::vector<uint32_t> in;
+    for (size_t box = 0; box < boxes.boxes.size(); ++box) {
+        in.clear();
+        for (uint32_t i = boxes.first_cell[box]; i < boxes.first_cell[box + 1]; ++i)
+            in.push_back(thin.cell_of_cell[boxes.cells[i]]);
+        std::sort(in.begin(), in.end());
+        in.erase(std::unique(in.begin(), in.end()), in.end());
+        moved.add(boxes.boxes[box], in);
+    }
+    const BoxVisibility found = bakeBoxes(thin.graph, merged, moved, settings);
+    BoxVisibility answer = found;
+    answer.visible = BitMatrix(graph.cells, boxes.boxes.size());
+    for (uint32_t cell = 0; cell < graph.cells; ++cell)
+        std::ranges::copy(found.visible.row(thin.cell_of_cell[cell]), answer.visible.row(cell).begin());
     return answer;
 }
 

@@ -10,6 +10,7 @@
 #include "sightline/bake/base_visibility.h"
 #include "sightline/bake/flow_pool.h"
 #include "sightline/bake/random_point.h"
+#include "sightline/bake/thin_cells.h"
 #include "sightline/bake/witness_rays.h"
 
 namespace sightline {
@@ -59,7 +60,11 @@ void markRuns(BitMatrix& witnessed, std::span<const uint32_t> cells, std::span<c
 class Bake {
 public:
     Bake(const CellGraph& graph, const CellVisibilitySettings& settings)
-        : settings_(settings), directed_(directPortals(graph)), rays_(directed_), places_(directed_) {}
+        : settings_(settings),
+          thin_(mergeThinCells(graph)),
+          directed_(directPortals(thin_.any ? thin_.graph : graph)),
+          rays_(directed_),
+          places_(directed_) {}
 
     CellVisibility run() {
         if (settings_.resume) {
@@ -188,11 +193,39 @@ private:
                 if (state_.reached.at(b, a)) answer.visible.set(a, b);
             });
         answer.witnessed = std::move(state_.witnessed);
+        if (thin_.any) {
+            // What rays witness of a merged cell they need not of each of its parts.
+            answer.visible = apart(answer.visible);
+            answer.witnessed = apart(answer.witnessed);
+            keepWitnesses(answer);
+        }
         if (settings_.keep_follows) answer.follows = std::move(state_.may);
         return answer;
     }
 
+    /// Of pairs with a part of a merged cell none is witnessed but each cell by itself.
+    void keepWitnesses(CellVisibility& answer) const {
+        const size_t cells = thin_.cell_of_cell.size();
+        std::vector<uint32_t> parts(directed_.cells(), 0);
+        for (const uint32_t cell : thin_.cell_of_cell) ++parts[cell];
+        for (size_t a = 0; a < cells; ++a)
+            for (size_t b = 0; b < cells; ++b)
+                if (a != b && (parts[thin_.cell_of_cell[a]] > 1 || parts[thin_.cell_of_cell[b]] > 1))
+                    answer.witnessed.clear(a, b);
+    }
+
+    /// From cells that were made one back to those of the graph.
+    BitMatrix apart(const BitMatrix& merged) const {
+        const size_t cells = thin_.cell_of_cell.size();
+        BitMatrix out(cells, cells);
+        for (size_t a = 0; a < cells; ++a)
+            for (size_t b = 0; b < cells; ++b)
+                if (merged.at(thin_.cell_of_cell[a], thin_.cell_of_cell[b])) out.set(a, b);
+        return out;
+    }
+
     const CellVisibilitySettings& settings_;
+    const ThinMerged thin_;
     const DirectedPortals directed_;
     const WitnessRays rays_;
     const FlowPlaces places_;

@@ -93,6 +93,11 @@ public:
 private:
     using State = PortalFlow::State;
 
+    /// What a window that reaches no higher is not passed after a portal. Of two that face much the same way it may lie in the
+    /// plane: what is between them is thin there.
+    double aboveOf(const DirectedPortal& portal, const DirectedPortal& other) const {
+        return glm::dot(portal.normal, other.normal) > 0.5 ? lowest(portal) : portal.above;
+    }
     double lowest(const DirectedPortal& portal) const { return -std::max(portal.bend, precision_.points); }
     static glm::dvec4 planeOf(const DirectedPortal& portal) { return glm::dvec4(portal.normal, portal.offset); }
 
@@ -235,11 +240,12 @@ private:
                              &portal = directed_.portals[then.portal];
         const double points = precision_.points;
         // A line comes out of a portal upwards, so the next one's crossing is above its plane, and not in it.
-        if (clip(then.window, planeOf(first), lowest(first), first.above) == Clipped::kGone) return false;
+        if (clip(then.window, planeOf(first), lowest(first), aboveOf(first, portal)) == Clipped::kGone) return false;
         const bool far = now.portal != s_.states[0]->portal;
-        if (far && clip(then.window, planeOf(last), lowest(last), last.above) == Clipped::kGone) return false;
+        if (far && clip(then.window, planeOf(last), lowest(last), aboveOf(last, portal)) == Clipped::kGone)
+            return false;
         then.source.assign(now.source);
-        if (clip(then.source, -planeOf(portal), lowest(portal), portal.above) == Clipped::kGone) return false;
+        if (clip(then.source, -planeOf(portal), lowest(portal), aboveOf(portal, first)) == Clipped::kGone) return false;
         if (!far) return true;
         // What only touches a plane stays: a line that grazes is a line that sees.
         if (clip(then.window, now.onward, -points, -points) == Clipped::kGone) return false;

@@ -4,7 +4,9 @@
 
 #include <vector>
 
+#include "sightline/space/tree_portals.h"
 #include "tests/bake/visibility_laws.h"
+#include "tests/space/leaf_tree_fixture.h"
 
 namespace sightline::test {
 namespace {
@@ -117,6 +119,26 @@ TEST(OddGraphs, SeeAlongLinesThatGraze) {
         EXPECT_LT(apart.visible.count(), 49u) << "seed " << seed;
         const CellVisibility open = bakeCellVisibility(zigzag(7, -1e-3, turn));
         EXPECT_EQ(open.witnessed.count(), 49u) << "seed " << seed;
+    }
+}
+
+TEST(OddGraphs, SeeThroughCellsOfAnyThickness) {
+    for (const double gap : {1.0, 1e-3, 1e-6, 1e-7, 1e-8, 1e-10, 0.0}) {
+        CellGraph graph;
+        graph.cells = 4;
+        for (const double x : {0.0, gap, gap + 10}) {
+            const std::vector<glm::dvec3> outline = {{x, 0, 0}, {x, 1, 0}, {x, 1, 1}, {x, 0, 1}};
+            const uint32_t cell = static_cast<uint32_t>(graph.portals.size());
+            ASSERT_TRUE(graph.addPortal(cell + 1, cell, outline));
+        }
+        EXPECT_EQ(bakeCellVisibility(graph).visible.count(), 16u) << gap;
+    }
+}
+
+TEST(OddGraphs, ComeFromTreesWhosePlanesRepeat) {
+    for (uint64_t seed = 1; seed <= 40; ++seed) {
+        const CellGraph graph = cellsOfTree(randomLeafTree(seed, 8));
+        expectLaws(graph, bakeCellVisibility(graph), 50000, nameOf("seed", seed));
     }
 }
 
