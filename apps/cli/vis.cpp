@@ -198,6 +198,28 @@ void printSummary(std::FILE* out, const VisSummary& s) {
                               grouped(s.verification->false_negatives)));
 }
 
+/// All figures but the times.
+VisSummary summaryOf(const VisMap& map, const CellVisibility& visibility, const VisOutputs& outputs) {
+    VisSummary summary;
+    summary.cells_are = map.cells_are;
+    summary.leafs = map.leaves;
+    summary.clusters = map.graph.cells;
+    summary.portals = map.graph.portals.size();
+    summary.visible_leaf_pairs = leafPairs(map, visibility.visible);
+    summary.witnessed_pairs = leafPairs(map, visibility.witnessed);
+    summary.unresolved_pairs = summary.visible_leaf_pairs - summary.witnessed_pairs;
+    summary.visible_cluster_pairs = visibility.visible.count();
+    summary.witnessed_cluster_pairs = visibility.witnessed.count();
+    summary.pvs_bytes = outputs.packed.size();
+    summary.resident_bytes = outputs.resident_bytes;
+    summary.lump_bytes = outputs.lump_bytes;
+    summary.steps = visibility.steps;
+    summary.over_budget = visibility.over_budget;
+    summary.stopped = visibility.stopped;
+    for (const MapLeak& leak : map.leaks) summary.leaks.push_back({leak.what, leak.path});
+    return summary;
+}
+
 Result<int> runVis(VisOptions& options) {
     const Clock::time_point begin = Clock::now();
     if (options.cells == "leaves") options.map.cells = VisCells::kLeaves;
@@ -234,27 +256,11 @@ Result<int> runVis(VisOptions& options) {
     if (Status written = writeOutput(options, *outputs); !written) return written.error();
     removeBakeState(options.bake);
 
-    VisSummary summary;
+    VisSummary summary = summaryOf(*map, *visibility, *outputs);
     summary.map = options.map.name;
-    summary.cells_are = map->cells_are;
-    summary.leafs = map->leaves;
-    summary.clusters = map->graph.cells;
-    summary.portals = map->graph.portals.size();
-    summary.visible_leaf_pairs = leafPairs(*map, visibility->visible);
-    summary.witnessed_pairs = leafPairs(*map, visibility->witnessed);
-    summary.unresolved_pairs = summary.visible_leaf_pairs - summary.witnessed_pairs;
-    summary.visible_cluster_pairs = visibility->visible.count();
-    summary.witnessed_cluster_pairs = visibility->witnessed.count();
-    summary.pvs_bytes = outputs->packed.size();
-    summary.resident_bytes = outputs->resident_bytes;
-    summary.lump_bytes = outputs->lump_bytes;
-    summary.steps = visibility->steps;
-    summary.over_budget = visibility->over_budget;
-    summary.stopped = visibility->stopped;
     summary.threads = threads;
     summary.cpu_seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
     summary.wall_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-    for (const MapLeak& leak : map->leaks) summary.leaks.push_back({leak.what, leak.path});
     if (options.objects) summary.objects = bakeObjects(*map, *visibility, options, pool);
     if (options.objects && !summary.objects) return reportInterruption("the cells, in the midst of the objects", true);
     if (options.verify) summary.verification = verifyVis(*map, visibility->visible, options.rays, pool);
