@@ -73,7 +73,9 @@ namespace sightline::HWY_NAMESPACE {
 class Chase {
 public:
     explicit Chase(PortalFlow::Scratch& scratch)
-        : s_(scratch), directed_(scratch.places.directed), precision_{directed_.precision, directed_.rounding} {}
+        : s_(scratch),
+          directed_(scratch.places.directed),
+          precision_{directed_.precision, directed_.rounding, 4 * directed_.extent} {}
 
     /// The whole search, from the first state. Its own stack: chains may be long.
     void run() {

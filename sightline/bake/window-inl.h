@@ -101,6 +101,7 @@ HWY_INLINE Clipped clip(Window& window, const Separators& planes, double lowest,
 struct Precision {
     double points;    ///< [world units] half of how far apart points may be that are one
     double rounding;  ///< [world units] what sums and products of coordinates add
+    double reach;     ///< [world units] no two points are farther apart
 };
 
 /// The shortest edge with a shared corner whose planes are taken: a shorter one would let them turn too far.
@@ -178,12 +179,16 @@ HWY_INLINE void addEdgePlanes(const Window& own, const glm::dvec4& plane, double
         valid = hn::And(valid, hn::Gt(low, hn::Add(noise, noise)));
         auto px = hn::Add(hn::Mul(c, nx), mx), py = hn::Add(hn::Mul(c, ny), my), pz = hn::Add(hn::Mul(c, nz), mz);
         auto pw = hn::Sub(hn::Mul(c, hn::Set(d, plane.w)), ma);
+        // A shared corner holds the plane by its edge alone: as far as the ends are off, it may be turned, and be off by more
+        // the farther away.
+        const auto turned = hn::Mul(noise, hn::Div(hn::Set(d, precision.reach), length));
+        const auto slack = hn::Add(noise, hn::IfThenElseZero(shared, turned));
         auto scale = hn::Div(one, hn::Sqrt(hn::Add(hn::Add(hn::Mul(px, px), hn::Mul(py, py)), hn::Mul(pz, pz))));
         if (over) {
             scale = hn::Neg(scale);
-            pw = hn::Sub(pw, noise);
+            pw = hn::Sub(pw, slack);
         } else {
-            pw = hn::Add(pw, hn::IfThenElse(shared, noise, hn::Sub(noise, low)));
+            pw = hn::Add(pw, hn::IfThenElse(shared, slack, hn::Sub(noise, low)));
         }
         px = hn::Mul(px, scale);
         py = hn::Mul(py, scale);

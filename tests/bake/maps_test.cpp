@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <thread>
 
 #include "sightline/base/thread_pool.h"
@@ -37,23 +38,25 @@ std::string fileOf(const std::string& map, const char* ending) {
 class Maps : public ::testing::TestWithParam<const char*> {
 protected:
     void SetUp() override {
-        const Result<CellGraph> graph = readPrt(fileOf(GetParam(), ".prt"));
-        if (!graph) GTEST_SKIP() << "there is no such map: " << fileOf(GetParam(), ".prt");
+        const std::string file = fileOf(GetParam(), ".prt");
+        if (!std::filesystem::exists(file)) GTEST_SKIP() << "there is no such map: " << file;
+        const Result<CellGraph> graph = readPrt(file);
+        ASSERT_TRUE(graph.ok()) << graph.error().message;
         if (graph->cells > 2000 && !isLong()) GTEST_SKIP() << "it takes long: SIGHTLINE_LONG_TESTS=1 bakes it";
         graph_ = *graph;
     }
 
-    /// False: skipped.
-    bool readBsp(QuakeMapFile& map) const {
-        const std::string file = fileOf(GetParam(), ".vis.bsp");
+    /// The compiled map, which is there.
+    void readBsp(QuakeMapFile& map) const {
+        const std::string file = bspFile();
         const Result<std::string> text = readTextFile(file);
-        if (!text) return false;
+        ASSERT_TRUE(text.ok()) << text.error().message;
         const Result<QuakeMapFile> read =
             parseQuakeBsp({reinterpret_cast<const unsigned char*>(text->data()), text->size()}, file);
-        EXPECT_TRUE(read.ok());
-        if (read) map = *read;
-        return read.ok();
+        ASSERT_TRUE(read.ok()) << read.error().message;
+        map = *read;
     }
+    std::string bspFile() const { return fileOf(GetParam(), ".vis.bsp"); }
 
     CellGraph graph_;
 };
@@ -70,7 +73,8 @@ TEST_P(Maps, SeeWhatRaysSee) {
 
 TEST_P(Maps, SeeNoMoreThanTheRowsThatTheyCameWith) {
     QuakeMapFile map;
-    if (!readBsp(map)) GTEST_SKIP() << "there is no such map: " << fileOf(GetParam(), ".vis.bsp");
+    if (!std::filesystem::exists(bspFile())) GTEST_SKIP() << "there is no such map: " << bspFile();
+    ASSERT_NO_FATAL_FAILURE(readBsp(map));
     const Result<QuakeVisibility> lump = readQuakeVisibility(map, GetParam());
     ASSERT_TRUE(lump.ok());
     const CellVisibility answer = bakeCellVisibility(graph_);
@@ -90,7 +94,8 @@ class SmallMaps : public Maps {};
 
 TEST_P(SmallMaps, SeeByTheirTreesPortalsWhatTheirTreesSee) {
     QuakeMapFile map;
-    if (!readBsp(map)) GTEST_SKIP() << "there is no such map: " << fileOf(GetParam(), ".vis.bsp");
+    if (!std::filesystem::exists(bspFile())) GTEST_SKIP() << "there is no such map: " << bspFile();
+    ASSERT_NO_FATAL_FAILURE(readBsp(map));
     const CellGraph graph = cellsOfTree(map.tree);
     const CellVisibility answer = bakeCellVisibility(graph);
     expectLaws(graph, answer, raysToCast(), GetParam(), nullptr, &pool());

@@ -32,7 +32,7 @@ Clipped clippedByAll(Window& window, const Separators& planes, double lowest, do
 }
 void separated(const Window& first, const glm::dvec4& first_plane, const Window& second, const glm::dvec4& second_plane,
                double turning, double points, double rounding, Separators& out) {
-    separate(first, first_plane, second, second_plane, turning, Precision{points, rounding}, out);
+    separate(first, first_plane, second, second_plane, turning, Precision{points, rounding, 0x1p50 * rounding}, out);
 }
 
 }  // namespace sightline::HWY_NAMESPACE
