@@ -173,7 +173,7 @@ TEST(BrushTree, RolesAreByNameAndFlags) {
 
 TEST(BrushTreeMaps, HoldWhatBrushesHold) {
     const std::filesystem::path folder = SIGHTLINE_SHARED_DIR "/maps";
-    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no maps beside the repository";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the shared maps are not there: " << folder;
     for (const char* name : {"lq_e2m2", "lqdm3"}) {
         const Result<std::string> text = readTextFile((folder / name).string() + ".map");
         ASSERT_TRUE(text.ok());

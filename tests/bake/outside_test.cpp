@@ -158,7 +158,7 @@ TEST(Outside, AWayIsWrittenInTheMapsAxes) {
 
 TEST(OutsideMaps, SealedOnesAreAndTheLeakyOneIsNot) {
     const std::filesystem::path folder = SIGHTLINE_SHARED_DIR "/maps";
-    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no maps beside the repository";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the shared maps are not there: " << folder;
     size_t maps = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         if (entry.path().extension() != ".map") continue;
