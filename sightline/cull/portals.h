@@ -1,0 +1,90 @@
+// Which cells an eye sees through which part of the image: portals as windows, from cell to cell.
+// SPDX-License-Identifier: MIT
+//
+// David Luebke, Chris Georges. Portals and Mirrors: Simple, Fast Evaluation of Potentially Visible Sets. 1995.
+// Seth Teller. Visibility Computations in Densely Occluded Polyhedral Environments. 1992.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <glm/glm.hpp>
+
+#include "sightline/base/memory.h"
+#include "sightline/geom/view.h"
+#include "sightline/space/portal_graph.h"
+
+namespace sightline {
+
+/// How the part of the image that a cell is seen through is known.
+enum class PortalWindows : uint8_t {
+    kBoxes,     ///< a rectangle: the least work
+    kOctagons,  ///< a rectangle with its corners cut
+    kPolygons,  ///< convex polygons, one for each way through portals that leads there; tightest
+};
+
+/// How far a door is open.
+struct DoorState {
+    float open = 1;  ///< 0: shut; 1: open; between: CellDoor::slide says what part of its portals is left
+};
+
+struct PortalSettings {
+    PortalWindows windows = PortalWindows::kOctagons;
+    /// Cells that are entered at most, each time counted. What is not settled by then is seen: the answer says so, and
+    /// is conservative.  [limit]
+    uint32_t work = 1u << 16;
+    /// Portals in a chain at most; 0: no limit. What lies behind a longer chain is not seen, although it may be: counted.
+    uint32_t depth = 0;
+};
+
+/// A cell that is seen, and through what part of the image.
+struct SeenCell {
+    uint32_t cell = 0;
+    uint32_t first_plane = 0,
+             plane_count = 0;  ///< of PortalFlood::planes: what is wholly outside of one of them is not
+                               ///< seen in this cell through this window; none: the whole view
+    /// Of the image, in clip x and y over w, from -1 to 1; a little more with jitter.
+    double left = -1, bottom = -1, right = 1, top = 1;
+    uint32_t from = ~0u;    ///< index of the cell that it is seen from first; ~0: the eye may be in it
+    uint32_t portal = ~0u;  ///< the graph's portal between them
+};
+
+struct PortalStats {
+    uint64_t cells = 0;     ///< entered; one that was entered again counts again
+    uint64_t portals = 0;   ///< looked at
+    uint64_t whole = 0;     ///< of these, so near that the whole window was taken
+    uint64_t too_deep = 0;  ///< not gone through for PortalSettings::depth: not conservative
+    bool work_spent = false;
+};
+
+/// What an eye sees of a graph of cells. Its memory is used again by the next view.
+class PortalFlood {
+public:
+    explicit PortalFlood(Memory* memory = defaultMemory());
+
+    /// Finds the cells that the eye may see, each once or, with polygons, once for each window.
+    ///
+    /// Conservative: a sight line that begins in the near rectangle, widened by the jitter, and passes through cells by
+    /// their portals passes cells of the answer alone, and each within one of its windows. Starts from all cells that the
+    /// pyramid from the eye to the near rectangle meets, or comes as close to as the space's tolerance.
+    /// Deterministic on every machine.
+    /// @param view   isUsable(view)
+    /// @param doors  [size: graph.doors(), or 0: all are open]
+    /// @param rows   a bit for each row of visibility that may be seen at all; empty: all
+    /// @returns false if nothing can be said: the eye, or a part of the near rectangle, is in no cell, or the work was
+    ///          spent. Then everything may be seen.
+    bool run(const PortalGraph& graph, const View& view, const PortalSettings& settings = {},
+             std::span<const DoorState> doors = {}, std::span<const uint64_t> rows = {});
+
+    std::span<const SeenCell> cells() const { return cells_; }
+    /// Relative to the eye, normals inward and of unit length: dot(n, p - eye) + d >= 0 inside.
+    std::span<const glm::dvec4> planes() const { return planes_; }
+    const PortalStats& stats() const { return stats_; }
+
+private:
+    Array<SeenCell> cells_;
+    Array<glm::dvec4> planes_;
+    PortalStats stats_;
+};
+
+}  // namespace sightline
