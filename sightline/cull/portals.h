@@ -16,13 +16,6 @@
 
 namespace sightline {
 
-/// How the part of the image that a cell is seen through is known.
-enum class PortalWindows : uint8_t {
-    kBoxes,     ///< a rectangle: the least work
-    kOctagons,  ///< a rectangle with its corners cut
-    kPolygons,  ///< convex polygons, one for each way through portals that leads there; tightest
-};
-
 /// How far a door is open.
 struct DoorState {
     float open = 1;  ///< 0: shut; 1: open; between: CellDoor::slide says what part of its portals is left

@@ -37,6 +37,14 @@ enum class Refinement : uint8_t {
     kSeparatingAxes,  ///< and the planes along one edge of each: exact for boxes but for rounding
 };
 
+/// How the part of the image that a cell is seen through is known.
+enum class PortalWindows : uint8_t {
+    kBoxes,     ///< a rectangle: the least work
+    kOctagons,  ///< a rectangle with its corners cut
+    kPolygons,  ///< convex polygons, one for each way through portals that leads there; tightest
+};
+inline constexpr const char* kWindowNames[] = {"boxes", "octagons", "polygons"};
+
 /// A few half spaces of the world: a point p is inside of a plane if dot(n, p) + d >= 0. Normals are of any length; a plane
 /// without one has everything inside or, if d < 0, nothing.
 struct ViewPlanes {
