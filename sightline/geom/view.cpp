@@ -97,6 +97,14 @@ bool areFinite(const ViewPlanes& planes) {
     return true;
 }
 
+bool areFinite(const ViewOutline& outline) {
+    if (outline.count > ViewOutline::kMost || outline.count == 1 || outline.count == 2) return false;
+    for (uint32_t i = 0; i < outline.count; ++i)
+        for (int axis = 0; axis < 3; ++axis)
+            if (!std::isfinite(outline.points[i][axis])) return false;
+    return true;
+}
+
 }  // namespace
 
 bool isUsable(const View& view) {
@@ -104,7 +112,7 @@ bool isUsable(const View& view) {
         for (int row = 0; row < 4; ++row)
             if (!std::isfinite(view.view[column][row]) || !std::isfinite(view.projection[column][row])) return false;
     if (view.width == 0 || view.height == 0 || !(view.jitter >= 0.0 && view.jitter <= 1e6)) return false;
-    if (!areFinite(view.sections) || !areFinite(view.window)) return false;
+    if (!areFinite(view.sections) || !areFinite(view.window) || !areFinite(view.through)) return false;
     const double determinant = glm::determinant(view.projection);
     return std::isfinite(determinant) && determinant != 0.0;
 }

@@ -62,6 +62,14 @@ struct ViewPlanes {
     std::span<const glm::dvec4> all() const { return {planes, count}; }
 };
 
+/// A convex outline in the world that a view looks through.
+struct ViewOutline {
+    static constexpr uint32_t kMost = 8;
+
+    glm::dvec3 points[kMost]{};  ///< flat, in either order of turn
+    uint32_t count = 0;          ///< 0: there is none; else 3 or more  [limit: <= kMost]
+};
+
 /// One eye's view of a world for one frame.
 ///
 /// Matrices are column-major with column vectors: clip = projection * view * world. Clip space is
@@ -124,6 +132,10 @@ struct View {
     /// lies wholly outside of one of these planes. Nothing is cut: what reaches inside is drawn whole, and hides as ever.
     /// What is culled hides nothing. See addWindow().
     ViewPlanes window;
+    /// Sight lines begin on this outline, wherever the eye is: as in a mirror, mirroredView(). The stages of cells start
+    /// from the cells that it touches. Nothing is cut for its sake, and other stages do not ask for it: see `sections` and
+    /// `window`.
+    ViewOutline through;
 };
 
 /// Right-handed, y up in clip space; up need not be orthogonal to the direction. If up is parallel
