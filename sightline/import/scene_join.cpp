@@ -50,8 +50,9 @@ void shift(Scene& scene, const Offsets& by, uint32_t root) {
         object.node = object.node == SceneNode::kNone ? root : object.node + by.nodes;
     }
     for (ScenePortal& portal : scene.portals) {
-        for (uint32_t& cell : portal.cells) cell += by.cells;
-        if (portal.door != ~0u) portal.door += by.objects;
+        for (uint32_t& cell : portal.cells)
+            if (cell != ScenePortal::kNone) cell += by.cells;
+        if (portal.door != ScenePortal::kNone) portal.door += by.objects;
     }
     for (SceneFile& file : scene.files) file.first_key += by.key;
 }
@@ -77,9 +78,12 @@ void placeScene(Scene& scene, const ImportSettings& settings) {
     for (SceneCell& cell : scene.cells) {
         for (glm::dvec4& plane : cell.planes) plane = glm::dvec4(turn * glm::dvec3(plane), scale * plane.w);
         cell.bounds = transformBox(cell.bounds, place);
+        cell.overhang *= scale;
     }
-    for (ScenePortal& portal : scene.portals)
+    for (ScenePortal& portal : scene.portals) {
         for (glm::dvec3& corner : portal.polygon) corner = scale * (turn * corner);
+        portal.slide = scale * (turn * portal.slide);
+    }
 }
 
 Scene joinScenes(std::vector<Scene> scenes) {

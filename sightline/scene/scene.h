@@ -68,14 +68,22 @@ struct SceneCell {
     std::string name;
     std::vector<glm::dvec4> planes;  ///< unit normal and distance, pointing inward: inside iff n.p + d >= 0
     Box3d bounds;
+    /// How far the shape that it was made of reaches beyond its planes: more than rounding if that is not convex;
+    /// infinite if it is no solid at all, and then there are no planes.  [world units]
+    double overhang = 0;
 };
 
 /// A hole between two cells through which one is seen from the other.
 struct ScenePortal {
+    static constexpr uint32_t kNone = ~0u;
+
     std::string name;
-    uint32_t cells[2] = {0, 0};       ///< indices into Scene::cells
+    uint32_t cells[2] = {0, 0};       ///< indices into Scene::cells; kNone: not known
     std::vector<glm::dvec3> polygon;  ///< planar, convex; counter-clockwise as seen from cells[0]
-    uint32_t door = ~0u;              ///< index into Scene::objects of what shuts it; ~0: nothing does
+    uint32_t door = kNone;            ///< index into Scene::objects of what shuts it; kNone: nothing does
+    glm::dvec3 slide{0.0};            ///< which way it shrinks when the door shuts part of it; zero: not known
+    std::string cell_names[2];        ///< as its maker named them; empty: those between which it lies
+    std::string door_name;            ///< of a node or an object; empty: none was named
 };
 
 /// A file that a scene was read from.
