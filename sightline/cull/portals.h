@@ -11,6 +11,8 @@
 #include <glm/glm.hpp>
 
 #include "sightline/base/memory.h"
+#include "sightline/cull/portal_eye.h"
+#include "sightline/cull/portal_window.h"
 #include "sightline/geom/view.h"
 #include "sightline/space/portal_graph.h"
 
@@ -18,7 +20,7 @@ namespace sightline {
 
 /// How far a door is open.
 struct DoorState {
-    float open = 1;  ///< 0: shut; 1: open; between: CellDoor::slide says what part of its portals is left
+    float open = 1;  ///< 0: shut; 1: open; between: the last share of its portals along CellDoor::slide is left
 };
 
 struct PortalSettings {
@@ -75,6 +77,46 @@ public:
     const PortalStats& stats() const { return stats_; }
 
 private:
+    /// What is known of a cell in the view of number `view`; before that, nothing.
+    struct CellState {
+        WindowBounds window;  ///< through which it is seen
+        uint64_t view = 0;
+        uint32_t index = 0;  ///< of order_
+        uint32_t depth = 0;  ///< portals of the shortest chain
+        uint32_t from = ~0u, portal = ~0u;
+        bool waits = false;  ///< the window grew since its portals were looked at
+    };
+    struct Waiting {
+        double key;
+        uint32_t cell;
+    };
+    struct Step {
+        uint32_t node;
+        uint8_t sides;  ///< of its children: how many are done
+    };
+
+    bool start(const PortalGraph& graph, const View& view);
+    void reach(uint32_t cell, const WindowBounds& window, uint32_t from, uint32_t portal, uint32_t depth, double key);
+    bool enter(uint32_t cell);
+    bool floodTree();
+    bool floodByDistance();
+    void lookThrough(uint32_t from, const DirectedPortal& portal);
+    uint32_t project(const DirectedPortal& portal);
+    void writeCells();
+
+    const PortalGraph* graph_ = nullptr;
+    PortalSettings settings_;
+    std::span<const DoorState> doors_;
+    std::span<const uint64_t> rows_;
+    PortalEye eye_;
+    uint64_t view_ = 0;
+    Array<CellState> states_;
+    Array<uint32_t> order_;    // cells, in the order in which they were reached
+    Array<uint64_t> flagged_;  // per node: the view in which cells below it wait
+    Array<Step> steps_;
+    Array<Waiting> heap_;
+    Array<uint32_t> start_;
+    Array<glm::dvec3> corners_, clipped_;
     Array<SeenCell> cells_;
     Array<glm::dvec4> planes_;
     PortalStats stats_;
