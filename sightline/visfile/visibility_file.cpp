@@ -16,6 +16,9 @@ namespace {
 
 constexpr size_t kMapBytes = 16;  // before the name
 
+/// The sections of places: the same in both forms.
+constexpr uint32_t kPlaces[] = {kCells, kCellNames, kRegions, kTree, kPortals, kDoors, kObjects, kObjectRows};
+
 Array<char> mapSection(size_t leaves, uint64_t hash, std::string_view name, Memory* memory) {
     Array<char> bytes(memory);
     ByteWriter out(bytes);
@@ -45,6 +48,31 @@ Result<Section> eitherForm(const SectionFile& sections, uint32_t in_place, uint3
     return Section{unpacked, sections.placeOf(coded)};
 }
 
+Status addPlaces(const VisibilityContent& content, SectionWriter& writer, Memory* memory) {
+    const auto wrong = [](const char* what) { return Error{Error::Kind::kUsage, what}; };
+    const CellSpace* space = content.space;
+    if (!space) return content.objects || content.object_rows ? wrong("objects without cells") : success();
+    if (Status added = addCellSections(*space, static_cast<uint32_t>(content.visible.rows()), writer, memory); !added)
+        return added;
+    if (space->ofTree()) {
+        if (space->graph.cell_of_leaf.size() != space->tree.contents.size()) return wrong("not a cell for each leaf");
+        Result<Array<char>> tree = treeSection(space->tree, memory);
+        if (!tree) return tree.error();
+        writer.add(kTree, std::move(*tree));
+    }
+    if (Status added = addPortalSections(*space, writer, memory); !added) return added;
+    if (!content.objects) return content.object_rows ? wrong("rows of objects without objects") : success();
+    Result<Array<char>> objects = objectSection(*content.objects, space->graph.cells, memory);
+    if (!objects) return objects.error();
+    writer.add(kObjects, std::move(*objects));
+    if (!content.object_rows) return success();
+    if (content.object_rows->rows() != content.visible.rows() ||
+        content.object_rows->columns() != content.objects->size())
+        return wrong("rows of objects that are not rows of these cells and objects");
+    writer.add(kObjectRows, objectRowsSection(*content.object_rows, memory));
+    return success();
+}
+
 }  // namespace
 
 Result<Array<char>> visibilityFile(const VisibilityContent& content, VisibilityForm form, Memory* memory) {
@@ -57,6 +85,7 @@ Result<Array<char>> visibilityFile(const VisibilityContent& content, VisibilityF
     writer.add(kMap, mapSection(content.cell_of_leaf.size(), content.map_hash, content.map_name, memory));
     writer.add(kRows, std::move(*rows));
     writer.add(kLeaves, leafCells(content.cell_of_leaf, memory));
+    if (Status added = addPlaces(content, writer, memory); !added) return added.error();
     Array<char> bytes = writer.file();
     if (form == VisibilityForm::kInPlace) return bytes;
     const Result<VisibilityFile> opened = VisibilityFile::open(bytes, "what was written", memory);
@@ -71,7 +100,66 @@ Array<char> packedFile(const VisibilityFile& file, Memory* memory) {
     writer.add(kMap, mapSection(file.leaves(), file.mapHash(), file.mapName(), memory));
     writer.add(kPackedRows, packedRows(file.rows(), memory));
     writer.add(kPackedLeaves, packedLeafCells(cell_of_leaf, memory));
+    for (const uint32_t tag : kPlaces)
+        if (const std::span<const char> section = file.sections_.find(tag); !section.empty())
+            writer.add(tag, Array<char>(section.begin(), section.end(), memory));
     return writer.file();
+}
+
+size_t VisibilityFile::residentBytes() const {
+    size_t bytes = rows_.bytes() + 2 * cell_of_leaf_.size();
+    for (const uint32_t tag : kPlaces) bytes += sections_.find(tag).size();
+    return bytes;
+}
+
+CellSpace VisibilityFile::cellSpace() const {
+    CellSpace space;
+    cells_.copyTo(space);
+    portals_.copyTo(space);
+    if (!cells_.hasRegions()) space.tree = tree_.tree();
+    return space;
+}
+
+Status VisibilityFile::openPlaces(const SectionFile& sections, std::string_view file) {
+    sections_ = sections;
+    const auto at = [&](uint32_t tag) { return sections.placeOf(sections.find(tag)); };
+    has_cells_ = !sections.find(kCells).empty();
+    has_objects_ = !sections.find(kObjects).empty();
+    has_object_rows_ = !sections.find(kObjectRows).empty();
+    if (!has_cells_) {
+        for (const uint32_t tag : kPlaces)
+            if (!sections.find(tag).empty()) return faultAt(file, "a section of cells that there are not", at(tag));
+        return success();
+    }
+    const Result<PlacedCells> cells = PlacedCells::open(sections, rows_.cells(), file);
+    if (!cells) return cells.error();
+    cells_ = *cells;
+    const std::span<const char> tree_bytes = sections.find(kTree);
+    if (cells->hasRegions() != tree_bytes.empty() && cells->cells() > 0)
+        return faultAt(file, "cells of both regions and a tree, or of neither", at(kCells));
+    if (!tree_bytes.empty()) {
+        const Result<PlacedTree> tree =
+            PlacedTree::open(tree_bytes, file, at(kTree), unpacked_rows_.get_allocator().resource());
+        if (!tree) return tree.error();
+        if (tree->leaves() != cells->leaves()) return faultAt(file, "not a cell for each leaf", at(kTree));
+        if (cells->outside() != CellGraph::kNoCell) return faultAt(file, "a tree with an outside", at(kCells));
+        tree_ = *tree;
+    }
+    const Result<PlacedPortals> portals = PlacedPortals::open(sections, cells->cells(), file);
+    if (!portals) return portals.error();
+    portals_ = *portals;
+    if (has_objects_) {
+        const Result<PlacedObjects> objects =
+            PlacedObjects::open(sections.find(kObjects), cells->cells(), file, at(kObjects));
+        if (!objects) return objects.error();
+        objects_ = *objects;
+    }
+    if (!has_object_rows_) return success();
+    const Result<PlacedObjectRows> rows =
+        PlacedObjectRows::open(sections.find(kObjectRows), rows_.cells(), objects_.size(), file, at(kObjectRows));
+    if (!rows) return rows.error();
+    object_rows_ = *rows;
+    return success();
 }
 
 Result<VisibilityFile> VisibilityFile::open(std::span<const char> bytes, std::string_view file, Memory* memory) {
@@ -102,6 +190,7 @@ Result<VisibilityFile> VisibilityFile::open(std::span<const char> bytes, std::st
     for (uint32_t leaf = 0; leaf < leaves; ++leaf)
         if (const uint16_t cell = opened.cell_of_leaf_[leaf]; cell >= view->cells() && cell != kNoCellInFile)
             return faultAt(file, "a leaf of a cell that there is not", numbers->at);
+    if (const Status places = opened.openPlaces(*sections, file); !places) return places.error();
     return opened;
 }
 

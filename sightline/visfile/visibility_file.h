@@ -1,4 +1,4 @@
-// The visibility file: which cells of a map see one another, and which leaf of it lies in which cell.
+// The visibility file: which cells of a map or scene see one another, where they are, and what lies in them.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -9,8 +9,13 @@
 #include "sightline/base/bit_matrix.h"
 #include "sightline/base/memory.h"
 #include "sightline/base/result.h"
-#include "sightline/space/cells.h"
+#include "sightline/space/cell_space.h"
+#include "sightline/visfile/cell_sections.h"
+#include "sightline/visfile/object_rows.h"
+#include "sightline/visfile/object_section.h"
+#include "sightline/visfile/portal_sections.h"
 #include "sightline/visfile/section_file.h"
+#include "sightline/visfile/tree_section.h"
 #include "sightline/visfile/visible_rows.h"
 
 namespace sightline {
@@ -33,6 +38,10 @@ struct VisibilityContent {
     std::span<const uint32_t> cell_of_leaf;  ///< of the map; CellGraph::kNoCell: none; may be empty
     std::string_view map_name;               ///< for people
     uint64_t map_hash = 0;                   ///< contentHash() of the file that the cells are of; 0: not known
+    /// The cells as places, for run time: finer than those that have rows, which CellSpace::row_of_cell tells. Or null.
+    const CellSpace* space = nullptr;
+    const ObjectPlaces* objects = nullptr;   ///< in cells of the space; or null
+    const BitMatrix* object_rows = nullptr;  ///< [rows of `visible` x objects]; or null
 };
 
 enum class VisibilityForm {
@@ -41,7 +50,7 @@ enum class VisibilityForm {
 };
 
 /// The bytes of the file: the same for the same content, on every machine.
-/// Errors (kUsage): as tiledRows(), or a leaf of a cell that there is not.
+/// Errors (kUsage): as tiledRows(), a leaf of a cell that there is not, or parts that do not belong together.
 Result<Array<char>> visibilityFile(const VisibilityContent& content, VisibilityForm form,
                                    Memory* memory = defaultMemory());
 
@@ -66,20 +75,50 @@ public:
     }
     std::string_view mapName() const { return map_name_; }
     uint64_t mapHash() const { return map_hash_; }
-    /// What answers are read from: rows and leaves.
-    size_t residentBytes() const { return rows_.bytes() + 2 * cell_of_leaf_.size(); }
+    /// What answers are read from: rows and leaves, and of places all sections.
+    size_t residentBytes() const;
+
+    /// Whether it holds the cells as places, too.
+    bool hasCells() const { return has_cells_; }
+    /// A copy of them, for PortalGraph. O(cells + portals).
+    /// @pre hasCells()
+    CellSpace cellSpace() const;
+    /// Where these cells lie, without a copy.
+    /// @pre hasCells()
+    const PlacedCells& cells() const { return cells_; }
+    const PlacedPortals& portals() const { return portals_; }
+
+    bool hasObjects() const { return has_objects_; }
+    /// Objects and the cells of cellSpace() that they lay in; none if !hasObjects().
+    const PlacedObjects& objects() const { return objects_; }
+    bool hasObjectRows() const { return has_object_rows_; }
+    /// Which objects are seen from the cells of a row: a bit for each of objects(). Those that are
+    /// seenFromEverywhere() are whatever it says.
+    /// @pre hasObjectRows(), row < rows().cells()
+    /// @param out  [size: (objects().size() + 63) / 64]
+    void objectRow(uint32_t row, std::span<uint64_t> out) const { object_rows_.row(row, out); }
 
     VisibilityFile(VisibilityFile&&) = default;
     VisibilityFile& operator=(VisibilityFile&&) = delete;
 
 private:
     explicit VisibilityFile(Memory* memory) : unpacked_rows_(memory), unpacked_leaves_(memory) {}
+    Status openPlaces(const SectionFile& sections, std::string_view file);
+    friend Array<char> packedFile(const VisibilityFile& file, Memory* memory);
 
     Array<char> unpacked_rows_, unpacked_leaves_;
     VisibleRows rows_;
     PlacedNumbers<uint16_t> cell_of_leaf_;
     std::string_view map_name_;
     uint64_t map_hash_ = 0;
+
+    SectionFile sections_;
+    bool has_cells_ = false, has_objects_ = false, has_object_rows_ = false;
+    PlacedCells cells_;
+    PlacedPortals portals_;
+    PlacedTree tree_;
+    PlacedObjects objects_;
+    PlacedObjectRows object_rows_;
 };
 
 /// The packed form of an opened file: the bytes that visibilityFile() writes of the same content, without putting its
