@@ -62,6 +62,11 @@ void readNode(const Json& json, uint32_t i, const NodeTargets& targets, NodeTree
     node.camera = index(json, "camera", targets.cameras, place);
     node.weights = floats(json, "weights", place);
     node.extended = json.contains("extensions");
+    if (std::optional<NodeMark> mark = readMark(json, tree.names[i].name, tree.nodes.size(), place)) {
+        mark->node = i;
+        node.marked = !mark->box;
+        tree.marks.push_back(std::move(*mark));
+    }
     readTransform(json, node, place);
     node.translation = glm::dvec3(node.world[3]);
     readChildren(json, i, tree.names, place);
@@ -92,12 +97,12 @@ std::vector<uint32_t> parentsFirst(const std::vector<SceneNode>& nodes) {
     fail(at("nodes", inside), "is its own ancestor");
 }
 
-// The roots of the scene that is shown: marks them as drawn.
+// The roots of the scene that is shown: marks them as placed.
 void markRoots(const JsonText& json, NodeTree& tree) {
     const JsonTable scenes = json.table("scenes");
     const std::optional<uint32_t> shown = index(json.members({"scene"}), "scene", scenes.size(), "");
     for (size_t i = 0; scenes.empty() && i < tree.nodes.size(); ++i)
-        tree.nodes[i].drawn = tree.names[i].parent == kNoNode;
+        tree.nodes[i].placed = tree.names[i].parent == kNoNode;
     for (size_t i = 0; i < scenes.size(); ++i) {
         if (shown && *shown != i) continue;
         const std::string place = at("scenes", i);
@@ -107,7 +112,7 @@ void markRoots(const JsonText& json, NodeTree& tree) {
             const uint32_t node = indexAt(roots, k, "nodes", tree.nodes.size(), place);
             if (tree.names[node].parent != kNoNode)
                 fail(place, "nodes[{}] is not a root: nodes[{}] is its parent", node, tree.names[node].parent);
-            tree.nodes[node].drawn = true;
+            tree.nodes[node].placed = true;
         }
     }
 }
@@ -137,7 +142,10 @@ NodeTree readNodes(const JsonText& json, const NodeTargets& targets, const std::
         Node& node = tree.nodes[i];
         if (const uint32_t parent = tree.names[i].parent; parent != kNoNode) {
             node.world = tree.nodes[parent].world * node.world;
+            node.placed = tree.nodes[parent].placed;
             node.drawn = tree.nodes[parent].drawn;
+        } else {
+            node.drawn = node.placed;
         }
         if (node.drawn && node.extended) node.drawn = !hiddenByFile(array[i], at("nodes", i));
     }

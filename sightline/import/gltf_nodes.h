@@ -10,6 +10,7 @@
 
 #include <glm/glm.hpp>
 
+#include "sightline/import/gltf_cells.h"
 #include "sightline/import/gltf_text.h"
 #include "sightline/scene/scene.h"
 
@@ -23,13 +24,16 @@ struct Node {
     glm::dvec3 translation{0.0};  ///< in the parent's frame
     double scale = 1;             ///< the most by which it stretches any vector of its own
     std::vector<float> weights;   ///< of morph targets; empty: the mesh's own
-    bool drawn = false;           ///< the default scene reaches it, and nothing hides it
+    bool placed = false;          ///< the default scene reaches it
+    bool drawn = false;           ///< and nothing hides it
+    bool marked = false;          ///< its mesh is the shape of a cell or a portal, and is not drawn
     bool extended = false;        ///< its JSON has extensions
 };
 
 struct NodeTree {
     std::vector<Node> nodes;
     std::vector<SceneNode> names;  ///< and parents  [size: nodes]
+    std::vector<NodeMark> marks;   ///< in the order of nodes
     std::vector<uint32_t> order;   ///< all nodes, parents before children
     std::vector<uint32_t> rank;    ///< where each node stands in `order`
 };

@@ -40,7 +40,7 @@ std::vector<Shape> gatherShapes(const Parts& parts) {
     std::map<std::tuple<uint32_t, uint32_t, std::vector<float>>, size_t> known;
     for (uint32_t i = 0; i < parts.tree.nodes.size(); ++i) {
         const Node& node = parts.tree.nodes[i];
-        if (!node.drawn || !node.mesh) continue;
+        if (!node.drawn || !node.mesh || node.marked) continue;
         const MeshSource& source = parts.meshes[*node.mesh];
         if (source.primitives.empty()) continue;
         Shape shape{*node.mesh, source.skinnable ? node.skin : std::nullopt, {}, {}};
@@ -210,9 +210,11 @@ Scene makeScene(Document& document) {
     parts.shapes = gatherShapes(parts);
     scene.materials = std::move(materials.list);
     addObjects(document, parts, buildShapes(document, parts, scene), scene);
-    if (scene.objects.empty()) fail("", "draws nothing: no triangle in the scene that it shows");
     scene.cameras = placeCameras(parts.tree, cameras);
     scene.nodes = std::move(parts.tree.names);
+    addMarked(document, parts.tree, parts.meshes, scene);
+    if (scene.objects.empty() && scene.cells.empty() && scene.portals.empty())
+        fail("", "draws nothing: no triangle in the scene that it shows");
     return scene;
 }
 

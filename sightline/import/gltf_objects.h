@@ -7,7 +7,7 @@
 
 namespace sightline::gltf {
 
-/// Everything of the document that a scene holds; a Fault if it draws no triangle.
+/// Everything of the document that a scene holds; a Fault if it draws no triangle and marks no cell or portal.
 Scene makeScene(Document& document);
 
 }  // namespace sightline::gltf

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sightline/import/scene_file.h"
+#include "sightline/scene/marked_cells.h"
 
 namespace sightline {
 namespace {
@@ -109,6 +110,7 @@ Scene joinScenes(std::vector<Scene> scenes) {
         append(out.portals, std::move(scene.portals));
         append(out.files, std::move(scene.files));
     }
+    resolvePortals(out);  // cells of one file and portals of another may belong together
     return out;
 }
 

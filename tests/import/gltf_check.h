@@ -30,10 +30,31 @@ inline std::string meshFault(const Scene& scene, const Mesh& mesh) {
     return triangles == mesh.triangles() ? "" : "primitives do not cover the triangles";
 }
 
+inline std::string cellFault(const Scene& scene) {
+    for (const SceneCell& cell : scene.cells) {
+        if (!(cell.overhang >= 0)) return "an overhang is negative or NaN";
+        if (cell.planes.empty() && std::isfinite(cell.overhang)) return "a solid cell has no planes";
+        if (!cell.planes.empty() && !cell.bounds.finite()) return "a cell's bounds are not finite";
+        for (const glm::dvec4& plane : cell.planes) {
+            if (!(std::abs(glm::length(glm::dvec3(plane)) - 1) < 1e-9)) return "a cell's normal is no unit vector";
+            if (!std::isfinite(plane.w)) return "a cell's plane is not finite";
+        }
+    }
+    for (const ScenePortal& portal : scene.portals) {
+        for (const uint32_t cell : portal.cells)
+            if (cell != ScenePortal::kNone && cell >= scene.cells.size()) return "a portal's cell is out of range";
+        if (portal.door != ScenePortal::kNone && portal.door >= scene.objects.size()) return "a door is out of range";
+        for (const glm::dvec3& corner : portal.polygon)
+            if (!std::isfinite(corner.x + corner.y + corner.z)) return "a portal is not finite";
+        if (!std::isfinite(portal.slide.x + portal.slide.y + portal.slide.z)) return "a slide is not finite";
+    }
+    return "";
+}
+
 /// Empty, or what is wrong with the scene.
 inline std::string sceneFault(const Scene& scene) {
     if (scene.materials.empty()) return "no material";
-    if (scene.objects.empty()) return "no object";
+    if (scene.objects.empty() && scene.cells.empty() && scene.portals.empty()) return "no object";
     for (const Mesh& mesh : scene.meshes)
         if (const std::string fault = meshFault(scene, mesh); !fault.empty()) return fault;
     for (const SceneObject& object : scene.objects) {
@@ -55,7 +76,8 @@ inline std::string sceneFault(const Scene& scene) {
         if (!(glm::length(glm::cross(glm::dvec3(camera.transform[1]), glm::dvec3(camera.transform[2]))) > 0))
             return "a camera looks nowhere";
     }
-    return worldBounds(scene).finite() ? "" : "the world is not finite";
+    if (const std::string fault = cellFault(scene); !fault.empty()) return fault;
+    return scene.objects.empty() || worldBounds(scene).finite() ? "" : "the world is not finite";
 }
 
 /// Empty, or what is wrong with the message of an error: it must be one line that begins with the file's name.

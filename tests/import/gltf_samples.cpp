@@ -160,6 +160,31 @@ std::string dataUri(bool escaped) {
     return b.gltf(data);
 }
 
+// Two rooms of 4 x 3 x 4 side by side, one by its mesh, one by a box; two portals between them, one with a door.
+std::string cells() {
+    GltfBuilder b;
+    const uint32_t leaf = b.node({{"name", "leaf"}, {"mesh", b.triangleMesh()}});
+    std::vector<float> corners;
+    for (int i = 0; i < 8; ++i) corners.insert(corners.end(), {float(i & 1), float(i >> 1 & 1), float(i >> 2)});
+    const uint32_t positions = b.accessor<float>("VEC3", corners);
+    // One of its faces is wound the other way, as happens.
+    const uint32_t indices = b.accessor<uint16_t>("SCALAR", {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                                             2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 5, 7, 1, 7, 3});
+    const uint32_t cube = b.mesh(positions, int(indices));
+    b.node({{"name", "cell.kitchen"}, {"mesh", cube}, {"scale", {4, 3, 4}}, {"translation", {10, 0, 0}}});
+    const uint32_t quad = b.mesh(b.accessor<float>("VEC3", {0, 0, 0, 0, 2, 0, 0, 0, 1, 0, 2, 0, 0, 2, 1, 0, 0, 1}));
+    b.node(
+        {{"name", "portal:door"},
+         {"mesh", quad},
+         {"translation", {14, 0, 1}},
+         {"extras",
+          {{"sightline", {{"portal", "way"}, {"cells", {"hall", "kitchen"}}, {"door", leaf}, {"slide", {0, 0, 1}}}}}}});
+    b.node({{"name", "portal.window"}, {"mesh", quad}, {"translation", {14, 0.5, 3}}});
+    b.node({{"translation", {14, 0, 0}},
+            {"extras", {{"sightline", {{"cell", "hall"}, {"box", {{0, 0, 0}, {4, 3, 4}}}}}}}});
+    return b.glb();
+}
+
 }  // namespace
 
 void addGeometrySamples(std::vector<Sample>& out) {
@@ -192,6 +217,7 @@ void addNodeSamples(std::vector<Sample>& out) {
     out.push_back({"scenes_none.glb", scenes(-1, false)});
     out.push_back({"cameras.glb", cameras()});
     out.push_back({"instances.glb", instances()});
+    out.push_back({"cells.glb", cells()});
 }
 
 std::vector<Sample> gltfSamples() {

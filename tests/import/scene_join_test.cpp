@@ -24,7 +24,12 @@ Scene sample(const std::string& name, uint64_t first_key) {
         for (const glm::vec3& p : mesh.positions) mesh.bounds.grow(glm::dvec3(p));
     SceneCell cell{"hall", {{1, 0, 0, -2}, {0, 0.6, 0.8, 3}}, {{2, -1, -1}, {4, 5, 6}}};
     scene.cells = {cell, cell};
-    scene.portals = {{"hole", {0, 1}, {{1, 2, 3}, {4, 5, 6}, {7, 8, 10}}, 1}};
+    ScenePortal hole;
+    hole.name = "hole";
+    hole.cells[1] = 1;
+    hole.polygon = {{1, 2, 3}, {4, 5, 6}, {7, 8, 10}};
+    hole.door = 1;
+    scene.portals = {hole};
     return scene;
 }
 
