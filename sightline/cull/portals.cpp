@@ -36,6 +36,8 @@ PortalFlood::PortalFlood(Memory* memory)
       start_(memory),
       corners_(memory),
       clipped_(memory),
+      lines_(memory),
+      polygons_(memory),
       cells_(memory),
       planes_(memory) {}
 
@@ -50,6 +52,7 @@ bool PortalFlood::run(const PortalGraph& graph, const View& view, const PortalSe
     planes_.clear();
     order_.clear();
     heap_.clear();
+    polygons_.clear();
     ++view_;
     if (states_.size() < graph.cells()) states_.resize(graph.cells());
     if (flagged_.size() < graph.nodes().size()) flagged_.resize(graph.nodes().size());
@@ -58,7 +61,8 @@ bool PortalFlood::run(const PortalGraph& graph, const View& view, const PortalSe
         stats_.work_spent = true;
         return false;
     }
-    writeCells();
+    if (settings.windows == PortalWindows::kPolygons) writePolygons();
+    else writeBounds();
     return true;
 }
 
@@ -68,7 +72,10 @@ bool PortalFlood::start(const PortalGraph& graph, const View& view) {
     std::copy(eye_.near_corners, eye_.near_corners + 4, body);
     body[4] = eye_.center;
     if (!graph.cellsAround({body, eye_.parallel() ? 4u : 5u}, 0, start_)) return false;
-    for (const uint32_t cell : start_) reach(cell, eye_.image, ~0u, ~0u, 0, 0);
+    for (const uint32_t cell : start_)
+        if (settings_.windows == PortalWindows::kPolygons)
+            reach(cell, {.shape = polygonOf(eye_.image), .cell = cell}, 0);
+        else reach(cell, eye_.image, ~0u, ~0u, 0, 0);
     return true;
 }
 
@@ -76,7 +83,7 @@ void PortalFlood::reach(uint32_t cell, const WindowBounds& window, uint32_t from
                         double key) {
     CellState& state = states_[cell];
     if (state.view != view_) {
-        state = {window, view_, static_cast<uint32_t>(order_.size()), depth, from, portal, false};
+        state = {window, view_, static_cast<uint32_t>(order_.size()), depth, from, portal};
         order_.push_back(cell);
     } else {
         const bool nearer = settings_.depth != 0 && depth < state.depth;
@@ -85,6 +92,11 @@ void PortalFlood::reach(uint32_t cell, const WindowBounds& window, uint32_t from
         state.window.grow(window);
         state.depth = std::min(state.depth, depth);
     }
+    wait(cell, key);
+}
+
+void PortalFlood::wait(uint32_t cell, double key) {
+    CellState& state = states_[cell];
     if (state.waits) return;
     state.waits = true;
     if (graph_->nodes().empty()) {
@@ -102,7 +114,14 @@ void PortalFlood::reach(uint32_t cell, const WindowBounds& window, uint32_t from
 bool PortalFlood::enter(uint32_t cell) {
     if (++stats_.cells > settings_.work) return false;
     states_[cell].waits = false;
-    for (const DirectedPortal& portal : graph_->portalsFrom(cell)) lookThrough(cell, portal);
+    if (settings_.windows != PortalWindows::kPolygons) {
+        for (const DirectedPortal& portal : graph_->portalsFrom(cell))
+            if (mayEnter(portal)) lookThrough(cell, portal);
+        return true;
+    }
+    for (const DirectedPortal& portal : graph_->portalsFrom(cell))
+        if (mayEnter(portal)) lookThroughPolygons(cell, portal);
+    for (uint32_t i = states_[cell].polygon; i != ~0u; i = polygons_[i].next) polygons_[i].waits = false;
     return true;
 }
 
@@ -154,16 +173,21 @@ bool PortalFlood::floodByDistance() {
     return true;
 }
 
-void PortalFlood::lookThrough(uint32_t from, const DirectedPortal& portal) {
+bool PortalFlood::mayEnter(const DirectedPortal& portal) const {
     if (!rows_.empty()) {
         const uint32_t row = graph_->rowOf(portal.to);
-        if (row != PortalGraph::kNoCell && (row / 64 >= rows_.size() || (rows_[row / 64] >> row % 64 & 1) == 0)) return;
+        if (row != PortalGraph::kNoCell && (row / 64 >= rows_.size() || (rows_[row / 64] >> row % 64 & 1) == 0))
+            return false;
     }
-    if (!eye_.passes(portal.plane, portal.thickness)) return;
+    return eye_.passes(portal.plane, portal.thickness);
+}
+
+PortalFlood::Projection PortalFlood::project(const DirectedPortal& portal) {
+    Projection projection;
     ++stats_.portals;
     float open = 1;
     if (portal.door != CellPortal::kNone && portal.door < doors_.size()) open = doors_[portal.door].open;
-    if (open <= 0) return;
+    if (open <= 0) return projection;
 
     const PortalCorners& corners = graph_->corners();
     const auto cornerAt = [&](uint32_t i) { return glm::dvec3(corners.x[i], corners.y[i], corners.z[i]); };
@@ -197,23 +221,35 @@ void PortalFlood::lookThrough(uint32_t from, const DirectedPortal& portal) {
     if (w < least_w) {
         cutOutline(corners_, clipped_, [&](const glm::dvec3& p) { return p.z - least_w; });
         w = least_w;
+        for (glm::dvec3& corner : corners_) corner.z = std::max(corner.z, least_w);
     }
-    if (corners_.empty()) return;
-
-    WindowBounds window = states_[from].window;
+    if (corners_.empty()) return projection;
+    projection.w = w;
     if (w <= 4 * w_error) {
         ++stats_.whole;
-    } else {
-        // A point that is off by (dx, dy, dw) is in the image off by (dx - x/w dw) / w, at a place x/w of the view.
-        WindowBounds bounds = WindowBounds::nothing();
-        for (const glm::dvec3& corner : corners_) {
-            const double inverse = 1 / corner.z;
-            bounds.grow(corner.x * inverse, corner.y * inverse);
-        }
-        const double per_w = position / w;
-        bounds.widen((eye_.lengths[0] + eye_.wide[0] * eye_.lengths[2]) * per_w + eye_.slack[0],
-                     (eye_.lengths[1] + eye_.wide[1] * eye_.lengths[2]) * per_w + eye_.slack[1]);
-        window.cut(bounds);
+        projection.kind = Projection::Kind::kWhole;
+        return projection;
+    }
+    // A point that is off by (dx, dy, dw) is in the image off by (dx - x/w dw) / w, at a place x/w of the view.
+    projection.kind = Projection::Kind::kPart;
+    projection.bounds = WindowBounds::nothing();
+    for (const glm::dvec3& corner : corners_) {
+        const double inverse = 1 / corner.z;
+        projection.bounds.grow(corner.x * inverse, corner.y * inverse);
+    }
+    for (int i = 0; i < 2; ++i)
+        projection.margins[i] = (eye_.lengths[i] + eye_.wide[i] * eye_.lengths[2]) * (position / w) + eye_.slack[i];
+    projection.bounds.widen(projection.margins[0], projection.margins[1]);
+    return projection;
+}
+
+void PortalFlood::lookThrough(uint32_t cell, const DirectedPortal& portal) {
+    const Projection projection = project(portal);
+    if (projection.kind == Projection::Kind::kNothing) return;
+    const CellState& state = states_[cell];
+    WindowBounds window = state.window;
+    if (projection.kind == Projection::Kind::kPart) {
+        window.cut(projection.bounds);
         if (settings_.windows == PortalWindows::kBoxes) {
             if (window.isEmpty(4)) return;
         } else {
@@ -222,36 +258,33 @@ void PortalFlood::lookThrough(uint32_t from, const DirectedPortal& portal) {
             if (window.isEmpty(8)) return;
         }
     }
-    const CellState& state = states_[from];
     if (settings_.depth != 0 && state.depth >= settings_.depth) {
         ++stats_.too_deep;
         return;
     }
-    reach(portal.to, window, state.index, portal.portal, state.depth + 1, w);
+    reach(portal.to, window, state.index, portal.portal, state.depth + 1, projection.w);
 }
 
-void PortalFlood::writeCells() {
-    const bool boxes = settings_.windows == PortalWindows::kBoxes;
-    const glm::dvec3 &x = eye_.rows[0], &y = eye_.rows[1];
-    const glm::dvec3 rows[4] = {x, y, x + y, x - y};
-    const glm::dvec3& shift = eye_.shift;
-    const double shifts[4] = {shift.x, shift.y, shift.x + shift.y, shift.x - shift.y};
+/// The planes through the eye and a line of the image: dot(line, (x / w, y / w, 1)) >= 0.
+void PortalFlood::addPlane(const glm::dvec3& line, SeenCell& seen) {
+    const glm::dvec3 normal = line.x * eye_.rows[0] + line.y * eye_.rows[1] + line.z * eye_.rows[2];
+    const double length = glm::length(normal);
+    if (!(length > 0)) return;
+    planes_.push_back(glm::dvec4(normal, glm::dot(line, eye_.shift)) / length);
+    ++seen.plane_count;
+}
+
+void PortalFlood::writeBounds() {
+    const int sides = settings_.windows == PortalWindows::kBoxes ? 4 : 8;
+    constexpr double kLines[8][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, 1}, {-1, 1}, {1, -1}};
     for (const uint32_t cell : order_) {
         const CellState& state = states_[cell];
         const double* most = state.window.most;
         SeenCell seen{
             cell,        static_cast<uint32_t>(planes_.size()), 0, -most[1], -most[3], most[0], most[2], state.from,
             state.portal};
-        for (int i = 0; i < (boxes ? 4 : 8); ++i) {
-            if (!(most[i] < eye_.image.most[i])) continue;
-            // x / w <= most: most * w - x >= 0.
-            const double sign = i % 2 == 0 ? 1 : -1;
-            const glm::dvec3 normal = most[i] * eye_.rows[2] - sign * rows[i / 2];
-            const double length = glm::length(normal);
-            if (!(length > 0)) continue;
-            planes_.push_back(glm::dvec4(normal, most[i] * shift.z - sign * shifts[i / 2]) / length);
-            ++seen.plane_count;
-        }
+        for (int i = 0; i < sides; ++i)
+            if (most[i] < eye_.image.most[i]) addPlane({kLines[i][0], kLines[i][1], most[i]}, seen);
         cells_.push_back(seen);
     }
 }

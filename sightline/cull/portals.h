@@ -12,7 +12,7 @@
 
 #include "sightline/base/memory.h"
 #include "sightline/cull/portal_eye.h"
-#include "sightline/cull/portal_window.h"
+#include "sightline/cull/window_polygon.h"
 #include "sightline/geom/view.h"
 #include "sightline/space/portal_graph.h"
 
@@ -48,6 +48,7 @@ struct PortalStats {
     uint64_t cells = 0;     ///< entered; one that was entered again counts again
     uint64_t portals = 0;   ///< looked at
     uint64_t whole = 0;     ///< of these, so near that the whole window was taken
+    uint64_t joined = 0;    ///< polygons that became one with another, and more than both, since a cell had too many
     uint64_t too_deep = 0;  ///< not gone through for PortalSettings::depth: not conservative
     bool work_spent = false;
 };
@@ -84,7 +85,8 @@ private:
         uint32_t index = 0;  ///< of order_
         uint32_t depth = 0;  ///< portals of the shortest chain
         uint32_t from = ~0u, portal = ~0u;
-        bool waits = false;  ///< the window grew since its portals were looked at
+        uint32_t polygon = ~0u;  ///< of polygons_: the first of its list
+        bool waits = false;      ///< the window grew since its portals were looked at
     };
     struct Waiting {
         double key;
@@ -95,14 +97,41 @@ private:
         uint8_t sides;  ///< of its children: how many are done
     };
 
+    /// A window of a cell, where windows are polygons.
+    struct Polygon {
+        WindowPolygon shape;
+        uint32_t cell = 0;
+        uint32_t next = ~0u;  ///< of the same cell
+        uint32_t depth = 0;
+        uint32_t from = ~0u, portal = ~0u;
+        uint32_t became = ~0u;  ///< the one that holds it, if it is no more; after that: its index in the answer
+        bool gone = false, waits = true;
+    };
+    /// A portal in the image.
+    struct Projection {
+        enum class Kind : uint8_t { kNothing, kPart, kWhole };
+        Kind kind = Kind::kNothing;
+        double margins[2];
+        WindowBounds bounds;
+        double w;  ///< the least
+    };
+
     bool start(const PortalGraph& graph, const View& view);
+    bool mayEnter(const DirectedPortal& portal) const;
+    Projection project(const DirectedPortal& portal);
+    void findLines(const Projection& projection);
+
+    void wait(uint32_t cell, double key);
     void reach(uint32_t cell, const WindowBounds& window, uint32_t from, uint32_t portal, uint32_t depth, double key);
+    void reach(uint32_t cell, Polygon polygon, double key);
     bool enter(uint32_t cell);
     bool floodTree();
     bool floodByDistance();
-    void lookThrough(uint32_t from, const DirectedPortal& portal);
-    uint32_t project(const DirectedPortal& portal);
-    void writeCells();
+    void lookThrough(uint32_t cell, const DirectedPortal& portal);
+    void lookThroughPolygons(uint32_t cell, const DirectedPortal& portal);
+    void writeBounds();
+    void writePolygons();
+    void addPlane(const glm::dvec3& line, SeenCell& seen);
 
     const PortalGraph* graph_ = nullptr;
     PortalSettings settings_;
@@ -117,6 +146,8 @@ private:
     Array<Waiting> heap_;
     Array<uint32_t> start_;
     Array<glm::dvec3> corners_, clipped_;
+    Array<WindowLine> lines_;
+    Array<Polygon> polygons_;
     Array<SeenCell> cells_;
     Array<glm::dvec4> planes_;
     PortalStats stats_;
