@@ -25,7 +25,8 @@ struct SceneCellSettings {
     bool trusted = false;
     /// Objects that may be elsewhere at run time: they hide nothing, as the leaves of doors.  [Scene::objects]
     std::vector<uint32_t> movable;
-    uint32_t most_holes = 32;  ///< that one face keeps apart; more become one, their hull  [limit: >= 1]
+    /// Convex pieces of the holes that one face keeps apart; more become their hull.  [limit: >= 1]
+    uint32_t most_holes = 32;
 };
 
 enum class CellFindingKind : uint8_t {

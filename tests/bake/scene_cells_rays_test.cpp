@@ -1,0 +1,238 @@
+// Rays out of checked cells: what leaves a cell meets a wall there, or goes through a portal into what is behind it.
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "made_rooms.h"
+#include "sightline/bake/scene_cells.h"
+#include "sightline/base/random.h"
+
+namespace sightline {
+namespace {
+
+using namespace test;
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+/// All triangles of a scene, tried one by one.
+class Triangles {
+public:
+    explicit Triangles(const Scene& scene) {
+        for (const SceneObject& object : scene.objects) {
+            const Mesh& mesh = scene.meshes[object.mesh];
+            for (size_t t = 0; t < mesh.triangles(); ++t) {
+                Triangle triangle;
+                triangle.both = scene.materials[mesh.primitives[0].material].double_sided;
+                if (!scene.materials[mesh.primitives[0].material].hides()) continue;
+                for (size_t c = 0; c < 3; ++c)
+                    triangle.corners[c] = glm::dvec3(
+                        object.transform * glm::dvec4(glm::dvec3(mesh.positions[mesh.indices[3 * t + c]]), 1));
+                all_.push_back(triangle);
+            }
+        }
+    }
+
+    /// Whether an opaque front, grown by `room`, is met between two distances.
+    bool meets(const glm::dvec3& from, const glm::dvec3& along, double first, double last, double room) const {
+        return std::any_of(all_.begin(), all_.end(), [&](const Triangle& triangle) {
+            const auto& [a, b, c] = triangle.corners;
+            const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
+            const double towards = glm::dot(normal, along);
+            if (towards == 0 || (towards > 0 && !triangle.both)) return false;
+            const double t = glm::dot(normal, a - from) / towards;
+            if (t < first || t > last) return false;
+            const glm::dvec3 point = from + t * along;
+            for (int i = 0; i < 3; ++i) {
+                const glm::dvec3 edge = triangle.corners[(i + 1) % 3] - triangle.corners[i];
+                if (glm::dot(glm::cross(normal, edge), point - triangle.corners[i]) < -room * glm::length(edge))
+                    return false;
+            }
+            return true;
+        });
+    }
+
+private:
+    struct Triangle {
+        glm::dvec3 corners[3];
+        bool both = false;
+    };
+    std::vector<Triangle> all_;
+};
+
+double insideBy(const CellSpace& space, uint32_t cell, const glm::dvec3& point) {
+    double least = cell == space.outside ? -kFar : kFar;
+    for (const glm::dvec4& plane : space.planesOf(space.regions[cell]))
+        least = std::min(least, glm::dot(glm::dvec3(plane), point) + plane.w);
+    return least;
+}
+
+bool holds(const CellGraph& graph, const CellPortal& portal, const glm::dvec3& point, double room) {
+    const auto outline = graph.outline(portal);
+    const glm::dvec3 normal(portal.plane);
+    if (std::abs(glm::dot(normal, point) + portal.plane.w) > room) return false;
+    for (size_t i = 0; i < outline.size(); ++i) {
+        const glm::dvec3 edge = outline[(i + 1) % outline.size()] - outline[i];
+        if (glm::dot(glm::cross(normal, edge), point - outline[i]) < -1e-9 * glm::length(edge)) return false;
+    }
+    return true;
+}
+
+struct Counts {
+    uint64_t rays = 0, walls = 0, ways = 0;
+};
+
+/// One ray out of a cell. Empty, or what is wrong.
+std::string follow(const SceneCells& cells, const Triangles& truth, uint32_t cell, const glm::dvec3& from,
+                   const glm::dvec3& along, Counts& counts) {
+    const CellSpace& space = cells.space;
+    const double slit = cells.report.slit;
+    double exit = kFar, grazing = 0;
+    for (const glm::dvec4& plane : space.planesOf(space.regions[cell])) {
+        const double height = glm::dot(glm::dvec3(plane), from) + plane.w, falls = glm::dot(glm::dvec3(plane), along);
+        if (falls < 0 && -height / falls < exit) exit = -height / falls, grazing = -falls;
+    }
+    if (grazing < 0.05) return "";  // passes along a wall: within its thickness nothing is said
+    ++counts.rays;
+    const glm::dvec3 point = from + exit * along;
+    const double reach = 2 * slit / grazing;
+    std::vector<uint32_t> through;
+    for (const CellPortal& portal : space.graph.portals) {
+        const int side = portal.cells[0] == cell ? 0 : 1;
+        if (portal.cells[side] == cell && holds(space.graph, portal, point, 2 * slit))
+            through.push_back(portal.cells[1 - side]);
+    }
+    // What closes a slit narrower than the declared one counts as a wall.
+    const bool blocked = truth.meets(from, along, exit - reach, exit + reach, slit);
+    counts.walls += blocked;
+    counts.ways += !through.empty();
+    if (blocked) return "";
+    if (through.empty()) return "leaves by no portal and meets no wall";
+    const glm::dvec3 beyond = point + 4 * reach * along;
+    bool somewhere = false;
+    for (uint32_t other = 0; other < space.graph.cells; ++other) {
+        if (other == space.outside) continue;
+        // Near an edge it may have entered a cell and left it through a side.
+        const bool entered = std::find(through.begin(), through.end(), other) != through.end();
+        if (insideBy(space, other, beyond) < (entered ? -4 * reach : 0)) continue;
+        somewhere = true;
+        if (other == cell || insideBy(space, other, beyond) < 8 * reach) continue;  // it may have left that already
+        if (!entered) return "no portal leads into '" + space.names[other] + "'";
+    }
+    if (!somewhere && std::find(through.begin(), through.end(), space.outside) == through.end())
+        return "no portal leads outside";
+    return "";
+}
+
+FlatRect randomRect(Random& random, const FlatRect& within) {
+    const double size = std::pow(10, random.uniform(-3, 0));
+    const glm::dvec2 room = within.max - within.min,
+                     low = within.min + glm::dvec2(random.uniform(0.05, 0.5), random.uniform(0.05, 0.5)) * room;
+    return {low, glm::min(low + size * glm::dvec2(random.uniform(0.5, 1), random.uniform(0.5, 1)),
+                          within.max - 0.02 * room)};
+}
+
+/// A row of rooms with walls of some thickness between them, with doors, some of them marked, holes, things in the
+/// walls' planes, and cells drawn carelessly.
+MadeRooms randomRooms(Random& random, int round) {
+    MadeRooms made;
+    made.place = round % 3 == 0 ? glm::dmat4(1.0) : randomPlace(random, round % 3 == 1 ? 0 : 1000);
+    const double care = round % 2 ? 0 : 0.1;
+    double x = 0;
+    struct Way {
+        double from, to;
+        FlatRect rect;
+        bool marked;
+    };
+    std::vector<Way> ways;
+    const FlatRect section{{0, 0}, {3, 4}};
+    for (int i = 0; i < 4; ++i) {
+        const double end = x + 0.25 * double(8 + random.below(16));
+        const bool first = i == 0, last = i == 3;
+        const double thick = random.below(3) == 0 ? 0 : 0.25;
+        made.room({{x, 0, 0}, {end, 3, 4}}, 3 | (random.below(4) == 0 ? 12 : 0));
+        if (first) made.wall(0, x, section, 1);
+        else made.wall(0, x, section, 1, {ways.back().rect});
+        if (last) {
+            made.wall(0, end, section, -1, {randomRect(random, section)});
+        } else {
+            ways.push_back({end, end + thick, randomRect(random, section), random.below(3) != 0});
+            made.wall(0, end, section, -1, {ways.back().rect});
+            const FlatRect& rect = ways.back().rect;
+            if (thick > 0 && random.below(4) != 0)
+                made.room({{end, rect.min.x, rect.min.y}, {end + thick, rect.max.x, rect.max.y}}, 3);
+        }
+        // Shelves, and boards on the walls.
+        for (int k = 0; k < 3; ++k)
+            made.wall(0, x + random.uniform(0, 0.1), randomRect(random, section), random.below(2) ? 1 : -1);
+        Box3d drawn{{x, 0, 0}, {end, 3, 4}};
+        for (int axis = 0; axis < 3; ++axis) {
+            drawn.min[axis] += random.uniform(-care, care);
+            drawn.max[axis] += random.uniform(-care, care);
+        }
+        made.cell("room " + std::to_string(i), drawn);
+        x = end + thick;
+    }
+    for (uint32_t i = 0; i < ways.size(); ++i)
+        if (ways[i].marked)
+            made.portal(i, i + 1, 0, random.uniform(ways[i].from - care / 2, ways[i].to + care / 2), ways[i].rect);
+    return made;
+}
+
+TEST(SceneCellRays, LeaveByPortalsOrMeetWalls) {
+    Random random(1);
+    Counts counts;
+    uint64_t holes = 0, passages = 0, outside = 0, moved = 0;
+    for (int round = 0; round < 60; ++round) {
+        const MadeRooms made = randomRooms(random, round);
+        const SceneCells cells = cellsOfScene(made.scene);
+        const Triangles truth(made.scene);
+        const CellSpace& space = cells.space;
+        holes += cells.report.holes;
+        passages += cells.report.passages;
+        outside += cells.report.outside;
+        moved += cells.report.moved_faces;
+        for (uint32_t cell = 0; cell < space.graph.cells; ++cell) {
+            if (cell == space.outside) continue;
+            const Box3d& bounds = space.regions[cell].bounds;
+            for (int ray = 0; ray < 1500; ++ray) {
+                glm::dvec3 from, target;
+                for (int axis = 0; axis < 3; ++axis) {
+                    from[axis] = random.uniform(bounds.min[axis], bounds.max[axis]);
+                    target[axis] = random.uniform(bounds.min[axis], bounds.max[axis]);
+                }
+                if (insideBy(space, cell, from) < 4 * cells.report.slit) continue;
+                // Half of them are aimed: at the edges of portals and a little beside them.
+                if (ray % 2 && !space.graph.portals.empty()) {
+                    const CellPortal& portal = space.graph.portals[random.below(space.graph.portals.size())];
+                    const auto outline = space.graph.outline(portal);
+                    const size_t i = random.below(outline.size());
+                    const double off = std::pow(10, random.uniform(-7, 0)) * (random.below(2) ? 1 : -1);
+                    target = glm::mix(outline[i], outline[(i + 1) % outline.size()], random.uniform()) +
+                             off * (outline[(i + 2) % outline.size()] - outline[i]);
+                }
+                const glm::dvec3 along = target - from;
+                if (!(glm::length(along) > 1e-6)) continue;
+                const std::string wrong = follow(cells, truth, cell, from, glm::normalize(along), counts);
+                ASSERT_EQ(wrong, "") << "round " << round << ", out of '" << space.names[cell] << "' from (" << from.x
+                                     << ", " << from.y << ", " << from.z << ") to (" << target.x << ", " << target.y
+                                     << ", " << target.z << ")";
+            }
+        }
+    }
+    // None of it is there for nothing.
+    EXPECT_GT(counts.rays, 100000u);
+    EXPECT_GT(counts.walls, 30000u);
+    EXPECT_GT(counts.ways, 5000u);
+    EXPECT_GT(holes, 60u);
+    EXPECT_GT(passages, 10u);
+    EXPECT_GT(outside, 10u);
+    EXPECT_GT(moved, 60u);
+}
+
+}  // namespace
+}  // namespace sightline
