@@ -4,21 +4,14 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "tests/cull/clip_oracle.h"
+#include "tests/cull/long_tests.h"
 
 namespace sightline {
 namespace {
 
 using test::Touch;
 using test::TruthVolume;
-
-/// Pairs of a bound and a volume, per kind of bound: SIGHTLINE_TEST_PAIRS, or what takes a few seconds.
-int pairs() {
-    const char* wanted = std::getenv("SIGHTLINE_TEST_PAIRS");
-    return std::max(wanted ? std::atoi(wanted) : 200000, 1000);
-}
 
 constexpr int kBoundsPerVolume = 100;
 
@@ -28,15 +21,20 @@ struct Counts {
 
 /// Near to the origin and far from it; what rounding may decide grows with that.
 template <class Try>
-Counts forEachPair(uint64_t seed, Try attempt) {
+Counts forEachPair(uint64_t seed, int shorter, Try attempt) {
     Counts counts;
     Random random(seed);
-    for (int round = 0; round < pairs() / kBoundsPerVolume; ++round) {
+    const int pairs = test::pairsToMake(shorter);
+    ::testing::Test::RecordProperty("pairs", pairs);
+    for (int round = 0; round < pairs / kBoundsPerVolume; ++round) {
         const double far = round % 4 == 3 ? 1e6 : 1.0;
         const TruthVolume truth = test::randomVolume(random, far);
         for (int i = 0; i < kBoundsPerVolume && !::testing::Test::HasFatalFailure(); ++i)
             attempt(random, truth, 1e-10 * (100.0 + far), round, counts);
     }
+    ::testing::Test::RecordProperty("together", static_cast<int>(counts.together));
+    ::testing::Test::RecordProperty("apart", static_cast<int>(counts.apart));
+    ::testing::Test::RecordProperty("kept_apart", static_cast<int>(counts.kept_apart));
     return counts;
 }
 
@@ -74,7 +72,7 @@ TEST(Bounds, BoxesAreKeptIfTheyTouchAndTheSeparatingAxesKeepNoOthers) {
     int of_round = -1;
     size_t by_corners = 0;
     const Counts counts =
-        forEachPair(21, [&](Random& random, const TruthVolume& truth, double band, int round, Counts& c) {
+        forEachPair(21, 200000, [&](Random& random, const TruthVolume& truth, double band, int round, Counts& c) {
             if (round != of_round) refined = refineVolume(truth.volume), of_round = round;
             const Box3d box = test::randomBox(random, truth);
             const bool corners = separated(refined, box, Refinement::kCorners);
@@ -91,7 +89,7 @@ TEST(Bounds, BoxesAreKeptIfTheyTouchAndTheSeparatingAxesKeepNoOthers) {
 
 TEST(Bounds, OrientedBoxesAreKeptIfTheyTouchAndTheSeparatingAxesKeepNoOthers) {
     const Counts counts =
-        forEachPair(22, [&](Random& random, const TruthVolume& truth, double band, int round, Counts& c) {
+        forEachPair(22, 200000, [&](Random& random, const TruthVolume& truth, double band, int round, Counts& c) {
             const OrientedBox box = test::randomOriented(random, truth);
             const bool kept = !testBound(truth.volume, box).outside;  // it is dear: asked where it matters
             const bool axes = kept && separated(truth.volume, box, Refinement::kSeparatingAxes);
@@ -103,52 +101,56 @@ TEST(Bounds, OrientedBoxesAreKeptIfTheyTouchAndTheSeparatingAxesKeepNoOthers) {
 }
 
 TEST(Bounds, DopsAreKeptIfTheyTouchAndAreNeverLooserThanTheirBoxes) {
+    size_t looser = 0;
     const Counts counts =
-        forEachPair(23, [&](Random& random, const TruthVolume& truth, double band, int round, Counts& c) {
-            if (random.below(8)) return;  // their bodies take long to make
+        forEachPair(23, 25000, [&](Random& random, const TruthVolume& truth, double band, int round, Counts& c) {
             const Dop dop = test::randomDop(random, truth);
             const Box3d box{{dop.min[0], dop.min[1], dop.min[2]}, {dop.max[0], dop.max[1], dop.max[2]}};
             judge(dop, truth, band, round, c, false);
             const BoundAnswer of_box = testBound(truth.volume, box), of_dop = testBound(truth.volume, dop);
-            c.left_apart += !of_dop.outside && of_box.outside;
+            looser += !of_dop.outside && of_box.outside;
         });
     EXPECT_GT(counts.together, counts.apart / 20);
-    EXPECT_LE(counts.left_apart, counts.apart + 1);
+    EXPECT_LE(looser, counts.apart / 10000);  // where rounding decides
 }
 
 TEST(Bounds, SpheresAreKeptIfTheyTouchAndTheDistanceIsExact) {
-    size_t kept = 0, beyond_edges = 0;
-    forEachPair(24, [&](Random& random, const TruthVolume& truth, double band, int round, Counts&) {
-        if (random.below(20)) return;  // the faces take long to make
-        const Sphere sphere = test::randomSphere(random, truth);
-        const double size = glm::length(sphere.center - truth.volume.eye) + sphere.radius;
-        const double expected = test::distanceByFaces(truth.volume, sphere.center, 1e4);
-        const double doubt = band + 1e-9 * size;
-        ASSERT_NEAR(distanceTo(truth.volume, sphere.center), expected, doubt) << "round " << round;
-        const BoundAnswer answer = testBound(truth.volume, sphere);
-        const bool exact = surelyOutside(truth.volume, sphere);
-        if (expected < sphere.radius - doubt) { ASSERT_FALSE(answer.outside || exact) << "round " << round; }
-        if (expected > sphere.radius + doubt) { ASSERT_TRUE(exact) << "round " << round; }
-        kept += expected < sphere.radius - doubt;
-        beyond_edges += exact && !answer.outside;
-    });
-    EXPECT_GT(kept, 0u);
+    size_t beyond_edges = 0;
+    const Counts counts =
+        forEachPair(24, 10000, [&](Random& random, const TruthVolume& truth, double band, int round, Counts& c) {
+            const Sphere sphere = test::randomSphere(random, truth);
+            const double size = glm::length(sphere.center - truth.volume.eye) + sphere.radius;
+            const double expected = test::distanceByFaces(truth.volume, sphere.center, 1e4);
+            const double doubt = band + 1e-9 * size;
+            ASSERT_NEAR(distanceTo(truth.volume, sphere.center), expected, doubt) << "round " << round;
+            const BoundAnswer answer = testBound(truth.volume, sphere);
+            const bool exact = surelyOutside(truth.volume, sphere);
+            if (expected < sphere.radius - doubt) { ASSERT_FALSE(answer.outside || exact) << "round " << round; }
+            if (expected > sphere.radius + doubt) { ASSERT_TRUE(exact) << "round " << round; }
+            const bool is_apart = expected > sphere.radius + doubt;
+            c.together += expected < sphere.radius - doubt;
+            c.apart += is_apart;
+            c.kept_apart += is_apart && !answer.outside;
+            beyond_edges += exact && !answer.outside;
+        });
+    EXPECT_GT(counts.together, 0u);
     EXPECT_GT(beyond_edges, 0u);
 }
 
 TEST(Bounds, PlanesThatHoldTheParentNeedNotBeAsked) {
-    const Counts counts = forEachPair(25, [&](Random& random, const TruthVolume& truth, double, int round, Counts& c) {
-        const Box3d parent = test::randomBox(random, truth);
-        glm::dvec3 p[2];
-        for (glm::dvec3& q : p)
-            for (int axis = 0; axis < 3; ++axis) q[axis] = random.uniform(parent.min[axis], parent.max[axis]);
-        const Box3d child{glm::min(p[0], p[1]), glm::max(p[0], p[1])};
-        const BoundAnswer above = testBound(truth.volume, parent), all = testBound(truth.volume, child);
-        const BoundAnswer masked = testBound(truth.volume, child, above.planes);
-        ASSERT_EQ(masked.outside, all.outside) << "round " << round;
-        ASSERT_EQ(masked.planes, all.planes) << "round " << round;
-        c.together += above.planes != truth.volume.allPlanes();
-    });
+    const Counts counts =
+        forEachPair(25, 200000, [&](Random& random, const TruthVolume& truth, double, int round, Counts& c) {
+            const Box3d parent = test::randomBox(random, truth);
+            glm::dvec3 p[2];
+            for (glm::dvec3& q : p)
+                for (int axis = 0; axis < 3; ++axis) q[axis] = random.uniform(parent.min[axis], parent.max[axis]);
+            const Box3d child{glm::min(p[0], p[1]), glm::max(p[0], p[1])};
+            const BoundAnswer above = testBound(truth.volume, parent), all = testBound(truth.volume, child);
+            const BoundAnswer masked = testBound(truth.volume, child, above.planes);
+            ASSERT_EQ(masked.outside, all.outside) << "round " << round;
+            ASSERT_EQ(masked.planes, all.planes) << "round " << round;
+            c.together += above.planes != truth.volume.allPlanes();
+        });
     EXPECT_GT(counts.together, 0u);
 }
 

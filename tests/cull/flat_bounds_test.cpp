@@ -4,9 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "tests/cull/clip_oracle.h"
+#include "tests/cull/long_tests.h"
 #include "tests/support_targets.h"
 
 namespace sightline {
@@ -16,11 +15,8 @@ using test::TruthVolume;
 
 constexpr size_t kCount = 1000, kPadded = 1008;
 
-/// Bounds per kind and instruction set: SIGHTLINE_TEST_PAIRS, or what takes a second.
-int rounds() {
-    const char* wanted = std::getenv("SIGHTLINE_TEST_PAIRS");
-    return std::max(static_cast<int>((wanted ? std::atoi(wanted) : 40000) / kCount), 8);
-}
+/// Bounds per kind and instruction set, in thousands.
+int rounds() { return std::max(static_cast<int>(test::pairsToMake(40000) / kCount), 8); }
 
 /// The same bounds in double and, in float around an origin, as arrays.
 struct Lists {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <map>
 
@@ -77,6 +78,56 @@ uint32_t expectSound(const PlacedBvh& tree, const Truth& truth) {
     return nodes;
 }
 
+bool meet(const Box3f& a, const Box3f& b) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(a.min[axis] <= b.max[axis] && b.min[axis] <= a.max[axis])) return false;
+    return true;
+}
+
+/// The items whose slots, and all nodes above, `keeps` keeps; in rising order.
+template <class Keeps>
+std::vector<uint32_t> walk(const PlacedBvh& tree, Keeps keeps) {
+    std::vector<uint32_t> kept, stack;
+    if (!tree.nodes.empty()) stack.push_back(0);
+    while (!stack.empty()) {
+        const BvhNode& node = tree.nodes[stack.back()];
+        stack.pop_back();
+        const uint32_t slots = keeps(node);
+        for (int slot = 0; slot < 8; ++slot) {
+            if (node.count[slot] == 0 || !(slots >> slot & 1)) continue;
+            if (node.child[slot] & BvhNode::kLeaf) kept.push_back(tree.order[node.first[slot]]);
+            else stack.push_back(node.child[slot]);
+        }
+    }
+    std::sort(kept.begin(), kept.end());
+    return kept;
+}
+
+/// Boxes and views: what a walk of the tree finds is what all boxes one by one give.
+void expectBruteForce(const PlacedBvh& tree, const Truth& truth, Random& random) {
+    for (int query = 0; query < 8; ++query) {
+        const Box3f range = roundOutward(randomBox(random, randomPoint(random, kWorld), kWorld), tree.origin);
+        std::vector<uint32_t> expected;
+        for (const auto& [item, box] : truth)
+            if (meet(roundOutward(box, tree.origin), range)) expected.push_back(item);
+        EXPECT_EQ(walk(tree,
+                       [&](const BvhNode& node) {
+                           uint32_t slots = 0;
+                           for (int slot = 0; slot < 8; ++slot)
+                               slots |= uint32_t{meet(slotBox(node, slot), range)} << slot;
+                           return slots;
+                       }),
+                  expected);
+        const Frustum frustum = makeFrustum(randomView(random, kWorld));
+        const std::vector<uint32_t> kept = walk(tree, [&](const BvhNode& node) {
+            return ~testFrustum(frustum, eyeBoxes(node, tree.origin - frustum.eye), 63).outside;
+        });
+        for (const auto& [item, box] : truth)
+            EXPECT_TRUE(!touches(frustum, box) || std::binary_search(kept.begin(), kept.end(), item))
+                << "item " << item;
+    }
+}
+
 struct Both {
     GrowingBvh tree;
     Truth truth;
@@ -126,7 +177,11 @@ struct Both {
         ASSERT_EQ(tree.now().placeOf(item), place);
         ASSERT_EQ(tree.now().order[place], item);
     }
-    void mend() {
+    void mend(bool check) {
+        if (!check) {
+            for (const GrowingBvh::Places& places : tree.mend(1000)) mended += places.end - places.first;
+            return;
+        }
         const std::vector<uint32_t> before = order();
         std::vector<bool> anew(before.size(), false);
         for (const GrowingBvh::Places& places : tree.mend(1000))
@@ -156,6 +211,7 @@ TEST(GrowingBvh, HoldsEveryItemOnceWhateverComesMovesAndGoes) {
         Random random(seed);
         Both both;
         const uint32_t changes = changesToMake(30000) / 30;
+        const uint32_t check = std::max(changes / 20, 1u);  // looking at all of a tree takes long
         const double largest = seed % 2 ? kWorld : 0.05 * kWorld;
         for (uint32_t step = 0; step < changes; ++step) {
             const uint64_t kind = random.below(10);
@@ -174,14 +230,17 @@ TEST(GrowingBvh, HoldsEveryItemOnceWhateverComesMovesAndGoes) {
                 const glm::dvec3 by = randomPoint(random, way);
                 strayed += !both.move(item, {both.truth[item].min + by, both.truth[item].max + by});
             }
-            if (step % 7 == 0) both.mend();
+            if (step % 7 == 0) both.mend(step % std::max(check / 50, 1u) == 0);
             if (both.tree.isWorn()) {
                 both.build();
                 ++built;
                 ASSERT_FALSE(both.tree.isWorn());
             }
             ASSERT_EQ(both.tree.size(), both.truth.size());
-            if (step % 50 == 0) expectSound(both.tree.share(), both.truth);
+            if (step % check == 0) {
+                expectSound(both.tree.share(), both.truth);
+                expectBruteForce(both.tree.share(), both.truth, random);
+            }
             if (testing::Test::HasFailure()) return;
         }
         expectSound(both.tree.share(), both.truth);
