@@ -21,6 +21,7 @@ constexpr Case kCases[] = {
     {"bsp", benchBsp},
     {"clipping", benchClipping},
     {"depth", benchDepth},
+    {"eye", benchEye},
     {"frustum", benchFrustum},
 #ifdef SIGHTLINE_GL
     {"gl", benchGl},

@@ -21,6 +21,10 @@ Table benchClipping(const Options& options);
 /// A city and made scenes: the tiled z-buffer beside the plain one, with and without what it saves, in all formats.
 Table benchDepth(const Options& options);
 
+/// Buildings, and real maps where ../shared/maps is there: what each level of eye-to-cell culling keeps and costs, beside the
+/// windows of portals.
+Table benchEye(const Options& options);
+
 /// A million boxes, 7 % of them in view: corner by corner, p-vertex, flat SIMD, and the hierarchy.
 Table benchFrustum(const Options& options);
 
