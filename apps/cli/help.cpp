@@ -88,6 +88,8 @@ constexpr Example kExamples[] = {
      {"sightline render model.glb --frame 3 -o picture.png --heat-map heat.png", "a picture and its depth complexity"}},
     {"info", {"sightline info model.glb", "what it holds"}},
     {"info", {"sightline info part-1.obj part-2.stl --json -", "what two files hold together, as JSON"}},
+    {"bake", {"sightline bake building:1:10 -o building.see", "its cells, portals and visible sets, as a file"}},
+    {"bake", {"sightline bake maps/e1m1.bsp -o e1m1.see --objects", "of a map, and which faces each cell sees"}},
     {"bench", {"sightline bench occlusion", "the occlusion buffer beside its baselines"}},
     {"explain",
      {"sightline explain model.glb --object 42 --frame 3 -o why.png",

@@ -105,6 +105,7 @@ int runTool(int count, char** words) {
     addExplain(tool, exit_code);
     addReplay(tool, exit_code);
     addVis(tool, exit_code);
+    addBake(tool, exit_code);
     addCalibrate(tool, exit_code);
     addReport(tool, exit_code);
     addInfo(tool, exit_code);

@@ -24,6 +24,7 @@ void addVerify(CLI::App& tool, int& exit_code);
 void addRender(CLI::App& tool, int& exit_code);
 void addExplain(CLI::App& tool, int& exit_code);
 void addVis(CLI::App& tool, int& exit_code);
+void addBake(CLI::App& tool, int& exit_code);
 void addReplay(CLI::App& tool, int& exit_code);
 void addCalibrate(CLI::App& tool, int& exit_code);
 void addReport(CLI::App& tool, int& exit_code);

@@ -26,12 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string kindOf(const std::string& name) {
-    std::string kind = fs::path(splitMapName(name).file).extension().string();
-    std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) { return std::tolower(c); });
-    return kind;
-}
-
 /// The file of the same name with another end, if there is one.
 std::string beside(const std::string& name, const char* end) {
     const fs::path other = fs::path(name).replace_extension(end);
@@ -142,7 +136,10 @@ Status findCells(const VisMapChoice& choice, VisMap& out) {
     const QuakeMapFile& map = *out.map;
     TreePortalSettings settings;
     settings.contents_stop = choice.water_is_opaque;
-    out.graph = cellsOfTree(map.tree, settings);
+    TreePortalCounts counts;
+    out.graph = cellsOfTree(map.tree, settings, &counts);
+    if (choice.keep_leaves) out.leaf_graph = out.graph;
+    out.tolerance = counts.tolerance;
     out.tree = map.tree;
     out.contents_stop = settings.contents_stop;
     if (choice.cells == VisCells::kLeaves) {
@@ -199,6 +196,8 @@ Result<VisMap> loadSource(const VisMapChoice& choice) {
     MapCells cells = cellsInside(*source, brushes);
     out.graph = std::move(cells.graph);
     out.leaks = std::move(cells.leaks);
+    if (choice.keep_leaves) out.leaf_graph = out.graph;
+    out.tolerance = brushes.tolerance;
     out.tree = std::move(brushes.tree);
     out.cells_are = "of the brushes";
     return out;
@@ -206,9 +205,15 @@ Result<VisMap> loadSource(const VisMapChoice& choice) {
 
 }  // namespace
 
+std::string mapKind(const std::string& name) {
+    std::string kind = fs::path(splitMapName(name).file).extension().string();
+    std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) { return std::tolower(c); });
+    return kind;
+}
+
 Result<VisMap> loadVisMap(const VisMapChoice& choice) {
     const auto usage = [&](const char* what) { return Error{Error::Kind::kUsage, what}; };
-    const std::string kind = kindOf(choice.name);
+    const std::string kind = mapKind(choice.name);
     const bool is_prt = kind == ".prt", is_source = kind == ".map";
     if (is_prt && choice.cells != VisCells::kClusters)
         return usage("--cells needs a .bsp: a .prt has no cells but its own");
@@ -242,7 +247,7 @@ Result<VisMap> loadVisMap(const VisMapChoice& choice) {
 
 std::string portalFileOf(const VisMapChoice& choice) {
     if (!choice.prt.empty()) return choice.prt;
-    const bool is_map = kindOf(choice.name) == ".bsp" && choice.cells == VisCells::kClusters;
+    const bool is_map = mapKind(choice.name) == ".bsp" && choice.cells == VisCells::kClusters;
     return is_map ? beside(splitMapName(choice.name).file, ".prt") : "";
 }
 

@@ -30,21 +30,27 @@ struct VisMapChoice {
     std::string prt;   ///< for a .bsp: the portal file that tells its clusters; empty: none was named
     VisCells cells = VisCells::kClusters;
     bool water_is_opaque = false;
-    bool needs_bsp = false;  ///< its lump is to be written
+    bool needs_bsp = false;    ///< its lump is to be written
+    bool keep_leaves = false;  ///< fill VisMap::leaf_graph
 };
 
 struct VisMap {
     CellGraph graph;
-    uint32_t leaves = 0;              ///< that can have a row
-    std::string cells_are;            ///< where the cells come from, for people
-    uint64_t content_hash = 0;        ///< of the file that the cells are of
-    std::optional<QuakeMapFile> map;  ///< of a .bsp
-    std::optional<LeafTree> tree;     ///< that the portals were made from, and rays judge; of a .prt none
-    bool contents_stop = false;       ///< TreePortalSettings
-    std::vector<MapLeak> leaks;       ///< of a .map
-    std::string map_name;             ///< of its bytes
+    uint32_t leaves = 0;                  ///< that can have a row
+    std::string cells_are;                ///< where the cells come from, for people
+    uint64_t content_hash = 0;            ///< of the file that the cells are of
+    std::optional<QuakeMapFile> map;      ///< of a .bsp
+    std::optional<LeafTree> tree;         ///< that the portals were made from, and rays judge; of a .prt none
+    std::optional<CellGraph> leaf_graph;  ///< of the tree's leaves, each a cell; if they were to be kept
+    double tolerance = 0;                 ///< how far portals of the tree may be off [world units]
+    bool contents_stop = false;           ///< TreePortalSettings
+    std::vector<MapLeak> leaks;           ///< of a .map
+    std::string map_name;                 ///< of its bytes
     std::vector<unsigned char> map_bytes;
 };
+
+/// The end of a map's name, or of the archive that it is in, in small letters: ".bsp".
+std::string mapKind(const std::string& name);
 
 /// Errors: of the readers, of files that do not belong together (kInput), of what cannot be asked of a file of its
 /// kind (kUsage).

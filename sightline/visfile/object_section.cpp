@@ -14,7 +14,8 @@ constexpr uint64_t kHeadBytes = 16;
 Result<Array<char>> objectSection(const ObjectPlaces& objects, uint32_t cells, Memory* memory) {
     const auto wrong = [](const char* what) { return Error{Error::Kind::kUsage, what}; };
     const size_t count = objects.size();
-    if (objects.bounds.size() != count || objects.first_cell.size() != count + 1 || objects.everywhere.size() != count)
+    if (objects.bounds.size() != count || objects.first_cell.size() != count + 1 ||
+        objects.everywhere.size() != count || objects.wall.size() != count)
         return wrong("objects without bounds, cells or marks");
     Array<char> bytes(memory);
     ByteWriter out(bytes);
@@ -25,7 +26,7 @@ Result<Array<char>> objectSection(const ObjectPlaces& objects, uint32_t cells, M
         for (const glm::dvec3& corner : {box.min, box.max})
             for (int axis = 0; axis < 3; ++axis) out.put(corner[axis]);
     for (size_t i = 0; i < count; ++i) out.put(objects.first_cell[i + 1]);
-    for (size_t i = 0; i < count; ++i) out.put(static_cast<uint8_t>(objects.everywhere[i]));
+    for (size_t i = 0; i < count; ++i) out.put(static_cast<uint8_t>(objects.everywhere[i] + 2 * objects.wall[i]));
     bytes.resize((bytes.size() + 3) / 4 * 4);
     for (const uint32_t cell : objects.cells) out.put(cell);
     if (const Result<PlacedObjects> opened = PlacedObjects::open(bytes, cells, "objects"); !opened)
@@ -60,8 +61,8 @@ Result<PlacedObjects> PlacedObjects::open(std::span<const char> bytes, uint32_t 
             return faultAt(file, "an object without bounds", at + kHeadBytes + 8 * count + 48 * uint64_t{i});
         if (end < begin || end > places)
             return faultAt(file, "an object whose cells end before they begin", at + kHeadBytes);
-        if (out.marks_[i] > 1) return faultAt(file, "a mark that is not known", at + kHeadBytes + 64 * count + i);
-        if (begin == end && out.marks_[i] == 0) return faultAt(file, "an object in no cell", at + kHeadBytes);
+        if (out.marks_[i] > 3) return faultAt(file, "a mark that is not known", at + kHeadBytes + 64 * count + i);
+        if (begin == end && !out.seenFromEverywhere(i)) return faultAt(file, "an object in no cell", at + kHeadBytes);
         for (uint64_t k = begin; k < end; ++k)
             if (all[k] >= cells || (k > begin && all[k] <= all[k - 1]))
                 return faultAt(file, "an object in a cell that there is not, or twice in one", at);

@@ -18,8 +18,8 @@ namespace sightline {
 
 namespace visibility_file {
 
-/// objects, numbers of cells in all: 8 bytes each; per object its key (8), bounds (48), where its cells end (8), mark
-/// (1: seen from everywhere); with zero up to a multiple of 4; the cells of all, 4 bytes each.
+/// objects, numbers of cells in all: 8 bytes each; per object its key (8), bounds (48), where its cells end (8), marks
+/// (a byte; 1: seen from everywhere, 2: a wall); with zero up to a multiple of 4; the cells of all, 4 bytes each.
 inline constexpr uint32_t kObjects = section_file::tagOf("objs");
 
 }  // namespace visibility_file
@@ -31,17 +31,20 @@ struct ObjectPlaces {
     std::vector<uint64_t> first_cell{0};  ///< per object where its cells begin, and the end
     std::vector<uint32_t> cells;          ///< rising for each object
     std::vector<bool> everywhere;         ///< seen from everywhere: whatever its cells are
+    std::vector<bool> wall;               ///< what cells and portals are rests on it: while it stands, they hold
 
     size_t size() const { return keys.size(); }
     std::span<const uint32_t> cellsOf(size_t i) const {
         return {cells.data() + first_cell[i], cells.data() + first_cell[i + 1]};
     }
-    void add(uint64_t key, const Box3d& box, std::span<const uint32_t> in, bool seen_from_everywhere) {
+    void add(uint64_t key, const Box3d& box, std::span<const uint32_t> in, bool seen_from_everywhere,
+             bool is_wall = false) {
         keys.push_back(key);
         bounds.push_back(box);
         cells.insert(cells.end(), in.begin(), in.end());
         first_cell.push_back(cells.size());
         everywhere.push_back(seen_from_everywhere);
+        wall.push_back(is_wall);
     }
 };
 
@@ -70,7 +73,9 @@ public:
     /// everywhere.
     PlacedNumbers<uint32_t> cells(size_t i) const;
     /// It is in no cell, or reaches out of all: nothing that cells say may hide it.
-    bool seenFromEverywhere(size_t i) const { return marks_[i] != 0; }
+    bool seenFromEverywhere(size_t i) const { return (marks_[i] & 1) != 0; }
+    /// The file holds only while this object is drawn, opaque, where it was: it is a wall of cells.
+    bool isWall(size_t i) const { return (marks_[i] & 2) != 0; }
     /// The first object of a key and the end of its objects; empty if there is none. O(log size()).
     std::pair<size_t, size_t> find(uint64_t key) const;
 

@@ -25,7 +25,7 @@ struct MadePlaces {
             for (uint32_t cell = 0; cell < space.graph.cells; ++cell)
                 if (random.below(space.graph.cells) < 2) in.push_back(cell);
             const glm::dvec3 low(random.uniform(), random.uniform(), random.uniform());
-            objects.add(i / 2, {low, low + glm::dvec3(i % 3)}, in, in.empty() || i % 7 == 0);
+            objects.add(i / 2, {low, low + glm::dvec3(i % 3)}, in, in.empty() || i % 7 == 0, i % 5 == 0);
         }
         object_rows = BitMatrix(rows, count);
         for (size_t row = 0; row < rows; ++row)

@@ -84,6 +84,7 @@ void expectSame(const VisibilityFile& file, const MadePlaces& made) {
         EXPECT_EQ(objects.bounds(i).min, made.objects.bounds[i].min);
         EXPECT_EQ(objects.bounds(i).max, made.objects.bounds[i].max);
         EXPECT_EQ(objects.seenFromEverywhere(i), made.objects.everywhere[i]);
+        EXPECT_EQ(objects.isWall(i), made.objects.wall[i]);
         const std::span<const uint32_t> in = made.objects.cellsOf(i);
         ASSERT_EQ(objects.cells(i).size(), in.size());
         for (size_t k = 0; k < in.size(); ++k) EXPECT_EQ(objects.cells(i)[k], in[k]);
