@@ -197,8 +197,7 @@ Result<int> runBake(BakeOptions& options) {
 }  // namespace
 
 void addBake(CLI::App& tool, int& exit_code) {
-    CLI::App* verb =
-        tool.add_subcommand("bake", "the cells, portals and visible sets of a map or a scene with cells, as a file");
+    CLI::App* verb = tool.add_subcommand("bake", "cells, portals and visible sets of a scene as a file");
     const auto options = std::make_shared<BakeOptions>();
     addSceneChoice(*verb, options->scene);
     verb->add_option("-o,--output", options->output, "write the visibility file")->type_name("FILE");

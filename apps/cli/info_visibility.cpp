@@ -49,6 +49,36 @@ VisibilityFacts countPairs(const VisibilityFile& file) {
     return facts;
 }
 
+/// Counts of cells as places and of what lies in them.
+struct PlaceFacts {
+    uint64_t cells = 0, portals = 0, doors = 0, objects = 0, places = 0, everywhere = 0, walls = 0, object_pairs = 0;
+    const char* cells_are = "";
+    bool outside = false;
+};
+
+PlaceFacts countPlaces(const VisibilityFile& file) {
+    PlaceFacts facts;
+    if (!file.hasCells()) return facts;
+    facts.cells = file.cells().cells();
+    facts.portals = file.portals().portals();
+    facts.doors = file.portals().doors();
+    facts.cells_are = file.cells().hasRegions() ? "regions" : "leaves of a tree";
+    facts.outside = file.cells().outside() != CellGraph::kNoCell;
+    const PlacedObjects& objects = file.objects();
+    facts.objects = objects.size();
+    for (size_t i = 0; i < objects.size(); ++i) {
+        facts.places += objects.cells(i).size();
+        facts.everywhere += objects.seenFromEverywhere(i);
+        facts.walls += objects.isWall(i);
+    }
+    std::vector<uint64_t> row((objects.size() + 63) / 64);
+    for (uint32_t i = 0; file.hasObjectRows() && i < file.rows().cells(); ++i) {
+        file.objectRow(i, row);
+        for (const uint64_t word : row) facts.object_pairs += static_cast<uint64_t>(std::popcount(word));
+    }
+    return facts;
+}
+
 }  // namespace
 
 bool isVisibilityFile(const std::string& file) {
@@ -67,6 +97,7 @@ Status infoOfVisibility(const std::string& file, const std::string& json) {
     if (!opened) return opened.error();
     const VisibleRows& rows = opened->rows();
     const VisibilityFacts facts = countPairs(*opened);
+    const PlaceFacts places = countPlaces(*opened);
     const bool packed = !SectionFile::open(*bytes, file)->find(visibility_file::kPackedRows).empty();
     const std::string map(opened->mapName());
     const std::string hash = fmt::format("{:016x}", opened->mapHash());
@@ -81,22 +112,45 @@ Status infoOfVisibility(const std::string& file, const std::string& json) {
         row("leaves", opened->leaves(), grouped(facts.leaves_with_cells) + " in cells");
         row("visible cell pairs", facts.cell_pairs);
         row("visible leaf pairs", facts.leaf_pairs);
+        if (opened->hasCells()) {
+            row("cells as places", places.cells,
+                std::string(places.cells_are) + (places.outside ? ", and the outside" : ""));
+            row("portals", places.portals, grouped(places.doors) + " doors");
+        }
+        if (opened->hasObjects())
+            row("objects", places.objects,
+                fmt::format("in {} places; {} seen from everywhere, {} walls", grouped(places.places),
+                            grouped(places.everywhere), grouped(places.walls)));
+        if (opened->hasObjectRows()) row("visible objects", places.object_pairs, "pairs of rows and objects");
         row("bytes", bytes->size(), grouped(opened->residentBytes()) + " resident");
     }
     if (json.empty()) return success();
-    const Json out = {{"schema", "sightline.visibility/1"},
-                      {"file", file},
-                      {"form", packed ? "packed" : "in place"},
-                      {"map", map},
-                      {"map_hash", hash},
-                      {"cells", rows.cells()},
-                      {"different_rows", rows.classes()},
-                      {"leafs", opened->leaves()},
-                      {"leafs_in_cells", facts.leaves_with_cells},
-                      {"visible_cell_pairs", facts.cell_pairs},
-                      {"visible_leaf_pairs", facts.leaf_pairs},
-                      {"bytes", bytes->size()},
-                      {"resident_bytes", opened->residentBytes()}};
+    Json out = {{"schema", "sightline.visibility/1"},
+                {"file", file},
+                {"form", packed ? "packed" : "in place"},
+                {"map", map},
+                {"map_hash", hash},
+                {"cells", rows.cells()},
+                {"different_rows", rows.classes()},
+                {"leafs", opened->leaves()},
+                {"leafs_in_cells", facts.leaves_with_cells},
+                {"visible_cell_pairs", facts.cell_pairs},
+                {"visible_leaf_pairs", facts.leaf_pairs},
+                {"bytes", bytes->size()},
+                {"resident_bytes", opened->residentBytes()}};
+    if (opened->hasCells()) {
+        out["places"] = {{"cells", places.cells},
+                         {"cells_are", places.cells_are},
+                         {"outside", places.outside},
+                         {"portals", places.portals},
+                         {"doors", places.doors}};
+        if (opened->hasObjects())
+            out["objects"] = {{"count", places.objects},
+                              {"places", places.places},
+                              {"everywhere", places.everywhere},
+                              {"walls", places.walls}};
+        if (opened->hasObjectRows()) out["visible_object_pairs"] = places.object_pairs;
+    }
     return writeText(json, out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

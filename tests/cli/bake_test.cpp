@@ -1,0 +1,216 @@
+// The verb bake: buildings and maps become files that hold their cells.
+// SPDX-License-Identifier: MIT
+#include <filesystem>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "sightline/base/random.h"
+#include "sightline/import/map_source.h"
+#include "sightline/import/quake_scene.h"
+#include "sightline/space/tree_portals.h"
+#include "sightline/visfile/visibility_file.h"
+#include "tests/cli/tool.h"
+#include "tests/import/archive_files.h"
+#include "tests/import/map_files.h"
+
+namespace sightline {
+namespace {
+
+using nlohmann::json;
+using namespace test;
+
+bool isIn(const PlacedObjects& objects, size_t object, uint32_t cell) {
+    const PlacedNumbers<uint32_t> cells = objects.cells(object);
+    for (size_t i = 0; i < cells.size(); ++i)
+        if (cells[i] == cell) return true;
+    return objects.seenFromEverywhere(object);
+}
+
+class Bake : public Tool {
+protected:
+    json bake(const std::string& arguments) const {
+        const Outcome outcome = run("bake " + arguments + " --json -");
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return outcome.exit_code == 0 ? json::parse(outcome.out) : json();
+    }
+    json info(const std::string& file) const {
+        const Outcome outcome = run("info " + file + " --json -");
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return outcome.exit_code == 0 ? json::parse(outcome.out) : json();
+    }
+};
+
+TEST_F(Bake, ABuildingBecomesAFileThatHoldsItsCells) {
+    const json out = bake("building:1:1 -o b.see --objects");
+    EXPECT_EQ(out["schema"], "sightline.bake/1");
+    EXPECT_GT(out["cells"], 50);
+    EXPECT_GE(out["portals"], out["cells"]);
+    EXPECT_GT(out["doors"], 5);
+    EXPECT_EQ(out["rows"], out["cells"]);
+    EXPECT_GT(out["objects"]["count"], 500);
+    EXPECT_LT(out["object_rows"]["visible_pairs"], out["object_rows"]["pairs_by_cells"]);
+    EXPECT_EQ(out["bytes"], std::filesystem::file_size(path("b.see")));
+    EXPECT_FALSE(std::filesystem::exists(path("b.see.state")));
+    const json told = info("b.see");
+    EXPECT_EQ(told["map"], "building:1:1");
+    EXPECT_EQ(told["map_hash"], out["hash"]);
+    EXPECT_EQ(told["cells"], out["rows"]);
+    EXPECT_EQ(told["places"]["cells"], out["cells"]);
+    EXPECT_EQ(told["places"]["cells_are"], "regions");
+    EXPECT_EQ(told["places"]["portals"], out["portals"]);
+    EXPECT_EQ(told["places"]["doors"], out["doors"]);
+    EXPECT_EQ(told["objects"]["count"], out["objects"]["count"]);
+    EXPECT_EQ(told["objects"]["places"], out["objects"]["places"]);
+    EXPECT_EQ(told["visible_cell_pairs"], out["visible_pairs"]);
+    EXPECT_EQ(told["visible_object_pairs"], out["object_rows"]["visible_pairs"]);
+    const Outcome text = run("info b.see");
+    EXPECT_NE(text.out.find("cells as places"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("visible objects"), std::string::npos) << text.out;
+}
+
+TEST_F(Bake, BytesAreTheSameForAnyThreads) {
+    for (const char* threads : {"1", "2", "8"})
+        ASSERT_EQ(run(fmt::format("bake building:1:1 -o t{}.see --objects --threads {}", threads, threads)).exit_code,
+                  0);
+    EXPECT_EQ(read(path("t1.see")), read(path("t2.see")));
+    EXPECT_EQ(read(path("t1.see")), read(path("t8.see")));
+    ASSERT_FALSE(read(path("t1.see")).empty());
+    const std::string packed = read(path("t1.see"));
+    ASSERT_EQ(run("bake building:1:1 -o p.see --objects --in-place").exit_code, 0);
+    const std::string in_place = read(path("p.see"));
+    EXPECT_GT(in_place.size(), packed.size());
+    const Array<char> again = packedFile(*VisibilityFile::open(in_place, "p.see"));
+    EXPECT_EQ(std::string(again.begin(), again.end()), packed);
+}
+
+TEST_F(Bake, MapsOfAllFormatsKeepTheirTreeAndFaces) {
+    for (const QuakeFormat format : kQuakeFormats) {
+        SCOPED_TRACE(quakeFormatName(format));
+        MadeMap made;
+        madeVisibility(format, false, made);
+        const std::string bytes = mapBytes(format, made);
+        write("m.bsp", bytes);
+        const json out = bake("m.bsp -o m.see --objects");
+        EXPECT_EQ(out["rows"], out["cells"]);  // two rooms
+        const std::string file = read(path("m.see"));
+        const Result<VisibilityFile> opened = VisibilityFile::open(file, "m.see");
+        ASSERT_TRUE(opened.ok()) << opened.error().message;
+        const QuakeMapFile map =
+            *parseQuakeBsp({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()}, "m.bsp");
+        const CellSpace space = opened->cellSpace();
+        EXPECT_EQ(space.tree.nodes.size(), map.tree.nodes.size());
+        EXPECT_EQ(space.tree.contents, map.tree.contents);
+        EXPECT_EQ(space.graph.cell_of_leaf, cellsOfTree(map.tree).cell_of_leaf);
+        for (uint32_t leaf = 0; leaf < opened->leaves(); ++leaf)
+            if (const uint32_t cell = space.graph.cell_of_leaf[leaf]; cell != CellGraph::kNoCell) {
+                EXPECT_EQ(space.row_of_cell[cell], opened->cellOfLeaf(leaf));
+            }
+        // Each face of the world, in the cells around its middle; what moves is not in the file.
+        const PlacedObjects& objects = opened->objects();
+        const Scene scene = *quakeScene(map, "m.bsp");
+        uint64_t still = 0;
+        for (const SceneObject& object : scene.objects) {
+            const auto [begin, end] = objects.find(object.key);
+            const bool moves = map.faces[object.key].model != 0;
+            still += !moves;
+            ASSERT_EQ(end - begin, moves ? 0u : 1u) << object.key;
+            if (moves) continue;
+            const Box3d box = transformBox(scene.meshes[object.mesh].bounds, object.transform);
+            EXPECT_EQ(objects.bounds(begin).min, box.min);
+            EXPECT_EQ(objects.bounds(begin).max, box.max);
+            for (int i = 0; i < 6; ++i) {  // the leaves around its middle
+                glm::dvec3 p = box.center();
+                p[i % 3] += i < 3 ? 0.1 : -0.1;
+                const uint32_t cell = space.graph.cell_of_leaf[leafAt(map.tree, p)];
+                EXPECT_TRUE(cell == CellGraph::kNoCell || isIn(objects, begin, cell)) << object.key << " in " << cell;
+            }
+        }
+        EXPECT_EQ(objects.size(), still);
+        EXPECT_EQ(out["objects"]["moving"], scene.objects.size() - still);
+    }
+    write("a.pak", pakBytes({{"maps/a.bsp", mapBytes(QuakeFormat::kQuake, {})}}));
+    EXPECT_EQ(bake("a.pak --cells leaves")["cells"], bake("a.pak:maps/a.bsp --cells groups")["cells"]);
+}
+
+TEST_F(Bake, FacesOfARealMapAreInTheLeavesAroundTheirPoints) {
+    const std::string name = SIGHTLINE_SHARED_DIR "/maps/lq_e2m2.vis.bsp";
+    if (!std::filesystem::exists(name)) GTEST_SKIP() << "no " << name;
+    ASSERT_EQ(run(fmt::format("bake {} -o m.see --budget 1 --cells groups", name)).exit_code, 0);
+    const std::string file = read(path("m.see"));
+    const Result<VisibilityFile> opened = VisibilityFile::open(file, "m.see");
+    ASSERT_TRUE(opened.ok()) << opened.error().message;
+    const CellSpace space = opened->cellSpace();
+    const QuakeMapFile map = *readQuakeMap(name);
+    const Scene scene = *quakeScene(map, name);
+    Random random(4);
+    uint64_t asked = 0, missing = 0;
+    for (const SceneObject& object : scene.objects) {
+        const auto [begin, end] = opened->objects().find(object.key);
+        if (begin == end) continue;  // it moves
+        const Mesh& mesh = scene.meshes[object.mesh];
+        for (size_t t = 0; t < mesh.indices.size(); t += 3) {
+            const auto corner = [&](size_t k) { return glm::dvec3(mesh.positions[mesh.indices[t + k]]); };
+            const double a = random.uniform(), b = random.uniform() * (1 - a);
+            glm::dvec3 p = corner(0) + a * (corner(1) - corner(0)) + b * (corner(2) - corner(0));
+            for (int axis = 0; axis < 3; ++axis) p[axis] += random.uniform(-0.14, 0.14);
+            const uint32_t cell = space.graph.cell_of_leaf[leafAt(map.tree, p)];
+            if (cell == CellGraph::kNoCell) continue;
+            ++asked;
+            missing += !isIn(opened->objects(), begin, cell);
+        }
+    }
+    EXPECT_GT(asked, 5000u);
+    EXPECT_EQ(missing, 0u);
+}
+
+TEST_F(Bake, ASourceHasTheCellsOfItsBrushes) {
+    std::string walls;
+    const auto brush = [&](int x0, int y0, int z0, int x1, int y1, int z1) {
+        const auto side = [&](int ax, int ay, int az, int bx, int by, int bz, int cx, int cy, int cz) {
+            walls +=
+                fmt::format("( {} {} {} ) ( {} {} {} ) ( {} {} {} ) w 0 0 0 1 1\n", ax, ay, az, bx, by, bz, cx, cy, cz);
+        };
+        walls += "{\n";
+        side(x0, y0, z0, x0, y1, z0, x0, y0, z1);
+        side(x1, y0, z0, x1, y0, z1, x1, y1, z0);
+        side(x0, y0, z0, x0, y0, z1, x1, y0, z0);
+        side(x0, y1, z0, x1, y1, z0, x0, y1, z1);
+        side(x0, y0, z0, x1, y0, z0, x0, y1, z0);
+        side(x0, y0, z1, x0, y1, z1, x1, y0, z1);
+        walls += "}\n";
+    };
+    brush(-80, -80, -80, -64, 80, 80), brush(64, -80, -80, 80, 80, 80), brush(-64, -80, -80, 64, -64, 80);
+    brush(-64, 64, -80, 64, 80, 80), brush(-64, -64, -80, 64, 64, -64), brush(-64, -64, 64, 64, 64, 80);
+    brush(-8, -64, -64, 8, 32, 64);
+    write("room.map", "{\n\"classname\" \"worldspawn\"\n" + walls +
+                          "}\n{\n\"classname\" \"info_player_start\"\n\"origin\" \"-32 0 0\"\n}\n");
+    const json out = bake("room.map -o room.see");
+    EXPECT_GE(out["cells"], 2);
+    EXPECT_EQ(out["rows"], out["cells"]);
+    EXPECT_EQ(out["leaks"], false);
+    EXPECT_EQ(out["objects"]["count"], 0);
+    EXPECT_EQ(info("room.see")["places"]["cells_are"], "leaves of a tree");
+    expectError("bake room.map --cells leaves", 2, "room.map");
+}
+
+TEST_F(Bake, WhatCannotBeBakedIsALine) {
+    expectError("bake city:1:10", 3, "city:1:10");
+    expectError("bake no-such.bsp", 3, "no-such.bsp");
+    expectError("bake no-such.glb", 3, "no-such.glb");
+    write("rooms.prt", "PRT1\n2\n1\n4 0 1 (64 16 0) (64 16 16) (64 0 16) (64 0 0)\n");
+    expectError("bake rooms.prt -o r.see", 2, "rooms.prt");
+    expectError("bake building:1:1 --cells leaves", 2, "--cells");
+    expectError("bake building:1:1 --in-place", 2, "--in-place");
+    expectError("bake building:1:1 -o no-such-folder/b.see", 4, "no-such-folder");
+    write("broken.bsp", "IBSP and nothing else");
+    expectError("bake broken.bsp", 3, "broken.bsp");
+    write("m.bsp", mapBytes(QuakeFormat::kQuake, {}));
+    expectError("bake m.bsp -o m.bsp", 2, "m.bsp");
+    expectError("bake m.bsp building:1:1", 2, "m.bsp");
+    expectError("bake building:1:1 -o b.see --json b.see", 2, "b.see");
+}
+
+}  // namespace
+}  // namespace sightline
