@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "tests/visfile/made_file.h"
+#include "tests/visfile/made_places.h"
 #include "tests/visfile/seal.h"
 
 namespace sightline::test {
@@ -15,6 +16,13 @@ bool write(const std::filesystem::path& file, const Array<char>& bytes) {
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush();
     if (!out) std::fprintf(stderr, "%s: cannot be written\n", file.c_str());
     return bool(out);
+}
+
+/// With all sections of places.
+Array<char> withPlaces(const MadePlaces& places) {
+    const MadeFile rows(5, places.object_rows.rows());
+    return *visibilityFile({rows.visible, {}, "house", 5, &places.space, &places.objects, &places.object_rows},
+                           VisibilityForm::kInPlace);
 }
 
 bool writeAll(const std::filesystem::path& folder) {
@@ -33,8 +41,15 @@ bool writeAll(const std::filesystem::path& folder) {
     const uint64_t coded = sections.placeOf(sections.find(visibility_file::kPackedRows));
     for (const uint64_t at : {coded, coded + 1, coded + 4, coded + 5}) many_cells[at] = '\xff';
     seal(many_cells);
-    return write(folder / "in_place.see", plain) && write(folder / "packed.see", packed) &&
-           write(folder / "one_cell.see", one) && write(folder / "many.see", many) && write(folder / "cut.see", cut) &&
+    const Array<char> boxes = withPlaces(boxesInARow(1, 5, 6, 20)), tree = withPlaces(leavesOfATree(2, 9, 6, 70));
+    Array<char> loose_child = tree;
+    const SectionFile tree_sections = *SectionFile::open(tree, "");
+    loose_child[tree_sections.placeOf(tree_sections.find(visibility_file::kTree)) + 56 + 32] = 0;
+    seal(loose_child);
+    return write(folder / "boxes.see", boxes) && write(folder / "tree.see", tree) &&
+           write(folder / "loose_child.see", loose_child) && write(folder / "in_place.see", plain) &&
+           write(folder / "packed.see", packed) && write(folder / "one_cell.see", one) &&
+           write(folder / "many.see", many) && write(folder / "cut.see", cut) &&
            write(folder / "damaged.see", damaged) && write(folder / "no_tiles.see", no_tiles) &&
            write(folder / "many_cells.see", many_cells);
 }
