@@ -34,6 +34,7 @@ PortalFlood::PortalFlood(Memory* memory)
       steps_(memory),
       heap_(memory),
       start_(memory),
+      looks_(memory),
       corners_(memory),
       clipped_(memory),
       lines_(memory),
@@ -87,8 +88,7 @@ void PortalFlood::reach(uint32_t cell, const WindowBounds& window, uint32_t from
         order_.push_back(cell);
     } else {
         const bool nearer = settings_.depth != 0 && depth < state.depth;
-        const int sides = settings_.windows == PortalWindows::kBoxes ? 4 : 8;
-        if (!nearer && window.isWithin(state.window, sides)) return;
+        if (!nearer && window.isWithin(state.window, sides())) return;
         state.window.grow(window);
         state.depth = std::min(state.depth, depth);
     }
@@ -115,12 +115,11 @@ bool PortalFlood::enter(uint32_t cell) {
     if (++stats_.cells > settings_.work) return false;
     states_[cell].waits = false;
     if (settings_.windows != PortalWindows::kPolygons) {
-        for (const DirectedPortal& portal : graph_->portalsFrom(cell))
-            if (mayEnter(portal)) lookThrough(cell, portal);
+        lookThroughAll(cell);
         return true;
     }
     for (const DirectedPortal& portal : graph_->portalsFrom(cell))
-        if (mayEnter(portal)) lookThroughPolygons(cell, portal);
+        if (mayEnter(portal.to) && eye_.passes(portal.plane, portal.thickness)) lookThroughPolygons(cell, portal);
     for (uint32_t i = states_[cell].polygon; i != ~0u; i = polygons_[i].next) polygons_[i].waits = false;
     return true;
 }
@@ -173,20 +172,33 @@ bool PortalFlood::floodByDistance() {
     return true;
 }
 
-bool PortalFlood::mayEnter(const DirectedPortal& portal) const {
-    if (!rows_.empty()) {
-        const uint32_t row = graph_->rowOf(portal.to);
-        if (row != PortalGraph::kNoCell && (row / 64 >= rows_.size() || (rows_[row / 64] >> row % 64 & 1) == 0))
-            return false;
+bool PortalFlood::mayEnter(uint32_t cell) const {
+    if (rows_.empty()) return true;
+    const uint32_t row = graph_->rowOf(cell);
+    return row == PortalGraph::kNoCell || (row / 64 < rows_.size() && (rows_[row / 64] >> row % 64 & 1) != 0);
+}
+
+float PortalFlood::openOf(const DirectedPortal& portal) const {
+    return portal.door < doors_.size() ? doors_[portal.door].open : 1;
+}
+
+void PortalFlood::lookThroughAll(uint32_t cell) {
+    const auto portals = graph_->portalsFrom(cell);
+    if (looks_.size() < portals.size()) looks_.resize(portals.size());
+    const uint32_t count = lookThroughPortals(eye_, graph_->corners(), portals, states_[cell].window, sides(),
+                                              looks_.data(), stats_.portals);
+    for (uint32_t i = 0; i < count; ++i) {
+        PortalLook& look = looks_[i];
+        const DirectedPortal& portal = portals[look.portal];
+        if (!mayEnter(portal.to)) continue;
+        if (look.near || openOf(portal) < 1) lookThrough(cell, portal);
+        else pass(cell, portal, look.window, look.w);
     }
-    return eye_.passes(portal.plane, portal.thickness);
 }
 
 PortalFlood::Projection PortalFlood::project(const DirectedPortal& portal) {
     Projection projection;
-    ++stats_.portals;
-    float open = 1;
-    if (portal.door != CellPortal::kNone && portal.door < doors_.size()) open = doors_[portal.door].open;
+    const float open = openOf(portal);
     if (open <= 0) return projection;
 
     const PortalCorners& corners = graph_->corners();
@@ -248,21 +260,22 @@ void PortalFlood::lookThrough(uint32_t cell, const DirectedPortal& portal) {
     if (projection.kind == Projection::Kind::kNothing) return;
     const CellState& state = states_[cell];
     WindowBounds window = state.window;
-    if (projection.kind == Projection::Kind::kPart) {
-        window.cut(projection.bounds);
-        if (settings_.windows == PortalWindows::kBoxes) {
-            if (window.isEmpty(4)) return;
-        } else {
-            if (window.isEmpty(8)) return;
-            window.tighten();
-            if (window.isEmpty(8)) return;
-        }
+    if (projection.kind == Projection::Kind::kPart) window.cut(projection.bounds);
+    pass(cell, portal, window, projection.w);
+}
+
+void PortalFlood::pass(uint32_t cell, const DirectedPortal& portal, WindowBounds& window, double key) {
+    if (window.isEmpty(sides())) return;
+    if (sides() == 8) {
+        window.tighten();
+        if (window.isEmpty(8)) return;
     }
+    const CellState& state = states_[cell];
     if (settings_.depth != 0 && state.depth >= settings_.depth) {
         ++stats_.too_deep;
         return;
     }
-    reach(portal.to, window, state.index, portal.portal, state.depth + 1, projection.w);
+    reach(portal.to, window, state.index, portal.portal, state.depth + 1, key);
 }
 
 /// The planes through the eye and a line of the image: dot(line, (x / w, y / w, 1)) >= 0.
@@ -275,7 +288,6 @@ void PortalFlood::addPlane(const glm::dvec3& line, SeenCell& seen) {
 }
 
 void PortalFlood::writeBounds() {
-    const int sides = settings_.windows == PortalWindows::kBoxes ? 4 : 8;
     constexpr double kLines[8][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, 1}, {-1, 1}, {1, -1}};
     for (const uint32_t cell : order_) {
         const CellState& state = states_[cell];
@@ -283,7 +295,7 @@ void PortalFlood::writeBounds() {
         SeenCell seen{
             cell,        static_cast<uint32_t>(planes_.size()), 0, -most[1], -most[3], most[0], most[2], state.from,
             state.portal};
-        for (int i = 0; i < sides; ++i)
+        for (int i = 0; i < sides(); ++i)
             if (most[i] < eye_.image.most[i]) addPlane({kLines[i][0], kLines[i][1], most[i]}, seen);
         cells_.push_back(seen);
     }

@@ -11,6 +11,7 @@
 #include <glm/glm.hpp>
 
 #include "sightline/base/memory.h"
+#include "sightline/cull/portal_bounds.h"
 #include "sightline/cull/portal_eye.h"
 #include "sightline/cull/window_polygon.h"
 #include "sightline/geom/view.h"
@@ -117,7 +118,9 @@ private:
     };
 
     bool start(const PortalGraph& graph, const View& view);
-    bool mayEnter(const DirectedPortal& portal) const;
+    bool mayEnter(uint32_t cell) const;
+    float openOf(const DirectedPortal& portal) const;
+    int sides() const { return settings_.windows == PortalWindows::kBoxes ? 4 : 8; }
     Projection project(const DirectedPortal& portal);
     void findLines(const Projection& projection);
 
@@ -127,7 +130,9 @@ private:
     bool enter(uint32_t cell);
     bool floodTree();
     bool floodByDistance();
+    void lookThroughAll(uint32_t cell);
     void lookThrough(uint32_t cell, const DirectedPortal& portal);
+    void pass(uint32_t cell, const DirectedPortal& portal, WindowBounds& window, double key);
     void lookThroughPolygons(uint32_t cell, const DirectedPortal& portal);
     void writeBounds();
     void writePolygons();
@@ -145,6 +150,7 @@ private:
     Array<Step> steps_;
     Array<Waiting> heap_;
     Array<uint32_t> start_;
+    Array<PortalLook> looks_;
     Array<glm::dvec3> corners_, clipped_;
     Array<WindowLine> lines_;
     Array<Polygon> polygons_;

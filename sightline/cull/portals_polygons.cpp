@@ -13,6 +13,8 @@ constexpr uint32_t kMostOfCell = 8;  // windows; further ones are joined
 constexpr double kSame = 0x1p-46;    // outside by less is inside: of the slack of 2^-36 that each portal adds
 constexpr double kConvex = 0x1p-30;  // share of the area that a hull may have more than both and still be their union
 
+constexpr double kShared = 0x1p-20;  // corners so close may be the same: portals' margins move them apart
+
 constexpr double kLines[8][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, 1}, {-1, 1}, {1, -1}};
 
 bool touch(const WindowBounds& a, const WindowBounds& b) {
@@ -48,6 +50,7 @@ void PortalFlood::findLines(const Projection& projection) {
 }
 
 void PortalFlood::lookThroughPolygons(uint32_t cell, const DirectedPortal& portal) {
+    ++stats_.portals;
     const Projection projection = project(portal);
     if (projection.kind == Projection::Kind::kNothing) return;
     bool lines_known = false;
@@ -115,7 +118,7 @@ void PortalFlood::reach(uint32_t cell, Polygon polygon, double key) {
             drop(link);
             continue;
         }
-        if (touch(other.shape.bounds, polygon.shape.bounds)) {
+        if (touch(other.shape.bounds, polygon.shape.bounds) && shareEdge(other.shape, polygon.shape, kShared)) {
             const WindowPolygon hull = hullOf(other.shape, polygon.shape);
             if (hull.area() <= (1 + kConvex) * (other.shape.area() + polygon.shape.area())) {
                 polygon.shape = hull;
@@ -130,13 +133,15 @@ void PortalFlood::reach(uint32_t cell, Polygon polygon, double key) {
         link = &polygons_[*link].next;
     }
     if (count >= kMostOfCell) {
-        // With the one whose hull adds least.
+        // With the one whose rectangle then grows least.
         ++stats_.joined;
         uint32_t* best = nullptr;
         double least = INFINITY;
         for (uint32_t* link = &state.polygon; *link != kNone; link = &polygons_[*link].next) {
-            const WindowPolygon& other = polygons_[*link].shape;
-            const double more = hullOf(other, polygon.shape).area() - other.area();
+            const double* a = polygons_[*link].shape.bounds.most;
+            const double* b = polygon.shape.bounds.most;
+            const double width = std::max(a[0], b[0]) + std::max(a[1], b[1]);
+            const double more = width * (std::max(a[2], b[2]) + std::max(a[3], b[3])) - (a[0] + a[1]) * (a[2] + a[3]);
             if (!(more < least)) continue;
             least = more;
             best = link;

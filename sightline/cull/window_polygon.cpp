@@ -66,6 +66,18 @@ void cutPolygon(WindowPolygon& polygon, const WindowLine& line) {
     polygon.count = count;
 }
 
+bool shareEdge(const WindowPolygon& a, const WindowPolygon& b, double slack) {
+    const auto same = [&](const glm::dvec2& p, const glm::dvec2& q) {
+        return std::abs(p.x - q.x) <= slack && std::abs(p.y - q.y) <= slack;
+    };
+    for (uint32_t i = 0; i < a.count; ++i)
+        for (uint32_t k = 0; k < b.count; ++k)
+            if (same(a.points[i], b.points[k]) &&
+                same(a.points[i + 1 == a.count ? 0 : i + 1], b.points[k == 0 ? b.count - 1 : k - 1]))
+                return true;
+    return false;
+}
+
 WindowPolygon polygonOf(const WindowBounds& bounds) {
     const double* most = bounds.most;
     WindowPolygon polygon;

@@ -18,17 +18,30 @@ using WindowLine = glm::dvec3;
 
 /// Counter-clockwise. Cutting and joining move an edge by rounding, 2^-50 of the coordinates or less.
 struct WindowPolygon {
-    static constexpr uint32_t kMost = 24;
+    static constexpr uint32_t kMost = 16;
 
     glm::dvec2 points[kMost];
     uint32_t count = 0;
     WindowBounds bounds;
+
+    WindowPolygon() {}
+    WindowPolygon(const WindowPolygon& other) { *this = other; }
+    /// Copies the points that there are.
+    WindowPolygon& operator=(const WindowPolygon& other) {
+        count = other.count;
+        bounds = other.bounds;
+        for (uint32_t i = 0; i < count; ++i) points[i] = other.points[i];
+        return *this;
+    }
 
     void findBounds();
     double area() const;
     /// By more than `slack` nowhere outside of another.
     bool isWithin(const WindowPolygon& other, double slack) const;
 };
+
+/// Whether two polygons have an edge in common, from end to end, to within `slack`.
+bool shareEdge(const WindowPolygon& a, const WindowPolygon& b, double slack);
 
 /// The polygon between eight bounds.
 WindowPolygon polygonOf(const WindowBounds& bounds);

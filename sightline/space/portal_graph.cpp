@@ -78,7 +78,9 @@ void PortalGraph::layPortals(const CellSpace& space) {
     // Each cell has corners of its own, so that a walk reads them in order.
     for (DirectedPortal& portal : directed_) {
         portal.first = static_cast<uint32_t>(x_.size());
-        for (const glm::dvec3& point : graph.outline(graph.portals[portal.portal])) {
+        const auto outline = graph.outline(graph.portals[portal.portal]);
+        for (size_t i = 0; i < (outline.size() + 3) / 4 * 4; ++i) {
+            const glm::dvec3& point = outline[std::min(i, outline.size() - 1)];
             x_.push_back(point.x);
             y_.push_back(point.y);
             z_.push_back(point.z);

@@ -24,7 +24,8 @@ struct DirectedPortal {
     float thickness = 0;                ///< no corner lies farther from the plane; rounded up [world units]
 };
 
-/// Corners of outlines; each coordinate is an array of its own.
+/// Corners of outlines; each coordinate is an array of its own. After the corners of an outline its last one comes again, so
+/// that it can be read four at a time.
 struct PortalCorners {
     const double* x;
     const double* y;
