@@ -239,7 +239,8 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     if (!use) return use.error();
     if (!skip) return skip.error();
     // Clusters take long to prepare: they are for those who ask for them.
-    options.stages = (options.use.empty() ? kDefaultStages & ~stageBit(Stage::kClusters) : *use) & ~*skip;
+    options.stages =
+        (options.use.empty() ? kDefaultStages & ~(stageBit(Stage::kClusters) | kCellStages) : *use) & ~*skip;
     if (Status sizes = finishSizeOptions(options); !sizes) return sizes;
     if (Status clusters = finishClusterOptions(options); !clusters) return clusters;
     options.seed_given = verb.count("--seed") > 0;

@@ -24,14 +24,14 @@ using F16 = hn::CappedTag<float, 16>;
 // coefficient by 2^-24: ten such steps stay under 2^-19 of the sum of the sizes.
 constexpr float kRounding = 0x1p-19f;
 
-void eyeBoxesKernel(const BvhNode& node, const glm::dvec3& offset, EyeBoxes& out) {
+void eyeBoxesKernel(const float (&min)[3][8], const float (&max)[3][8], const glm::dvec3& offset, EyeBoxes& out) {
     const hn::CappedTag<double, 8> d;
     const hn::Rebind<float, decltype(d)> f;
     for (int axis = 0; axis < 3; ++axis) {
         const auto shift = hn::Set(d, offset[axis]);
         for (size_t i = 0; i < 8; i += hn::Lanes(d)) {
-            const auto low = hn::Add(hn::PromoteTo(d, hn::LoadU(f, node.min[axis] + i)), shift);
-            const auto high = hn::Add(hn::PromoteTo(d, hn::LoadU(f, node.max[axis] + i)), shift);
+            const auto low = hn::Add(hn::PromoteTo(d, hn::LoadU(f, min[axis] + i)), shift);
+            const auto high = hn::Add(hn::PromoteTo(d, hn::LoadU(f, max[axis] + i)), shift);
             hn::StoreU(hn::DemoteTo(f, low), f, out.min[axis] + i);
             hn::StoreU(hn::DemoteTo(f, high), f, out.max[axis] + i);
         }
@@ -141,11 +141,13 @@ HWY_EXPORT(testPlanesKernel);
 HWY_EXPORT(outsideAnyKernel);
 HWY_EXPORT(cullFrustumKernel);
 
-EyeBoxes eyeBoxes(const BvhNode& node, const glm::dvec3& offset) {
+EyeBoxes eyeBoxes(const float (&min)[3][8], const float (&max)[3][8], const glm::dvec3& offset) {
     EyeBoxes out;
-    HWY_DYNAMIC_DISPATCH(eyeBoxesKernel)(node, offset, out);
+    HWY_DYNAMIC_DISPATCH(eyeBoxesKernel)(min, max, offset, out);
     return out;
 }
+
+EyeBoxes eyeBoxes(const BvhNode& node, const glm::dvec3& offset) { return eyeBoxes(node.min, node.max, offset); }
 
 FrustumAnswer testFrustum(const Frustum& frustum, const EyeBoxes& boxes, uint32_t active) {
     FrustumAnswer answer;

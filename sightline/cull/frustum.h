@@ -23,6 +23,8 @@ struct EyeBoxes {
 /// The children of a node as the eye sees them.
 /// @param offset  tree origin - eye [world units]
 EyeBoxes eyeBoxes(const BvhNode& node, const glm::dvec3& offset);
+/// The same of any eight boxes.
+EyeBoxes eyeBoxes(const float (&min)[3][8], const float (&max)[3][8], const glm::dvec3& offset);
 
 /// What eight boxes are to the planes of a frustum or of a volume.
 struct FrustumAnswer {

@@ -80,10 +80,31 @@ double closedGap(const View& view) {
     return std::floor(std::min(view.close_gaps, 1.0 / 16.0) * kGapSteps) / kGapSteps;
 }
 
+namespace {
+
+/// Whether a section may lay open what lies behind walls. The one that a mirror's view is cut by does not: sight lines begin
+/// on it.
+bool opensWalls(const View& view) {
+    if (view.sections.count == 0) return false;
+    if (view.sections.count > 1 || view.through.count == 0) return true;
+    const glm::dvec4& plane = view.sections.planes[0];
+    for (uint32_t i = 0; i < view.through.count; ++i) {
+        const glm::dvec3& point = view.through.points[i];
+        double size = std::abs(plane.w);
+        for (int axis = 0; axis < 3; ++axis) size += std::abs(plane[axis] * point[axis]);
+        if (!(std::abs(glm::dot(glm::dvec3(plane), point) + plane.w) <= 0x1p-30 * size)) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
 uint32_t stagesInUse(const View& view) {
     uint32_t stages = view.stages;
     if (!(view.max_distance > 0.0)) stages &= ~stageBit(Stage::kDistance);  // nor where it is not a number
     if (!(view.contribution > 0.0)) stages &= ~stageBit(Stage::kContribution);
+    if (opensWalls(view)) stages &= ~kCellStages;
+    if (view.eye_radius != 0.0) stages &= stageBit(Stage::kPvs);
     return stages;
 }
 
@@ -112,6 +133,7 @@ bool isUsable(const View& view) {
         for (int row = 0; row < 4; ++row)
             if (!std::isfinite(view.view[column][row]) || !std::isfinite(view.projection[column][row])) return false;
     if (view.width == 0 || view.height == 0 || !(view.jitter >= 0.0 && view.jitter <= 1e6)) return false;
+    if (!(view.eye_radius >= 0.0 && std::isfinite(view.eye_radius))) return false;
     if (!areFinite(view.sections) || !areFinite(view.window) || !areFinite(view.through)) return false;
     const double determinant = glm::determinant(view.projection);
     return std::isfinite(determinant) && determinant != 0.0;

@@ -11,14 +11,17 @@
 namespace sightline {
 
 /// The stages of a query, in the order in which they are applied. Their names are the names of
-/// the files in cull/; volumes are occluder volumes, clusters those of objects that have some. Distance and contribution are
-/// not conservative: they do nothing unless the view says how far and how small.
-enum class Stage : uint8_t { kFrustum, kDistance, kContribution, kVolumes, kOcclusion, kClusters };
-inline constexpr int kStageCount = 6;
-inline constexpr const char* kStageNames[kStageCount] = {"frustum", "distance",  "contribution",
-                                                         "volumes", "occlusion", "clusters"};
+/// the files in cull/; volumes are occluder volumes, clusters those of objects that have some. The first two do nothing
+/// in a world without cells: World::attach(). Distance and contribution are not conservative: they do nothing unless the
+/// view says how far and how small.
+enum class Stage : uint8_t { kPvs, kPortals, kFrustum, kDistance, kContribution, kVolumes, kOcclusion, kClusters };
+inline constexpr int kStageCount = 8;
+inline constexpr const char* kStageNames[kStageCount] = {"pvs",          "portals", "frustum",   "distance",
+                                                         "contribution", "volumes", "occlusion", "clusters"};
 inline constexpr uint32_t stageBit(Stage stage) { return 1u << static_cast<uint32_t>(stage); }
 inline constexpr uint32_t kAllStages = (1u << kStageCount) - 1;
+/// Those that go by the cells of the world.
+inline constexpr uint32_t kCellStages = stageBit(Stage::kPvs) | stageBit(Stage::kPortals);
 /// Those that cull what may be visible.
 inline constexpr uint32_t kLossyStages = stageBit(Stage::kDistance) | stageBit(Stage::kContribution);
 /// Those that pay in most worlds.
@@ -84,6 +87,16 @@ struct View {
     double jitter = 0.5;               ///< largest shift of the image that the frame may use  [pixels, 0 to 1e6]
     uint32_t layers = ~0u;             ///< objects outside these layers are neither reported nor hide
     uint32_t stages = kDefaultStages;  ///< bits of Stage: which stages may cull
+    /// Stage::kPortals: how closely the part of the image is known that a cell is seen through.
+    PortalWindows windows = PortalWindows::kOctagons;
+    /// Portals that a sight line may pass; what is behind more is culled, although it may be visible, and counted:
+    /// PortalStats::too_deep.  [0: no limit]
+    uint32_t portal_depth = 0;
+    uint32_t portal_work =
+        1u << 16;  ///< cells that are entered at most; if they do not do, the stage keeps all  [limit]
+    /// The answer holds for every eye that is as close to this one, whichever way it looks: then Stage::kPvs alone does
+    /// anything.  [world units, >= 0; 0: for this eye alone]
+    double eye_radius = 0;
     /// Stage::kDistance culls what lies wholly farther from the eye; in a parallel view, from the plane through the eye.
     /// Infinity: only objects with a limit of their own, ObjectLimits.  [world units; 0: the stage is off]
     double max_distance = 0;
@@ -165,7 +178,8 @@ bool isOrthographic(const View& view);
 /// can be inverted.
 bool isUsable(const View& view);
 
-/// View::stages less those of distance and contribution, if the view does not say how far and how small.
+/// View::stages less those of distance and contribution, if the view does not say how far and how small; of cells, if
+/// sections cut the world open; and of all that hold for one eye alone, if the view has an eye_radius.
 uint32_t stagesInUse(const View& view);
 
 /// Steps of View::close_gaps in a pixel.

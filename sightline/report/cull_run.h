@@ -95,9 +95,9 @@ struct CullRun {
     double jitter = 0;                                        ///< [pixels]
     uint32_t occluder_triangles = View().occluder_triangles;  ///< that a query drew at most
     double occluder_error = 0;                                ///< View::occluder_error; 0: none were prepared
-    uint32_t stages =
-        kDefaultStages & ~(kLossyStages | stageBit(Stage::kClusters));  ///< bits of Stage in use: stagesInUse()
-    double max_distance = 0, contribution = 0;                          ///< View
+    uint32_t stages = kDefaultStages & ~(kLossyStages | kCellStages |
+                                         stageBit(Stage::kClusters));  ///< bits of Stage in use: stagesInUse()
+    double max_distance = 0, contribution = 0;                         ///< View
     double hysteresis = 0;            ///< View, towards the frame before, which was asked without any
     ViewPlanes sections;              ///< View
     double cluster_test = 0;          ///< FacingCost::test that clusters were prepared for, with that stage

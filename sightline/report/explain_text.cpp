@@ -220,6 +220,10 @@ std::string explanationText(const Explanation& why, const std::string& subject, 
         case Verdict::kNoCluster:
             return fmt::format("culled by clusters: of {} none is left: {}.", subject, clustersText(why.clusters)) +
                    rectangleText(why);
+        case Verdict::kNotInPvs:
+            return fmt::format("culled by pvs: no cell that {} stands in is seen from the eye's.", subject);
+        case Verdict::kNoWindow:
+            return fmt::format("culled by portals: {} lies in no window into a cell that it stands in.", subject);
         case Verdict::kVisible:
             break;
     }
@@ -243,6 +247,10 @@ std::string explanationClause(const Explanation& why, const NameOfObject& name, 
             return smallText(why.size);
         case Verdict::kNoCluster:
             return clustersText(why.clusters);
+        case Verdict::kNotInPvs:
+            return "in no cell that is seen from the eye's";
+        case Verdict::kNoWindow:
+            return "in no window into its cells";
         case Verdict::kVisible:
             break;
     }
@@ -255,12 +263,14 @@ std::string stageOf(const Explanation& why) {
     if (why.verdict == Verdict::kTooFar) return kStageNames[static_cast<int>(Stage::kDistance)];
     if (why.verdict == Verdict::kTooSmall) return kStageNames[static_cast<int>(Stage::kContribution)];
     if (why.verdict == Verdict::kNoCluster) return kStageNames[static_cast<int>(Stage::kClusters)];
+    if (why.verdict == Verdict::kNotInPvs) return kStageNames[static_cast<int>(Stage::kPvs)];
+    if (why.verdict == Verdict::kNoWindow) return kStageNames[static_cast<int>(Stage::kPortals)];
     return "";
 }
 
 const char* verdictName(Verdict verdict) {
-    constexpr const char* kNames[] = {"no such object", "outside layers", "visible",   "outside frustum",
-                                      "occluded",       "too far",        "too small", "no cluster"};
+    constexpr const char* kNames[] = {"no such object", "outside layers", "visible",    "outside frustum", "occluded",
+                                      "too far",        "too small",      "no cluster", "not in PVS",      "no window"};
     return kNames[static_cast<int>(verdict)];
 }
 

@@ -10,16 +10,16 @@ const char* const kPageStyle = R"css(
   --page: #f6f7f9; --card: #ffffff; --ink: #16202c; --soft: #5a6778; --line: #dce1e8;
   --good: #0f7a55; --good-back: #e3f5ed; --bad: #b3261e; --bad-back: #fde8e6; --note-back: #eef1f6;
   --one: #0b62b8; --two: #b45f06; --shade: #0002;
-  --stage-0: #0072b2; --stage-1: #8a94a3; --stage-2: #009e73; --stage-3: #968414;
-  --stage-4: #cc79a7; --stage-5: #e67e00; --stage-6: #6b2d1e; --in-view: #facc15aa;
+  --stage-0: #0072b2; --stage-1: #5b4a8a; --stage-2: #8f6fd1; --stage-3: #8a94a3; --stage-4: #009e73;
+  --stage-5: #968414; --stage-6: #cc79a7; --stage-7: #e67e00; --stage-8: #6b2d1e; --in-view: #facc15aa;
 }
 @media (prefers-color-scheme: dark) {
   :root {
     --page: #10151c; --card: #182029; --ink: #e6ebf2; --soft: #9aa7b8; --line: #2b3644;
     --good: #5fd3a3; --good-back: #12352a; --bad: #ff8a80; --bad-back: #43191a; --note-back: #1f2935;
     --one: #6cabff; --two: #f0a35c; --shade: #fff1;
-    --stage-0: #3aa0e0; --stage-1: #8a94a3; --stage-2: #35b48f; --stage-3: #c4b13c;
-    --stage-4: #d58db5; --stage-5: #f0922b; --stage-6: #f3d6cd;
+    --stage-0: #3aa0e0; --stage-1: #8577bd; --stage-2: #b39df0; --stage-3: #8a94a3; --stage-4: #35b48f;
+    --stage-5: #c4b13c; --stage-6: #d58db5; --stage-7: #f0922b; --stage-8: #f3d6cd;
   }
 }
 * { box-sizing: border-box; }
@@ -78,12 +78,14 @@ i[class^=stage-], i.in-view, i.ink { display: inline-block; width: .8em; height:
 i.stage-0 { background: var(--stage-0); } i.stage-1 { background: var(--stage-1); }
 i.stage-2 { background: var(--stage-2); } i.stage-3 { background: var(--stage-3); }
 i.stage-4 { background: var(--stage-4); } i.stage-5 { background: var(--stage-5); }
-i.stage-6 { background: var(--stage-6); }
+i.stage-6 { background: var(--stage-6); } i.stage-7 { background: var(--stage-7); }
+i.stage-8 { background: var(--stage-8); }
 i.in-view { background: var(--in-view); } i.ink { background: var(--ink); }
 .plot polygon { stroke: none; } g.one polygon { fill: var(--one); } g.two polygon { fill: var(--two); }
 g.stage-1 polygon { fill: var(--stage-1); } g.stage-2 polygon { fill: var(--stage-2); }
 g.stage-3 polygon { fill: var(--stage-3); } g.stage-4 polygon { fill: var(--stage-4); }
 g.stage-5 polygon { fill: var(--stage-5); } g.stage-6 polygon { fill: var(--stage-6); }
+g.stage-7 polygon { fill: var(--stage-7); } g.stage-8 polygon { fill: var(--stage-8); }
 .plot { padding: 10px 14px 30px 64px; border-radius: 8px; cursor: pointer; touch-action: pan-y; }
 .plot .area { position: relative; height: 210px; }
 .plot svg { position: absolute; inset: 0; width: 100%; height: 100%; overflow: visible; }
@@ -119,7 +121,7 @@ i.swatch { display: inline-block; width: .8em; height: .8em; border-radius: 2px;
 .path { white-space: normal; overflow-wrap: anywhere; min-width: 10em; }
 .mini { float: left; margin-top: .5em; width: 56px; height: 9px; margin-right: 10px; border-radius: 3px;
   background: var(--line); overflow: hidden; }
-.mini i { display: block; height: 100%; background: var(--stage-5); }
+.mini i { display: block; height: 100%; background: var(--stage-7); }
 figure { margin: 0; }
 figure img { display: block; width: 100%; height: auto; border-radius: 6px; background: #0006; }
 figcaption { color: var(--soft); font-size: .92rem; margin-top: 6px; }

@@ -49,11 +49,13 @@ PlanBand storeyOf(std::span<const Box3d> bounds, const glm::dvec3& eye);
 /// A slice as thick as a twentieth of the section's width, around the eye.
 PlanBand sliceOf(const PlanArea& section, const glm::dvec3& eye);
 
-/// Colours: visible, then one per stage. Blue, grey, green, ochre, purple, orange and dark brown: told apart by eyes that lack any one of the receptors.
+/// Colours: visible, then one per stage. Blue, two violets, grey, green, ochre, pink, orange and dark brown: all but the
+/// violets are told apart by eyes that lack any one of the receptors.
 inline constexpr int kPlanColours = 1 + kStageCount;
 extern const glm::u8vec4 kPlanPalette[kPlanColours];
 inline constexpr const char* kPlanNames[kPlanColours] = {
-    "visible",           "culled by frustum",   "culled by distance", "culled by contribution",
+    "visible",           "culled by pvs",       "culled by portals",
+    "culled by frustum", "culled by distance",  "culled by contribution",
     "culled by volumes", "culled by occlusion", "culled by clusters"};
 
 /// Draws the boxes of the objects, larger ones below smaller ones, flat ones and those outside the band pale;

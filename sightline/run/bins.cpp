@@ -30,7 +30,7 @@ void addWork(const QueryStats& from, QueryStats& to) {
 
 uint32_t binCount(const View& view) {
     const uint32_t both = stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion);
-    if (view.bins < 2 || (view.stages & both) != both || !isUsable(view) || !runsOutward(view)) return 1;
+    if (view.bins < 2 || (stagesInUse(view) & both) != both || !isUsable(view) || !runsOutward(view)) return 1;
     return std::clamp(makeScreen(view, view.occlusion_size).width / 8, 1u, std::min(view.bins, kMostBins));
 }
 
@@ -75,7 +75,8 @@ uint32_t Walk::findBeside(const ScreenAnswer& on_screen, const EyeBoxes& boxes, 
     return beside;
 }
 
-BinnedWalk::BinnedWalk(Memory* memory) : memory_(memory), walks_(memory), work_(memory), merged_(memory), met_(memory) {
+BinnedWalk::BinnedWalk(Memory* memory)
+    : memory_(memory), walks_(memory), cells_(memory), work_(memory), merged_(memory), met_(memory) {
     addWalk();
 }
 
@@ -84,12 +85,19 @@ void BinnedWalk::addWalk() {
     walks_.back()->remembers = true;
 }
 
-void BinnedWalk::begin(const SnapshotState* now, const View& view, std::span<const uint32_t> shown) {
-    now_ = now;
+void BinnedWalk::begin(const Snapshot& now, const View& view, std::span<const uint32_t> shown) {
+    const auto start = std::chrono::steady_clock::now();
+    now_ = now ? &now.state() : nullptr;
     view_ = view;
     count_ = now ? binCount(view) : 1;
     while (walks_.size() < count_) addWalk();
-    for (auto& walk : walks_) walk->sizes.shown = shown;
+    admission_ = cells_.run(now, view);
+    for (auto& walk : walks_) {
+        walk->sizes.shown = shown;
+        walk->admission = admission_;
+    }
+    before_ = static_cast<uint64_t>(
+        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count());
     merged_.clear();
     if (count_ == 1) return;
     const uint32_t columns = makeScreen(view, view.occlusion_size).width / 8;
@@ -170,6 +178,8 @@ void BinnedWalk::countCulled() {
         for (const CulledRange& range : walks_[bin]->culled)
             if (range.stage != Stage::kOcclusion && meet(range.places.first))
                 of(range.stage).culled += walks_[bin]->inLayers(range.places);
+    if (admission_)
+        for (const Stage stage : {Stage::kPvs, Stage::kPortals}) of(stage).culled += admission_->culled(stage);
     uint64_t left = stats.objects;
     for (int i = 0; i < kStageCount; ++i) {
         const Stage stage = static_cast<Stage>(i);
@@ -179,9 +189,18 @@ void BinnedWalk::countCulled() {
     }
 }
 
+/// What the stages of cells did.
+void BinnedWalk::addCells() {
+    for (const Stage stage : {Stage::kPvs, Stage::kPortals}) {
+        of(stage).doubt = cells_.doubt(stage);
+        if (view_.time_stages) of(stage).nanoseconds = cells_.nanoseconds(stage);
+    }
+    stats.nanoseconds += before_;
+}
+
 void BinnedWalk::finish() {
     stats = walks_[0]->stats;
-    if (count_ == 1) return;
+    if (count_ == 1) return addCells();
     if (view_.balance_bins) gatherWork();
     of(Stage::kOcclusion).doubt = 0;
     for (StageStats& stage : stats.stages) stage.culled = 0;
@@ -200,6 +219,7 @@ void BinnedWalk::finish() {
     mergeVisible();
     stats.visible = merged_.size();
     countCulled();
+    addCells();
 }
 
 void BinnedWalk::timed(uint64_t nanoseconds) {
@@ -216,11 +236,12 @@ void BinnedWalk::reasons(std::span<uint8_t> reasons) const {
     if (count_ == 1) return walks_[0]->reasons(reasons);
     SIGHTLINE_ASSERT(reasons.size() >= now_->count);
     std::fill(reasons.begin(), reasons.end(), uint8_t{0});
+    if (admission_) notAdmitted(*now_, *admission_, reasons);
     const auto at = [&](uint32_t place) -> uint8_t& { return reasons[now_->itemAt(place)]; };
     for (uint32_t bin = 0; bin < count_; ++bin)
         for (const CulledRange& range : walks_[bin]->culled)
             for (uint32_t place = range.places.first; place < range.places.first + range.places.count; ++place)
-                if (now_->bvh.order[place] != PlacedBvh::kNone)
+                if (now_->bvh.order[place] != PlacedBvh::kNone && (!admission_ || admission_->admits(place)))
                     at(place) = std::max(at(place), static_cast<uint8_t>(1 + static_cast<int>(range.stage)));
     for (uint32_t bin = 0; bin < count_; ++bin)
         for (const KeptObject& object : walks_[bin]->kept) at(object.place) = 0;

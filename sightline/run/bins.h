@@ -9,6 +9,7 @@
 
 #include <span>
 
+#include "sightline/run/cell_stages.h"
 #include "sightline/run/walk.h"
 
 namespace sightline::detail {
@@ -21,7 +22,7 @@ public:
     /// Takes up a view. Then run(bin) once for each bin, by any threads, and finish().
     /// @param now    outlives the answer; null: there is none
     /// @param shown  SizeStages::shown; until all is run
-    void begin(const SnapshotState* now, const View& view, std::span<const uint32_t> shown = {});
+    void begin(const Snapshot& now, const View& view, std::span<const uint32_t> shown = {});
     uint32_t bins() const { return count_; }
     void run(uint32_t bin);
     void finish();
@@ -40,6 +41,9 @@ public:
     /// The buffer of a view in one bin.
     DepthTiles* tiles() { return &walks_[0]->tiles; }
     const Screen& screen() const { return walks_[0]->screen; }
+    /// What the cells left to the walks.
+    const CellStages& cells() const { return cells_; }
+    const Admission* admission() const { return admission_; }
     uint32_t width() const { return walks_[0]->tiles.width; }
     uint32_t height() const { return walks_[0]->tiles.height; }
 
@@ -51,9 +55,13 @@ private:
     bool meet(uint32_t place);
     void mergeVisible();
     void countCulled();
+    void addCells();
 
     Memory* const memory_;
     Array<Owned<Walk>> walks_;
+    CellStages cells_;
+    const Admission* admission_ = nullptr;
+    uint64_t before_ = 0;  ///< what begin() took  [nanoseconds]
     uint32_t count_ = 1;
     Bin cuts_[kMostBins];  ///< of count_ bins, if there are several
     Array<double> work_;   ///< of the last answer of several bins, with View::balance_bins: per column

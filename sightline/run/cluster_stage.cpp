@@ -25,7 +25,7 @@ EyeBoxes boundsOf(const DrawClusters& clusters, size_t first) {
 }
 
 bool isInUse(const SnapshotState* now, const View& view) {
-    return now && now->clusters.size() > 1 && (view.stages & stageBit(Stage::kClusters)) && isUsable(view) &&
+    return now && now->clusters.size() > 1 && (stagesInUse(view) & stageBit(Stage::kClusters)) && isUsable(view) &&
            runsOutward(view);
 }
 

@@ -74,7 +74,7 @@ struct WholeAnswer {
 
     WholeAnswer(const Snapshot& now, const View& view, std::span<const uint32_t> shown, Memory* memory)
         : walk(memory), clusters(memory) {
-        walk.begin(&now.state(), view, shown);
+        walk.begin(now, view, shown);
         for (uint32_t bin = 0; bin < walk.bins(); ++bin) walk.run(bin);
         walk.finish();
     }

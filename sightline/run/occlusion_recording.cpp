@@ -147,7 +147,7 @@ void putAsked(Array<char> (&sections)[recording_file::kSectionCount], const Tile
 
 Result<OcclusionRecording> recordOcclusion(const Snapshot& now, const View& view, Memory* memory) {
     if (!isUsable(view)) return Error{Error::Kind::kUsage, "the view cannot be used, so nothing was asked"};
-    if (!(view.stages & stageBit(Stage::kOcclusion)))
+    if (!(stagesInUse(view) & stageBit(Stage::kOcclusion)))
         return Error{Error::Kind::kUsage, "without the occlusion stage there is nothing to record"};
     OcclusionRecording out(memory);
     out.view.view = view.view;

@@ -59,7 +59,7 @@ void answer(std::span<detail::BinnedWalk* const> eyes, const Snapshot& now, std:
     const auto start = std::chrono::steady_clock::now();
     uint32_t bins = 0;
     for (size_t eye = 0; eye < eyes.size(); ++eye) {
-        eyes[eye]->begin(now ? &now.state() : nullptr, *views[eye], shown);
+        eyes[eye]->begin(now, *views[eye], shown);
         bins += eyes[eye]->bins();
     }
     runJobs(jobs, bins, [&](uint32_t bin) {

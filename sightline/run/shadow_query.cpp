@@ -233,7 +233,7 @@ void ShadowQuery::Impl::addLight(const Snapshot& now, const View& light, std::sp
     View seen = light;
     seen.jitter = 0.5;
     seen.stages =
-        settings.occlusion ? kDefaultStages & ~(kLossyStages | stageBit(Stage::kClusters)) : stageBit(Stage::kFrustum);
+        settings.occlusion ? stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion) : stageBit(Stage::kFrustum);
     seen.second_look = false;  // nor are clusters: a surface casts with both sides, and would be asked by one
     seen.occlusion_size = std::max(seen.width, seen.height);
     const VisibleSet set = query.visible(now, seen);

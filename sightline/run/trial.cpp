@@ -7,6 +7,10 @@ namespace {
 
 Verdict verdictOf(Stage stage) {
     switch (stage) {
+        case Stage::kPvs:
+            return Verdict::kNotInPvs;
+        case Stage::kPortals:
+            return Verdict::kNoWindow;
         case Stage::kFrustum:
             return Verdict::kOutsideFrustum;
         case Stage::kDistance:

@@ -104,6 +104,7 @@ void VolumeStage::openNode(const SnapshotState& state, const Frustum& frustum, c
         met.serial = ++serial_;
         met.depth = static_cast<uint8_t>(from.depth + (from.depth < 2));
         if (met.leaf && state.placed[met.index].occluder.index == 0) continue;
+        if (met.leaf && admission && !admission->admits(met.index)) continue;
         if (met.leaf && sizes && sizes->drops(met.index)) continue;
         heap_.push_back(met);
         std::push_heap(heap_.begin(), heap_.end());

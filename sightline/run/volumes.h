@@ -8,6 +8,7 @@
 
 #include "sightline/cull/occluder_volumes.h"
 #include "sightline/geom/view_limits.h"
+#include "sightline/run/admission.h"
 #include "sightline/run/size_stages.h"
 #include "sightline/run/world_state.h"
 
@@ -55,8 +56,9 @@ public:
                 uint32_t most);
     /// No volumes.
     void clear();
-    const SizeStages* sizes = nullptr;   ///< what these cull hides nothing; null: there are none
-    const ViewLimits* limits = nullptr;  ///< nor does what these cut or cull; null: there are none
+    const Admission* admission = nullptr;  ///< what is not admitted hides nothing; null: all is
+    const SizeStages* sizes = nullptr;     ///< what these cull hides nothing; null: there are none
+    const ViewLimits* limits = nullptr;    ///< nor does what these cut or cull; null: there are none
     /// All volumes, for the root.
     VolumeRange all() const { return {0, static_cast<uint32_t>(volumes_.size())}; }
     /// @param left  bit per child that is asked about

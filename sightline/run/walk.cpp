@@ -48,8 +48,8 @@ void Walk::push(const Pending& entry) {
     pending.push(entry);
 }
 
-/// How many objects of a range of places are within the view's layers.
 uint64_t Walk::inLayers(const PlaceRange& places) const {
+    if (admission) return admission->count(places.first, places.first + places.count);
     if (every_layer) return places.count - places.empty;
     uint64_t within = 0;
     for (uint32_t place = places.first; place < places.first + places.count; ++place)
@@ -113,11 +113,14 @@ void Walk::begin(const SnapshotState* now, const View& new_view) {
     if (remembers) last.begin(now, view.last_visible_first);
     if (record) record->clear();
     tiles.log = record ? record->log : nullptr;
+    view.stages &= ~kCellStages | (admission ? admission->stages() : 0);
     if (!snapshot) return;
     every_layer = (state().common_layers & view.layers) != 0 || state().count == 0;
     stats.objects = state().count;
     if (every_layer || bin.index > 0) return;
-    stats.objects = inLayers({0, state().placed.size()});
+    stats.objects = 0;
+    for (uint32_t place = 0; place < state().placed.size(); ++place)
+        stats.objects += (state().placed[place].layers & view.layers) != 0;
     for (const uint32_t row : state().unbounded) stats.objects += (state().objects[row].layers & view.layers) != 0;
 }
 
@@ -127,6 +130,14 @@ void Walk::keep(const ObjectRecord& object) {
     ++of(Stage::kFrustum).doubt;
 }
 
+/// Keeps the objects at the given places of the hierarchy that are admitted.
+void Walk::reportAdmitted(uint32_t first, uint32_t count) {
+    admission->forEach(first, first + count, [&](uint32_t place) {
+        const PlacedObject& placed = state().placed[place];
+        if (placed.layers & view.layers) visible.push_back(placed.visible);
+    });
+}
+
 /// Keeps the objects at the given places of the hierarchy.
 void Walk::report(uint32_t first, uint32_t count) {
     if (count == 1) {
@@ -134,6 +145,7 @@ void Walk::report(uint32_t first, uint32_t count) {
         if (placed.layers & view.layers) visible.push_back(placed.visible);
         return;
     }
+    if (admission) return reportAdmitted(first, count);
     while (count > 0) {
         const std::span<const PlacedObject> run = state().placed.run(first, count);
         for (const PlacedObject& placed : run)
@@ -193,8 +205,20 @@ uint32_t Walk::refine(const EyeBoxes& boxes, const FrustumAnswer& answer) const 
     return outside & asked;
 }
 
+/// Bit per slot of a node that has a child below which something is admitted.
+uint32_t Walk::admittedSlots(const BvhNode& node) const {
+    if (!admission) return 0xff;
+    uint32_t slots = 0;
+    for (int slot = 0; slot < 8; ++slot)
+        slots |=
+            uint32_t{node.count[slot] != 0 && admission->any(node.first[slot], node.first[slot] + node.count[slot])}
+            << slot;
+    return slots;
+}
+
 /// Tests a node's children against the frustum and the volumes and puts those that are left in line.
-void Walk::expand(const Visit& from) {
+/// @param slots  the others are passed over
+void Walk::expand(const Visit& from, uint32_t slots) {
     const auto start = view.time_stages ? Clock::now() : Clock::time_point();
     ++stats.nodes_visited;
     const BvhNode& node = state().bvh.nodes[from.node];
@@ -204,7 +228,7 @@ void Walk::expand(const Visit& from) {
     if (view.time_stages) of(Stage::kFrustum).nanoseconds += since(start);
     uint32_t left = 0;
     for (int slot = 0; slot < 8; ++slot) {
-        if (node.count[slot] == 0) continue;
+        if (node.count[slot] == 0 || !(slots >> slot & 1)) continue;
         if (answer.outside >> slot & 1) cull(placesBelow(node, slot), Stage::kFrustum, nullptr);
         else left |= 1u << slot;
     }
@@ -245,6 +269,7 @@ void Walk::meet(const BvhNode& node, int slot, const Visit& below, const ScreenA
 
 /// Whether an object that nobody has asked about yet hides: not what a lossy stage or the window may cull.
 bool Walk::mayHide(uint32_t place) const {
+    if (admission && !admission->admits(place)) return false;
     if (sizes.drops(place)) return false;
     const ObjectRecord& object = state().objectAt(place);
     return !limits.windowed() || reachesWindow(limits, object.bounds, object.transform);
@@ -323,7 +348,8 @@ void Walk::visit(const Pending& entry) {
     const Seams seams = entry.kind == Pending::Kind::kNode ? Seams::kLeave : Seams::kResolve;
     if (occlusion && entry.testable && isHiddenHere(entry.rect, seams))
         return cull(entry.below, Stage::kOcclusion, &entry.rect);
-    if (entry.kind == Pending::Kind::kNode) return expand({entry.index, entry.planes, entry.volumes});
+    if (entry.kind == Pending::Kind::kNode)
+        return expand({entry.index, entry.planes, entry.volumes}, admittedSlots(state().bvh.nodes[entry.index]));
     if (occlusion && lookCloser(entry)) return;
     report(entry.index, 1);
     if (isPart() && kept.size() < visible.size()) kept.push_back({entry.index, entry.rect.nearness});
@@ -334,11 +360,21 @@ void Walk::visit(const Pending& entry) {
     if (occlusion && others && !(entry.testable && isSmall(screen, entry.rect))) offerVisible(entry.index);
 }
 
+/// Expands where the walk begins: at the root or, of few objects, at the nodes that hold them.
+void Walk::expandAll() {
+    if (!admission || admission->nodes().empty()) return expand(root, admittedSlots(state().bvh.nodes[0]));
+    for (const NodeSlots& from : admission->nodes()) expand({from.node, root.planes, root.volumes}, from.slots);
+}
+
 /// Without the occlusion stage the order does not matter: level by level, so that nodes can be fetched ahead, and whole
 /// subtrees that are inside at once.
-void Walk::walkUnordered(const Visit& root) {
+void Walk::walkUnordered() {
     constexpr size_t kAhead = 8;
-    visits.assign(1, root);
+    visits.clear();
+    const bool from_nodes = admission && !admission->nodes().empty();
+    if (from_nodes)
+        for (const NodeSlots& from : admission->nodes()) visits.push_back({from.node, root.planes, root.volumes});
+    else visits.push_back(root);
     const PlacedBvh& bvh = state().bvh;
     const glm::dvec3 offset = bvh.origin - frustum.eye;
     for (size_t at = 0; at < visits.size(); ++at) {
@@ -348,13 +384,15 @@ void Walk::walkUnordered(const Visit& root) {
         const BvhNode& node = bvh.nodes[visit.node];
         const EyeBoxes boxes = eyeBoxes(node, offset);
         const FrustumAnswer answer = askPlanes(boxes, visit.planes);
-        uint32_t gone = sizes.inUse() ? cullBySize(visit.node, boxes, ~answer.outside & usedSlots(node)) : 0;
+        uint32_t asked = usedSlots(node);
+        if (from_nodes) asked = admission->nodes()[at].slots;
+        else if (admission) asked &= admittedSlots(node);
+        uint32_t gone = sizes.inUse() ? cullBySize(visit.node, boxes, ~answer.outside & asked) : 0;
         VolumesAnswer hidden;
-        if (visit.volumes.count)
-            hidden = askVolumes(node, boxes, visit.volumes, ~(answer.outside | gone) & usedSlots(node));
+        if (visit.volumes.count) hidden = askVolumes(node, boxes, visit.volumes, ~(answer.outside | gone) & asked);
         gone |= hidden.hidden;
         for (int slot = 0; slot < 8; ++slot) {
-            if (node.count[slot] == 0 || (gone >> slot & 1)) continue;
+            if (!(asked >> slot & 1) || (gone >> slot & 1)) continue;
             const bool decided = answer.planes[slot] == 0 && hidden.range[slot].count == 0 && !sizes.inUse();
             if (answer.outside >> slot & 1) cull(placesBelow(node, slot), Stage::kFrustum, nullptr);
             else if (decided || (node.child[slot] & BvhNode::kLeaf)) report(node.first[slot], node.count[slot]);
@@ -377,6 +415,7 @@ void Walk::walk() {
     screen = makeScreen(view, view.occlusion_size);
     sizes.begin(state(), view, frustum.eye);
     volumes.sizes = &sizes;
+    volumes.admission = admission;
     volumes.limits = &limits;
     if (uses(Stage::kOcclusion)) {
         tiles.clear(screen.width, screen.height, view.occlusion_detail);
@@ -391,10 +430,10 @@ void Walk::walk() {
     if (state().bvh.nodes.empty()) return;
     const uint32_t planes = ((1u << frustum.count) - 1) | (limits.volume.allPlanes() << kLimitBit);
     if (uses(Stage::kVolumes)) chooseVolumes();
-    const Visit root{0, uses(Stage::kFrustum) ? planes : 0, volumes.all()};
-    if (!uses(Stage::kOcclusion)) return walkUnordered(root);
+    root = {0, uses(Stage::kFrustum) ? planes : 0, volumes.all()};
+    if (!uses(Stage::kOcclusion)) return walkUnordered();
     drawLast();
-    expand(root);
+    expandAll();
     while (undecided > 0) {
         const Pending entry = pending.pop();
         undecided -= entry.kind != Pending::Kind::kCluster;
@@ -414,6 +453,8 @@ void Walk::finish() {
     stats.seam_pixels = tiles.seam_pixels;
     stats.closed_gaps = tiles.closed_gaps;
     if (isPart()) return;
+    if (admission)
+        for (const Stage stage : {Stage::kPvs, Stage::kPortals}) of(stage).culled += admission->culled(stage);
     uint64_t left = stats.objects;
     for (int i = 0; i < kStageCount; ++i) {
         const Stage stage = static_cast<Stage>(i);
@@ -435,13 +476,20 @@ void Walk::run(const SnapshotState* now, const View& new_view, const Bin& part) 
     finish();
 }
 
+void notAdmitted(const SnapshotState& state, const Admission& admission, std::span<uint8_t> reasons) {
+    for (uint32_t place = 0; place < state.placed.size(); ++place)
+        if (state.bvh.order[place] != PlacedBvh::kNone && !admission.admits(place))
+            reasons[state.itemAt(place)] = static_cast<uint8_t>(1 + static_cast<int>(admission.stageOf(place)));
+}
+
 void Walk::reasons(std::span<uint8_t> reasons) const {
     SIGHTLINE_ASSERT(!snapshot || reasons.size() >= state().count);
     std::fill(reasons.begin(), reasons.end(), uint8_t{0});
     if (!snapshot) return;
+    if (admission) notAdmitted(state(), *admission, reasons);
     for (const CulledRange& range : culled)
         for (uint32_t place = range.places.first; place < range.places.first + range.places.count; ++place)
-            if (state().bvh.order[place] != PlacedBvh::kNone)
+            if (state().bvh.order[place] != PlacedBvh::kNone && (!admission || admission->admits(place)))
                 reasons[state().itemAt(place)] = static_cast<uint8_t>(1 + static_cast<int>(range.stage));
     if (every_layer) return;
     for (uint32_t item = 0; item < state().count; ++item)

@@ -12,6 +12,7 @@
 #include "sightline/cull/triangles.h"
 #include "sightline/geom/view_limits.h"
 #include "sightline/raster/tile_log.h"
+#include "sightline/run/admission.h"
 #include "sightline/run/last_drawn.h"
 #include "sightline/run/pending.h"
 #include "sightline/run/query.h"
@@ -114,6 +115,9 @@ struct WalkRecord {
     }
 };
 
+/// Writes down which stage of cells culls what: 1 + Stage per item.
+void notAdmitted(const SnapshotState& state, const Admission& admission, std::span<uint8_t> reasons);
+
 /// One answer in the making, or one bin's part of it. What it needs stays from walk to walk.
 ///
 /// A bin's walk is that of the whole view, in a buffer of which all beside the bin's columns is hidden. What the
@@ -127,7 +131,10 @@ struct Walk {
     View view;
     Bin bin;
     WalkRecord* record = nullptr;  ///< filled, if there is one
-    bool every_layer = true;       ///< no object is outside the view's layers
+    /// What the stages of cells leave; set before run(), outlives the answer. Null: everything. What is not admitted is
+    /// passed over without a word: they have counted it.
+    const Admission* admission = nullptr;
+    bool every_layer = true;  ///< no object is outside the view's layers
     Frustum frustum;
     ViewLimits limits;
     RefinedVolume refined;  ///< of both, if `refining`
@@ -151,6 +158,8 @@ struct Walk {
     QueryStats stats;
     uint32_t undecided = 0;  ///< nodes and objects in line; without any, nothing is left to hide
 
+    Visit root;  ///< all that stages may ask
+
     const SnapshotState& state() const { return *snapshot; }
     bool uses(Stage stage) const { return view.stages & stageBit(stage); }
     StageStats& of(Stage stage) { return stats.stages[static_cast<int>(stage)]; }
@@ -162,7 +171,7 @@ struct Walk {
     void run(const SnapshotState* now, const View& new_view, const Bin& part);
     /// As Query::reasons(), of the whole view.
     void reasons(std::span<uint8_t> reasons) const;
-    /// How many objects of a range of places are within the view's layers.
+    /// How many objects of a range of places are within the view's layers, and admitted.
     uint64_t inLayers(const PlaceRange& places) const;
     /// Keeps an object that no stage can look at.
     void keep(const ObjectRecord& object);
@@ -182,8 +191,10 @@ private:
     FrustumAnswer askPlanes(const EyeBoxes& boxes, uint32_t planes) const;
     void chooseRefinement();
     uint32_t refine(const EyeBoxes& boxes, const FrustumAnswer& answer) const;
-    void walkUnordered(const Visit& root);
-    void expand(const Visit& from);
+    void walkUnordered();
+    void expand(const Visit& from, uint32_t slots = 0xff);
+    void expandAll();
+    uint32_t admittedSlots(const BvhNode& node) const;
     VolumesAnswer askVolumes(const BvhNode& node, const EyeBoxes& boxes, VolumeRange range, uint32_t left);
     void meet(const BvhNode& node, int slot, const Visit& below, const ScreenAnswer& on_screen);
     void visit(const Pending& entry);
@@ -192,6 +203,7 @@ private:
     bool hasSecondLook(const ObjectRecord& object) const;
     bool settle(const Pending& entry, Look look, Sight sight, uint64_t& count);
     void report(uint32_t first, uint32_t count);
+    void reportAdmitted(uint32_t first, uint32_t count);
     void drawLast();
     void offerVisible(uint32_t place);
     void offerOccluder(uint32_t place, bool in_line);

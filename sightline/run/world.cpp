@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/run/world.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "sightline/run/world_changes.h"
 
 namespace sightline {
@@ -25,6 +28,39 @@ ClustersId World::addClusters(const DrawClusters& clusters) { return state_->add
 ObjectId World::add(const ObjectDef& object) { return state_->add(object); }
 bool World::move(ObjectId id, const glm::dmat4& transform) { return state_->move(id, transform); }
 bool World::remove(ObjectId id) { return state_->remove(id); }
+
+Status World::attach(const CellSpace& space, const VisibleRows* rows) {
+    if (Status status = detail::checkSpace(space, rows); !status) return status;
+    state_->attach(makeShared<detail::AttachedCells>(state_->memory, space, rows, state_->memory));
+    return success();
+}
+
+Status World::attach(const VisibilityFile& file) {
+    if (!file.hasCells()) return Error{Error::Kind::kUsage, "the visibility file has no cells"};
+    const CellSpace space = file.cellSpace();
+    if (Status status = detail::checkSpace(space, &file.rows()); !status) return status;
+    auto cells = makeShared<detail::AttachedCells>(state_->memory, space, &file.rows(), state_->memory);
+    if (file.hasObjects()) cells->objects = file.objects();
+    state_->attach(std::move(cells));
+    return success();
+}
+
+void World::detach() { state_->attach(nullptr); }
+
+PortalId World::findPortal(std::string_view name) const {
+    const detail::AttachedCells* cells = state_->attached();
+    for (size_t i = 0; cells && i < cells->doors.size(); ++i)
+        if (cells->doors[i] == name) return {static_cast<uint32_t>(i + 1)};
+    return {};
+}
+
+bool World::setPortal(PortalId id, double open) {
+    if (id.index == 0) return false;
+    // Rounded up, and what is no number is open: rather seen than not.
+    float part = std::isnan(open) ? 1.0f : static_cast<float>(std::clamp(open, 0.0, 1.0));
+    if (static_cast<double>(part) < open && part < 1.0f) part = std::nextafter(part, 1.0f);
+    return state_->setDoor(id.index - 1, part);
+}
 
 Snapshot World::commit() {
     Snapshot snapshot;

@@ -5,15 +5,21 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include <glm/glm.hpp>
 
 #include "sightline/base/memory.h"
+#include "sightline/base/result.h"
 #include "sightline/geom/draw_clusters.h"
 #include "sightline/geom/occluder.h"
 #include "sightline/math/box.h"
 
 namespace sightline {
+
+struct CellSpace;
+class VisibilityFile;
+class VisibleRows;
 
 /// Ids are plain values; zero is null. A removed object's id is never given out again: its index is, with the next
 /// generation.
@@ -29,6 +35,12 @@ struct OccluderId {
 struct ClustersId {
     uint32_t index = 0;
     bool operator==(const ClustersId&) const = default;
+};
+
+/// What may shut portals of the attached cells: a door.
+struct PortalId {
+    uint32_t index = 0;
+    bool operator==(const PortalId&) const = default;
 };
 
 /// What the stages of distance and contribution, which are not conservative, may do with an object.
@@ -116,6 +128,31 @@ public:
     /// False if the id is stale.
     bool move(ObjectId id, const glm::dmat4& transform);
     bool remove(ObjectId id);
+
+    /// Divides the world by cells, for Stage::kPvs and Stage::kPortals, from the next commit on. What was attached before
+    /// gives way to it; every door is open.
+    ///
+    /// The walls of the cells are held to be drawn and to stand where they stood: what is behind them is culled whoever is in
+    /// View::layers. Objects stand in the cells that their bounds reach into, wherever they move; one that reaches into no
+    /// cell is kept by both stages.
+    /// @param space  copied
+    /// @param rows   what is seen from where, by CellSpace::row_of_cell; null: Stage::kPvs does nothing. Their bytes must
+    ///               outlive the world and its snapshots
+    /// Errors (kUsage): what is wrong with the space; nothing has changed.
+    Status attach(const CellSpace& space, const VisibleRows* rows = nullptr);
+    /// The same with what a visibility file holds: cells, portals, doors, rows, and the cells of objects, which they are
+    /// told by their keys. An object takes them from there if it stands where it stood when they were baked (its bounds do),
+    /// has not moved since it was added, and no other has its key and its bounds; all others go by their bounds.
+    /// @param file  hasCells(); outlives the world and its snapshots
+    Status attach(const VisibilityFile& file);
+    /// Takes the cells off again, from the next commit on.
+    void detach();
+    /// A door of the attached cells by its name; null if there is none. Of equal names the first.
+    PortalId findPortal(std::string_view name) const;
+    /// Opens or shuts the portals of a door, from the next commit on. Whatever draws the door is an object of its own.
+    /// @param open  0: shut; 1: open; between: CellDoor::slide says what part of its portals is left
+    /// @returns false if there is no such door
+    bool setPortal(PortalId id, double open);
 
     /// The world as it is now. Costs O(changes log² objects), and a few bytes an object to share with it what has not
     /// changed; O(objects log objects) the first time, and now and then after as many changes as there are objects.

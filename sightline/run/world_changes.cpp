@@ -83,7 +83,9 @@ ObjectId WorldState::add(const ObjectDef& object) {
 bool WorldState::move(ObjectId id, const glm::dmat4& transform) {
     const uint32_t row = find(id);
     if (row == IdSlot::kNowhere) return false;
-    objects_.change(row).transform = transform;
+    ObjectRecord& object = objects_.change(row);
+    object.moved |= object.transform != transform;
+    object.transform = transform;
     if (row < committed_ && !hasBit(moved_bits_, row)) {
         setBit(moved_bits_, row);
         moved_.push_back(row);
@@ -120,11 +122,16 @@ void WorldState::compact() {
     }
     objects_ = std::move(packed);
     gaps_ = 0;
+    cells_.renumber();
 }
 
 /// Takes an object out of the hierarchy, or from among the unbounded.
 void WorldState::takeOut(uint32_t row) {
-    if (bvh_.contains(row)) return placed_.set(bvh_.remove(row), {});
+    if (bvh_.contains(row)) {
+        const uint32_t place = bvh_.remove(row);
+        cells_.notePlaces(place, place + 1);
+        return placed_.set(place, {});
+    }
     const auto at = std::lower_bound(unbounded_.begin(), unbounded_.end(), row);
     SIGHTLINE_ASSERT(at != unbounded_.end() && *at == row);
     unbounded_.erase(at);
@@ -143,6 +150,7 @@ void WorldState::putIn(uint32_t row) {
 
 /// Writes down what stands in a range of the hierarchy's places.
 void WorldState::place(uint32_t first, uint32_t end) {
+    cells_.notePlaces(first, end);
     for (uint32_t at = first; at < end; ++at) {
         const uint32_t row = bvh_.now().order[at];
         placed_.set(at, row == PlacedBvh::kNone ? PlacedObject() : placedObject(objects_[row]));
@@ -226,10 +234,38 @@ void WorldState::update() {
     if (came || !mended.empty()) noteLimits();
 }
 
+void WorldState::attach(std::shared_ptr<const AttachedCells> cells) {
+    cells_.attach(std::move(cells));
+    changed_ = true;
+}
+
+bool WorldState::setDoor(uint32_t door, float open) {
+    if (!cells_.setDoor(door, open)) return false;
+    changed_ = true;
+    return true;
+}
+
+/// Puts what has changed into the cells that it is in now. The hierarchy is as it will be.
+void WorldState::updateCells() {
+    cells_.begin();
+    if (cells_.isAllNew()) {
+        for (uint32_t row = 0; row < objects_.size(); ++row)
+            if (lives(row)) cells_.put(row, objects_[row]);
+    } else {
+        for (const uint32_t row : removed_) cells_.take(row);
+        for (const uint32_t row : moved_)
+            if (lives(row)) cells_.put(row, objects_[row]);
+        for (uint32_t row = committed_; row < objects_.size(); ++row)
+            if (lives(row)) cells_.put(row, objects_[row]);
+    }
+    cells_.finish(bvh_.now());
+}
+
 std::shared_ptr<const SnapshotState> WorldState::commit() {
     if (!changed_) return last_;
     if (last_) update();
     else build();
+    if (cells_.attached()) updateCells();
     for (const uint32_t row : moved_) clearBit(moved_bits_, row);
     moved_.clear();
     removed_.clear();
@@ -245,6 +281,7 @@ std::shared_ptr<const SnapshotState> WorldState::commit() {
     state->bvh = bvh_.share();
     state->placed = placed_.share();
     state->limits = limits_.share(memory);
+    cells_.share(state->cell_state);
     state->count = size();
     state->common_layers = common_layers_;
     last_ = state;

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "sightline/base/memory.h"
+#include "sightline/run/world_cells.h"
 #include "sightline/run/world_state.h"
 
 namespace sightline::detail {
@@ -26,6 +27,10 @@ public:
     bool remove(ObjectId id);
     OccluderId addOccluder(const Occluder& occluder, std::span<const InnerOccluder> inner);
     ClustersId addClusters(const DrawClusters& given);
+    /// @param cells  null: none
+    void attach(std::shared_ptr<const AttachedCells> cells);
+    bool setDoor(uint32_t door, float open);
+    const AttachedCells* attached() const { return cells_.attached(); }
     std::shared_ptr<const SnapshotState> commit();
     uint32_t size() const { return objects_.size() - gaps_; }
 
@@ -41,6 +46,7 @@ private:
     void place(uint32_t first, uint32_t end);
     PlacedLimits::One limitsAt(uint32_t row) const;
     void noteLimits();
+    void updateCells();
 
     ObjectTable objects_{memory};
     IdTable ids_{memory};
@@ -60,7 +66,8 @@ private:
     PlacedObjects placed_{memory};
     PlacedLimits limits_{memory};
     Array<uint32_t> unbounded_{memory};  ///< rows, rising
-    Array<Box3d> boxes_{memory};         ///< scratch: what comes into the hierarchy
+    WorldCells cells_{memory};
+    Array<Box3d> boxes_{memory};  ///< scratch: what comes into the hierarchy
     Array<uint32_t> rows_{memory};
     std::shared_ptr<const SnapshotState> last_;
 };

@@ -5,11 +5,15 @@
 #include <memory>
 #include <span>
 
+#include "sightline/base/levelled_bits.h"
 #include "sightline/base/memory.h"
 #include "sightline/base/paged.h"
 #include "sightline/base/ranked_bits.h"
+#include "sightline/cull/portals.h"
 #include "sightline/cull/volume_parts.h"
 #include "sightline/geom/occluder.h"
+#include "sightline/run/attached_cells.h"
+#include "sightline/run/cell_objects.h"
 #include "sightline/run/placed_limits.h"
 #include "sightline/run/world.h"
 #include "sightline/space/growing_bvh.h"
@@ -27,6 +31,7 @@ struct ObjectRecord {
     OccluderId shape;
     ObjectLimits limits;
     ClustersId clusters;
+    bool moved = false;  ///< it does not stand where it was added
 };
 
 /// Objects by row; rows are given in the order of World::add. Snapshots share its pages.
@@ -75,6 +80,17 @@ using OccluderTable = Paged<std::shared_ptr<const HeldOccluder>, 64>;  // entry 
 
 using ClusterTable = Paged<std::shared_ptr<const DrawClusters>, 64>;  // entry 0 is null
 
+/// What stands where in the cells of a world.
+struct CellState {
+    std::shared_ptr<const AttachedCells> cells;     ///< null: there are none, and nothing of the rest
+    std::shared_ptr<const Array<DoorState>> doors;  ///< of the cells' doors
+    CellLists lists;                                ///< of rows
+    PagedBits free;                                 ///< per place of the hierarchy: an object in no cell
+    uint32_t free_count = 0;
+
+    explicit CellState(Memory* memory) : lists(memory), free(memory) {}
+};
+
 /// An immutable state of a world. Items are the living objects in the order of World::add; the hierarchy's are rows.
 struct SnapshotState {
     ObjectTable objects;
@@ -86,6 +102,7 @@ struct SnapshotState {
     PlacedBvh bvh;                             ///< over the others
     PlacedObjects placed;                      ///< per place of the hierarchy
     PlacedLimits limits;                       ///< of the same places; of none: no object has its own
+    CellState cell_state;                      ///< empty in a world of some of another one's objects
     uint32_t count = 0;                        ///< living objects
     uint32_t common_layers = ~0u;              ///< layers that every object is in
 
@@ -97,7 +114,8 @@ struct SnapshotState {
           unbounded(memory),
           bvh(memory),
           placed(memory),
-          limits(memory) {}
+          limits(memory),
+          cell_state(memory) {}
 
     uint32_t rowOf(uint32_t item) const { return living ? living->select(item) : item; }
     uint32_t itemOf(uint32_t row) const { return living ? living->rank(row) : row; }

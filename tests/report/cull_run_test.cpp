@@ -22,8 +22,9 @@ TEST(CullRun, KeepsAKeyIfAnyOfItsObjectsIsVisible) {
     EXPECT_EQ(frame.visible, (std::vector<uint64_t>{5, 7}));
     EXPECT_EQ(frame.objects_visible, 2u);
     EXPECT_EQ(frame.triangles, 4u);
-    EXPECT_EQ(frame.stages[0].tested, 3u);
-    EXPECT_EQ(frame.stages[0].culled, 0u);
+    const StageRow& frustum = frame.stages[static_cast<int>(Stage::kFrustum)];
+    EXPECT_EQ(frustum.tested, 3u);
+    EXPECT_EQ(frustum.culled, 0u);
     const StageRow& occlusion = frame.stages[static_cast<int>(Stage::kOcclusion)];
     EXPECT_EQ(occlusion.tested, 3u);
     EXPECT_EQ(occlusion.culled, 1u);

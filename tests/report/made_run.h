@@ -53,9 +53,9 @@ inline CullRun madeRun(const Scene& scene, size_t frames = 2) {
         FrameResult frame;
         frame.camera.eye = {0.01 * double(i), 0, 6};
         frame.camera.target = {0.01 * double(i), 0, 0};
-        frame.reasons = {0, 1 + static_cast<int>(Stage::kOcclusion), 1, 0};
+        frame.reasons = {0, 1 + static_cast<int>(Stage::kOcclusion), 1 + static_cast<int>(Stage::kFrustum), 0};
         frame.query_microseconds = 10.5 + double(i);
-        frame.stages[0].microseconds = 2.5;
+        frame.stages[static_cast<int>(Stage::kFrustum)].microseconds = 2.5;
         countByKey(scene, order, run.stages, frame);
         VerificationRow row;
         row.rays = 1000;

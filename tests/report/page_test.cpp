@@ -88,7 +88,7 @@ TEST(Page, ListsObjectsWithTheirStageInEachFrame) {
     EXPECT_EQ(data["rows"][0][0], 5);  // kept as often as 7, and with more triangles
     EXPECT_EQ(data["rows"][1][1], "wall");
     EXPECT_EQ(data["rows"][2][4], 0);
-    EXPECT_EQ(data["row_stages"][0], "005");
+    EXPECT_EQ(data["row_stages"][0], "007");
 }
 
 TEST(Page, TableKeepsItsBounds) {

@@ -47,7 +47,8 @@ TEST(TraceJson, HasATrackForEachThreadAndASliceForEachFrame) {
 
 TEST(TraceJson, NestsStagesInTheirQueryAndQueriesInTheirFrame) {
     CullRun run = timedRun();
-    run.frames[2].stages[0].microseconds = 1000;  // timed apart, and slower than the query
+    run.frames[2].stages[static_cast<int>(Stage::kFrustum)].microseconds =
+        1000;  // timed apart, and slower than the query
     const json trace = json::parse(traceJson(run));
     const auto frames = eventsOf(trace, "X", "frame"), queries = eventsOf(trace, "X", "query"),
                stages = eventsOf(trace, "X", "stage");

@@ -346,7 +346,7 @@ TEST(Query, KeepsWhateverItCannotJudge) {
     Query query;
     VisibleSet set = query.visible(now, view);
     EXPECT_EQ(set.objects.size(), 4u);
-    EXPECT_EQ(set.stats.stages[0].doubt, 3u);
+    EXPECT_EQ(set.stats.stages[static_cast<int>(Stage::kFrustum)].doubt, 3u);
     view.view[3].x = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(query.visible(now, view).objects.size(), 4u);
     view = viewFrom({100, 0, 0}, {1, 0, 0});
