@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "sightline/bake/scene_cells.h"
 #include "sightline/base/random.h"
@@ -115,6 +116,13 @@ void expectRightPlaces(const Scene& scene, const CellSpace& space, const Shapes&
             ASSERT_TRUE(near) << i << " in " << cell;
         }
         EXPECT_EQ(found.places.everywhere[i], in.empty());
+        if (space.outside == CellGraph::kNoCell) continue;
+        bool inside = false;  // of one cell, with room to spare
+        for (const uint32_t cell : in)
+            inside = inside || (cell != space.outside && std::all_of(corners.begin(), corners.end(), [&](glm::dvec3 p) {
+                                    return depthBelow(shapes.planes[cell], p) < -margin - 1e-6;
+                                }));
+        EXPECT_FALSE(inside && std::binary_search(in.begin(), in.end(), space.outside)) << i;
     }
 }
 
@@ -196,7 +204,8 @@ TEST(ObjectCells, OfATreeAreThoseThatTheirPointsLieIn) {
 }
 
 TEST(ObjectCells, OfRegionsAreThoseThatTheirPointsLieIn) {
-    for (const bool with_outside : {false, true}) {
+    for (const double tolerance : {0.0, 0.06, -0.003, -0.06}) {
+        const bool with_outside = tolerance < 0;
         CellSpace space;
         const std::vector<Box3d> boxes = {
             {{0, 0, 0}, {0.5, 1, 1}}, {{0.5, 0, 0}, {1, 1, 0.5}}, {{0.6, 0.2, 0.5}, {1, 1, 1}}};
@@ -223,7 +232,7 @@ TEST(ObjectCells, OfRegionsAreThoseThatTheirPointsLieIn) {
             space.regions.emplace_back();
         }
         space.graph.cells = static_cast<uint32_t>(space.regions.size());
-        space.tolerance = 0.003;
+        space.tolerance = std::abs(tolerance);
         const Scene scene = strewn(400, space.planes, 9);
         const ObjectCells found = cellsOfObjects(scene, space);
         ASSERT_EQ(found.places.size(), scene.objects.size());

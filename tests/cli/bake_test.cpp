@@ -70,6 +70,35 @@ TEST_F(Bake, ABuildingBecomesAFileThatHoldsItsCells) {
     EXPECT_NE(text.out.find("visible objects"), std::string::npos) << text.out;
 }
 
+TEST_F(Bake, ARowSeesTheObjectsOfItsCellsAndNoneBeyondThoseThatItSees) {
+    ASSERT_EQ(run("bake building:1:2 -o b.see --objects").exit_code, 0);
+    const std::string bytes = read(path("b.see"));
+    const Result<VisibilityFile> file = VisibilityFile::open(bytes, "b.see");
+    ASSERT_TRUE(file.ok()) << file.error().message;
+    const CellSpace space = file->cellSpace();
+    const PlacedObjects& objects = file->objects();
+    std::vector<uint64_t> row((objects.size() + 63) / 64);
+    uint64_t seen = 0, hidden = 0;
+    for (uint32_t cell = 0; cell < space.graph.cells; ++cell) {
+        ASSERT_EQ(space.row_of_cell[cell], cell);
+        file->objectRow(cell, row);
+        for (size_t i = 0; i < objects.size(); ++i) {
+            const bool in_row = (row[i / 64] >> i % 64 & 1) != 0;
+            bool here = false, in_seen = false;
+            for (size_t k = 0; k < objects.cells(i).size(); ++k) {
+                here = here || objects.cells(i)[k] == cell;
+                in_seen = in_seen || file->rows().sees(cell, objects.cells(i)[k]);
+            }
+            ASSERT_TRUE(in_row || (!here && !objects.seenFromEverywhere(i))) << cell << " " << i;
+            ASSERT_TRUE(!in_row || in_seen || objects.seenFromEverywhere(i)) << cell << " " << i;
+            seen += in_row;
+            hidden += in_seen && !in_row;
+        }
+    }
+    EXPECT_GT(seen, 10000u);
+    EXPECT_GT(hidden, 10000u);
+}
+
 TEST_F(Bake, BytesAreTheSameForAnyThreads) {
     for (const char* threads : {"1", "2", "8"})
         ASSERT_EQ(run(fmt::format("bake building:1:1 -o t{}.see --objects --threads {}", threads, threads)).exit_code,
