@@ -17,6 +17,7 @@
 #include "apps/cli/cluster_options.h"
 #include "apps/cli/section_options.h"
 #include "apps/cli/size_options.h"
+#include "apps/cli/visibility_options.h"
 #include "apps/cli/verbs.h"
 #include "sightline/geom/view.h"
 #include "sightline/load/seeded_cameras.h"
@@ -137,6 +138,7 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
     verb.add_option("--skip", options.skip, "not these stages")->delimiter(',')->type_name("LIST")->group("Culling");
     addSizeOptions(verb, options);
     addSectionOptions(verb, options);
+    addVisibilityOptions(verb, options);
     addClusterOptions(verb, options);
     verb.add_option("--jitter", options.jitter, "largest shift of the image that the answer must hold for")
         ->check(CLI::Range(0.0, 1024.0))
@@ -239,9 +241,9 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     if (!use) return use.error();
     if (!skip) return skip.error();
     // Clusters take long to prepare: they are for those who ask for them.
-    options.stages =
-        (options.use.empty() ? kDefaultStages & ~(stageBit(Stage::kClusters) | kCellStages) : *use) & ~*skip;
+    options.stages = (options.use.empty() ? kDefaultStages & ~stageBit(Stage::kClusters) : *use) & ~*skip;
     if (Status sizes = finishSizeOptions(options); !sizes) return sizes;
+    if (Status cells = finishVisibilityOptions(options); !cells) return cells;
     if (Status clusters = finishClusterOptions(options); !clusters) return clusters;
     options.seed_given = verb.count("--seed") > 0;
     if (!options.cameras.empty() && (options.frames > 0 || options.seed_given))

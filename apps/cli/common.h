@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "sightline/base/result.h"
 #include "sightline/geom/view.h"
 #include "sightline/prepare/merge_facing.h"
+#include "sightline/report/cull_run.h"
 #include "sightline/scene/camera_path.h"
 #include "sightline/scene/scene.h"
 
@@ -18,6 +20,8 @@ class App;
 }
 
 namespace sightline::cli {
+
+struct OpenedVisibility;
 
 /// Options of every verb that moves a camera through a scene.
 struct RunOptions {
@@ -35,6 +39,8 @@ struct RunOptions {
     double max_distance = 0;                  ///< View; 0: not given
     double contribution = 0;                  ///< the same
     ViewPlanes sections;                      ///< View
+    VisibilityAsked visibility;
+    std::shared_ptr<const OpenedVisibility> opened;  ///< by openVisibility(): its file, or null
     double cluster_test = FacingCost().test;  ///< of a cluster  [triangles]
     std::string calibration;                  ///< file that says so; empty: none
     bool dear_shading = false;                ///< which of its figures

@@ -23,6 +23,7 @@
 #include "apps/cli/size_options.h"
 #include "apps/cli/summary.h"
 #include "apps/cli/verbs.h"
+#include "apps/cli/visibility_choice.h"
 #include "sightline/report/output_file.h"
 #include "sightline/report/page.h"
 #include "sightline/report/trace_json.h"
@@ -43,6 +44,7 @@ Status checkApart(const CullOptions& options) {
     ApartFiles files;
     for (const std::string& name : options.scene.names) files.read("SCENE", name);
     files.read("--cameras", options.cameras);
+    files.read("--visibility", options.visibility.file);
     files.write("--json", options.json);
     files.write("--trace", options.trace);
     files.write("--record-occlusion", options.recording);
@@ -153,6 +155,7 @@ Result<int> runCull(const CLI::App& verb, CullOptions& options) {
     if (Status apart = checkApart(options); !apart) return apart.error();
     const Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
+    if (Status opened = openVisibility(*scene, options); !opened) return opened.error();
     const Result<CameraPath> path = loadPath(*scene, options);
     if (!path) return path.error();
     if (options.frame >= path->frames.size())

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "apps/cli/visibility_options.h"
+
 namespace sightline::cli {
 namespace {
 
@@ -34,10 +36,10 @@ QueryStats ask(const Snapshot& now, const CullRun& run, const View& view, Query&
     return query.visible(now, view).stats;
 }
 
-/// What is held to be hidden: not what distance and contribution culled, which may be seen.
-std::vector<uint8_t> provable(std::vector<uint8_t> reasons) {
+/// What is held to be hidden: not what distance, contribution and a limited depth of portals culled, which may be seen.
+std::vector<uint8_t> provable(std::vector<uint8_t> reasons, const CullRun& run) {
     for (uint8_t& reason : reasons)
-        if (isLossy(reason)) reason = 0;
+        if (isLossy(reason, run)) reason = 0;
     return reasons;
 }
 
@@ -50,6 +52,7 @@ View viewOf(const CameraFrame& camera, const CullRun& run) {
     view.max_distance = run.max_distance;
     view.contribution = run.contribution;
     view.sections = run.sections;
+    applyVisibility(run.visibility, view);
     view.hysteresis = 0;  // each frame stands by itself, whichever thread answered the one before it
     view.occluder_triangles = run.occluder_triangles;
     view.occluder_error = run.occluder_error;
@@ -114,9 +117,9 @@ void cullFrame(const Snapshot& now, const CullRun& run, const CameraFrame* befor
 FrameVerdict judgeFrame(const Witness& witness, const CullRun& run, const FrameResult& frame,
                         const WitnessSettings& settings) {
     const View view = viewOf(frame.camera, run);
-    if (!(run.stereo > 0)) return witness.judge(view, provable(frame.reasons), settings);
-    FrameVerdict both = witness.judge(view, provable(frame.eye_reasons[0]), settings);
-    const FrameVerdict right = witness.judge(shiftedEye(view, run.stereo), provable(frame.eye_reasons[1]), settings);
+    if (!(run.stereo > 0)) return witness.judge(view, provable(frame.reasons, run), settings);
+    FrameVerdict both = witness.judge(view, provable(frame.eye_reasons[0], run), settings);
+    const FrameVerdict right = witness.judge(shiftedEye(view, run.stereo), provable(frame.eye_reasons[1], run), settings);
     for (const FalseCull& cull : right.false_culls) {
         const auto same = [&](const FalseCull& other) { return other.object == cull.object; };
         if (std::none_of(both.false_culls.begin(), both.false_culls.end(), same)) both.false_culls.push_back(cull);

@@ -21,6 +21,8 @@
 #include "apps/cli/cluster_options.h"
 #include "apps/cli/section_options.h"
 #include "apps/cli/size_options.h"
+#include "apps/cli/visibility_choice.h"
+#include "apps/cli/visibility_options.h"
 #include "apps/cli/verbs.h"
 #include "sightline/base/thread_pool.h"
 #include "sightline/hidden/threads.h"
@@ -52,7 +54,7 @@ uint64_t countOnce(std::vector<uint64_t>& keys) {
     return static_cast<uint64_t>(std::unique(keys.begin(), keys.end()) - keys.begin());
 }
 
-VerificationRow rowOf(const FrameVerdict& verdict, const FrameResult& frame, const Scene& scene) {
+VerificationRow rowOf(const FrameVerdict& verdict, const FrameResult& frame, const Scene& scene, const CullRun& run) {
     VerificationRow row;
     row.rays = verdict.rays;
     row.aimed_rays = verdict.aimed_rays;
@@ -61,7 +63,7 @@ VerificationRow rowOf(const FrameVerdict& verdict, const FrameResult& frame, con
     row.unconfirmed = verdict.unconfirmed;
     std::vector<uint64_t> keys, lossy;
     for (size_t i = 0; i < verdict.seen.size(); ++i)
-        if (verdict.seen[i]) (isLossy(frame.reasons[i]) ? lossy : keys).push_back(scene.objects[i].key);
+        if (verdict.seen[i]) (isLossy(frame.reasons[i], run) ? lossy : keys).push_back(scene.objects[i].key);
     row.exactly_visible = countOnce(keys);
     row.lossy_seen = countOnce(lossy);
     for (size_t i = 0; i < frame.reasons.size(); ++i)
@@ -138,7 +140,7 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     if (run.occluder_triangles != View().occluder_triangles)
         command += fmt::format(" --occluder-triangles {}", run.occluder_triangles);
     command += sizeOptionsOf(run.max_distance, run.contribution) + sectionOptionsOf(run.sections) +
-               clusterOptionsOf(run.cluster_test);
+               visibilityOptionsOf(run.visibility) + clusterOptionsOf(run.cluster_test);
     if (run.occluder_error > 0) command += fmt::format(" --occluder-error {}", run.occluder_error);
     if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
     if (run.last_visible_first) command += " --last-visible-first";
@@ -154,7 +156,8 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     View asked;
     asked.max_distance = run.max_distance;
     asked.contribution = run.contribution;
-    const uint32_t stages = stagesInUse(asked) & ~stageBit(Stage::kClusters);  // if none are named
+    const uint32_t unnamed = stageBit(Stage::kClusters) | (run.visibility.file.empty() ? kCellStages : 0);
+    const uint32_t stages = stagesInUse(asked) & ~unnamed;  // if none are named
     std::string used, skipped;
     for (int stage = 0; stage < kStageCount; ++stage) {
         const bool uses = run.stages >> stage & 1;
@@ -188,6 +191,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.max_distance = options.max_distance;
     run.contribution = options.contribution;
     run.sections = options.sections;
+    run.visibility = options.visibility;
     run.cluster_test = options.cluster_test;
     run.occluder_triangles = options.occluder_triangles;
     run.occluder_error = options.occluder_error;
@@ -211,6 +215,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
             loadSettings((options.stages & stageBit(Stage::kVolumes)) != 0, options.occluder_error,
                          (options.stages & stageBit(Stage::kClusters)) != 0, options.cluster_test));
     }();
+    attachVisibility(options, loaded.world);
     const Snapshot now = loaded.world.commit();
 
     std::vector<double> weights;
@@ -257,7 +262,7 @@ void verifyPath(const Scene& scene, const RunOptions& options, CullRun& run) {
     const Worker judge = [&](size_t i) {
         FrameResult& frame = run.frames[i];
         const FrameVerdict verdict = judgeFrame(witness, run, frame, settings);
-        frame.verification = rowOf(verdict, frame, scene);
+        frame.verification = rowOf(verdict, frame, scene, run);
         progress.step();
     };
     shareOut(run.frames.size(), options.threads, interrupted, [&](uint32_t) { return judge; });

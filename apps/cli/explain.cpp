@@ -14,6 +14,7 @@
 #include "apps/cli/explain_object.h"
 #include "apps/cli/session.h"
 #include "apps/cli/verbs.h"
+#include "apps/cli/visibility_choice.h"
 #include "sightline/report/explain_picture.h"
 #include "sightline/report/explain_text.h"
 #include "sightline/report/output_file.h"
@@ -65,6 +66,7 @@ Status checkOutputs(const ExplainOptions& options) {
     ApartFiles files;
     for (const std::string& name : options.scene.names) files.read("SCENE", name);
     files.read("--cameras", options.cameras);
+    files.read("--visibility", options.visibility.file);
     files.write("--json", options.json);
     files.write("-o", options.picture);
     if (!files.status()) return files.status();
@@ -208,6 +210,7 @@ Status runExplain(const CLI::App& verb, ExplainOptions& options, int& exit_code)
     if (Status good = readQuestion(verb, options); !good) return good;
     const Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
+    if (Status opened = openVisibility(*scene, options); !opened) return opened;
     const Result<CameraPath> path = loadPath(*scene, options);
     if (!path) return path.error();
     if (Status good = checkFrame(options, *path); !good) return good;

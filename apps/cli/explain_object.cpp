@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/cli/progress.h"
+#include "apps/cli/visibility_choice.h"
+#include "apps/cli/visibility_options.h"
 #include "sightline/report/explain_text.h"
 #include "sightline/run/query.h"
 #include "sightline/scene/one_line.h"
@@ -110,6 +112,7 @@ AskedScene::AskedScene(const Scene& from, const RunOptions& options) : scene(fro
         scene, [&](size_t done, size_t total) { progress.set(done, total); },
         loadSettings(true, options.occluder_error, (options.stages & stageBit(Stage::kClusters)) != 0,
                      options.cluster_test));
+    attachVisibility(options, loaded.world);
     now = loaded.world.commit();
 }
 
@@ -124,6 +127,7 @@ View viewOfFrame(const CameraFrame& camera, const RunOptions& options) {
     view.max_distance = options.max_distance;
     view.contribution = options.contribution;
     view.sections = options.sections;
+    applyVisibility(options.visibility, view);
     view.hysteresis = 0;  // each frame stands by itself, whichever thread answered the one before it
     view.occluder_triangles = options.occluder_triangles;
     view.occluder_error = options.occluder_error;

@@ -81,7 +81,7 @@ std::string sizeOptionsOf(double max_distance, double contribution) {
 }
 
 void countChanges(const Scene& scene, const RunOptions& options, CullRun& run) {
-    if (!(run.stages & kLossyStages) || interrupted()) return;
+    if (!lossyStages(run) || interrupted()) return;
     const SceneFacts facts(scene);
     Progress progress("comparing", "frames", run.frames.size());
     forEach(run.frames.size(), options.threads, [&](size_t i) {
@@ -93,7 +93,7 @@ void countChanges(const Scene& scene, const RunOptions& options, CullRun& run) {
         std::vector<Drawn> drawn(reasons.size());
         for (size_t object = 0; object < reasons.size(); ++object)
             drawn[object] = reasons[object] == 0       ? Drawn::kAlways
-                            : isLossy(reasons[object]) ? Drawn::kFullOnly
+                            : isLossy(reasons[object], run) ? Drawn::kFullOnly
                                                        : Drawn::kNever;
         frame.changed_pixels = countChangedPixels(facts, view, drawn);
         progress.step();

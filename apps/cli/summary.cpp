@@ -14,6 +14,7 @@
 #include "apps/cli/cluster_options.h"
 #include "apps/cli/section_options.h"
 #include "apps/cli/size_options.h"
+#include "apps/cli/visibility_options.h"
 #include "sightline/scene/one_line.h"
 
 namespace sightline::cli {
@@ -46,7 +47,7 @@ void addSums(std::string& text, const Verification& sum, const CullRun& run) {
     if (sum.lossy_seen > 0)
         fmt::format_to(
             std::back_inserter(text),
-            "not proved   {} objects that distance or contribution culled were seen: so they were asked to\n",
+            "not proved   {} objects that were culled by distance, contribution or depth were seen: so they were asked to\n",
             grouped(sum.lossy_seen));
     if (judged < run.frames.size())
         fmt::format_to(std::back_inserter(text), "unverified   {} of {} frames\n", run.frames.size() - judged,
@@ -56,7 +57,7 @@ void addSums(std::string& text, const Verification& sum, const CullRun& run) {
 void addChanges(std::string& text, const CullRun& run) {
     if (const auto changes = sumChanges(run))
         fmt::format_to(std::back_inserter(text),
-                       "changed      {:>10} pixels   {:7.4f} %: what distance and contribution culling cost\n",
+                       "changed      {:>10} pixels   {:7.4f} %: what was culled although it may be visible\n",
                        grouped(changes->changed),
                        share(static_cast<double>(changes->changed), static_cast<double>(changes->pixels)));
 }
@@ -161,7 +162,7 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     list("--use", options.use);
     list("--skip", options.skip);
     command += sizeOptionsOf(options.max_distance, options.contribution) + sectionOptionsOf(options.sections) +
-               clusterOptionsOf(options.cluster_test);
+               visibilityOptionsOf(options.visibility) + clusterOptionsOf(options.cluster_test);
     if (options.jitter != View().jitter) command += fmt::format(" --jitter {}", options.jitter);
     if (options.occluder_triangles != View().occluder_triangles)
         command += fmt::format(" --occluder-triangles {}", options.occluder_triangles);

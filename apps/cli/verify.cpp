@@ -11,6 +11,7 @@
 #include "apps/cli/size_options.h"
 #include "apps/cli/summary.h"
 #include "apps/cli/verbs.h"
+#include "apps/cli/visibility_choice.h"
 #include "sightline/report/output_file.h"
 
 namespace sightline::cli {
@@ -22,10 +23,12 @@ Result<int> runVerify(const CLI::App& verb, RunOptions& options) {
     ApartFiles files;
     for (const std::string& name : options.scene.names) files.read("SCENE", name);
     files.read("--cameras", options.cameras);
+    files.read("--visibility", options.visibility.file);
     files.write("--json", options.json);
     if (!files.status()) return files.status().error();
     const Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
+    if (Status opened = openVisibility(*scene, options); !opened) return opened.error();
     const Result<CameraPath> path = loadPath(*scene, options);
     if (!path) return path.error();
     if (!options.json.empty() && options.json != "-")

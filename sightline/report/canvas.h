@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 
 #include <glm/glm.hpp>
 
@@ -15,6 +16,7 @@ namespace sightline {
 class Canvas {
 public:
     Canvas(uint32_t width, uint32_t height, Rgb paper) : image_(width, height, paper) {}
+    explicit Canvas(Image<Rgb> picture) : image_(std::move(picture)) {}
 
     const Image<Rgb>& image() const { return image_; }
 

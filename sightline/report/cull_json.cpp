@@ -58,6 +58,12 @@ Json frameJson(const FrameResult& frame, const CullRun& run, const Scene& scene)
                            {"hidden", row.hidden}, {"whole", row.whole}, {"drawn", row.drawn},
                            {"draws", row.draws}};
     }
+    if (frame.cells)
+        out["cells"] = {{"known", frame.cells->known},
+                        {"entered", frame.cells->cells},
+                        {"portals", frame.cells->portals},
+                        {"whole", frame.cells->whole},
+                        {"too_deep", frame.cells->too_deep}};
     out["occluder_triangles"] = frame.occluder_triangles;
     out["nodes_visited"] = frame.nodes_visited;
     out["seam_pixels"] = frame.seam_pixels;
@@ -74,6 +80,15 @@ Json frameJson(const FrameResult& frame, const CullRun& run, const Scene& scene)
     out["begin_microseconds"] = frame.begin_microseconds;
     out["end_microseconds"] = frame.end_microseconds;
     if (frame.verification) out["verification"] = verificationJson(*frame.verification, frame, scene);
+    return out;
+}
+
+Json visibilityJson(const VisibilityAsked& asked) {
+    Json out;
+    out["file"] = asked.file;
+    out["windows"] = asked.windows;
+    if (asked.portal_depth > 0) out["portal_depth"] = asked.portal_depth;
+    for (const DoorAsked& door : asked.doors) out["doors"].push_back({{"name", door.name}, {"open", door.open}});
     return out;
 }
 
@@ -96,6 +111,7 @@ Json headJson(const CullRun& run, const Scene& scene) {
     if (run.contribution > 0) head["contribution"] = run.contribution;
     if (run.hysteresis > 0) head["hysteresis"] = run.hysteresis;
     for (const glm::dvec4& plane : run.sections.all()) head["sections"].push_back({plane.x, plane.y, plane.z, plane.w});
+    if (!run.visibility.file.empty()) head["visibility"] = visibilityJson(run.visibility);
     if (run.stages & stageBit(Stage::kClusters)) head["cluster_test"] = run.cluster_test;
     if (run.stereo > 0) head["stereo"] = run.stereo;
     if (run.last_visible_first) head["last_visible_first"] = true;

@@ -59,6 +59,26 @@ struct ClusterRow {
     uint64_t draws = 0;             ///< runs of triangles
 };
 
+/// A door that a run sets.
+struct DoorAsked {
+    std::string name;
+    double open = 1;  ///< 0: shut; 1: open
+};
+
+/// What a run asks of baked visibility.
+struct VisibilityAsked {
+    std::string file;  ///< empty: there is none
+    std::string windows = kWindowNames[static_cast<int>(View().windows)];
+    uint32_t portal_depth = 0;  ///< View
+    std::vector<DoorAsked> doors;
+};
+
+/// What the stage of portals did: PortalStats.
+struct CellRow {
+    uint64_t cells = 0, portals = 0, whole = 0, too_deep = 0;
+    bool known = true;  ///< false: the eye was in no cell, or the work was spent
+};
+
 struct FrameResult {
     CameraFrame camera;
     std::vector<uint64_t> visible;  ///< keys, ascending, each once
@@ -69,6 +89,7 @@ struct FrameResult {
     uint64_t objects_visible = 0;  ///< objects, not keys
     uint64_t triangles = 0;        ///< of the visible objects, or of what is left of them: what a renderer would submit
     std::optional<ClusterRow> clusters;  ///< with that stage, of one eye
+    std::optional<CellRow> cells;        ///< with the stage of portals, of one eye
     uint64_t occluder_triangles = 0;     ///< rasterized by the query
     bool budget_spent = false;
     double query_microseconds = 0;                                 ///< median over the repeats
@@ -100,6 +121,7 @@ struct CullRun {
     double max_distance = 0, contribution = 0;                         ///< View
     double hysteresis = 0;            ///< View, towards the frame before, which was asked without any
     ViewPlanes sections;              ///< View
+    VisibilityAsked visibility;
     double cluster_test = 0;          ///< FacingCost::test that clusters were prepared for, with that stage
     double stereo = 0;                ///< distance of the two eyes  [world units]; 0: there is one
     bool last_visible_first = false;  ///< each frame drew first what the one before it kept
@@ -132,9 +154,14 @@ struct Changes {
 };
 std::optional<Changes> sumChanges(const CullRun& run);
 
-/// Whether an object's reason is a stage that culls what may be visible.
-inline bool isLossy(uint8_t reason) {
-    return reason > 0 && reason <= kStageCount && (kLossyStages >> (reason - 1) & 1);
+/// Bits of the stages in use that cull what may be visible.
+inline uint32_t lossyStages(const CullRun& run) {
+    return run.stages & (kLossyStages | (run.visibility.portal_depth > 0 ? stageBit(Stage::kPortals) : 0));
+}
+
+/// Whether an object's reason is one of these.
+inline bool isLossy(uint8_t reason, const CullRun& run) {
+    return reason > 0 && reason <= kStageCount && (lossyStages(run) >> (reason - 1) & 1);
 }
 
 /// The median, of an even number the mean of the two in the middle; 0 of none. All that tells of a run uses this one.

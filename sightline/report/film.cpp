@@ -88,6 +88,15 @@ Film drawFilm(const Scene& scene, const CullRun& run, const PageSettings& settin
             shot.images.push_back({"buffer", encodeJpeg(buffer, kJpegQuality)});
             save("buffer", chosen[i], buffer);
         }
+        if (settings.windows) {
+            const std::vector<CellWindow> exact = settings.windows(chosen[i], PortalWindows::kPolygons),
+                                          boxes = settings.windows(chosen[i], PortalWindows::kBoxes);
+            const glm::dvec2 scale(double(views[i].width) / run.width, double(views[i].height) / run.height);
+            const Image<Rgb> windows = windowPicture(drawn.shaded, scale, exact, boxes);
+            shot.images.push_back({"windows", encodeJpeg(windows, kJpegQuality)});
+            shot.windows_text = windowText(exact, boxes);
+            save("windows", chosen[i], windows);
+        }
         shot.plan_text = storey.whole() ? "From above." : "From above; what lies off the eye’s storey is pale.";
         shot.section_text = sectionText(section) + " What lies off the eye’s slice is pale.";
         shot.depth_all = mean(drawn.all);

@@ -22,6 +22,7 @@ struct Shot {
     size_t frame = 0;
     std::vector<FilmImage> images;
     std::string plan_text, section_text;   ///< what the drawings show
+    std::string windows_text;              ///< what the windows show; empty: there are none
     double depth_all = 0, depth_kept = 0;  ///< surfaces drawn for a pixel, mean
     bool same = true;                      ///< the picture with culling is the same, sample by sample
 };

@@ -8,6 +8,7 @@
 
 #include "sightline/report/cull_run.h"
 #include "sightline/report/png.h"
+#include "sightline/report/window_picture.h"
 #include "sightline/scene/scene.h"
 
 namespace sightline {
@@ -23,6 +24,8 @@ struct PageSettings {
     std::function<void(const std::string& name, const std::string& bytes)> save;
     /// Draws the occlusion buffer of a frame (depthPicture()), on any of these threads; empty: the page has none.
     std::function<Image<Rgb>(size_t frame)> buffer;
+    /// Finds the windows through which a frame's cells are seen, on any of these threads; empty: the page has none.
+    std::function<std::vector<CellWindow>(size_t frame, PortalWindows kind)> windows;
 };
 
 /// The frames that are drawn, ascending.

@@ -59,6 +59,7 @@ Json picturesJson(const Film& film) {
                       {"images", std::move(images)},
                       {"plan", shot.plan_text},
                       {"section", shot.section_text}};
+        if (!shot.windows_text.empty()) entry["windows"] = shot.windows_text;
         if (film.heat_scale > 0) {
             entry["depth_all"] = rounded(shot.depth_all);
             entry["depth_kept"] = rounded(shot.depth_kept);

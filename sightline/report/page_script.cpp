@@ -30,6 +30,7 @@ function showPicture(f) {
   }
   put('plan-text', shot.plan);
   put('section-text', shot.section);
+  if (at('windows-text')) put('windows-text', shot.windows);
   if (shot.depth_all !== undefined) {
     put('depth-all', shot.depth_all.toFixed(2));
     put('depth-kept', shot.depth_kept.toFixed(2));
@@ -43,12 +44,11 @@ function showPicture(f) {
   }
 }
 function showLook() {
-  const layers = {objects: look === 'objects', culled: look === 'culled', buffer: look === 'buffer'};
+  const layers = {objects: look === 'objects', culled: look === 'culled', buffer: look === 'buffer',
+                  windows: look === 'windows'};
   for (const [id, on] of Object.entries(layers)) if (at(id)) at(id).hidden = !on;
-  if (at('buffer-text')) {
-    at('buffer-text').hidden = look !== 'buffer';
-    at('same').hidden = look === 'buffer';
-  }
+  for (const id of ['buffer', 'windows']) if (at(id + '-text')) at(id + '-text').hidden = look !== id;
+  if (at('same')) at('same').hidden = look === 'buffer' || look === 'windows';
   const screen = document.querySelector('.screen');
   if (screen) screen.classList.toggle('through', look === 'culled');
 }

@@ -43,14 +43,15 @@ std::string samplesPerPixel(const Verification& sum) {
     return fmt::format("{0}×{0} to {1}×{1} a pixel", sum.least_supersampling, sum.most_supersampling);
 }
 
-/// The looks of the picture; that of the occlusion buffer only where it was drawn.
-std::string looks(bool buffer) {
+/// The looks of the picture; those of the occlusion buffer and of the windows only where they were drawn.
+std::string looks(bool buffer, bool windows) {
     std::string text = R"html(<fieldset class="switch"><legend class="unseen">What the picture shows</legend>
 <label><input type="radio" name="look" value="shaded" checked><span>As seen</span></label>
 <label><input type="radio" name="look" value="culled"><span>Culled objects drawn through</span></label>
 <label><input type="radio" name="look" value="objects"><span>One colour an object</span></label>)html";
     if (buffer)
         text += "\n<label><input type=\"radio\" name=\"look\" value=\"buffer\"><span>Occlusion buffer</span></label>";
+    if (windows) text += "\n<label><input type=\"radio\" name=\"look\" value=\"windows\"><span>Windows</span></label>";
     return text + "</fieldset>";
 }
 
@@ -128,7 +129,7 @@ std::string filmSection(const CullRun& run, const Film& film) {
         return std::any_of(film.shots[0].images.begin(), film.shots[0].images.end(),
                            [&](const FilmImage& image) { return image.id == id; });
     };
-    std::string picture = has("culled") ? looks(has("buffer")) : "";
+    std::string picture = has("culled") ? looks(has("buffer"), has("windows")) : "";
     picture += fmt::format(
         "<figure><div class=\"screen\" style=\"aspect-ratio:{}/{}\"><img id=\"shaded\" alt=\"The scene as the camera "
         "sees it\">",
@@ -141,6 +142,8 @@ std::string filmSection(const CullRun& run, const Film& film) {
         picture +=
             "<img id=\"buffer\" hidden alt=\"What the occlusion buffer claims: light is near, dark is far, blue is "
             "open\">";
+    if (has("windows"))
+        picture += "<img id=\"windows\" hidden alt=\"The windows through which cells are seen, over the picture\">";
     picture += "<span id=\"stale\" hidden></span></div><figcaption><span id=\"same\"></span>";
     if (has("buffer"))
         picture += fmt::format(
@@ -149,6 +152,7 @@ std::string filmSection(const CullRun& run, const Film& film) {
             "farther than its grey, from light for the nearest claim to dark for the farthest. Blue hides nothing. The "
             "buffer’s longer side has at most {} pixels.</span>",
             run.occlusion_size);
+    if (has("windows")) picture += "<span id=\"windows-text\" hidden></span>";
     picture += "</figcaption></figure>";
     std::string plans;
     if (has("plan"))

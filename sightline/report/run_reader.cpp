@@ -128,6 +128,28 @@ ClusterRow clustersOf(const At& at) {
             at.member("draws").whole()};
 }
 
+CellRow cellsOf(const At& at) {
+    CellRow row;
+    row.known = at.member("known").flag();
+    row.cells = at.member("entered").whole();
+    row.portals = at.member("portals").whole();
+    row.whole = at.member("whole").whole();
+    row.too_deep = at.member("too_deep").whole();
+    return row;
+}
+
+VisibilityAsked visibilityOf(const At& at) {
+    VisibilityAsked asked;
+    asked.file = at.member("file").text();
+    asked.windows = at.member("windows").text();
+    if (const auto depth = at.maybe("portal_depth"))
+        asked.portal_depth = static_cast<uint32_t>(depth->whole(0, ~uint32_t{0}));
+    if (const auto doors = at.maybe("doors"))
+        for (size_t i = 0; i < doors->size(); ++i)
+            asked.doors.push_back({doors->element(i).member("name").text(), doors->element(i).member("open").number()});
+    return asked;
+}
+
 void readStages(const At& list, FrameResult& frame, uint32_t& stages) {
     stages = 0;
     for (size_t i = 0; i < list.size(); ++i) {
@@ -190,6 +212,7 @@ void readFrame(const At& at, CullRun& run, uint32_t& stages, FrameResult& frame,
     readStages(at.member("stages"), frame, stages);
     frame.triangles = at.member("triangles").whole();
     if (const auto clusters = at.maybe("clusters")) frame.clusters = clustersOf(*clusters);
+    if (const auto cells = at.maybe("cells")) frame.cells = cellsOf(*cells);
     frame.query_microseconds = at.member("query_microseconds").positive();
     const auto count = [&](const char* name, uint64_t& out) {
         if (const auto value = at.maybe(name)) out = value->whole();
@@ -272,6 +295,7 @@ RunFile readHead(const At& head) {
             sections->element(i).numbers(&plane.x, 4);
             if (!run.sections.add(plane)) sections->fail("too many planes");
         }
+    if (const auto asked = head.maybe("visibility")) run.visibility = visibilityOf(*asked);
     if (const auto test = head.maybe("cluster_test")) run.cluster_test = test->positive();
     if (const auto share = head.maybe("hysteresis")) run.hysteresis = share->positive();
     if (const auto stereo = head.maybe("stereo")) run.stereo = stereo->positive();

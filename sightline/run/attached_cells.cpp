@@ -47,6 +47,18 @@ Status checkTree(const LeafTree& tree) {
     return success();
 }
 
+/// Leaves name their cells, or are the cells.
+Status checkLeaves(const CellSpace& space) {
+    if (!space.ofTree()) return success();
+    const std::vector<uint32_t>& cell_of_leaf = space.graph.cell_of_leaf;
+    if (cell_of_leaf.empty() ? space.tree.contents.size() != space.graph.cells
+                             : space.tree.contents.size() != cell_of_leaf.size())
+        return wrong("there is not one leaf for each cell");
+    for (const uint32_t cell : cell_of_leaf)
+        if (cell >= space.graph.cells && cell != kNoCell) return wrong("a leaf has a cell that there is not");
+    return success();
+}
+
 Status checkRegions(const CellSpace& space) {
     if (space.regions.size() != space.graph.cells) return wrong("there is not one region for each cell");
     for (const glm::dvec4& plane : space.planes)
@@ -66,8 +78,7 @@ Status checkSpace(const CellSpace& space, const VisibleRows* visible) {
     if (space.graph.cells == 0) return wrong("there are none");
     if (Status status = checkPortals(space); !status) return status;
     if (Status status = space.ofTree() ? checkTree(space.tree) : checkRegions(space); !status) return status;
-    if (space.ofTree() && space.tree.contents.size() != space.graph.cells)
-        return wrong("there is not one leaf for each cell");
+    if (Status status = checkLeaves(space); !status) return status;
     if (space.outside != kNoCell && space.outside >= space.graph.cells) return wrong("there is no such outside");
     if (!(space.tolerance >= 0 && std::isfinite(space.tolerance))) return wrong("the tolerance is not a distance");
     if (!space.row_of_cell.empty() && space.row_of_cell.size() != space.graph.cells)

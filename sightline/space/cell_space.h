@@ -37,8 +37,8 @@ struct CellDoor {
 /// A graph of cells together with the places of the cells: what a bake is made of, and what a world is divided by. The
 /// cells are the leaves of a tree, or convex regions of their own.
 struct CellSpace {
-    CellGraph graph;                  ///< cell i is leaf i of the tree, or region i
-    LeafTree tree;                    ///< without contents: there is none
+    CellGraph graph;  ///< cell i is region i or, of a tree, what graph.cell_of_leaf says; leaf i without
+    LeafTree tree;    ///< without contents: there is none
     std::vector<CellRegion> regions;  ///< where there is no tree  [size: graph.cells]
     std::vector<glm::dvec4> planes;   ///< of the regions
     std::vector<std::string> names;   ///< of the cells; may be empty  [size: graph.cells]

@@ -1,0 +1,75 @@
+// The visibility file that a run asks for: opened, held to its scene, and attached to the world.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/visibility_choice.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sightline/scene/one_line.h"
+#include "sightline/scene/text_file.h"
+
+namespace sightline::cli {
+namespace {
+
+/// How many of the file's objects stand in the scene where they stood when it was baked.
+uint64_t countInPlace(const Scene& scene, const PlacedObjects& objects) {
+    std::multimap<uint64_t, Box3d> boxes;
+    for (const SceneObject& object : scene.objects)
+        boxes.emplace(object.key, transformBox(scene.meshes[object.mesh].bounds, object.transform));
+    uint64_t count = 0;
+    for (size_t i = 0; i < objects.size(); ++i) {
+        const auto [first, end] = boxes.equal_range(objects.key(i));
+        const Box3d wanted = objects.bounds(i);
+        count += std::any_of(first, end, [&](const auto& box) {
+            return box.second.min == wanted.min && box.second.max == wanted.max;
+        });
+    }
+    return count;
+}
+
+Error wrong(const std::string& file, const std::string& what) {
+    return {Error::Kind::kInput, oneLine(file) + ": " + what};
+}
+
+}  // namespace
+
+Status openVisibility(const Scene& scene, RunOptions& options) {
+    const std::string& name = options.visibility.file;
+    if (name.empty()) return success();
+    Result<std::string> bytes = readTextFile(name);
+    if (!bytes) return bytes.error();
+    // The file looks into its bytes, which must not move any more.
+    auto text = std::make_unique<std::string>(std::move(*bytes));
+    Result<VisibilityFile> file = VisibilityFile::open(*text, name);
+    if (!file) return file.error();
+    if (!file->hasCells())
+        return wrong(name, "it has rows of visibility, but no cells: `sightline bake` writes both");
+    const CellSpace space = file->cellSpace();
+    for (const DoorAsked& door : options.visibility.doors)
+        if (std::none_of(space.doors.begin(), space.doors.end(),
+                         [&](const CellDoor& other) { return other.name == door.name; }))
+            return Error{Error::Kind::kUsage, fmt::format("--door: there is no door \"{}\" in {} (it has {})",
+                                                          oneLine(door.name), oneLine(name), space.doors.size())};
+    World empty;
+    if (Status fits = empty.attach(*file); !fits) return wrong(name, fits.error().message);
+    if (file->hasObjects() && file->objects().size() > 0) {
+        const uint64_t all = file->objects().size(), there = countInPlace(scene, file->objects());
+        // What moved may have been a wall: nothing that the file says holds then.
+        if (there < all)
+            return wrong(name, fmt::format("it was baked of another scene: {} of its {} objects are not where it says",
+                                           grouped(all - there), grouped(all)));
+    }
+    options.opened = std::make_shared<OpenedVisibility>(std::move(text), std::move(*file));
+    return success();
+}
+
+void attachVisibility(const RunOptions& options, World& world) {
+    if (!options.opened) return;
+    (void)world.attach(options.opened->file);
+    for (const DoorAsked& door : options.visibility.doors) world.setPortal(world.findPortal(door.name), door.open);
+}
+
+}  // namespace sightline::cli
