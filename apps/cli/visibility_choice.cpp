@@ -8,7 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "apps/cli/vis_map.h"
+#include "sightline/bake/scene_hash.h"
 #include "sightline/scene/one_line.h"
+#include "sightline/scene/procedural.h"
 #include "sightline/scene/text_file.h"
 
 namespace sightline::cli {
@@ -23,11 +26,18 @@ uint64_t countInPlace(const Scene& scene, const PlacedObjects& objects) {
     for (size_t i = 0; i < objects.size(); ++i) {
         const auto [first, end] = boxes.equal_range(objects.key(i));
         const Box3d wanted = objects.bounds(i);
-        count += std::any_of(first, end, [&](const auto& box) {
-            return box.second.min == wanted.min && box.second.max == wanted.max;
-        });
+        count += std::any_of(
+            first, end, [&](const auto& box) { return box.second.min == wanted.min && box.second.max == wanted.max; });
     }
     return count;
+}
+
+/// Whether a compiled map is among the files: its file is known by the hash of the map itself.
+bool isOfMap(const SceneChoice& scene) {
+    return std::any_of(scene.names.begin(), scene.names.end(), [](const std::string& name) {
+        const std::string kind = mapKind(name);
+        return !isProcedural(name) && (kind == ".bsp" || kind == ".pak" || kind == ".pk3");
+    });
 }
 
 Error wrong(const std::string& file, const std::string& what) {
@@ -45,14 +55,15 @@ Status openVisibility(const Scene& scene, RunOptions& options) {
     auto text = std::make_unique<std::string>(std::move(*bytes));
     Result<VisibilityFile> file = VisibilityFile::open(*text, name);
     if (!file) return file.error();
-    if (!file->hasCells())
-        return wrong(name, "it has rows of visibility, but no cells: `sightline bake` writes both");
+    if (!file->hasCells()) return wrong(name, "it has rows of visibility, but no cells: `sightline bake` writes both");
     const CellSpace space = file->cellSpace();
     for (const DoorAsked& door : options.visibility.doors)
         if (std::none_of(space.doors.begin(), space.doors.end(),
                          [&](const CellDoor& other) { return other.name == door.name; }))
             return Error{Error::Kind::kUsage, fmt::format("--door: there is no door \"{}\" in {} (it has {})",
                                                           oneLine(door.name), oneLine(name), space.doors.size())};
+    if (!isOfMap(options.scene) && file->mapHash() != hashOf(scene))
+        return wrong(name, "it was baked of another scene: its hash is not this one's");
     World empty;
     if (Status fits = empty.attach(*file); !fits) return wrong(name, fits.error().message);
     if (file->hasObjects() && file->objects().size() > 0) {
