@@ -28,6 +28,7 @@ constexpr Case kCases[] = {
 #endif
     {"hidden", benchHidden},
     {"hierarchy", benchHierarchy},
+    {"indoor", benchIndoor},
     {"inner", benchInner},
     {"occlusion", benchOcclusion},
     {"order", benchOrder},

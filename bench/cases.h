@@ -40,6 +40,10 @@ Table benchHidden(const Options& options);
 /// flat list.
 Table benchHierarchy(const Options& options);
 
+/// A furnished building of a quarter of a million triangles from inside its rooms: the share that view volume, rows, portals and
+/// occlusion remove, one after the other, and what the reference renderer then takes. A fault where an image changes.
+Table benchIndoor(const Options& options);
+
 /// A field of dense statues: simpler occluders inside of them beside their own polygons, by the error allowed.
 Table benchInner(const Options& options);
 
