@@ -176,7 +176,12 @@ Result<Scene> loadScene(const SceneChoice& choice) {
         if (!scene) return scene;
         scenes.push_back(std::move(*scene));
     }
-    return joinScenes(std::move(scenes));
+    Scene joined = joinScenes(std::move(scenes));
+    if (joined.objects.empty())
+        return Error{
+            Error::Kind::kInput,
+            joined.name + ": draws nothing: it has cells or portals alone; name the scene that they belong to, too"};
+    return joined;
 }
 
 }  // namespace sightline::cli

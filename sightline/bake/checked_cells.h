@@ -90,7 +90,8 @@ private:
     const Scene& scene_;
     const SceneCellSettings& settings_;
     OpaqueWalls walls_;
-    double slit_ = 0;
+    double slit_ = 0, bend_ = 0;
+    double thick_ = 0;  ///< the larger of these: what is within it of a face may be on either side
     std::vector<CheckedCell> cells_;
     std::vector<FoundPortal> portals_;
     std::map<std::pair<uint32_t, uint32_t>, std::vector<uint32_t>> holes_between_;  ///< of portals_

@@ -64,8 +64,8 @@ void CheckedCells::moveFaces() {
 void CheckedCells::moveFaces(CheckedCell& cell, size_t planes, double reach) {
     if (!(reach > 0)) return;
     Box3d near_by = cell.bounds;
-    near_by.min -= glm::dvec3(reach + slit_);
-    near_by.max += glm::dvec3(reach + slit_);
+    near_by.min -= glm::dvec3(reach + thick_);
+    near_by.max += glm::dvec3(reach + thick_);
     std::vector<WallTriangle> triangles;
     walls_.gather(near_by, triangles);
     CheckedCell moved = cell;
@@ -73,12 +73,12 @@ void CheckedCells::moveFaces(CheckedCell& cell, size_t planes, double reach) {
     for (CheckedFace& face : cell.faces) {
         if (face.plane >= planes) continue;
         const std::vector<glm::dvec3> outline = face.frame.from(face.outline);
-        const auto sheet = sheetNear(outline, cell.planes[face.plane], face.frame, face.gates, triangles, reach, slit_);
+        const auto sheet = sheetNear(outline, cell.planes[face.plane], face.frame, face.gates, triangles, reach, bend_);
         face.gates.clear();
         if (!sheet) continue;
         double off = 0;
         for (const glm::dvec3& corner : outline) off = std::max(off, std::abs(heightOf(*sheet, corner)));
-        if (off <= slit_ / 2) continue;
+        if (off <= bend_ / 2) continue;
         moved.planes[face.plane] = *sheet;
         ++count;
     }
@@ -92,7 +92,7 @@ void CheckedCells::moveFaces(CheckedCell& cell, size_t planes, double reach) {
 
 int CheckedCells::faceNear(const CheckedCell& cell, const Lying& lying, double side) const {
     int best = -1;
-    double least = 2 * settings_.wall_tolerance + slit_;
+    double least = 2 * settings_.wall_tolerance + thick_;
     for (size_t i = 0; i < cell.faces.size(); ++i) {
         const CheckedFace& face = cell.faces[i];
         const glm::dvec4& plane = cell.planes[face.plane];
@@ -135,7 +135,7 @@ bool CheckedCells::lies(uint32_t index, Lying& lying) {
         bend = std::max(bend, std::abs(off));
         point -= off * lying.normal;
     }
-    if (bend > std::max(slit_, 1e-3 * std::sqrt(glm::length(area)))) {
+    if (bend > std::max(thick_, 1e-3 * std::sqrt(glm::length(area)))) {
         CellFinding bent = finding;
         bent.kind = CellFindingKind::kBentPortal;
         bent.size = bend;
@@ -160,7 +160,7 @@ uint32_t CheckedCells::doorOf(uint32_t index, const Lying& lying) {
         const Box3d box = transformBox(scene_.meshes[leaf.mesh].bounds, leaf.transform);
         Box3d around;
         for (const glm::dvec3& point : lying.outline) around.grow(point);
-        const double reach = std::max(settings_.wall_tolerance, slit_);
+        const double reach = std::max(settings_.wall_tolerance, thick_);
         bool near_by = box.finite();
         for (int axis = 0; axis < 3; ++axis)
             near_by &= box.min[axis] <= around.max[axis] + reach && box.max[axis] >= around.min[axis] - reach;
@@ -180,7 +180,7 @@ FlatPiece CheckedCells::addGate(uint32_t a, int face, uint32_t b, const FlatPiec
     CheckedFace& from = cells_[a].faces[static_cast<size_t>(face)];
     const FlatPiece shared = sharedBy(piece, from.outline);
     if (shared.empty()) return {};
-    FlatPiece gate = pieceOf(from.frame, clipped(from.frame.from(shared), cells_[b], slit_));
+    FlatPiece gate = pieceOf(from.frame, clipped(from.frame.from(shared), cells_[b], thick_));
     if (gate.size() < 3) return {};
     from.gates.push_back(gate);
     return gate;
@@ -204,7 +204,7 @@ void CheckedCells::join(uint32_t portal, const Lying& lying, uint32_t a, int fac
         const std::vector<glm::dvec3> other = faceOf(1).frame.from(gate[1]);
         double off = 0;
         for (const glm::dvec3& point : other) off = std::max(off, std::abs(faceOf(0).frame.heightOf(point)));
-        if (off <= slit_) {
+        if (off <= thick_) {
             const FlatPiece more = pieceOf(faceOf(0).frame, other);
             gate[0].insert(gate[0].end(), more.begin(), more.end());
             gate[0] = hullOf(std::move(gate[0]));
@@ -214,7 +214,7 @@ void CheckedCells::join(uint32_t portal, const Lying& lying, uint32_t a, int fac
     for (int side = 0; side < 2; ++side)
         if (!gate[side].empty())
             portals_.push_back(
-                {cell[side], cell[1 - side], faceOf(side).frame.from(widened(gate[side], slit_)), portal, door});
+                {cell[side], cell[1 - side], faceOf(side).frame.from(widened(gate[side], thick_)), portal, door});
 }
 
 uint32_t CheckedCells::addPassage(uint32_t portal, const Lying& lying, const glm::dvec4& plane_a,
@@ -225,7 +225,7 @@ uint32_t CheckedCells::addPassage(uint32_t portal, const Lying& lying, const glm
     double width = std::numeric_limits<double>::infinity();
     for (size_t i = 0; i < outline.size(); ++i) {
         const glm::dvec3 edge = outline[(i + 1) % outline.size()] - outline[i];
-        if (!(glm::length(edge) > slit_)) continue;
+        if (!(glm::length(edge) > thick_)) continue;
         const glm::dvec3 normal = glm::normalize(glm::cross(lying.normal, edge));
         passage.planes.emplace_back(normal, -glm::dot(normal, outline[i]));
         double across = 0;
@@ -263,7 +263,7 @@ bool CheckedCells::placePortal(uint32_t index, const Lying& lying) {
         gap = std::max(gap, from_a + from_b);
     }
     const uint32_t door = doorOf(index, lying);
-    if (gap <= slit_) {
+    if (gap <= thick_) {
         join(index, lying, a, lying.face[0], b, lying.face[1], door);
         return true;
     }
@@ -281,7 +281,7 @@ bool CheckedCells::placePortal(uint32_t index, const Lying& lying) {
         whole.outline = own.frame.from(own.outline);
         join(index, whole, cell, face, passage, end, shut_by);
     };
-    if (door != kNone && least_a > slit_ && least_b > slit_) {
+    if (door != kNone && least_a > thick_ && least_b > thick_) {
         // The leaf stands within the wall: it is seen from both sides when it is shut.
         const glm::dvec4 middle(lying.normal, -glm::dot(lying.normal, lying.middle));
         const uint32_t first = addPassage(index, lying, plane_a, -middle);

@@ -55,8 +55,12 @@ CheckedCells::CheckedCells(const Scene& scene, const SceneCellSettings& settings
         far = std::max({reach.x, reach.y, reach.z});
     }
     // What doubles can tell of positions this far out.
-    slit_ = std::max(settings.slit >= 0 ? settings.slit : size * 0x1p-20, (size + far) * 0x1p-36);
+    const double least = (size + far) * 0x1p-36;
+    slit_ = std::max(settings.slit >= 0 ? settings.slit : size * 0x1p-20, least);
+    bend_ = std::max(settings.bend >= 0 ? settings.bend : size * 0x1p-17, least);
+    thick_ = std::max(slit_, bend_);
     report_.slit = slit_;
+    report_.bend = bend_;
 }
 
 void CheckedCells::report(CellFinding finding) {
@@ -119,7 +123,7 @@ void CheckedCells::takeCells() {
         cell.name = marked.name;
         cell.planes = marked.planes;
         cell.bounds = marked.bounds;
-        const double allowed = std::max(slit_, 1e-3 * glm::length(marked.bounds.size()));
+        const double allowed = std::max(thick_, 1e-3 * glm::length(marked.bounds.size()));
         bool finite = true;
         for (const glm::dvec4& plane : marked.planes) finite &= std::isfinite(glm::length(plane));
         if (!(marked.overhang <= allowed) || !finite) cell.planes.clear();
@@ -137,7 +141,7 @@ void CheckedCells::takeCells() {
 
 void CheckedCells::findOverlaps() {
     // Drawn by hand, cells overlap by a little without meaning it.
-    const double room = settings_.trusted ? slit_ : std::max(slit_, settings_.wall_tolerance);
+    const double room = settings_.trusted ? thick_ : std::max(thick_, settings_.wall_tolerance);
     std::vector<uint32_t> order;
     for (uint32_t i = 0; i < cells_.size(); ++i)
         if (cells_[i].solid()) order.push_back(i);
@@ -205,7 +209,7 @@ SceneCells CheckedCells::finish() {
         }
         space.graph.addPortal(portal.a, portal.b == kOutside ? space.outside : portal.b, portal.outline, door);
     }
-    space.tolerance = 2 * slit_;
+    space.tolerance = 2 * thick_;
     report_.walls.assign(used_.begin(), used_.end());
     return {std::move(space), std::move(report_)};
 }

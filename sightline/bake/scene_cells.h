@@ -18,9 +18,13 @@ namespace sightline {
 struct SceneCellSettings {
     /// How far a marked cell's face, and a portal, may be from the wall that is meant.  [world units] [>= 0]
     double wall_tolerance = 0.15;
-    /// Slits narrower than this are no holes, and polygons within it of a plane lie in the plane. Negative: 2^-20 of the
-    /// size of all cells, a hundredth of a millimetre in a room of ten metres.  [world units]
+    /// Slits in a wall that are narrower than this are no holes. Negative: 2^-20 of the size of all cells, a hundredth of a
+    /// millimetre in a room of ten metres.  [world units]
     double slit = -1;
+    /// Polygons within this of a plane lie in it, for walls are never quite flat; what is seen between two of them through a
+    /// gap that is no wider, as at the corners of a room, is no hole. Negative: 2^-17 of the size of all cells.
+    /// [world units]
+    double bend = -1;
     /// Cells and portals are taken as they are marked: no wall is looked at. For makers that know.
     bool trusted = false;
     /// Objects that may be elsewhere at run time: they hide nothing, as the leaves of doors.  [Scene::objects]
@@ -59,7 +63,7 @@ struct SceneCellReport {
     uint64_t moved_faces = 0;     ///< to the wall that was meant
     uint64_t passages = 0;        ///< cells that were added where a portal goes through a wall's thickness
     uint64_t merged_faces = 0;    ///< whose holes became their hull
-    double slit = 0;              ///< as used  [world units]
+    double slit = 0, bend = 0;    ///< as used  [world units]
     bool outside = false;         ///< some hole leads there
     std::vector<uint32_t> walls;  ///< objects that the answer rests on: while they stand, are drawn and are opaque it
                                   ///< holds  [Scene::objects] rising
@@ -74,7 +78,7 @@ struct SceneCells {
 /// Makes cells of the marked ones, so that a sight line which leaves a cell without meeting a drawn, opaque front leaves it
 /// by a portal. Holes in walls that nobody marked become portals; docs/techniques/cells.md has the argument.
 ///
-/// Not sound for slits narrower than `slit`, for trusted cells that are not what they are said to be, and if one of
+/// Not sound for slits narrower than `slit` and, between the sheets of a wall, `bend`, for trusted cells that are not what they are said to be, and if one of
 /// SceneCellReport::walls is moved or hidden.
 ///
 /// A scene without cells gives a space without cells. O(cells * objects + triangles near cells * pieces of their faces).

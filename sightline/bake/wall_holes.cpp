@@ -66,7 +66,7 @@ FlatPiece widened(const FlatPiece& piece, double by) {
 bool CheckedCells::isKnown(uint32_t a, uint32_t b, const std::vector<glm::dvec3>& outline) const {
     const auto known = holes_between_.find({std::min(a, b), std::max(a, b)});
     if (known == holes_between_.end()) return false;
-    const double room = 2 * slit_;
+    const double room = 2 * thick_;
     for (const uint32_t index : known->second) {
         const std::vector<glm::dvec3>& other = portals_[index].outline;
         const glm::dvec3 normal = glm::normalize(areaVector(other));
@@ -87,7 +87,7 @@ bool CheckedCells::addHolePortal(uint32_t a, uint32_t b, const CheckedFace& face
     std::vector<glm::dvec3> outline = face.frame.from(piece);
     if (b != kOutside && isKnown(a, b, outline)) return false;
     holes_between_[{std::min(a, b), std::max(a, b)}].push_back(static_cast<uint32_t>(portals_.size()));
-    portals_.push_back({a, b, face.frame.from(widened(piece, slit_)), ScenePortal::kNone, ScenePortal::kNone});
+    portals_.push_back({a, b, face.frame.from(widened(piece, thick_)), ScenePortal::kNone, ScenePortal::kNone});
     return true;
 }
 
@@ -108,22 +108,22 @@ void CheckedCells::addHole(uint32_t cell, const CheckedFace& face, const FlatHol
         FlatRest rest(piece);
         // Cells that are entered right behind it; those that it only grazes are left to the outside, which it then
         // leads to as well.
-        const std::vector<glm::dvec3> behind = face.frame.from(piece, -2 * slit_);
+        const std::vector<glm::dvec3> behind = face.frame.from(piece, -2 * thick_);
         Box3d box;
         for (const glm::dvec3& point : behind) box.grow(point);
-        box.min -= glm::dvec3(2 * slit_);
-        box.max += glm::dvec3(2 * slit_);
+        box.min -= glm::dvec3(2 * thick_);
+        box.max += glm::dvec3(2 * thick_);
         for (uint32_t other = 0; other < cells_.size(); ++other) {
             const CheckedCell& candidate = cells_[other];
             if (other == cell || !candidate.solid()) continue;
             bool apart = false;
             for (int axis = 0; axis < 3; ++axis)
                 apart |= candidate.bounds.max[axis] < box.min[axis] || box.max[axis] < candidate.bounds.min[axis];
-            if (apart || clipped(behind, candidate, -slit_).empty()) continue;
-            const FlatPiece shared = hullOf(face.frame.to(clipped(behind, candidate, slit_)));
+            if (apart || clipped(behind, candidate, -thick_).empty()) continue;
+            const FlatPiece shared = hullOf(face.frame.to(clipped(behind, candidate, thick_)));
             if (shared.empty()) continue;
             lead(other, shared, areaOf(shared));
-            rest.take(grownBy(shared, slit_ / 3));
+            rest.take(grownBy(shared, thick_ / 3));
         }
         if (rest.empty()) continue;
         for (const FlatHole& left : holesOf(rest.pieces(), slit_, settings_.most_holes))
@@ -152,7 +152,7 @@ void CheckedCells::findHoles(uint32_t cell, CheckedFace& face, const std::vector
     std::vector<Cover> covers;
     for (const WallTriangle& triangle : triangles) {
         bool within = true;
-        for (const glm::dvec3& corner : triangle.corners) within &= std::abs(face.frame.heightOf(corner)) <= slit_;
+        for (const glm::dvec3& corner : triangle.corners) within &= std::abs(face.frame.heightOf(corner)) <= bend_;
         if (!within) continue;
         const FlatPiece front = frontOf(face.frame, triangle);
         if (front.empty() || sharedBy(front, face.outline).empty()) continue;
@@ -161,7 +161,17 @@ void CheckedCells::findHoles(uint32_t cell, CheckedFace& face, const std::vector
     }
     // From one side to the other: pieces in the midst of nothing would be many.
     std::stable_sort(covers.begin(), covers.end(), [](const Cover& a, const Cover& b) { return a.at < b.at; });
-    FlatRest rest(face.outline);
+    // What is within the bend of another face may belong to that one's wall.
+    FlatPiece inner = face.outline;
+    for (size_t i = 0; i < face.outline.size(); ++i) {
+        const glm::dvec2 along = face.outline[(i + 1) % face.outline.size()] - face.outline[i];
+        const double length = glm::length(along);
+        if (!(length > 0)) continue;
+        const glm::dvec2 normal(-along.y / length, along.x / length);
+        if (!inner.empty()) inner = clipPiece(inner, {normal, -glm::dot(normal, face.outline[i]) - bend_});
+    }
+    if (inner.empty()) return;
+    FlatRest rest(inner);
     for (const FlatPiece& gate : face.gates) rest.take(grownBy(gate, grow));
     for (const Cover& cover : covers) {
         if (rest.empty()) break;
@@ -180,8 +190,8 @@ void CheckedCells::findHoles() {
     for (uint32_t i = 0; i < cells_.size(); ++i) {
         if (!cells_[i].solid()) continue;
         Box3d near_by = cells_[i].bounds;
-        near_by.min -= glm::dvec3(2 * slit_);
-        near_by.max += glm::dvec3(2 * slit_);
+        near_by.min -= glm::dvec3(2 * thick_);
+        near_by.max += glm::dvec3(2 * thick_);
         triangles.clear();
         walls_.gather(near_by, triangles);
         report_.faces += cells_[i].faces.size();

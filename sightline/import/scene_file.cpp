@@ -47,7 +47,11 @@ bool isMapSuffix(const std::string& suffix) { return suffix == "bsp" || suffix =
 
 /// A scale that takes objects out of the range of numbers is the settings' fault, but shows in the scene.
 bool inRange(const Scene& scene) {
-    const Box3d bounds = worldBounds(scene);
+    Box3d bounds = worldBounds(scene);
+    for (const SceneCell& cell : scene.cells) bounds.grow(cell.bounds);
+    for (const ScenePortal& portal : scene.portals)
+        for (const glm::dvec3& corner : portal.polygon) bounds.grow(corner);
+    if (bounds.empty() && scene.objects.empty()) return true;  // marks without a shape, that is
     return bounds.finite() && glm::length(bounds.size()) < 1e100;
 }
 

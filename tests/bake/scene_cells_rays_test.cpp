@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -11,6 +13,9 @@
 #include "made_rooms.h"
 #include "sightline/bake/scene_cells.h"
 #include "sightline/base/random.h"
+#include "sightline/import/scene_file.h"
+#include "sightline/scene/procedural.h"
+#include "sightline/truth/rays.h"
 
 namespace sightline {
 namespace {
@@ -86,11 +91,14 @@ struct Counts {
     uint64_t rays = 0, walls = 0, ways = 0;
 };
 
+/// Whether a ray meets an opaque front between two distances, or before.
+using Meets = std::function<bool(const glm::dvec3& from, const glm::dvec3& along, double first, double last)>;
+
 /// One ray out of a cell. Empty, or what is wrong.
-std::string follow(const SceneCells& cells, const Triangles& truth, uint32_t cell, const glm::dvec3& from,
+std::string follow(const SceneCells& cells, const Meets& meets, uint32_t cell, const glm::dvec3& from,
                    const glm::dvec3& along, Counts& counts) {
     const CellSpace& space = cells.space;
-    const double slit = cells.report.slit;
+    const double bend = std::max(cells.report.slit, cells.report.bend);
     double exit = kFar, grazing = 0;
     for (const glm::dvec4& plane : space.planesOf(space.regions[cell])) {
         const double height = glm::dot(glm::dvec3(plane), from) + plane.w, falls = glm::dot(glm::dvec3(plane), along);
@@ -99,15 +107,14 @@ std::string follow(const SceneCells& cells, const Triangles& truth, uint32_t cel
     if (grazing < 0.05) return "";  // passes along a wall: within its thickness nothing is said
     ++counts.rays;
     const glm::dvec3 point = from + exit * along;
-    const double reach = 2 * slit / grazing;
+    const double reach = 2 * bend / grazing;
     std::vector<uint32_t> through;
     for (const CellPortal& portal : space.graph.portals) {
         const int side = portal.cells[0] == cell ? 0 : 1;
-        if (portal.cells[side] == cell && holds(space.graph, portal, point, 2 * slit))
+        if (portal.cells[side] == cell && holds(space.graph, portal, point, 2 * bend))
             through.push_back(portal.cells[1 - side]);
     }
-    // What closes a slit narrower than the declared one counts as a wall.
-    const bool blocked = truth.meets(from, along, exit - reach, exit + reach, slit);
+    const bool blocked = meets(from, along, exit - reach, exit + reach);
     counts.walls += blocked;
     counts.ways += !through.empty();
     if (blocked) return "";
@@ -183,46 +190,57 @@ MadeRooms randomRooms(Random& random, int round) {
     return made;
 }
 
+/// Rays out of all cells, half of them aimed: at the edges of portals and a little beside them.
+/// @param surely  is asked where something seems wrong; empty: `meets` is sure
+void shoot(const SceneCells& cells, const Meets& meets, const Meets& surely, int rays, Random& random, Counts& counts) {
+    const CellSpace& space = cells.space;
+    for (uint32_t cell = 0; cell < space.graph.cells; ++cell) {
+        if (cell == space.outside) continue;
+        const Box3d& bounds = space.regions[cell].bounds;
+        for (int ray = 0; ray < rays; ++ray) {
+            glm::dvec3 from, target;
+            for (int axis = 0; axis < 3; ++axis) {
+                from[axis] = random.uniform(bounds.min[axis], bounds.max[axis]);
+                target[axis] = random.uniform(bounds.min[axis], bounds.max[axis]);
+            }
+            if (insideBy(space, cell, from) < 4 * cells.report.bend) continue;
+            if (ray % 2 && !space.graph.portals.empty()) {
+                const CellPortal& portal = space.graph.portals[random.below(space.graph.portals.size())];
+                const auto outline = space.graph.outline(portal);
+                const size_t i = random.below(outline.size());
+                const double off = std::pow(10, random.uniform(-7, 0)) * (random.below(2) ? 1 : -1);
+                target = glm::mix(outline[i], outline[(i + 1) % outline.size()], random.uniform()) +
+                         off * (outline[(i + 2) % outline.size()] - outline[i]);
+            }
+            const glm::dvec3 along = target - from;
+            if (!(glm::length(along) > 1e-6)) continue;
+            std::string wrong = follow(cells, meets, cell, from, glm::normalize(along), counts);
+            if (!wrong.empty() && surely) wrong = follow(cells, surely, cell, from, glm::normalize(along), counts);
+            ASSERT_EQ(wrong, "") << "out of '" << space.names[cell] << "' from (" << from.x << ", " << from.y << ", "
+                                 << from.z << ") to (" << target.x << ", " << target.y << ", " << target.z << ")";
+        }
+    }
+}
+
 TEST(SceneCellRays, LeaveByPortalsOrMeetWalls) {
     Random random(1);
     Counts counts;
     uint64_t holes = 0, passages = 0, outside = 0, moved = 0;
     for (int round = 0; round < 60; ++round) {
+        SCOPED_TRACE("round " + std::to_string(round));
         const MadeRooms made = randomRooms(random, round);
         const SceneCells cells = cellsOfScene(made.scene);
         const Triangles truth(made.scene);
-        const CellSpace& space = cells.space;
+        const auto meets = [&](const glm::dvec3& from, const glm::dvec3& along, double first, double last) {
+            // What closes a slit narrower than the declared one counts as a wall.
+            return truth.meets(from, along, first, last, cells.report.slit);
+        };
         holes += cells.report.holes;
         passages += cells.report.passages;
         outside += cells.report.outside;
         moved += cells.report.moved_faces;
-        for (uint32_t cell = 0; cell < space.graph.cells; ++cell) {
-            if (cell == space.outside) continue;
-            const Box3d& bounds = space.regions[cell].bounds;
-            for (int ray = 0; ray < 1500; ++ray) {
-                glm::dvec3 from, target;
-                for (int axis = 0; axis < 3; ++axis) {
-                    from[axis] = random.uniform(bounds.min[axis], bounds.max[axis]);
-                    target[axis] = random.uniform(bounds.min[axis], bounds.max[axis]);
-                }
-                if (insideBy(space, cell, from) < 4 * cells.report.slit) continue;
-                // Half of them are aimed: at the edges of portals and a little beside them.
-                if (ray % 2 && !space.graph.portals.empty()) {
-                    const CellPortal& portal = space.graph.portals[random.below(space.graph.portals.size())];
-                    const auto outline = space.graph.outline(portal);
-                    const size_t i = random.below(outline.size());
-                    const double off = std::pow(10, random.uniform(-7, 0)) * (random.below(2) ? 1 : -1);
-                    target = glm::mix(outline[i], outline[(i + 1) % outline.size()], random.uniform()) +
-                             off * (outline[(i + 2) % outline.size()] - outline[i]);
-                }
-                const glm::dvec3 along = target - from;
-                if (!(glm::length(along) > 1e-6)) continue;
-                const std::string wrong = follow(cells, truth, cell, from, glm::normalize(along), counts);
-                ASSERT_EQ(wrong, "") << "round " << round << ", out of '" << space.names[cell] << "' from (" << from.x
-                                     << ", " << from.y << ", " << from.z << ") to (" << target.x << ", " << target.y
-                                     << ", " << target.z << ")";
-            }
-        }
+        shoot(cells, meets, {}, 1500, random, counts);
+        if (HasFatalFailure()) return;
     }
     // None of it is there for nothing.
     EXPECT_GT(counts.rays, 100000u);
@@ -232,6 +250,82 @@ TEST(SceneCellRays, LeaveByPortalsOrMeetWalls) {
     EXPECT_GT(passages, 10u);
     EXPECT_GT(outside, 10u);
     EXPECT_GT(moved, 60u);
+}
+
+/// Whole scenes, held against rays by Embree; where these meet no wall, against each triangle in double. No slit is
+/// allowed for.
+void judgeScene(const Scene& scene, int rays, uint64_t seed, SceneCellSettings settings = {}) {
+    settings.slit = settings.bend = 0;
+    const SceneCells cells = cellsOfScene(scene, settings);
+    Scene without = scene;  // doors open
+    std::vector<bool> leaf(scene.objects.size(), false);
+    for (const ScenePortal& portal : scene.portals)
+        if (portal.door < leaf.size()) leaf[portal.door] = true;
+    std::erase_if(without.objects, [&](const SceneObject& object) {
+        return leaf[static_cast<size_t>(std::find_if(scene.objects.begin(), scene.objects.end(),
+                                                     [&](const SceneObject& o) { return o.key == object.key; }) -
+                                        scene.objects.begin())];
+    });
+    const SceneFacts facts(without);
+    const RayScene truth(facts);
+    const Triangles triangles(without);
+    const double rounding = 4 * truth.rounding();
+    const auto meets = [&](const glm::dvec3& from, const glm::dvec3& along, double, double last) {
+        RaySighting sighting;
+        truth.look({glm::dvec3(0), along, 0, last + rounding}, from, sighting);
+        return sighting.object != RaySighting::kNone && sighting.t <= last + rounding;
+    };
+    const auto surely = [&](const glm::dvec3& from, const glm::dvec3& along, double first, double last) {
+        return triangles.meets(from, along, first, last, 1e-9);
+    };
+    Random random(seed);
+    Counts counts;
+    shoot(cells, meets, surely, rays, random, counts);
+    EXPECT_GT(counts.rays, uint64_t(rays));
+    EXPECT_GT(counts.walls, counts.rays / 4);
+    EXPECT_GT(counts.ways, counts.rays / 20);
+}
+
+TEST(SceneCellRays, OutOfABuilding) {
+    const Result<Scene> scene = makeProcedural("building:3:2");
+    ASSERT_TRUE(scene.ok());
+    judgeScene(*scene, 400, 1);
+}
+
+Result<Scene> smallHouse() {
+    Result<Scene> house = loadSceneFile(SIGHTLINE_SHARED_DIR "/scenes/aws-small-house.glb");
+    Result<Scene> cells = loadSceneFile(SIGHTLINE_EXAMPLES_DIR "/small-house-cells.gltf");
+    if (!house || !cells) return house ? cells : house;
+    std::vector<Scene> both;
+    both.push_back(std::move(*house));
+    both.push_back(std::move(*cells));
+    return joinScenes(std::move(both));
+}
+
+TEST(SceneCellRays, OutOfAHouseMarkedByHand) {
+    if (!std::filesystem::exists(SIGHTLINE_SHARED_DIR "/scenes"))
+        GTEST_SKIP() << "the shared scenes are not there: " SIGHTLINE_SHARED_DIR "/scenes";
+    const Result<Scene> scene = smallHouse();
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    judgeScene(*scene, 10000, 2);
+}
+
+// Its walls have no holes but windows, it has no ceilings, and its entrance leads out.
+TEST(SceneCells, AHouseMarkedByHandIsDividedByItsWalls) {
+    if (!std::filesystem::exists(SIGHTLINE_SHARED_DIR "/scenes"))
+        GTEST_SKIP() << "the shared scenes are not there: " SIGHTLINE_SHARED_DIR "/scenes";
+    const Result<Scene> scene = smallHouse();
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    const SceneCells cells = cellsOfScene(*scene);
+    EXPECT_EQ(cells.report.passages, 2u);
+    EXPECT_EQ(cells.report.holes, cells.report.findings.size());
+    EXPECT_EQ(cells.report.holes, 11u);
+    for (const CellFinding& finding : cells.report.findings) {
+        EXPECT_EQ(finding.cells[1], CellGraph::kNoCell) << finding.text;
+        EXPECT_GT(finding.size, 1) << finding.text;
+    }
+    ASSERT_EQ(cells.space.doors.size(), 1u);
+    EXPECT_EQ(cells.space.doors[0].key, 54u);
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ TEST(SceneCells, FindsHolesOf10And1AndATenthOfAMillimetre) {
                           cells.report.slit / 2)
                     << "the portal holds the hole";
             for (const glm::dvec3& corner : cells.space.graph.points)
-                EXPECT_LE(glm::length(corner - middle), side + 4 * cells.report.slit) << "and little more";
+                EXPECT_LE(glm::length(corner - middle), side + 4 * cells.report.bend) << "and little more";
         }
 }
 
@@ -112,7 +112,7 @@ TEST(SceneCells, FindsAHairBetweenWalls) {
     made.cell("hall", kHall);
     const SceneCells cells = cellsOfScene(made.scene);
     ASSERT_EQ(cells.report.holes, 1u) << textsOf(cells);
-    EXPECT_NEAR(cells.report.hole_area, 3 * 0x1p-13, 6 * cells.report.slit);
+    EXPECT_NEAR(cells.report.hole_area, 3 * 0x1p-13, 6 * cells.report.bend);
 }
 
 // Walls of a fine grid in no order, with one square left out.
@@ -155,14 +155,14 @@ TEST(SceneCells, WhatDoesNotHideIsAHole) {
     };
     const auto nothing = [](MadeRooms&, SceneCellSettings&) {};
     EXPECT_EQ(holesWith(nothing, 0), 0);
-    for (uint32_t material = 1; material < 4; ++material) EXPECT_NEAR(holesWith(nothing, material), 12, 1e-3);
-    EXPECT_NEAR(holesWith([](MadeRooms& made, auto&) { made.scene.meshes.back().deforms = true; }, 0), 12, 1e-3);
-    EXPECT_NEAR(holesWith([](MadeRooms&, SceneCellSettings& settings) { settings.movable = {5}; }, 0), 12, 1e-3);
+    for (uint32_t material = 1; material < 4; ++material) EXPECT_NEAR(holesWith(nothing, material), 12, 3e-3);
+    EXPECT_NEAR(holesWith([](MadeRooms& made, auto&) { made.scene.meshes.back().deforms = true; }, 0), 12, 3e-3);
+    EXPECT_NEAR(holesWith([](MadeRooms&, SceneCellSettings& settings) { settings.movable = {5}; }, 0), 12, 3e-3);
     const auto turned = [](MadeRooms& made, auto&) {
         std::vector<uint32_t>& indices = made.scene.meshes.back().indices;
         std::reverse(indices.begin(), indices.end());
     };
-    EXPECT_NEAR(holesWith(turned, 0), 12, 1e-3) << "a back is not drawn";
+    EXPECT_NEAR(holesWith(turned, 0), 12, 3e-3) << "a back is not drawn";
     EXPECT_EQ(holesWith(
                   [&](MadeRooms& made, SceneCellSettings& settings) {
                       turned(made, settings);
@@ -174,7 +174,7 @@ TEST(SceneCells, WhatDoesNotHideIsAHole) {
         made.scene.objects.back().transform[0][0] = -1;
         made.scene.objects.back().transform[3][0] = 12;
     };
-    EXPECT_NEAR(holesWith(mirrored, 0), 12, 1e-3) << "a mirror turns it round";
+    EXPECT_NEAR(holesWith(mirrored, 0), 12, 3e-3) << "a mirror turns it round";
     const auto door = [](MadeRooms& made, auto&) {
         made.cell("kitchen", {{6, 0, 0}, {8, 3, 4}});
         made.portal(0, 1, 0, 6, kDoor);
@@ -247,7 +247,7 @@ TEST(SceneCells, WallsWithoutJambsAreHollow) {
     made.portal(0, 1, 0, 6, kDoor);
     const SceneCells cells = cellsOfScene(made.scene);
     EXPECT_EQ(cells.report.holes, 4u) << textsOf(cells);
-    EXPECT_NEAR(cells.report.hole_area, 0.25 * 6, 1e-3);
+    EXPECT_NEAR(cells.report.hole_area, 0.25 * 6, 3e-3);
     EXPECT_TRUE(cells.report.outside);
 }
 
@@ -282,7 +282,7 @@ TEST(SceneCells, CellsThatTouchWithoutAWallAreJoined) {
         made.cell("east", {{6, 0, 0}, {10, 3, 4}});
         const SceneCells cells = cellsOfScene(made.scene);
         ASSERT_EQ(cells.report.holes, 1u) << "round " << round << "\n" << textsOf(cells);
-        EXPECT_NEAR(cells.report.hole_area, 12, 1e-3);
+        EXPECT_NEAR(cells.report.hole_area, 12, 3e-3);
         EXPECT_EQ(cells.report.findings[0].cells[0], 0u);
         EXPECT_EQ(cells.report.findings[0].cells[1], 1u);
         EXPECT_EQ(cells.space.graph.portals.size(), 1u) << "not one from each side";
@@ -319,7 +319,7 @@ TEST(SceneCells, WhatIsNoConvexSolidIsOutside) {
     const SceneCells cells = cellsOfScene(made.scene);
     EXPECT_EQ(count(cells, CellFindingKind::kNoCell), 1u);
     EXPECT_EQ(cells.report.findings[0].cells[0], 1u);
-    EXPECT_NEAR(cells.report.hole_area, 12, 1e-3) << "all of the wall between them, outside";
+    EXPECT_NEAR(cells.report.hole_area, 12, 3e-3) << "all of the wall between them, outside";
     ASSERT_EQ(cells.space.graph.portals.size(), 1u);
     EXPECT_EQ(cells.space.graph.portals[0].cells[1], cells.space.outside);
     EXPECT_EQ(cells.space.outside, 2u) << "cells keep their numbers";
