@@ -198,6 +198,23 @@ std::string keptText(const Explanation& why, const NameOfObject& name) {
                                                    : "its rectangle");
 }
 
+std::string countOf(size_t count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+/// "it stands in 2 cells, of which 1 is seen through 3 portals, beside it".
+std::string cellsText(const CellsReason& cells) {
+    const std::string stands = "it stands in " + countOf(cells.object.size(), "cell");
+    if (cells.reached == 0) return stands + ", into which no window leads";
+    return fmt::format("{}, of which {} {} seen, through {}, but it lies beside all windows", stands, cells.reached,
+                       cells.reached == 1 ? "is" : "are", countOf(cells.portals.size(), "portal"));
+}
+
+std::string rowsText(const CellsReason& cells) {
+    return fmt::format("it stands in {}, none of which is seen from {} that the eye may be in",
+                       countOf(cells.object.size(), "cell"), countOf(cells.eye.size(), "cell"));
+}
+
 }  // namespace
 
 std::string explanationText(const Explanation& why, const std::string& subject, const NameOfObject& name) {
@@ -221,9 +238,9 @@ std::string explanationText(const Explanation& why, const std::string& subject, 
             return fmt::format("culled by clusters: of {} none is left: {}.", subject, clustersText(why.clusters)) +
                    rectangleText(why);
         case Verdict::kNotInPvs:
-            return fmt::format("culled by pvs: no cell that {} stands in is seen from the eye's.", subject);
+            return fmt::format("culled by pvs: {}: {}.", subject, rowsText(why.cells));
         case Verdict::kNoWindow:
-            return fmt::format("culled by portals: {} lies in no window into a cell that it stands in.", subject);
+            return fmt::format("culled by portals: {}: {}.", subject, cellsText(why.cells));
         case Verdict::kVisible:
             break;
     }
@@ -248,9 +265,9 @@ std::string explanationClause(const Explanation& why, const NameOfObject& name, 
         case Verdict::kNoCluster:
             return clustersText(why.clusters);
         case Verdict::kNotInPvs:
-            return "in no cell that is seen from the eye's";
+            return rowsText(why.cells);
         case Verdict::kNoWindow:
-            return "in no window into its cells";
+            return cellsText(why.cells);
         case Verdict::kVisible:
             break;
     }

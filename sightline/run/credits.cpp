@@ -7,6 +7,7 @@
 #include "sightline/base/assert.h"
 #include "sightline/run/asked_pixels.h"
 #include "sightline/run/attribution.h"
+#include "sightline/run/cell_stages.h"
 
 namespace sightline {
 
@@ -16,6 +17,7 @@ struct CreditBook::Impl {
     Memory* const memory;
     Snapshot snapshot;
     detail::Walk walk{memory};
+    detail::CellStages cells{memory};
     detail::WalkRecord record{memory};
     detail::Attribution owners{memory};
     detail::AskedPixels asked{memory};
@@ -121,6 +123,7 @@ std::span<const Credit> CreditBook::credits(const View& view) {
     if (!impl.snapshot) return {};
     const detail::SnapshotState& state = impl.snapshot.state();
     impl.record.clear();  // a view that is not usable, or without the occlusion stage, draws nothing
+    impl.walk.admission = impl.cells.run(impl.snapshot, view);
     impl.walk.run(&state, view);
     if (impl.record.draws.empty() && impl.walk.volumes.count() == 0) return {};
     if (!impl.record.draws.empty()) impl.owners.run(impl.walk, impl.record);

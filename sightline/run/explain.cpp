@@ -91,7 +91,11 @@ struct Explainer::Impl {
     detail::HiderSearch search{memory};
     detail::OpenPixels open{memory};
     detail::AskedPixels asked{memory};
-    Owned<WholeAnswer> whole;  ///< made when first needed
+    detail::CellStages cells{memory};
+    const detail::Admission* admission =
+        nullptr;                     ///< of the view in the whole world; null: nothing is culled for cells
+    detail::Admission left{memory};  ///< of a world without an object's hiders
+    Owned<WholeAnswer> whole;        ///< made when first needed
 
     uint32_t find(ObjectId id) const;
     void explainVisible(uint32_t item, Explanation& out);
@@ -100,7 +104,10 @@ struct Explainer::Impl {
     KeptBecause doubtOf(const Box3d& box) const;
     void explainOccluded(uint32_t item, const PixelRect& rect, const ExplainSettings& settings, OcclusionReason& out);
     void tryWithout(uint32_t item, OcclusionReason& out);
+    void lookWithout(const SnapshotState& others, uint32_t self, OcclusionReason& out);
     ClustersReason lookAtClusters(uint32_t item);
+    void admitBy(const detail::Admission* now) { trial.walk.admission = search.admission = now; }
+    void lookAtCells(uint32_t item, CellsReason& out) const;
     void nameVolume(const SnapshotState& state, Array<Hider>& hiders) const;
 };
 
@@ -159,7 +166,11 @@ void Explainer::Impl::explainVisible(uint32_t item, Explanation& out) {
 /// no image may have triangles that do.
 bool Explainer::Impl::askAgain(uint32_t place, Explanation& out) {
     const WalkRecord::Kept& kept = trial.record.kept;
-    if (!asked.run(trial.walk, place, kept.look, kept.testable ? &kept.rect : nullptr) && !kept.testable) return false;
+    // A closer look goes beyond the window that its rectangle was cut to.
+    PixelRect rect = kept.rect;
+    if (kept.testable && kept.look != detail::Look::kBox)
+        rect = detail::askLeaf(snapshot.state(), place, view, trial.walk.screen).rect();
+    if (!asked.run(trial.walk, place, kept.look, kept.testable ? &rect : nullptr) && !kept.testable) return false;
     if (out.on_screen) return true;
     float nearest = detail::AskedPixels::kNotAsked;
     for (const float nearness : asked.nearness) nearest = std::max(nearest, nearness);
@@ -216,6 +227,35 @@ ClustersReason Explainer::Impl::lookAtClusters(uint32_t item) {
     return whole->clusters.look(snapshot.state(), row, view, whole->walk);
 }
 
+/// Where the eye and the object are, and how one is seen from the other.
+void Explainer::Impl::lookAtCells(uint32_t item, CellsReason& out) const {
+    const SnapshotState& state = snapshot.state();
+    const uint32_t row = state.rowOf(item);
+    const detail::CellLists& lists = state.cell_state.lists;
+    out.eye.assign(cells.start().begin(), cells.start().end());
+    out.work_spent = cells.portalStats().work_spent;
+    for (uint32_t cell = 0; cell < lists.first.size(); ++cell)
+        for (uint32_t at = lists.first[cell]; at != detail::CellBlock::kNone; at = lists.blocks[at].next) {
+            const detail::CellBlock& block = lists.blocks[at];
+            if (std::find(block.row, block.row + block.used, row) != block.row + block.used) out.object.push_back(cell);
+        }
+    if (!cells.flood()) return;
+    const std::span<const SeenCell> seen = cells.flood()->cells();
+    uint32_t first = ~0u;
+    for (const uint32_t cell : out.object) {
+        const auto at = std::find_if(seen.begin(), seen.end(), [&](const SeenCell& one) { return one.cell == cell; });
+        if (at == seen.end()) continue;
+        ++out.reached;
+        first = std::min(first, static_cast<uint32_t>(at - seen.begin()));
+    }
+    for (uint32_t at = first; at != ~0u && out.way.size() <= seen.size(); at = seen[at].from) {
+        out.way.push_back(seen[at].cell);
+        if (seen[at].from != ~0u) out.portals.push_back(seen[at].portal);
+    }
+    std::reverse(out.way.begin(), out.way.end());
+    std::reverse(out.portals.begin(), out.portals.end());
+}
+
 /// The object whose volume culled what the trial asked for.
 void Explainer::Impl::nameVolume(const SnapshotState& state, Array<Hider>& hiders) const {
     const detail::ObjectRecord& owner = state.objectAt(trial.cull.hider);
@@ -232,23 +272,36 @@ void Explainer::Impl::tryWithout(uint32_t item, OcclusionReason& out) {
     for (const Hider& hider : out.hiders) gone.push_back(find(hider.id));
     std::sort(gone.begin(), gone.end());
     std::erase_if(items, [&](uint32_t i) { return std::binary_search(gone.begin(), gone.end(), i); });
-    const auto left = detail::stateOfSome(state, items, memory);
+    const auto others = detail::stateOfSome(state, items, memory);
+    if (admission) left.takeSome(*admission, items, *others);
+    if (admission) admitBy(&left);
     const auto self = static_cast<uint32_t>(std::lower_bound(items.begin(), items.end(), item) - items.begin());
-    const Verdict verdict = trial.run(*left, view, self);
+    lookWithout(*others, self, out);
+    admitBy(admission);
+}
+
+/// @param others  the world without the hiders
+/// @param self    the object there
+void Explainer::Impl::lookWithout(const SnapshotState& others, uint32_t self, OcclusionReason& out) {
+    const Verdict verdict = trial.run(others, view, self);
     out.without = verdict == Verdict::kOccluded         ? Without::kOccluded
                   : verdict == Verdict::kOutsideFrustum ? Without::kOutsideFrustum
                   : verdict == Verdict::kTooFar         ? Without::kTooFar
                   : verdict == Verdict::kTooSmall       ? Without::kTooSmall
                                                         : Without::kVisible;
     if (verdict != Verdict::kOccluded) return;
-    if (trial.cull.stage == Stage::kVolumes) return nameVolume(*left, out.others);
-    const LeafAnswer leaf = detail::askLeaf(*left, detail::hierarchyPlace(*left, self), view, trial.walk.screen);
-    if (leaf.beyond_plane || leaf.outside()) search.own(*left, self, trial, out.others);
-    else search.run(*left, view, self, trial, leaf.rect(), out.others);
+    if (trial.cull.stage == Stage::kVolumes) return nameVolume(others, out.others);
+    const uint32_t place = detail::hierarchyPlace(others, self);
+    const LeafAnswer leaf = detail::askLeaf(others, place, view, trial.walk.screen);
+    if (leaf.beyond_plane || leaf.outside()) return search.own(others, self, trial, out.others);
+    search.run(others, view, self, trial, trial.walk.inWindow(place, leaf.rect()), out.others);
 }
 
 Explainer::Explainer(const Snapshot& now, const View& view, Memory* memory)
-    : impl_(makeOwned<Impl>(memory, now, view, memory)) {}
+    : impl_(makeOwned<Impl>(memory, now, view, memory)) {
+    impl_->admission = impl_->cells.run(now, view);
+    impl_->admitBy(impl_->admission);
+}
 Explainer::Explainer(const Snapshot& now, const View& view, std::span<const Visible> last, Memory* memory)
     : Explainer(now, view, memory) {
     if (!detail::remembersShown(view)) return;
@@ -274,8 +327,15 @@ Explanation Explainer::explain(ObjectId id, const ExplainSettings& settings) {
         out.verdict = Verdict::kOutsideLayers;
         return out;
     }
-    out.verdict = impl.trial.run(state, impl.view, item);
     const uint32_t place = detail::hierarchyPlace(state, item);
+    const bool admitted = !impl.admission || place == WalkRecord::kNowhere || impl.admission->admits(place);
+    const bool by_cells = state.cell_state.cells && (stagesInUse(impl.view) & kCellStages);
+    if (by_cells && place != WalkRecord::kNowhere) impl.lookAtCells(item, out.cells);
+    if (!admitted) {
+        out.verdict = impl.admission->stageOf(place) == Stage::kPvs ? Verdict::kNotInPvs : Verdict::kNoWindow;
+        return out;
+    }
+    out.verdict = impl.trial.run(state, impl.view, item);
     PixelRect rect;
     if (isUsable(impl.view) && runsOutward(impl.view) && place != WalkRecord::kNowhere) {
         const Screen& screen = impl.trial.walk.screen;
@@ -290,8 +350,8 @@ Explanation Explainer::explain(ObjectId id, const ExplainSettings& settings) {
         out.frustum.outside_any = leaf.beyond_plane || leaf.outside();
         out.frustum.by_rectangle = leaf.outside() && !leaf.beyond_plane;
         if (out.on_screen) {
-            rect = leaf.rect();
-            out.rect = imageOf(rect, screen, impl.view);
+            out.rect = imageOf(leaf.rect(), screen, impl.view);
+            rect = impl.trial.walk.inWindow(place, leaf.rect());
             out.depth =
                 screen.perspective ? 1.0 / static_cast<double>(rect.nearness) : -static_cast<double>(rect.nearness);
         }

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "sightline/base/memory.h"
+#include "sightline/geom/image_rect.h"
 #include "sightline/geom/view.h"
 #include "sightline/run/world.h"
 
@@ -25,12 +26,6 @@ enum class Verdict : uint8_t {
     kNoCluster,       ///< culled by the stage of clusters: none of its clusters is left
     kNotInPvs,        ///< culled by the stage of the PVS: no cell that it stands in is seen from the eye's cells
     kNoWindow,        ///< culled by the stage of portals: it lies in no window into a cell that it stands in
-};
-
-/// A rectangle of the viewport. What a query looks at is the viewport widened by the jitter, in the whole pixels of its
-/// occlusion buffer, so that the rectangle may reach beyond the viewport.
-struct ImageRect {
-    double left = 0, top = 0, right = 0, bottom = 0;  ///< [viewport pixels from the left and the top]
 };
 
 /// How an object's box lies to the frustum, widened by the jitter, and to the planes that the view adds to it. In the order
@@ -111,6 +106,19 @@ struct ClustersReason {
     uint64_t drawn = 0;      ///< triangles that are left
 };
 
+/// How an object stands to the cells of its world, where a stage that goes by them is in use.
+struct CellsReason {
+    /// Cells that the eye may be in, and those that the object stands in; none: it is in none, and nothing is culled for
+    /// cells.
+    Array<uint32_t> eye, object;
+    uint32_t reached = 0;  ///< of the object's, how many are seen at all, in whatever part of the image
+    /// The way to the first of these: cells, beginning with one of the eye's, and the portals between them.
+    Array<uint32_t> way, portals;
+    bool work_spent = false;  ///< View::portal_work was too small: nothing was culled for windows
+
+    explicit CellsReason(Memory* memory) : eye(memory), object(memory), way(memory), portals(memory) {}
+};
+
 /// Why an object is kept.
 enum class KeptBecause : uint8_t {
     kOpenPixel,        ///< a pixel is not hidden: of its rectangle, or of its triangles where they were asked
@@ -156,8 +164,9 @@ struct Explanation {
     OcclusionReason occlusion;
     VisibleReason visible;
     ClustersReason clusters;  ///< of what is kept, and of what the stage culls, with that stage
+    CellsReason cells;        ///< of what has bounds, in a world with cells
 
-    explicit Explanation(Memory* memory = defaultMemory()) : occlusion(memory) {}
+    explicit Explanation(Memory* memory = defaultMemory()) : occlusion(memory), cells(memory) {}
 };
 
 /// How much is asked.

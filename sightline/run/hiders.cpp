@@ -76,12 +76,19 @@ void HiderSearch::collect(const SnapshotState& state, uint32_t item, const Trial
     });
 }
 
+/// For trials in a world of some of the objects.
+void HiderSearch::admitSome(std::span<const uint32_t> items, const SnapshotState& world) {
+    if (admission) some.takeSome(*admission, items, world);
+    trial.walk.admission = admission ? &some : nullptr;
+}
+
 /// Whether a world of the object and some others occludes it.
 bool HiderSearch::hides(const SnapshotState& state, const View& view, uint32_t item, std::span<const uint32_t> with) {
     Array<uint32_t> items(with.begin(), with.end(), memory);
     items.push_back(item);
     std::sort(items.begin(), items.end());
     const auto world = stateOfSome(state, items, memory);
+    admitSome(items, *world);
     const auto at = std::lower_bound(items.begin(), items.end(), item) - items.begin();
     return trial.run(*world, view, static_cast<uint32_t>(at)) == Verdict::kOccluded;
 }
@@ -121,8 +128,11 @@ void HiderSearch::share(const SnapshotState& state, const View& view, uint32_t i
     std::sort(items.begin(), items.end());
     const auto world = stateOfSome(state, items, memory);
     const auto self = static_cast<uint32_t>(std::lower_bound(items.begin(), items.end(), item) - items.begin());
+    admitSome(items, *world);
     trial.run(*world, view, self);
-    const PixelRect rect = ask(trial, askLeaf(*world, hierarchyPlace(*world, self), view, trial.walk.screen).rect());
+    const uint32_t place = hierarchyPlace(*world, self);
+    const PixelRect rect =
+        ask(trial, trial.walk.inWindow(place, askLeaf(*world, place, view, trial.walk.screen).rect()));
     owners.run(trial.walk, trial.record, rect);
     collect(*world, self, trial, rect, true);
     uint64_t owned = 0;

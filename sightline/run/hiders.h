@@ -27,6 +27,9 @@ struct HiderSearch {
     Trial trial;
     Attribution owners;
     AskedPixels asked{memory};
+    /// Of the state that is asked about; null: all is. Set before run().
+    const Admission* admission = nullptr;
+    Admission some{memory};       ///< of a world of some of its objects
     Array<Candidate> candidates;  ///< those that own most first
     Array<uint32_t> set;          ///< items
 
@@ -46,6 +49,7 @@ private:
     void collect(const SnapshotState& state, uint32_t item, const Trial& decided, const PixelRect& rect, bool anywhere);
     bool hides(const SnapshotState& state, const View& view, uint32_t item, std::span<const uint32_t> with);
     bool hidesFirst(const SnapshotState& state, const View& view, uint32_t item, size_t count);
+    void admitSome(std::span<const uint32_t> items, const SnapshotState& world);
     bool shrink(const SnapshotState& state, const View& view, uint32_t item);
     void share(const SnapshotState& state, const View& view, uint32_t item, Array<Hider>& hiders);
 };

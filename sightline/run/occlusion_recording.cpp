@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "sightline/base/bytes.h"
+#include "sightline/run/cell_stages.h"
 #include "sightline/run/walk.h"
 
 namespace sightline {
@@ -162,6 +163,8 @@ Result<OcclusionRecording> recordOcclusion(const Snapshot& now, const View& view
     detail::WalkRecord record(memory);
     record.log = &out.asked;
     walk.record = &record;
+    detail::CellStages cells(memory);
+    walk.admission = cells.run(now, view);
     if (now) walk.run(&now.state(), view);
     Shelf(walk, record, memory).fill(out, memory);
     for (TileLog::TileTest& test : out.asked.tiles)  // rows of tiles may lie farther apart than they are long

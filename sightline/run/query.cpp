@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "sightline/run/bins.h"
 #include "sightline/run/cluster_stage.h"
@@ -19,6 +20,7 @@ struct Query::Impl {
     /// The objects of the last answer.
     Array<Visible>& last() { return stereo ? both : walk.visible(); }
     void mergeEyes();
+    void findScissors();
     std::span<const uint32_t> shownIf(bool remembers) const {
         return remembers ? shown.generations() : std::span<const uint32_t>();
     }
@@ -35,6 +37,9 @@ struct Query::Impl {
     mutable Array<uint8_t> other{memory};  ///< the right eye's reasons, while both are put together
     Array<Visible> before{memory};         ///< the answer before the last
     detail::LastShown shown{memory};       ///< of that answer, while one is made that hangs on it
+    Array<ImageRect> scissors{memory};
+    Array<SeenWindow> windows{memory};
+    View view;  ///< of the last answer, of the left eye
     Array<float> depth_image{memory};
     Array<uint8_t> depth_covered{memory};
     Array<Visible> appeared{memory}, disappeared{memory};
@@ -88,7 +93,9 @@ VisibleSet Query::visible(const Snapshot& now, const View& view) {
     answer({{&impl.walk}}, now, {{&view}}, impl.shownIf(remembers), impl.jobs);
     if (remembers) impl.shown.unmark(impl.before);
     impl.clusters.run(now ? &now.state() : nullptr, view, impl.walk);
-    return {impl.walk.visible(), impl.walk.stats, impl.clusters.ranges()};
+    impl.view = view;
+    impl.findScissors();
+    return {impl.walk.visible(), impl.walk.stats, impl.clusters.ranges(), impl.scissors};
 }
 
 StereoSet Query::visibleStereo(const Snapshot& now, const View& left, const View& right) {
@@ -109,6 +116,7 @@ StereoSet Query::visibleStereo(const Snapshot& now, const View& left, const View
     }
     if (remembers) impl.shown.unmark(impl.before);
     impl.mergeEyes();
+    impl.view = left;
     return {impl.both, impl.eyes, impl.walk.stats, impl.right->stats};
 }
 
@@ -143,6 +151,52 @@ void Query::Impl::mergeEyes() {
     }
     for (; at < walk.visible().size(); ++at) take(walk.visible()[at]);
     for (const Visible& v : both) mark[v.id.index] = 0;
+}
+
+/// In viewport pixels from the left and the top.
+ImageRect imageOf(double left, double bottom, double right, double top, const View& view) {
+    return {0.5 * view.width * (1.0 + left), 0.5 * view.height * (1.0 - top), 0.5 * view.width * (1.0 + right),
+            0.5 * view.height * (1.0 - bottom)};
+}
+
+void Query::Impl::findScissors() {
+    scissors.clear();
+    const detail::Admission* const admission = walk.admission();
+    if (!admission || !admission->uses(Stage::kPortals)) return;
+    const double width = view.width, height = view.height;
+    for (const Visible& v : walk.visible()) {
+        const uint32_t place = snapshot.state().placeOf(v.id);
+        const detail::WindowRect* window = place == PlacedBvh::kNone ? nullptr : admission->window(place);
+        ImageRect rect{0, 0, width, height};
+        if (window) {
+            // The image may be shifted by the jitter; a thousandth of a pixel is for rounding.
+            const double more = view.jitter + 1e-3;
+            const ImageRect in = imageOf(static_cast<double>(window->left), static_cast<double>(window->bottom),
+                                         static_cast<double>(window->right), static_cast<double>(window->top), view);
+            rect = {std::clamp(std::floor(in.left - more), 0.0, width),
+                    std::clamp(std::floor(in.top - more), 0.0, height),
+                    std::clamp(std::ceil(in.right + more), 0.0, width),
+                    std::clamp(std::ceil(in.bottom + more), 0.0, height)};
+        }
+        scissors.push_back(rect);
+    }
+}
+
+std::span<const SeenWindow> Query::windows() {
+    Impl& impl = *impl_;
+    impl.windows.clear();
+    const PortalFlood* const flood = impl.walk.cells().flood();
+    if (!flood) return {};
+    for (const SeenCell& seen : flood->cells())
+        impl.windows.push_back(
+            {seen.cell, imageOf(seen.left, seen.bottom, seen.right, seen.top, impl.view), seen.from, seen.portal});
+    return impl.windows;
+}
+
+CellStats Query::cellStats() const {
+    const detail::CellStages& cells = impl_->walk.cells();
+    const PortalStats& stats = cells.portalStats();
+    return {cells.flood() != nullptr, stats.cells, stats.portals, stats.whole, stats.too_deep, stats.work_spent};
 }
 
 VisibleChanges Query::changes() {

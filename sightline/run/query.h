@@ -10,6 +10,7 @@
 
 #include "sightline/base/jobs.h"
 #include "sightline/base/memory.h"
+#include "sightline/geom/image_rect.h"
 #include "sightline/geom/view.h"
 #include "sightline/run/world.h"
 
@@ -73,6 +74,30 @@ struct VisibleSet {
     /// Of the objects that have clusters, with Stage::kClusters, by object: each has some. What is in none of them is
     /// seen from its back, by surfaces that are single-sided, or outside of the view, or hidden.
     std::span<const DrawRange> ranges;
+    /// Per object, with Stage::kPortals: the part of the viewport that may show it, in whole pixels, whatever the frame's
+    /// jitter; the whole viewport where nothing is known. Empty if the stage had nothing to say.
+    std::span<const ImageRect> scissors;
+};
+
+/// A part of the image through which a cell is seen.
+struct SeenWindow {
+    static constexpr uint32_t kNone = ~0u;
+
+    uint32_t cell = 0;
+    ImageRect rect;  ///< not widened by the jitter
+    uint32_t from =
+        kNone;  ///< the window, of the same answer, that it was looked through first; kNone: the eye may be in it
+    uint32_t portal = kNone;  ///< of CellGraph::portals, between both cells
+};
+
+/// What Stage::kPortals did.
+struct CellStats {
+    bool known = false;       ///< false: it did nothing, or kept everything
+    uint64_t cells = 0;       ///< entered; one that was entered again counts again
+    uint64_t portals = 0;     ///< looked at
+    uint64_t whole = 0;       ///< of these, so near that the whole window was taken
+    uint64_t too_deep = 0;    ///< not gone through for View::portal_depth: not conservative
+    bool work_spent = false;  ///< View::portal_work
 };
 
 /// Objects that an answer has and the one before it had not, and the other way round.
@@ -131,6 +156,11 @@ public:
     /// The same of one eye of visibleStereo().
     /// @param eye  kLeftEye or kRightEye; after visible() both are that view
     void reasons(std::span<uint8_t> reasons, uint8_t eye) const;
+
+    /// The windows that Stage::kPortals saw cells through; none if it had nothing to say. After visibleStereo() the left
+    /// eye's.
+    std::span<const SeenWindow> windows();
+    CellStats cellStats() const;
 
     /// Why visible(now, view) has the object in its answer or not; see run/explain.h. The last answer stays as it is, and
     /// stands for the one before with View::hysteresis.

@@ -3,7 +3,9 @@
 #include "sightline/run/walk.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 #include <hwy/cache_control.h>
@@ -42,6 +44,37 @@ bool isSmall(const Screen& screen, const PixelRect& rect) {
 }  // namespace
 
 bool Walk::isHiddenHere(PixelRect rect, Seams seams) { return !tiles.clip(rect) || isHidden(tiles, rect, seams); }
+
+PixelRect Walk::inWindow(uint32_t place, PixelRect rect) const {
+    const WindowRect* const window = admission ? admission->window(place) : nullptr;
+    if (!window) return rect;
+    // A thousandth of a pixel is far more than rounding, in float, moves it.
+    const auto pixel = [](float at, double wide, uint32_t size, double more) {
+        const double x = 0.5 * size * (static_cast<double>(at) / wide + 1.0) + more;
+        return static_cast<int32_t>(std::floor(std::clamp(x, -1.0, size + 1.0)));
+    };
+    const double wide_x = 1.0 + 2.0 * view.jitter / view.width, wide_y = 1.0 + 2.0 * view.jitter / view.height;
+    rect.x0 = std::max(rect.x0, pixel(window->left, wide_x, screen.width, -1e-3));
+    rect.x1 = std::min(rect.x1, pixel(window->right, wide_x, screen.width, 1e-3));
+    rect.y0 = std::max(rect.y0, pixel(window->bottom, wide_y, screen.height, -1e-3));
+    rect.y1 = std::min(rect.y1, pixel(window->top, wide_y, screen.height, 1e-3));
+    return rect;
+}
+
+/// Cuts the rectangles of a node's objects to their windows; culls those of which nothing is left.
+uint32_t Walk::cutToWindows(const BvhNode& node, uint32_t left, ScreenAnswer& on_screen) {
+    if (!admission || !admission->uses(Stage::kPortals)) return left;
+    for (uint32_t bits = left & ~(on_screen.doubt | on_screen.outside); bits; bits &= bits - 1) {
+        const int slot = std::countr_zero(bits);
+        if (!(node.child[slot] & BvhNode::kLeaf)) continue;
+        PixelRect& rect = on_screen.rects[slot];
+        rect = inWindow(node.first[slot], rect);
+        if (rect.x0 <= rect.x1 && rect.y0 <= rect.y1) continue;
+        cull(placesBelow(node, slot), Stage::kPortals, nullptr);
+        left &= ~(1u << slot);
+    }
+    return left;
+}
 
 void Walk::push(const Pending& entry) {
     undecided += entry.kind != Pending::Kind::kCluster;
@@ -239,7 +272,8 @@ void Walk::expand(const Visit& from, uint32_t slots) {
         left &= ~hidden.hidden;
     }
     if (!left) return;
-    const ScreenAnswer on_screen = projectBoxes(screen, boxes);
+    ScreenAnswer on_screen = projectBoxes(screen, boxes);
+    left = cutToWindows(node, left, on_screen);
     if (isPart()) left &= ~findBeside(on_screen, boxes, left);
     for (int slot = 0; slot < 8; ++slot) {
         if (!(left >> slot & 1)) continue;

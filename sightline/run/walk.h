@@ -173,6 +173,9 @@ struct Walk {
     void reasons(std::span<uint8_t> reasons) const;
     /// How many objects of a range of places are within the view's layers, and admitted.
     uint64_t inLayers(const PlaceRange& places) const;
+    /// The part of an object's rectangle that lies where its cells are seen. An empty one has its right edge left of its
+    /// left one, or its top below its bottom.
+    PixelRect inWindow(uint32_t place, PixelRect rect) const;
     /// Keeps an object that no stage can look at.
     void keep(const ObjectRecord& object);
 
@@ -194,6 +197,7 @@ private:
     void walkUnordered();
     void expand(const Visit& from, uint32_t slots = 0xff);
     void expandAll();
+    uint32_t cutToWindows(const BvhNode& node, uint32_t left, ScreenAnswer& on_screen);
     uint32_t admittedSlots(const BvhNode& node) const;
     VolumesAnswer askVolumes(const BvhNode& node, const EyeBoxes& boxes, VolumeRange range, uint32_t left);
     void meet(const BvhNode& node, int slot, const Visit& below, const ScreenAnswer& on_screen);

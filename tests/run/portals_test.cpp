@@ -13,6 +13,7 @@
 #include "sightline/prepare/occluder.h"
 #include "sightline/run/world_state.h"
 #include "sightline/visfile/visibility_file.h"
+#include "tests/run/explain_laws.h"
 #include "tests/run/made_rooms.h"
 
 namespace sightline::test {
@@ -489,6 +490,133 @@ TEST(CellStages, GoTogetherWithAllOthers) {
     EXPECT_GT(seen, 200u);
     EXPECT_GT(occluded, 20u);
     EXPECT_GT(by_portals, 2000u);
+}
+
+TEST(CellStages, GiveScissorsThatHoldAllThatIsSeen) {
+    uint64_t seen = 0, narrow = 0;
+    for (uint64_t seed = 1; seed <= 4; ++seed) {
+        Random random(seed);
+        MadeRooms rooms(seed, 5, 4);
+        furnish(rooms, random, 200);
+        rooms.add({{5, 1, 5}, {5, 1, std::numeric_limits<double>::infinity()}});
+        ASSERT_TRUE(rooms.world.attach(rooms.space));
+        const Snapshot now = rooms.world.commit();
+        Query query;
+        for (int frame = 0; frame < 40; ++frame) {
+            const glm::dvec3 eye = randomEye(rooms, random);
+            View view = viewFrom(eye, rooms.pointInside(random));
+            view.jitter = frame % 4 == 0 ? 3.0 : 0.5;
+            view.windows = static_cast<PortalWindows>(frame % 3);
+            view.bins = frame % 5 == 0 ? 3 : 1;
+            const VisibleSet set = query.visible(now, view);
+            ASSERT_EQ(set.scissors.size(), set.objects.size());
+            EXPECT_FALSE(query.windows().empty());
+            EXPECT_TRUE(query.cellStats().known);
+            EXPECT_GE(query.cellStats().cells, 1u);
+            for (const SeenWindow& window : query.windows()) {
+                ASSERT_LT(window.cell, rooms.space.graph.cells);
+                if (window.from == SeenWindow::kNone) continue;
+                ASSERT_LT(window.from, query.windows().size());
+                const CellPortal& portal = rooms.space.graph.portals[window.portal];
+                const uint32_t from = query.windows()[window.from].cell;
+                EXPECT_TRUE((portal.cells[0] == from && portal.cells[1] == window.cell) ||
+                            (portal.cells[1] == from && portal.cells[0] == window.cell));
+            }
+            for (size_t i = 0; i < set.objects.size(); ++i) {
+                const ImageRect& scissor = set.scissors[i];
+                narrow += scissor.right - scissor.left < 200;
+                EXPECT_TRUE(scissor.left >= 0 && scissor.top >= 0 && scissor.right <= view.width &&
+                            scissor.bottom <= view.height);
+                const Box3d& box = rooms.boxes[set.objects[i].key];
+                if (!box.finite()) {
+                    EXPECT_EQ(scissor.right - scissor.left, view.width);
+                    continue;
+                }
+                for (int sample = 0; sample < 20; ++sample) {
+                    const glm::dvec3 p = pointIn(box, random);
+                    if (!rooms.isInside(p) || !isInImage(view, p) || !rooms.sees(eye, p)) continue;
+                    const glm::dvec4 clip = view.projection * view.view * glm::dvec4(p, 1.0);
+                    // The frame's own shift, and the pixels that are there.
+                    const double x = std::clamp(0.5 * view.width * (1 + clip.x / clip.w) +
+                                                    random.uniform(-view.jitter, view.jitter),
+                                                0.0, 320.0),
+                                 y = std::clamp(0.5 * view.height * (1 - clip.y / clip.w) +
+                                                    random.uniform(-view.jitter, view.jitter),
+                                                0.0, 180.0);
+                    ++seen;
+                    EXPECT_TRUE(x >= scissor.left && x <= scissor.right && y >= scissor.top && y <= scissor.bottom)
+                        << "seed " << seed << " frame " << frame << " object " << set.objects[i].key;
+                }
+            }
+        }
+    }
+    EXPECT_GT(seen, 2000u);
+    EXPECT_GT(narrow, 100u);
+}
+
+/// What explanations say is tried in worlds that are made accordingly.
+TEST(CellStages, AreExplained) {
+    uint64_t by_cells = 0, occluded = 0, tried = 0, ways = 0;
+    for (uint64_t seed = 1; seed <= 3; ++seed) {
+        RoomsWithRows made(seed);
+        MadeRooms& rooms = made.rooms;
+        Random random(seed);
+        furnish(rooms, random, 240, addCube(rooms.world));
+        ASSERT_TRUE(rooms.world.attach(rooms.space, &made.rows));
+        const Snapshot now = rooms.world.commit();
+        Query query;
+        for (int frame = 0; frame < 24; ++frame) {
+            View view = viewFrom(randomEye(rooms, random), rooms.pointInside(random));
+            view.bins = frame % 4 == 3 ? 2 : 1;
+            query.visible(now, view);
+            const std::vector<uint8_t> reasons = reasonsOf(query, now);
+            Explainer explainer(now, view);
+            for (uint32_t i = 0; i < reasons.size(); ++i) {
+                const Explanation why = explainer.explain(rooms.ids[i]);
+                const std::string place =
+                    "seed " + std::to_string(seed) + " frame " + std::to_string(frame) + " object " + std::to_string(i);
+                EXPECT_EQ(why.verdict == Verdict::kVisible, reasons[i] == 0) << place;
+                if (view.bins == 1) {
+                    EXPECT_EQ(why.verdict == Verdict::kNotInPvs, reasons[i] == kByPvs) << place;
+                    EXPECT_EQ(why.verdict == Verdict::kNoWindow, reasons[i] == kByPortals) << place;
+                }
+                EXPECT_FALSE(why.cells.eye.empty());
+                const std::set<uint32_t> in = made.roomsOf(rooms.boxes[i]);
+                EXPECT_EQ(std::set<uint32_t>(why.cells.object.begin(), why.cells.object.end()), in) << place;
+                by_cells += why.verdict == Verdict::kNotInPvs || why.verdict == Verdict::kNoWindow;
+                if (why.cells.reached > 0) {
+                    ++ways;
+                    ASSERT_EQ(why.cells.portals.size() + 1, why.cells.way.size());
+                    EXPECT_TRUE(in.count(why.cells.way.back()));
+                    EXPECT_NE(std::find(why.cells.eye.begin(), why.cells.eye.end(), why.cells.way.front()),
+                              why.cells.eye.end());
+                } else {
+                    EXPECT_NE(why.verdict, Verdict::kVisible) << place;
+                }
+                if (why.verdict != Verdict::kOccluded) continue;
+                ++occluded;
+                const auto reasonIn = [&](const std::vector<uint32_t>& items) {
+                    Copy copy(now, items);
+                    EXPECT_TRUE(copy.world.attach(rooms.space, &made.rows));
+                    const auto at = std::find(items.begin(), items.end(), i) - items.begin();
+                    return reasonOf(copy.world.commit(), view, static_cast<uint32_t>(at));
+                };
+                std::vector<uint32_t> alone{i}, without;
+                for (const Hider& hider : why.occlusion.hiders) alone.push_back(static_cast<uint32_t>(hider.key));
+                std::sort(alone.begin(), alone.end());
+                if (why.occlusion.sufficient) { EXPECT_NE(reasonIn(alone), 0) << place; }
+                for (uint32_t k = 0; k < reasons.size(); ++k)
+                    if (k == i || !std::binary_search(alone.begin(), alone.end(), k)) without.push_back(k);
+                if (view.bins > 1) continue;
+                EXPECT_EQ(reasonIn(without) == 0, why.occlusion.without == Without::kVisible) << place;
+                ++tried;
+            }
+        }
+    }
+    EXPECT_GT(by_cells, 1000u);
+    EXPECT_GT(ways, 300u);
+    EXPECT_GT(occluded, 5u);
+    EXPECT_GT(tried, 5u);
 }
 
 TEST(CellStages, CountObjectsOfTheLayersAlone) {
