@@ -32,6 +32,7 @@ constexpr Case kCases[] = {
     {"inner", benchInner},
     {"occlusion", benchOcclusion},
     {"order", benchOrder},
+    {"portals", benchPortals},
     {"rows", benchRows},
     {"shadow", benchShadow},
     {"vis", benchVis},

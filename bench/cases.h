@@ -55,6 +55,10 @@ Table benchOcclusion(const Options& options);
 /// hierarchy beside Embree's.
 Table benchOrder(const Options& options);
 
+/// Views in real maps, where ../shared/maps is there: what portals as windows cost, and the leaves that they keep beside those that
+/// are truly seen, and those of the maps' own rows.
+Table benchPortals(const Options& options);
+
 /// The rows of visibility of real maps, where ../shared/maps is there, and of rooms in a grid: their bytes on disk and in memory, and
 /// what a row and a pair cost, beside the run-length lump.
 Table benchRows(const Options& options);

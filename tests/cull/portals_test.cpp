@@ -203,6 +203,39 @@ TEST(Portals, SeeACellThroughAnyOfItsPortals) {
     }
 }
 
+// Cells 2 and 3 lie on 0 and 1, from 0 to 1 there is a wall, and what is within a hundredth of a cell is in it. An eye a
+// little below 2 is in 0 first, so 1 and 4 behind it have their turn before 3: and yet they are seen through 2 and 3, on a line along their
+// floor.
+TEST(Portals, EnterCellsAgainThatAreReachedAfterTheirTurn) {
+    CellSpace space;
+    space.tree.bounds = {{0, 0, -1}, {3, 1, 1}};
+    constexpr uint32_t kLeaf = LeafTreeNode::kLeaf;
+    space.tree.nodes.push_back({{0, 0, 1, 0}, {1, 2}});
+    space.tree.nodes.push_back({{1, 0, 0, -1}, {kLeaf + 0, 3}});
+    space.tree.nodes.push_back({{1, 0, 0, -1}, {kLeaf + 2, kLeaf + 3}});
+    space.tree.nodes.push_back({{1, 0, 0, -2}, {kLeaf + 1, kLeaf + 4}});
+    space.tree.contents.assign(5, LeafContents::kEmpty);
+    space.graph.cells = 5;
+    space.tolerance = 0.01;
+    const glm::dvec3 between[4] = {{1, 0, 0}, {1, 0, 1}, {1, 1, 1}, {1, 1, 0}};
+    const glm::dvec3 floor[4] = {{1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}};
+    space.graph.addPortal(2, 3, between);
+    const glm::dvec3 behind[4] = {{2, 0, -1}, {2, 0, 0}, {2, 1, 0}, {2, 1, -1}};
+    space.graph.addPortal(3, 1, floor);
+    space.graph.addPortal(1, 4, behind);
+    ASSERT_LT(space.graph.portals[0].plane.x, 0);
+    ASSERT_GT(space.graph.portals[1].plane.z, 0);
+    const PortalGraph graph(space);
+    for (const PortalWindows windows : kKinds) {
+        PortalFlood flood;
+        ASSERT_TRUE(flood.run(graph, makeView({0.1, 0.5, -0.005}, {1, 0, 0}, smallNear(1)).view, {.windows = windows}));
+        EXPECT_EQ(cellsOf(flood), (std::vector<uint32_t>{0, 1, 2, 3, 4})) << kWindowNames[static_cast<int>(windows)];
+        // Not so an eye that is certainly below, or above.
+        ASSERT_TRUE(flood.run(graph, makeView({0.1, 0.5, -0.1}, {1, 0, 0}, smallNear(1)).view, {.windows = windows}));
+        EXPECT_EQ(cellsOf(flood), (std::vector<uint32_t>{0}));
+    }
+}
+
 TEST(Portals, SayNothingWhereTheEyeIsInNoCell) {
     const TwoWays world;
     const PortalGraph graph(world.space);
