@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sightline/space/portal_graph.h"
 #include "sightline/visfile/visibility_file.h"
 
 namespace sightline::test {
@@ -44,6 +45,14 @@ inline std::string faultOfPlaces(const VisibilityFile& file) {
     }
     for (const glm::dvec3& point : space.graph.points)
         if (!std::isfinite(point.x + point.y + point.z)) return "a point that is not finite";
+    const PortalGraph graph(space);
+    Array<uint32_t> met;
+    for (const Box3d& box : {Box3d{glm::dvec3(0), glm::dvec3(1)}, Box3d{glm::dvec3(0.5), glm::dvec3(0.5)}}) {
+        graph.cellsOf(box, met);
+        graph.cellsAround({&box.min, 1}, 0.1, met);
+        for (const uint32_t cell : met)
+            if (cell >= cells) return "a body in a cell that there is not";
+    }
     const PlacedObjects& objects = file.objects();
     for (size_t i = 0; i < objects.size(); ++i) {
         const auto [begin, end] = objects.find(objects.key(i));
