@@ -645,6 +645,78 @@ TEST(CellStages, CountObjectsOfTheLayersAlone) {
     }
 }
 
+/// Objects that stand where they were baked are in the cells that the file says, others where their bounds are.
+TEST(CellStages, TakeTheCellsOfWhatWasBakedFromTheFile) {
+    RoomsWithRows made(11);
+    MadeRooms& rooms = made.rooms;
+    Random random(11);
+    furnish(rooms, random, 150);
+    const uint32_t count = 150, twin = 149, everywhere = 7, elsewhere = 9;
+    const auto boundsOf = [](const Box3d& box) {
+        return transformBox({glm::dvec3(0.0), glm::dvec3(1.0)}, MadeRooms::placed(box));
+    };
+    ObjectPlaces places;
+    for (uint32_t i = 0; i < count; ++i) {
+        const std::set<uint32_t> in = made.roomsOf(rooms.boxes[i]);
+        // One is said to be in a room where its bounds are not: the file's word counts.
+        const std::vector<uint32_t> cells =
+            i == elsewhere ? std::vector<uint32_t>{35} : std::vector(in.begin(), in.end());
+        places.add(i, boundsOf(rooms.boxes[i]), cells, i == everywhere);
+    }
+    const uint32_t cells = rooms.space.graph.cells;
+    BitMatrix visible(cells, cells);
+    for (uint32_t a = 0; a < cells; ++a)
+        for (uint32_t b = 0; b < cells; ++b)
+            if (made.parts[a] == made.parts[b]) visible.set(a, b);
+    VisibilityContent content{visible, {}, "rooms"};
+    content.space = &rooms.space;
+    content.objects = &places;
+    const Result<Array<char>> bytes = visibilityFile(content, VisibilityForm::kInPlace);
+    ASSERT_TRUE(bytes.ok()) << bytes.error().message;
+    const Result<VisibilityFile> file = VisibilityFile::open(*bytes, "rooms.vis");
+    ASSERT_TRUE(file.ok()) << file.error().message;
+    ASSERT_TRUE(rooms.world.attach(*file));
+    const auto cellsOf = [&](const Snapshot& now, uint32_t key) {
+        View view = viewFrom({2, 1.5, 2}, {3, 1.5, 3});
+        view.stages = kCells;
+        const Explanation why = Explainer(now, view).explain(rooms.ids[key]);
+        return std::set<uint32_t>(why.cells.object.begin(), why.cells.object.end());
+    };
+    Snapshot now = rooms.world.commit();
+    for (uint32_t i = 0; i < count; ++i) {
+        const std::set<uint32_t> wanted = i == elsewhere    ? std::set<uint32_t>{35}
+                                          : i == everywhere ? std::set<uint32_t>{}
+                                                            : made.roomsOf(rooms.boxes[i]);
+        EXPECT_EQ(cellsOf(now, i), wanted) << i;
+    }
+    Query query;
+    for (int frame = 0; frame < 10; ++frame) {
+        View view = viewFrom(randomEye(rooms, random), rooms.pointInside(random));
+        view.stages = kCells;
+        EXPECT_TRUE(keysOf(query.visible(now, view)).count(everywhere));
+    }
+    // What has moved goes by its bounds, also when it is back; so does one of two that look the same.
+    const Box3d stood = rooms.boxes[elsewhere], there = rooms.boxes[twin];
+    for (const Box3d& box : {MadeRooms::boxAround({2, 1, 2}, 0.5), stood}) {
+        rooms.move(elsewhere, box);
+        now = rooms.world.commit();
+        EXPECT_EQ(cellsOf(now, elsewhere), made.roomsOf(box));
+    }
+    rooms.move(everywhere, MadeRooms::boxAround({2, 1, 2}, 0.5));
+    now = rooms.world.commit();
+    EXPECT_EQ(cellsOf(now, everywhere), (std::set<uint32_t>{0}));
+    ObjectDef def;
+    def.bounds = {glm::dvec3(0.0), glm::dvec3(1.0)};
+    def.transform = MadeRooms::placed(there);
+    def.key = twin;
+    rooms.ids.push_back(rooms.world.add(def));
+    now = rooms.world.commit();
+    for (const uint32_t i : {twin, count}) EXPECT_EQ(cellsOf(now, i), made.roomsOf(there));
+    rooms.world.remove(rooms.ids[twin]);
+    now = rooms.world.commit();
+    EXPECT_EQ(cellsOf(now, count), made.roomsOf(there));
+}
+
 TEST(CellStages, RefuseSpacesThatAreNone) {
     MadeRooms rooms(1, 3, 3);
     Random random(1);
