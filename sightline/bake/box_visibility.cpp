@@ -121,8 +121,18 @@ BoxVisibility bakeBoxVisibility(const CellGraph& graph, const CellVisibility& ce
     const BoxVisibility found = bakeBoxes(thin.graph, merged, moved, settings);
     BoxVisibility answer = found;
     answer.visible = BitMatrix(graph.cells, boxes.boxes.size());
-    for (uint32_t cell = 0; cell < graph.cells; ++cell)
-        std::ranges::copy(found.visible.row(thin.cell_of_cell[cell]), answer.visible.row(cell).begin());
+    answer.by_cells = 0;
+    for (uint32_t cell = 0; cell < graph.cells; ++cell) {
+        const uint32_t now = thin.cell_of_cell[cell];
+        std::ranges::copy(found.visible.row(now), answer.visible.row(cell).begin());
+        for (size_t box = 0; box < moved.boxes.size(); ++box) {
+            const auto begin = moved.cells.begin() + moved.first_cell[box],
+                       end = moved.cells.begin() + moved.first_cell[box + 1];
+            answer.by_cells +=
+                begin == end || !moved.boxes[box].finite() ||
+                std::any_of(begin, end, [&](uint32_t in_cell) { return merged.visible.at(now, in_cell); });
+        }
+    }
     return answer;
 }
 
