@@ -151,15 +151,19 @@ Result<int> runBake(BakeOptions& options) {
 
     options.bake.keep_follows = options.objects;
     const Clock::time_point rows_begin = Clock::now();
-    const Result<CellVisibility> visibility = bakeVis(source->rows, options.bake, pool);
+    Result<CellVisibility> visibility = bakeVis(source->rows, options.bake, pool);
     if (!visibility) return visibility.error();
     if (visibility->stopped && interrupted()) return interruptedBake(options);
+    const std::vector<uint32_t> open_rows = seeAllFromOutside(source->space, visibility->visible);
     summary.rows_seconds = secondsSince(rows_begin);
 
     const Clock::time_point objects_begin = Clock::now();
     const ObjectCells objects = placeObjects(*source, pool);
     std::optional<BoxVisibility> boxes;
     if (options.objects) boxes = bakeObjects(*source, *visibility, objects.places, options, pool);
+    if (boxes)
+        for (const uint32_t row : open_rows)
+            for (size_t i = 0; i < boxes->visible.columns(); ++i) boxes->visible.set(row, i);
     if (interrupted()) return interruptedBake(options);
     summary.objects_seconds = secondsSince(objects_begin);
 

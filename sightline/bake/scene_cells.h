@@ -10,6 +10,7 @@
 
 #include <glm/glm.hpp>
 
+#include "sightline/base/bit_matrix.h"
 #include "sightline/scene/scene.h"
 #include "sightline/space/cell_space.h"
 
@@ -74,6 +75,12 @@ struct SceneCells {
     CellSpace space;
     SceneCellReport report;
 };
+
+/// Rows of cells that have an outside, once they are baked: what sees the outside sees all cells, since from there walls
+/// hide nothing that may be drawn from within alone. The outside has no row then, which sees all, too.
+/// @param visible  symmetric, of the rows that space.row_of_cell names
+/// @returns the rows that see the outside, itself included, rising; none without an outside
+std::vector<uint32_t> seeAllFromOutside(CellSpace& space, BitMatrix& visible);
 
 /// Makes cells of the marked ones, so that a sight line which leaves a cell without meeting a drawn, opaque front leaves it
 /// by a portal. Holes in walls that nobody marked become portals; docs/techniques/cells.md has the argument.

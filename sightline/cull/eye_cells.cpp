@@ -40,7 +40,8 @@ bool EyeCells::run(const PortalGraph& graph, const View& view, const EyeCellSett
                    std::span<const uint64_t> rows) {
     graph_ = &graph;
     rows_ = rows;
-    level_ = settings.level;
+    // From the outside all cells are seen, and chains of portals do not tell which.
+    level_ = graph.outside() == PortalGraph::kNoCell ? settings.level : EyeLevel::kRow;
     ++round_;
     seen_.resize(graph.cells(), 0);
     newest_in_.resize(graph.cells(), kNone);

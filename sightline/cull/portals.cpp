@@ -11,6 +11,7 @@ namespace sightline {
 namespace {
 
 constexpr uint32_t kLeaf = PortalGraph::Node::kLeaf;
+constexpr uint32_t kNone = ~0u;
 
 /// Cuts an outline where `height` is below 0.
 template <class Height>
@@ -111,9 +112,40 @@ void PortalFlood::wait(uint32_t cell, double key) {
         flagged_[node] = view_;
 }
 
+/// From the outside walls hide nothing: they may be drawn from within alone. All cells are seen through its windows.
+void PortalFlood::lookBackIn(uint32_t outside) {
+    const uint32_t depth = settings_.depth;
+    const auto isTooDeep = [&](uint32_t of) {
+        stats_.too_deep += depth != 0 && of >= depth;
+        return depth != 0 && of >= depth;
+    };
+    if (settings_.windows != PortalWindows::kPolygons) {
+        const CellState state = states_[outside];
+        if (isTooDeep(state.depth)) return;
+        for (uint32_t cell = 0; cell < graph_->cells(); ++cell)
+            if (cell != outside) reach(cell, state.window, state.index, kNone, state.depth + 1, 0);
+        return;
+    }
+    for (uint32_t i = states_[outside].polygon; i != kNone; i = polygons_[i].next) {
+        if (!polygons_[i].waits) continue;
+        polygons_[i].waits = false;
+        if (isTooDeep(polygons_[i].depth)) continue;
+        Polygon in;
+        in.shape = polygons_[i].shape;
+        in.depth = polygons_[i].depth + 1;
+        in.from = i;
+        for (in.cell = 0; in.cell < graph_->cells(); ++in.cell)
+            if (in.cell != outside) reach(in.cell, in, 0);
+    }
+}
+
 bool PortalFlood::enter(uint32_t cell) {
     if (++stats_.cells > settings_.work) return false;
     states_[cell].waits = false;
+    if (cell == graph_->outside()) {
+        lookBackIn(cell);
+        return true;
+    }
     if (settings_.windows != PortalWindows::kPolygons) {
         lookThroughAll(cell);
         return true;

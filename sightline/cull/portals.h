@@ -127,6 +127,7 @@ private:
     void wait(uint32_t cell, double key);
     void reach(uint32_t cell, const WindowBounds& window, uint32_t from, uint32_t portal, uint32_t depth, double key);
     void reach(uint32_t cell, Polygon polygon, double key);
+    void lookBackIn(uint32_t outside);
     bool enter(uint32_t cell);
     bool floodTree();
     bool floodByDistance();
