@@ -35,15 +35,15 @@ struct RunOptions {
     uint32_t threads = 0;                 ///< 0: all cores
     int repeat = 3;
     std::vector<std::string> use, skip;
-    uint32_t stages = 0;                      ///< from `use` and `skip`
-    double max_distance = 0;                  ///< View; 0: not given
-    double contribution = 0;                  ///< the same
-    ViewPlanes sections;                      ///< View
+    uint32_t stages = 0;      ///< from `use` and `skip`
+    double max_distance = 0;  ///< View; 0: not given
+    double contribution = 0;  ///< the same
+    ViewPlanes sections;      ///< View
     VisibilityAsked visibility;
     std::shared_ptr<const OpenedVisibility> opened;  ///< by openVisibility(): its file, or null
-    double cluster_test = FacingCost().test;  ///< of a cluster  [triangles]
-    std::string calibration;                  ///< file that says so; empty: none
-    bool dear_shading = false;                ///< which of its figures
+    double cluster_test = FacingCost().test;         ///< of a cluster  [triangles]
+    std::string calibration;                         ///< file that says so; empty: none
+    bool dear_shading = false;                       ///< which of its figures
     double jitter = 0.5;
     uint32_t occluder_triangles = View().occluder_triangles;
     double occluder_error = 0;  ///< View::occluder_error; 0: no simpler occluders are prepared

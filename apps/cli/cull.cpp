@@ -24,6 +24,7 @@
 #include "apps/cli/summary.h"
 #include "apps/cli/verbs.h"
 #include "apps/cli/visibility_choice.h"
+#include "apps/cli/window_overlay.h"
 #include "sightline/report/output_file.h"
 #include "sightline/report/page.h"
 #include "sightline/report/trace_json.h"
@@ -88,7 +89,8 @@ void removePictures(const std::string& directory) {
     std::vector<std::filesystem::path> old;
     for (const auto& entry : std::filesystem::directory_iterator(directory, ignored)) {
         const std::string name = entry.path().filename().string();
-        for (const char* what : {"frame-", "culled-", "plan-", "section-", "heat-all-", "heat-kept-", "buffer-"})
+        for (const char* what :
+             {"frame-", "culled-", "plan-", "section-", "heat-all-", "heat-kept-", "buffer-", "windows-"})
             if (isPictureOf(what, name)) old.push_back(entry.path());
     }
     for (const auto& file : old) std::filesystem::remove(file, ignored);
@@ -114,6 +116,13 @@ Status writePage(const Scene& scene, const Snapshot& now, const CullRun& run, co
         settings.buffer = [&](size_t frame) {
             return bufferPicture(now, viewOfFrame(run.frames[frame].camera, options));
         };
+    std::optional<WindowOverlay> overlay;
+    if (options.opened && run.stages & stageBit(Stage::kPortals)) {
+        overlay.emplace(options);
+        settings.windows = [&](size_t frame, PortalWindows kind) {
+            return overlay->windows(viewOfFrame(run.frames[frame].camera, options), kind);
+        };
+    }
     const std::string page = reportPage(scene, run, settings);
     if (!all) return all;
     return writeFileAside(options.report + "/index.html", page);

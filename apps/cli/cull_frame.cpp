@@ -104,6 +104,10 @@ void cullFrame(const Snapshot& now, const CullRun& run, const CameraFrame* befor
     if (run.stages & stageBit(Stage::kClusters) && !(run.stereo > 0))
         frame.clusters = {stats.clusters_tested,   stats.clusters_back,   stats.clusters_outside, stats.clusters_hidden,
                           stats.cluster_triangles, stats.drawn_triangles, stats.draw_ranges};
+    if (run.stages & stageBit(Stage::kPortals) && !(run.stereo > 0)) {
+        const CellStats cells = query.cellStats();
+        frame.cells = {cells.cells, cells.portals, cells.whole, cells.too_deep, cells.known};
+    }
     frame.reasons.resize(now.objectCount());
     query.reasons(frame.reasons);
     if (!(run.stereo > 0)) return;
@@ -119,7 +123,8 @@ FrameVerdict judgeFrame(const Witness& witness, const CullRun& run, const FrameR
     const View view = viewOf(frame.camera, run);
     if (!(run.stereo > 0)) return witness.judge(view, provable(frame.reasons, run), settings);
     FrameVerdict both = witness.judge(view, provable(frame.eye_reasons[0], run), settings);
-    const FrameVerdict right = witness.judge(shiftedEye(view, run.stereo), provable(frame.eye_reasons[1], run), settings);
+    const FrameVerdict right =
+        witness.judge(shiftedEye(view, run.stereo), provable(frame.eye_reasons[1], run), settings);
     for (const FalseCull& cull : right.false_culls) {
         const auto same = [&](const FalseCull& other) { return other.object == cull.object; };
         if (std::none_of(both.false_culls.begin(), both.false_culls.end(), same)) both.false_culls.push_back(cull);

@@ -92,9 +92,9 @@ void countChanges(const Scene& scene, const RunOptions& options, CullRun& run) {
         if (frame.changed_pixels || interrupted()) return;
         std::vector<Drawn> drawn(reasons.size());
         for (size_t object = 0; object < reasons.size(); ++object)
-            drawn[object] = reasons[object] == 0       ? Drawn::kAlways
+            drawn[object] = reasons[object] == 0            ? Drawn::kAlways
                             : isLossy(reasons[object], run) ? Drawn::kFullOnly
-                                                       : Drawn::kNever;
+                                                            : Drawn::kNever;
         frame.changed_pixels = countChangedPixels(facts, view, drawn);
         progress.step();
     });

@@ -45,10 +45,10 @@ void addSums(std::string& text, const Verification& sum, const CullRun& run) {
     fmt::format_to(std::back_inserter(text), "over-estimate {:.3f}: {} reported, {} exactly visible, over {} frames\n",
                    sum.overEstimate(), grouped(sum.reported), grouped(sum.exactly_visible), judged);
     if (sum.lossy_seen > 0)
-        fmt::format_to(
-            std::back_inserter(text),
-            "not proved   {} objects that were culled by distance, contribution or depth were seen: so they were asked to\n",
-            grouped(sum.lossy_seen));
+        fmt::format_to(std::back_inserter(text),
+                       "not proved   {} objects that were culled by distance, contribution or depth were seen: so they "
+                       "were asked to\n",
+                       grouped(sum.lossy_seen));
     if (judged < run.frames.size())
         fmt::format_to(std::back_inserter(text), "unverified   {} of {} frames\n", run.frames.size() - judged,
                        run.frames.size());

@@ -119,8 +119,8 @@ struct CullRun {
     uint32_t stages = kDefaultStages & ~(kLossyStages | kCellStages |
                                          stageBit(Stage::kClusters));  ///< bits of Stage in use: stagesInUse()
     double max_distance = 0, contribution = 0;                         ///< View
-    double hysteresis = 0;            ///< View, towards the frame before, which was asked without any
-    ViewPlanes sections;              ///< View
+    double hysteresis = 0;  ///< View, towards the frame before, which was asked without any
+    ViewPlanes sections;    ///< View
     VisibilityAsked visibility;
     double cluster_test = 0;          ///< FacingCost::test that clusters were prepared for, with that stage
     double stereo = 0;                ///< distance of the two eyes  [world units]; 0: there is one
