@@ -34,6 +34,14 @@ std::vector<uint32_t> unmoved(const Scene& scene, const SceneCellSettings& setti
 }
 
 /// A region that holds nothing, for what is no cell.
+/// Doors of one name get the keys of their leaves behind it: "Door 412".
+void tellApart(std::vector<CellDoor>& doors) {
+    std::map<std::string, int> times;
+    for (const CellDoor& door : doors) ++times[door.name];
+    for (CellDoor& door : doors)
+        if (times[door.name] > 1) door.name += " " + std::to_string(door.key);
+}
+
 std::vector<glm::dvec4> nowhere(double far) { return {{1, 0, 0, -far}, {-1, 0, 0, -far}}; }
 
 }  // namespace
@@ -209,6 +217,7 @@ SceneCells CheckedCells::finish() {
         }
         space.graph.addPortal(portal.a, portal.b == kOutside ? space.outside : portal.b, portal.outline, door);
     }
+    tellApart(space.doors);
     space.tolerance = 2 * thick_;
     report_.walls.assign(used_.begin(), used_.end());
     return {std::move(space), std::move(report_)};

@@ -69,7 +69,9 @@ const Admission* CellStages::decide(const View& view) {
         doubt_[static_cast<int>(stage)] = objectsInLayers(state, view.layers);
         stages &= ~stageBit(stage);
     };
-    if (!startCells(cells.graph, view, start_)) {
+    // What was baked rests on walls that stand, and are drawn.
+    const bool drawn = !state.cell_state.has_walls || (state.common_layers & view.layers) != 0 || state.count == 0;
+    if (!state.cell_state.walls_stand || !drawn || !startCells(cells.graph, view, start_)) {
         start_.clear();
         giveUp(Stage::kPvs);
         giveUp(Stage::kPortals);

@@ -143,6 +143,8 @@ public:
     /// The same with what a visibility file holds: cells, portals, doors, rows, and the cells of objects, which they are
     /// told by their keys. An object takes them from there if it stands where it stood when they were baked (its bounds do),
     /// has not moved since it was added, and no other has its key and its bounds; all others go by their bounds.
+    /// Both stages keep everything, and count it as doubt, while an object that the file calls a wall is not known to stand
+    /// where it was baked, or View::layers may leave one out.
     /// @param file  hasCells(); outlives the world and its snapshots
     Status attach(const VisibilityFile& file);
     /// Takes the cells off again, from the next commit on.

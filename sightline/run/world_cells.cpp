@@ -29,6 +29,8 @@ void WorldCells::begin() {
     free_count_ = 0;
     claims_.assign(cells_ ? cells_->objects.size() : 0, kNobody);
     claimed_.clear();
+    walls_ = claimed_walls_ = 0;
+    for (size_t i = 0; i < claims_.size(); ++i) walls_ += cells_->objects.isWall(i);
 }
 
 void WorldCells::setFree(uint32_t row, bool free) {
@@ -68,6 +70,7 @@ bool WorldCells::putAsBaked(uint32_t row, const ObjectRecord& object, const Box3
         return false;
     }
     claims_[baked] = row;
+    claimed_walls_ += cells_->objects.isWall(baked);
     if (claimed_.size() <= row) claimed_.resize(row + 1, kNobody);
     claimed_[row] = baked;
     const bool everywhere = cells_->objects.seenFromEverywhere(baked);
@@ -84,6 +87,7 @@ bool WorldCells::putAsBaked(uint32_t row, const ObjectRecord& object, const Box3
 void WorldCells::unclaim(uint32_t row) {
     if (row >= claimed_.size() || claimed_[row] == kNobody) return;
     claims_[claimed_[row]] = kNobody;
+    claimed_walls_ -= cells_->objects.isWall(claimed_[row]);
     claimed_[row] = kNobody;
 }
 
@@ -126,6 +130,8 @@ void WorldCells::share(CellState& state) {
     state.lists = objects_.share();
     state.free = free_.share();
     state.free_count = free_count_;
+    state.has_walls = walls_ > 0;
+    state.walls_stand = claimed_walls_ == walls_;
 }
 
 }  // namespace sightline::detail

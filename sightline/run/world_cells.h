@@ -63,7 +63,8 @@ private:
     /// Per object of the file: the row that stands for it; kMany: there were several.
     static constexpr uint32_t kNobody = ~0u, kMany = ~0u - 1;
     Array<uint32_t> claims_;
-    Array<uint32_t> claimed_;  ///< per row: the object that it stands for; kNobody: none
+    uint32_t walls_ = 0, claimed_walls_ = 0;  ///< objects of the file that are walls; those of them that stand
+    Array<uint32_t> claimed_;                 ///< per row: the object that it stands for; kNobody: none
     Array<DoorState> doors_;
     std::shared_ptr<const Array<DoorState>> shared_doors_;  ///< null: they have changed
     bool all_ = true;

@@ -87,6 +87,8 @@ struct CellState {
     CellLists lists;                                ///< of rows
     PagedBits free;                                 ///< per place of the hierarchy: an object in no cell
     uint32_t free_count = 0;
+    bool has_walls = false;   ///< the file names objects that its rows and portals rest on
+    bool walls_stand = true;  ///< and all of them are where they were baked
 
     explicit CellState(Memory* memory) : lists(memory), free(memory) {}
 };

@@ -82,7 +82,7 @@ TEST_F(Visibility, ReportsShowTheWindows) {
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_TRUE(std::filesystem::exists(path("out/frames/windows-0000.png")));
     EXPECT_NE(read(path("out/index.html")).find("value=\"windows\""), std::string::npos);
-    const Outcome again = run("report out/cull.json --report again");
+    const Outcome again = run("report out/cull.json -o again");
     EXPECT_EQ(again.exit_code, 0) << again.err;
 }
 

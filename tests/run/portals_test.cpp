@@ -717,6 +717,53 @@ TEST(CellStages, TakeTheCellsOfWhatWasBakedFromTheFile) {
     EXPECT_EQ(cellsOf(now, count), made.roomsOf(there));
 }
 
+TEST(CellStages, SayNothingOnceAWallIsGone) {
+    RoomsWithRows made(12);
+    MadeRooms& rooms = made.rooms;
+    Random random(12);
+    furnish(rooms, random, 60);
+    const uint32_t wall = 3;
+    ObjectPlaces places;
+    for (uint32_t i = 0; i < 60; ++i) {
+        const std::set<uint32_t> in = made.roomsOf(rooms.boxes[i]);
+        const Box3d bounds = transformBox({glm::dvec3(0.0), glm::dvec3(1.0)}, MadeRooms::placed(rooms.boxes[i]));
+        places.add(i, bounds, std::vector(in.begin(), in.end()), false, i == wall);
+    }
+    const uint32_t cells = rooms.space.graph.cells;
+    BitMatrix visible(cells, cells);
+    for (uint32_t a = 0; a < cells; ++a) visible.set(a, a);
+    VisibilityContent content{visible, {}, "rooms"};
+    content.space = &rooms.space;
+    content.objects = &places;
+    const Result<Array<char>> bytes = visibilityFile(content, VisibilityForm::kInPlace);
+    ASSERT_TRUE(bytes.ok()) << bytes.error().message;
+    const Result<VisibilityFile> file = VisibilityFile::open(*bytes, "rooms.vis");
+    ASSERT_TRUE(file.ok()) << file.error().message;
+    ASSERT_TRUE(rooms.world.attach(*file));
+    View view = viewFrom(randomEye(rooms, random), rooms.pointInside(random));
+    view.stages = kCells;
+    Query query;
+    const auto culled = [&] {
+        const VisibleSet set = query.visible(rooms.world.commit(), view);
+        const uint64_t doubt = set.stats.stages[static_cast<int>(Stage::kPvs)].doubt;
+        EXPECT_TRUE(doubt == 0 || set.objects.size() == set.stats.objects);
+        return set.stats.objects - set.objects.size();
+    };
+    for (int i = 0; i < 50 && culled() == 0; ++i)
+        view = viewFrom(randomEye(rooms, random), rooms.pointInside(random)), view.stages = kCells;
+    ASSERT_GT(culled(), 0u);
+    view.layers = 2;  // of no object
+    EXPECT_EQ(culled(), 0u);
+    view.layers = ~0u;
+    ASSERT_GT(culled(), 0u);
+    rooms.move(wall, MadeRooms::boxAround({2, 1, 2}, 0.5));
+    EXPECT_EQ(culled(), 0u);
+    ASSERT_TRUE(rooms.world.attach(*file));
+    EXPECT_EQ(culled(), 0u);
+    rooms.world.remove(rooms.ids[wall]);
+    EXPECT_EQ(culled(), 0u);
+}
+
 TEST(CellStages, RefuseSpacesThatAreNone) {
     MadeRooms rooms(1, 3, 3);
     Random random(1);
