@@ -70,10 +70,19 @@ bool PortalFlood::run(const PortalGraph& graph, const View& view, const PortalSe
 
 bool PortalFlood::start(const PortalGraph& graph, const View& view) {
     if (!makePortalEye(view, graph.tolerance(), graph.reach(), eye_)) return false;
-    glm::dvec3 body[5];
-    std::copy(eye_.near_corners, eye_.near_corners + 4, body);
-    body[4] = eye_.center;
-    if (!graph.cellsAround({body, eye_.parallel() ? 4u : 5u}, 0, start_)) return false;
+    const ViewOutline& through = view.through;
+    if (through.count >= 3) {
+        // Sight lines begin on the outline, and not before it.
+        if (!graph.cellsAround({through.points, through.count}, eye_.position, start_)) return false;
+        double w = INFINITY;
+        for (uint32_t i = 0; i < through.count; ++i) w = std::min(w, eye_.toImage(through.points[i]).z);
+        eye_.near_w = std::max(w - eye_.lengths[2] * eye_.position, 0.0);
+    } else {
+        glm::dvec3 body[5];
+        std::copy(eye_.near_corners, eye_.near_corners + 4, body);
+        body[4] = eye_.center;
+        if (!graph.cellsAround({body, eye_.parallel() ? 4u : 5u}, 0, start_)) return false;
+    }
     for (const uint32_t cell : start_)
         if (settings_.windows == PortalWindows::kPolygons)
             reach(cell, {.shape = polygonOf(eye_.image), .cell = cell}, 0);

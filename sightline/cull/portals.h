@@ -64,6 +64,7 @@ public:
     /// Conservative: a sight line that begins in the near rectangle, widened by the jitter, and passes through cells by
     /// their portals passes cells of the answer alone, and each within one of its windows. Starts from all cells that the
     /// pyramid from the eye to the near rectangle meets, or comes as close to as the space's tolerance.
+    /// With View::through they begin on that outline, and the cells are those that it touches.
     /// Deterministic on every machine.
     /// @param view   isUsable(view)
     /// @param doors  [size: graph.doors(), or 0: all are open]

@@ -57,7 +57,6 @@ const Admission* CellStages::decide(const View& view) {
     const AttachedCells& cells = *state.cell_state.cells;
     uint32_t stages = stagesInUse(view) & kCellStages;
     if (!cells.hasRows()) stages &= ~stageBit(Stage::kPvs);
-    if (view.through.count > 0) stages &= ~stageBit(Stage::kPortals);  // windows are of the eye's own rectangle
     if (!stages) return nullptr;
     auto start = Clock::now();
     const auto lap = [&](Stage stage) {

@@ -12,6 +12,7 @@
 #include "sightline/bake/cell_visibility.h"
 #include "sightline/bake/object_cells.h"
 #include "sightline/bake/scene_cells.h"
+#include "sightline/geom/mirror.h"
 #include "sightline/base/random.h"
 #include "sightline/import/scene_file.h"
 #include "sightline/load/load_world.h"
@@ -164,6 +165,54 @@ TEST(IndoorScenes, ShutDoorsHideMore) {
         }
     }
     EXPECT_LT(kept[0], kept[1]);
+}
+
+/// What a mirror on a wall shows, by its view: rays that begin on the glass see nothing that was culled.
+TEST(IndoorScenes, MirrorsHideNothingThatIsSeen) {
+    const Scene scene = makeBuilding(2, 1);
+    const BakedScene baked = bakeScene(scene, true);
+    const CellSpace& space = baked.cells.space;
+    LoadedWorld loaded = loadWorld(scene, {}, loadSettings(false, 0));
+    ASSERT_TRUE(loaded.world.attach(*baked.file));
+    const Snapshot now = loaded.world.commit();
+    const Witness witness(scene);
+    Query query;
+    std::vector<uint8_t> reasons(scene.objects.size());
+    Random random(5);
+    uint64_t by_cells = 0, mirrors = 0;
+    for (int i = 0; i < 400 && mirrors < 24; ++i) {
+        // Upright, in the midst of a cell, seen from in front of it.
+        const CellRegion& room = space.regions[random.below(space.regions.size())];
+        const glm::dvec3 center = room.bounds.center(), size = room.bounds.size();
+        if (std::min({size.x, size.y, size.z}) < 1.5) continue;
+        const double angle = random.uniform(0, 6.283185307179586);
+        const glm::dvec3 normal(std::cos(angle), 0, std::sin(angle)), along(normal.z, 0, -normal.x), up(0, 1, 0);
+        const std::vector<glm::dvec3> glass{center - 0.4 * along - 0.5 * up, center + 0.4 * along - 0.5 * up,
+                                            center + 0.4 * along + 0.5 * up, center - 0.4 * along + 0.5 * up};
+        CameraFrame camera;
+        camera.eye = center + random.uniform(0.2, 6.0) * normal + random.uniform(-1, 1) * along;
+        camera.target = center;
+        camera.z_near = 0.01;
+        const auto mirrored = mirroredView(makeView(camera, 320, 180), glass);
+        ASSERT_TRUE(mirrored);
+        View view = *mirrored;
+        view.windows = static_cast<PortalWindows>(i % 3);
+        view.stages = i % 2 ? kDefaultStages : kCellStages;
+        const VisibleSet set = query.visible(now, view);
+        query.reasons(reasons);
+        by_cells += set.stats.stages[static_cast<int>(Stage::kPvs)].culled +
+                    set.stats.stages[static_cast<int>(Stage::kPortals)].culled;
+        ++mirrors;
+        WitnessSettings looks;
+        looks.rays = 20000;
+        looks.aimed_rays = 10000;
+        looks.supersampling = 0;  // the id-buffer looks at one point of each object, which may lie beside the glass
+        for (const FalseCull& cull : witness.judge(view, reasons, looks).false_culls)
+            ADD_FAILURE() << "mirror " << i << ": object " << cull.object << " is seen at (" << cull.x << ", " << cull.y
+                          << ") by " << cull.witness << " but was culled by stage " << int(reasons[cull.object]) - 1;
+    }
+    EXPECT_EQ(mirrors, 24u);
+    EXPECT_GT(by_cells, 0u);
 }
 
 /// The house with cells that were marked by hand: walls are held to them, and holes that nobody marked are open.
