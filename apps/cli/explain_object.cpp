@@ -100,6 +100,52 @@ std::string sightingText(const ObjectAnswer& answer) {
     return text + ".";
 }
 
+std::string cellName(const AskedScene& asked, uint32_t cell) {
+    const bool named = cell < asked.cells.size() && !asked.cells[cell].empty();
+    return named ? "'" + oneLine(asked.cells[cell], 60) + "'" : fmt::format("cell {}", cell);
+}
+
+std::string cellNames(const AskedScene& asked, const Array<uint32_t>& cells, const char* between) {
+    constexpr size_t kMost = 8;
+    std::string text;
+    for (size_t i = 0; i < std::min(cells.size(), kMost); ++i) text += (i ? between : "") + cellName(asked, cells[i]);
+    if (cells.size() > kMost) text += fmt::format("{}{} more", between, cells.size() - kMost);
+    return text;
+}
+
+bool isByCells(const Explanation& why) {
+    return why.verdict == Verdict::kNotInPvs || why.verdict == Verdict::kNoWindow;
+}
+
+/// Where the eye and what cells culled are, and the way between them.
+std::string cellsText(const AskedScene& asked, const CellsReason& reason) {
+    std::string text;
+    if (!reason.eye.empty()) text += " The eye is in " + cellNames(asked, reason.eye, ", ") + ".";
+    if (!reason.object.empty()) text += " It stands in " + cellNames(asked, reason.object, ", ") + ".";
+    if (reason.way.size() > 1) text += " The way there: " + cellNames(asked, reason.way, ", then ") + ".";
+    return text;
+}
+
+Json cellsJson(const AskedScene& asked, const CellsReason& reason) {
+    const auto list = [&](const Array<uint32_t>& cells) {
+        Json out = Json::array();
+        for (const uint32_t cell : cells) {
+            out.push_back({{"cell", cell}});
+            if (cell < asked.cells.size()) out.back()["name"] = asked.cells[cell];
+        }
+        return out;
+    };
+    Json out;
+    out["eye"] = list(reason.eye);
+    out["object"] = list(reason.object);
+    out["reached"] = reason.reached;
+    out["way"] = list(reason.way);
+    out["portals"] = Json::array();
+    for (const uint32_t portal : reason.portals) out["portals"].push_back(portal);
+    if (reason.work_spent) out["work_spent"] = true;
+    return out;
+}
+
 std::string eyeText(const ObjectAnswer& answer) {
     return answer.eye == 0 ? "" : answer.eye == kLeftEye ? "left eye:  " : "right eye: ";
 }
@@ -113,6 +159,7 @@ AskedScene::AskedScene(const Scene& from, const RunOptions& options) : scene(fro
         loadSettings(true, options.occluder_error, (options.stages & stageBit(Stage::kClusters)) != 0,
                      options.cluster_test));
     attachVisibility(options, loaded.world);
+    if (options.opened) cells = options.opened->file.cellSpace().names;
     now = loaded.world.commit();
 }
 
@@ -170,6 +217,7 @@ Sighting lookFor(const Scene& scene, const View& view, uint32_t object, const Ru
 std::string answerText(const AskedScene& asked, const ObjectAnswer& answer) {
     const auto name = [&](ObjectId id) { return asked.nameOf(id); };
     std::string text = eyeText(answer) + explanationText(answer.why, titleOf(asked.scene, answer.object), name);
+    if (isByCells(answer.why)) text += cellsText(asked, answer.why.cells);
     if (answer.sighting) text += " " + sightingText(answer);
     return wrapped(text, kColumns, "  ") + "\n";
 }
@@ -212,6 +260,7 @@ Json answerJson(const AskedScene& asked, const ObjectAnswer& answer) {
         out["distance"] = {{"distance", why.size.distance}, {"limit", why.size.distance_limit}};
     if (why.verdict == Verdict::kTooSmall)
         out["contribution"] = {{"radius", why.size.radius}, {"limit", why.size.radius_limit}};
+    if (isByCells(why)) out["cells"] = cellsJson(asked, why.cells);
     if (why.clusters.clusters > 0)
         out["clusters"] = {{"clusters", why.clusters.clusters},   {"back", why.clusters.back},
                            {"outside", why.clusters.outside},     {"hidden", why.clusters.hidden},

@@ -48,6 +48,7 @@ struct AskedScene {
     const Scene& scene;
     LoadedWorld loaded;
     Snapshot now;
+    std::vector<std::string> cells;  ///< names, by number; empty: not known
 
     AskedScene(const Scene& scene, const RunOptions& options);
     /// @param loaded  of this scene

@@ -93,6 +93,10 @@ TEST_F(Visibility, ExplainNamesTheStage) {
         run("explain building:2:2 --frames 1 --seed 3 --visibility house.vis --object 0 --json - --rays 2000");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     const json answer = json::parse(outcome.out)["answers"][0];
+    if (answer["stage"] == "pvs" || answer["stage"] == "portals") {
+        EXPECT_FALSE(answer["cells"]["eye"].empty());
+        EXPECT_FALSE(answer["cells"]["object"][0]["name"].get<std::string>().empty());
+    }
     const auto& visible = run_of["frames"][0]["visible"];
     const bool kept = std::find(visible.begin(), visible.end(), 0) != visible.end();
     if (!kept) { EXPECT_FALSE(answer["stage"].is_null()) << outcome.out; }
