@@ -40,6 +40,16 @@ bool isOfMap(const SceneChoice& scene) {
     });
 }
 
+/// The first few, and how many there are.
+std::string doorNames(const CellSpace& space) {
+    constexpr size_t kMost = 6;
+    if (space.doors.empty()) return "it has none";
+    std::string text = fmt::format("it has {}: ", space.doors.size());
+    for (size_t i = 0; i < std::min(space.doors.size(), kMost); ++i)
+        text += (i ? ", \"" : "\"") + oneLine(space.doors[i].name, 60) + "\"";
+    return text + (space.doors.size() > kMost ? ", ..." : "");
+}
+
 Error wrong(const std::string& file, const std::string& what) {
     return {Error::Kind::kInput, oneLine(file) + ": " + what};
 }
@@ -60,8 +70,8 @@ Status openVisibility(const Scene& scene, RunOptions& options) {
     for (const DoorAsked& door : options.visibility.doors)
         if (std::none_of(space.doors.begin(), space.doors.end(),
                          [&](const CellDoor& other) { return other.name == door.name; }))
-            return Error{Error::Kind::kUsage, fmt::format("--door: there is no door \"{}\" in {} (it has {})",
-                                                          oneLine(door.name), oneLine(name), space.doors.size())};
+            return Error{Error::Kind::kUsage, fmt::format("--door: there is no door \"{}\" in {} ({})",
+                                                          oneLine(door.name), oneLine(name), doorNames(space))};
     if (!isOfMap(options.scene) && file->mapHash() != hashOf(scene))
         return wrong(name, "it was baked of another scene: its hash is not this one's");
     World empty;
