@@ -23,14 +23,17 @@ prepare() {
         say "configuring build/release"
         (cd "$root" && cmake --preset release) >&2
     fi
-    if ! ninja -C "$build" -n sightline 2>/dev/null | grep -q 'no work to do'; then
+    if ! ninja -C "$build" -n "$@" 2>/dev/null | grep -q 'no work to do'; then
         say "building build/release"
-        ninja -C "$build" sightline >&2
+        ninja -C "$build" "$@" >&2
     fi
     exec {lock}>&-
 }
 
-prepare
+# The cases of the verb `bench` are a program of their own, which takes a minute more.
+programs=(sightline)
+case " $* " in *" bench "*) programs+=(sightline-bench) ;; esac
+prepare "${programs[@]}"
 if [ $# -gt 0 ]; then exec "$tool" "$@"; fi
 
 say "culling a flight through a city of 100,000 objects, and proving it with rays and an id-buffer"

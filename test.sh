@@ -25,7 +25,7 @@ if [ -n "$full" ]; then
     step "format"
     tools/format --check
 
-    for preset in asan tsan; do
+    for preset in debug asan tsan; do
         step "$preset"
         build "$preset"
         ctest --preset "$preset" --output-log "build/$preset/test.log"

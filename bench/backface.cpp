@@ -10,14 +10,15 @@
 #include "bench/facing_meshes.h"
 #include "bench/stopwatch.h"
 #include "sightline/base/random.h"
-#include "sightline/cull/back_faces.h"
 #include "sightline/cull/facing_clusters.h"
-#include "sightline/cull/normal_masks.h"
-#include "sightline/hidden/facing.h"
-#include "sightline/prepare/facing_clusters.h"
-#include "sightline/prepare/normal_classes.h"
+#include "sightline/prepare/facing/facing_clusters.h"
+#include "sightline/prepare/facing/normal_classes.h"
+#include "sightline/studies/facing/back_faces.h"
+#include "sightline/studies/facing/normal_masks.h"
+#include "sightline/studies/hidden/project/facing.h"
 
 namespace sightline::bench {
+using namespace studies;
 namespace {
 
 constexpr double kAngle = 60.0;  // [degrees]

@@ -6,9 +6,10 @@
 
 #include "bench/cases.h"
 #include "bench/occlusion_scenes.h"
-#include "sightline/report/output_file.h"
+#include "sightline/tools/report/output_file.h"
 
 namespace sightline::bench {
+using namespace tools;
 namespace {
 
 struct Case {

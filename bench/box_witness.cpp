@@ -8,12 +8,14 @@
 #include <limits>
 
 #include "bench/open_places.h"
-#include "sightline/hidden/threads.h"
-#include "sightline/truth/aim.h"
-#include "sightline/truth/exact.h"
-#include "sightline/truth/rays.h"
+#include "sightline/studies/hidden/threads.h"
+#include "sightline/tools/truth/aim.h"
+#include "sightline/tools/truth/exact.h"
+#include "sightline/tools/truth/rays.h"
 
 namespace sightline::bench {
+using namespace studies;
+using namespace tools;
 namespace {
 
 constexpr int kMostTries = 32;  // sightings of a box that may fail to be confirmed before it is left alone
@@ -95,7 +97,7 @@ namespace {
 /// One view's rays at one box after the other.
 class Caster {
 public:
-    Caster(const BoxWitness::Parts& witness, const View& view, const Sight& sight, const OpenPlaces& places,
+    Caster(const BoxWitness::Parts& witness, const View& view, const SightLines& sight, const OpenPlaces& places,
            const BoxRays& settings)
         : witness_(witness),
           view_(view),
@@ -159,7 +161,7 @@ private:
 
     const BoxWitness::Parts& witness_;
     const View& view_;
-    const Sight& sight_;
+    const SightLines& sight_;
     const ExactSight exact_;
     const OpenPlaces& places_;
     const BoxRays& settings_;
@@ -177,7 +179,7 @@ BoxVerdict BoxWitness::judge(const View& view, std::span<const uint32_t> boxes, 
     BoxVerdict verdict;
     verdict.boxes.resize(boxes.size());
     if (!isUsable(view) || settings.at_boxes + settings.through_edges == 0) return verdict;
-    const Sight sight(view);
+    const SightLines sight(view);
     OpenPlaces places;
     if (settings.through_edges > 0)
         places = OpenPlaces(parts_->edges, parts_->rays, sight, view, settings.places, settings.seed);

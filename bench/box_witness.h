@@ -32,7 +32,7 @@ struct BoxVerdict {
 };
 
 /// Sees by what the scenes' own witnesses see by: Embree finds candidates, and a box counts as seen only if the sighting
-/// holds in double against all triangles (truth/exact.h). All batches hide, whether they are in view or not.
+/// holds in double against all triangles (tools/truth/exact.h). All batches hide, whether they are in view or not.
 class BoxWitness {
 public:
     /// @param scene  outlives the witness

@@ -7,15 +7,17 @@
 #include "bench/cases.h"
 #include "bench/stopwatch.h"
 #include "sightline/base/random.h"
-#include "sightline/hidden/bsp_back_to_front.h"
-#include "sightline/hidden/bsp_frame.h"
-#include "sightline/hidden/bsp_front_to_back.h"
-#include "sightline/hidden/dynamic_screen.h"
-#include "sightline/hidden/fill.h"
-#include "sightline/load/seeded_cameras.h"
-#include "sightline/scene/city.h"
+#include "sightline/studies/hidden/bsp/bsp_back_to_front.h"
+#include "sightline/studies/hidden/bsp/bsp_frame.h"
+#include "sightline/studies/hidden/bsp/bsp_front_to_back.h"
+#include "sightline/studies/hidden/methods/dynamic_screen.h"
+#include "sightline/studies/hidden/methods/fill.h"
+#include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/scene/city/city.h"
 
 namespace sightline::bench {
+using namespace studies;
+using namespace tools;
 namespace {
 
 constexpr double kDepthComplexity = 8;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "bench/bench.h"
+#include "bench/options.h"
 #include "bench/table.h"
 
 namespace sightline::bench {

@@ -1,3 +1,4 @@
+// Portal flow as compilers of the Quake family do it.
 // SPDX-License-Identifier: MIT
 #include "bench/classic_flow.h"
 

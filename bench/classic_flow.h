@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "sightline/base/bit_matrix.h"
-#include "sightline/space/cells.h"
+#include "sightline/cells/cells.h"
 
 namespace sightline::bench {
 

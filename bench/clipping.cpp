@@ -6,14 +6,16 @@
 #include "bench/flat_boxes.h"
 #include "bench/stopwatch.h"
 #include "sightline/base/random.h"
-#include "sightline/hidden/clip.h"
-#include "sightline/hidden/clip_mesh.h"
-#include "sightline/hidden/projector.h"
-#include "sightline/hidden/scan.h"
-#include "sightline/load/seeded_cameras.h"
-#include "sightline/scene/city.h"
+#include "sightline/studies/hidden/project/clip.h"
+#include "sightline/studies/hidden/project/clip_mesh.h"
+#include "sightline/studies/hidden/project/projector.h"
+#include "sightline/studies/hidden/project/scan.h"
+#include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/scene/city/city.h"
 
 namespace sightline::bench {
+using namespace studies;
+using namespace tools;
 namespace {
 
 /// What a renderer has to clip: the triangles of objects in the frustum, in clip space.

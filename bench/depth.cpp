@@ -6,15 +6,17 @@
 
 #include "bench/cases.h"
 #include "bench/stopwatch.h"
-#include "sightline/hidden/depth_buffer.h"
-#include "sightline/hidden/render.h"
-#include "sightline/hidden/zbuffer.h"
-#include "sightline/hidden/zbuffer_method.h"
-#include "sightline/load/seeded_cameras.h"
-#include "sightline/report/render_list.h"
-#include "sightline/scene/city.h"
+#include "sightline/studies/hidden/render.h"
+#include "sightline/studies/hidden/zbuffer/depth_buffer.h"
+#include "sightline/studies/hidden/zbuffer/zbuffer.h"
+#include "sightline/studies/hidden/zbuffer/zbuffer_method.h"
+#include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/report/pictures/render_list.h"
+#include "sightline/tools/scene/city/city.h"
 
 namespace sightline::bench {
+using namespace studies;
+using namespace tools;
 namespace {
 
 constexpr uint32_t kWidth = 1920, kHeight = 1080;

@@ -6,6 +6,8 @@
 #include "sightline/cull/occlusion.h"
 
 namespace sightline::bench {
+using namespace studies;
+using namespace tools;
 
 ExactBoxes::ExactBoxes(const Scene& scene) : scene_(scene), boxes_(objectBoxes(scene)) {
     for (const Mesh& mesh : scene.meshes) {
@@ -19,8 +21,8 @@ ExactBoxes::ExactBoxes(const Scene& scene) : scene_(scene), boxes_(objectBoxes(s
     }
 }
 
-ExactBoxes::Answer ExactBoxes::test(const View& view, uint32_t supersampling) const {
-    const Screen screen = makeScreen(view, view.occlusion_size);
+ExactBoxes::Answer ExactBoxes::test(const View& view, uint32_t occlusion_size, uint32_t supersampling) const {
+    const Screen screen = makeScreen(view, occlusion_size);
     const Frustum frustum = makeFrustum(view);
     std::vector<DrawItem> items;
     FlatBoxes flat(boxes_);

@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "sightline/geom/view.h"
-#include "sightline/hidden/zbuffer.h"
-#include "sightline/scene/scene.h"
+#include "sightline/studies/hidden/zbuffer/zbuffer.h"
+#include "sightline/tools/scene/scene.h"
 
 namespace sightline::bench {
+using namespace tools;
 
 /// Draws all of a scene's triangles and tests its objects' boxes, as rectangles with their nearest depth.
 class ExactBoxes {
@@ -21,7 +22,7 @@ public:
         std::vector<uint8_t> seen;  ///< per object: has a sample at `supersampling` per pixel and axis
     };
     /// The z-buffer has the size of the query's occlusion buffer for the view.
-    Answer test(const View& view, uint32_t supersampling) const;
+    Answer test(const View& view, uint32_t occlusion_size, uint32_t supersampling) const;
 
 private:
     const Scene& scene_;

@@ -7,10 +7,12 @@
 #include "bench/cases.h"
 #include "bench/eye_worlds.h"
 #include "bench/stopwatch.h"
-#include "sightline/cull/eye_cells.h"
-#include "sightline/cull/portals.h"
+#include "sightline/cells/portals.h"
+#include "sightline/studies/cells/eye_cells.h"
 
 namespace sightline::bench {
+using namespace studies;
+using namespace tools;
 namespace {
 
 constexpr size_t kEyes = 256;

@@ -6,17 +6,20 @@
 #include <filesystem>
 #include <map>
 
-#include "sightline/bake/cell_visibility.h"
-#include "sightline/bake/scene_cells.h"
+#include "sightline/bake/flow/cell_visibility.h"
+#include "sightline/bake/marked/scene_cells.h"
 #include "sightline/base/random.h"
-#include "sightline/cull/eye_cells.h"
-#include "sightline/import/quake_bsp.h"
-#include "sightline/scene/building.h"
-#include "sightline/scene/text_file.h"
-#include "sightline/space/merge_cells.h"
-#include "sightline/space/tree_portals.h"
+#include "sightline/bsp/merge_cells.h"
+#include "sightline/bsp/tree_portals.h"
+#include "sightline/studies/cells/eye_cells.h"
+#include "sightline/tools/import/quake/quake_bsp.h"
+#include "sightline/tools/scene/building/building.h"
+#include "sightline/tools/scene/text_file.h"
 
 namespace sightline::bench {
+using namespace bake;
+using namespace studies;
+using namespace tools;
 namespace {
 
 /// In seconds: what is not settled by then is seen.

@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "sightline/base/bit_matrix.h"
+#include "sightline/cells/portal_graph.h"
 #include "sightline/geom/view.h"
-#include "sightline/scene/scene.h"
-#include "sightline/space/portal_graph.h"
+#include "sightline/tools/scene/scene.h"
 
 namespace sightline::bench {
+using namespace tools;
 
 struct EyeWorld {
     std::string name;

@@ -9,13 +9,14 @@
 
 #include "bench/facing_meshes.h"
 #include "bench/stopwatch.h"
-#include "sightline/cull/back_faces.h"
 #include "sightline/cull/facing_clusters.h"
-#include "sightline/prepare/facing_clusters.h"
-#include "sightline/prepare/merge_facing.h"
-#include "sightline/prepare/triangle_planes.h"
+#include "sightline/prepare/facing/facing_clusters.h"
+#include "sightline/prepare/facing/merge_facing.h"
+#include "sightline/studies/facing/back_faces.h"
+#include "sightline/studies/facing/triangle_planes.h"
 
 namespace sightline::bench {
+using namespace studies;
 namespace {
 
 constexpr int kEyes = 200;

@@ -10,6 +10,7 @@
 #include "sightline/base/random.h"
 
 namespace sightline::bench {
+using namespace tools;
 
 Box3d FacingMesh::box() const {
     Box3d box;

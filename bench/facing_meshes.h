@@ -9,9 +9,10 @@
 #include "sightline/geom/facing_eye.h"
 #include "sightline/geom/mesh_view.h"
 #include "sightline/math/box.h"
-#include "sightline/scene/scene.h"
+#include "sightline/tools/scene/scene.h"
 
 namespace sightline::bench {
+using namespace tools;
 
 struct FacingMesh {
     std::string name;

@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "sightline/cull/frustum.h"
-#include "sightline/scene/scene.h"
+#include "sightline/tools/scene/scene.h"
 
 namespace sightline::bench {
+using namespace tools;
 
 struct FlatBoxes {
     std::vector<float> bounds[6];  ///< min x, y, z, max x, y, z, each padded to 16

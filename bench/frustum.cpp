@@ -5,11 +5,10 @@
 #include "bench/cases.h"
 #include "bench/flat_boxes.h"
 #include "bench/frustum_walks.h"
-#include "bench/query_refinement.h"
 #include "sightline/base/random.h"
-#include "sightline/run/query.h"
-#include "sightline/scene/building.h"
-#include "sightline/scene/city.h"
+#include "sightline/query/query.h"
+#include "sightline/tools/scene/building/building.h"
+#include "sightline/tools/scene/city/city.h"
 
 namespace sightline::bench {
 namespace {
@@ -99,7 +98,8 @@ Table benchFrustum(const Options& options) {
     View view;
     view.view = lookAt(all.center(), all.center() + glm::dvec3(1, 0.1, 0.3), {0, 1, 0});
     view.projection = perspective(glm::radians(60.0), 16.0 / 9.0, 0.1);
-    view.stages = stageBit(Stage::kFrustum);
+    QuerySettings settings;
+    settings.stages = stageBit(Stage::kFrustum);
     const Frustum frustum = makeFrustum(view);
     const std::vector<PlainPlane> planes = plainPlanes(frustum);
     std::vector<uint32_t> kept(boxes.size() + 16);
@@ -108,7 +108,7 @@ Table benchFrustum(const Options& options) {
     const std::vector<double> times =
         threadTimes({[&] { cullByCorners(planes, plain, kept); }, [&] { cullByPVertex(planes, plain, kept); },
                      [&] { by_flat = cullFrustum(frustum, flat.arrays, flat.kept); },
-                     [&] { by_query = query.visible(now, view).objects.size(); }},
+                     [&] { by_query = query.visible(now, view, settings).objects.size(); }},
                     options.repeat ? options.repeat : 15);
     const std::string where = options.scene ? options.scene->name : "1,000,000 boxes";
     const double per_box = 1e3 / static_cast<double>(std::max<size_t>(boxes.size(), 1));
@@ -128,12 +128,6 @@ Table benchFrustum(const Options& options) {
     addCoherencyRows(measured, table);
     addRefinementRows(measured, table);
     addBoundRows(measured, table);
-    if (options.scene) {
-        addQueryRefinement(table, where, *options.scene, options.repeat);
-    } else {
-        addQueryRefinement(table, "building of 4 floors", makeBuilding(1, 4), options.repeat);
-        addQueryRefinement(table, "city of 30,000", makeCity(1, 30000), options.repeat);
-    }
     return table;
 }
 

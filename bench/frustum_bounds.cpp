@@ -4,9 +4,10 @@
 
 #include "bench/frustum_walks.h"
 #include "sightline/base/random.h"
-#include "sightline/cull/flat_bounds.h"
+#include "sightline/studies/frustum/flat_bounds.h"
 
 namespace sightline::bench {
+using namespace studies;
 namespace {
 
 constexpr size_t kHuge = 100000;

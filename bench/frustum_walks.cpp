@@ -2,17 +2,28 @@
 // SPDX-License-Identifier: MIT
 #include "bench/frustum_walks.h"
 
+#include <numeric>
+
 #include <fmt/format.h>
 
-#include "sightline/cull/coherent_frustum.h"
+#include "sightline/studies/frustum/coherent_frustum.h"
 
 namespace sightline::bench {
+using namespace studies;
 namespace {
 
 RefinedVolume plainVolume(const View& view) {
     RefinedVolume refined;
     refined.volume = volumeOf(makeFrustum(view));
     return refined;
+}
+
+WorldBvh treeOver(const std::vector<Box3d>& boxes) {
+    std::vector<uint32_t> items(boxes.size());
+    std::iota(items.begin(), items.end(), 0u);
+    WorldBvh tree;
+    tree.build(boxes, items);
+    return tree;
 }
 
 /// Everything from outside.
@@ -29,7 +40,7 @@ View viewOfAll(const std::vector<Box3d>& boxes) {
 }  // namespace
 
 void addHierarchyRows(const FrustumWorld& world, Table& table) {
-    const Bvh bvh = buildBvh(world.boxes);
+    const WorldBvh tree = treeOver(world.boxes);
     const double count = static_cast<double>(std::max<size_t>(world.boxes.size(), 1));
     std::vector<uint32_t> kept(world.boxes.size() + 16);
     HierarchyCuller culler;
@@ -37,7 +48,7 @@ void addHierarchyRows(const FrustumWorld& world, Table& table) {
     no_masks.masking = false;
     two_states.masking = two_states.inside = false;
     const auto walk = [&](const RefinedVolume& volume, const HierarchyCulling& how) {
-        return culler.cull(volume, bvh, how, kept);
+        return culler.cull(volume, tree.now(), how, kept);
     };
     for (const View& view : {world.view, viewOfAll(world.boxes)}) {
         const Frustum frustum = makeFrustum(view);
@@ -82,7 +93,7 @@ void addCoherencyRows(const FrustumWorld& world, Table& table) {
     kinds[6] = {"one by one: all of them", everyCoherency()};
     kinds[7] = {"eight at once, masks", {}};
 
-    const Bvh bvh = buildBvh(world.boxes);
+    const WorldBvh tree = treeOver(world.boxes);
     std::vector<uint32_t> kept(world.boxes.size() + 16);
     std::vector<HierarchyCuller> cullers(kinds.size());
     std::vector<std::vector<double>> times(kinds.size());
@@ -100,7 +111,7 @@ void addCoherencyRows(const FrustumWorld& world, Table& table) {
         const RefinedVolume volume = plainVolume(view);
         for (size_t k = 0; k < kinds.size(); ++k) {
             const double start = threadTime();
-            cullers[k].cull(volume, bvh, kinds[k].how, kept);
+            cullers[k].cull(volume, tree.now(), kinds[k].how, kept);
             if (frame == 0) continue;  // nothing is remembered yet
             times[k].push_back(threadTime() - start);
             tests[k] += cullers[k].stats().plane_tests;

@@ -13,13 +13,15 @@
 #include "apps/gl/id_renderer.h"
 #include "bench/cases.h"
 #include "bench/stopwatch.h"
-#include "sightline/hidden/light.h"
-#include "sightline/hidden/render.h"
-#include "sightline/load/seeded_cameras.h"
-#include "sightline/report/render_list.h"
-#include "sightline/scene/city.h"
+#include "sightline/studies/hidden/render.h"
+#include "sightline/studies/hidden/shade/light.h"
+#include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/report/pictures/render_list.h"
+#include "sightline/tools/scene/city/city.h"
 
 namespace sightline::bench {
+using namespace studies;
+using namespace tools;
 namespace {
 
 constexpr uint64_t kSeed = 1;

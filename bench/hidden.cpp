@@ -5,12 +5,15 @@
 #include <vector>
 
 #include "bench/cases.h"
-#include "sightline/hidden/render.h"
-#include "sightline/load/seeded_cameras.h"
-#include "sightline/report/render_list.h"
-#include "sightline/scene/city.h"
+#include "bench/stopwatch.h"
+#include "sightline/studies/hidden/render.h"
+#include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/report/pictures/render_list.h"
+#include "sightline/tools/scene/city/city.h"
 
 namespace sightline::bench {
+using namespace studies;
+using namespace tools;
 namespace {
 
 constexpr uint32_t kObjects = 2000, kWidth = 1280, kHeight = 720;
@@ -28,10 +31,7 @@ void compareMethods(const Scene& scene, const CameraFrame& frame, int repeat, Ta
             times[static_cast<size_t>(method)].push_back(static_cast<double>(image.counters.nanoseconds) * 1e-6);
         }
     std::vector<double> medians;
-    for (std::vector<double>& of_method : times) {
-        std::sort(of_method.begin(), of_method.end());
-        medians.push_back(of_method[of_method.size() / 2]);
-    }
+    for (const std::vector<double>& of_method : times) medians.push_back(medianOf(of_method));
     const double zbuffer = medians[static_cast<size_t>(HiddenMethod::kZBuffer)];
     for (size_t method = 0; method < medians.size(); ++method)
         table.rows.push_back({scene.name, std::string(kHiddenMethodNames[method]), medians[method], "ms",

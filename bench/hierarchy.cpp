@@ -1,7 +1,8 @@
-// Hierarchies that live beside ones that are built anew, and beside the flat list.
+// What is asked of a world's hierarchy and of grids, beside the flat list.
 // SPDX-License-Identifier: MIT
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "bench/cases.h"
 #include "bench/flat_boxes.h"
@@ -12,12 +13,14 @@
 #include "bench/swarm.h"
 #include "sightline/base/random.h"
 #include "sightline/cull/box_query.h"
-#include "sightline/cull/grid.h"
 #include "sightline/cull/hierarchy.h"
-#include "sightline/scene/building.h"
-#include "sightline/scene/city.h"
+#include "sightline/studies/frustum/grid_walk.h"
+#include "sightline/tools/scene/building/building.h"
+#include "sightline/tools/scene/city/city.h"
 
 namespace sightline::bench {
+using namespace studies;
+using namespace tools;
 namespace {
 
 constexpr int kFrames = 10;
@@ -26,43 +29,39 @@ Frustum frustumFrom(double z_far) { return makeFrustum(viewFrom(z_far)); }
 
 Frustum frustumOfAll() { return makeFrustum(viewOfAll()); }
 
-/// Every tenth box moves each frame.
-void measureMovers(Table& table, int repeat) {
+WorldBvh treeOver(const std::vector<Box3d>& boxes) {
+    std::vector<uint32_t> items(boxes.size());
+    std::iota(items.begin(), items.end(), 0u);
+    WorldBvh tree;
+    tree.build(boxes, items);
+    return tree;
+}
+
+/// A world's tree after every tenth box has moved for some frames, one that is built anew, and the flat list.
+void measureFrusta(Table& table, int repeat) {
     Swarm swarm(1000000, 1);
-    const std::string where = "1,000,000 boxes, every tenth moves";
-    DynamicBvh tree, fresh;
-    tree.build(swarm.boxes);
-    std::vector<double> updates, rebuilds, plain_rebuilds;
-    uint64_t rotations = 0, rebuilt = 0;
+    const std::string where = "1,000,000 boxes, every tenth has moved";
+    WorldBvh tree = treeOver(swarm.boxes);
     for (int frame = 0; frame < kFrames; ++frame) {
         swarm.step();
-        updates.push_back(millisecondsOf([&] {
-            for (uint32_t i = 0; i < swarm.movers(); ++i) tree.move(swarm.mover(i), swarm.boxes[swarm.mover(i)]);
-            const DynamicBvhUpdate done = tree.update();
-            rotations += done.rotations;
-            rebuilt += done.rebuilt;
-        }));
-        if (frame % 4 != 0) continue;
-        rebuilds.push_back(millisecondsOf([&] { fresh.build(swarm.boxes); }));
-        plain_rebuilds.push_back(millisecondsOf([&] { buildBvh(swarm.boxes); }));
+        for (uint32_t i = 0; i < swarm.movers(); ++i) {
+            const uint32_t item = swarm.mover(i);
+            const Box3d& box = swarm.boxes[item];
+            if (tree.move(item, box)) continue;
+            tree.remove(item);
+            if (tree.insert(item, box) == WorldBvh::kNone) tree.append({&box, 1}, {&item, 1});
+        }
+        tree.mend(2 * swarm.movers());
     }
-    fresh.build(swarm.boxes);
-    const double update = medianOf(updates), rebuild = medianOf(rebuilds);
-    table.rows.push_back({where, "moves and update", update, "ms/frame", "build anew", rebuild});
-    table.rows.push_back(
-        {where, "moves and update", update, "ms/frame", "build the static tree anew", medianOf(plain_rebuilds)});
-    table.rows.push_back({where, "rotations", static_cast<double>(rotations) / kFrames, "a frame", "", 0});
-    table.rows.push_back({where, "items built anew", static_cast<double>(rebuilt) / kFrames, "a frame", "", 0});
-    table.rows.push_back({where, "surface after " + std::to_string(kFrames) + " frames", tree.surfaceCost(), "root's",
-                          "fresh tree", fresh.surfaceCost()});
+    const WorldBvh fresh = treeOver(swarm.boxes);
     FlatBoxes flat(swarm.boxes);
     HierarchyScratch scratch;
     std::vector<uint32_t> kept(swarm.boxes.size() + 8);
     const auto queries = [&](const Frustum& frustum, const std::string& view) {
-        size_t by_tree = 0, by_fresh = 0, by_flat = 0;
+        size_t by_tree = 0, by_flat = 0;
         const std::vector<double> times =
             threadTimes({[&] { by_tree = cullHierarchy(frustum, tree.now(), scratch, kept); },
-                         [&] { by_fresh = cullHierarchy(frustum, fresh.now(), scratch, kept); },
+                         [&] { cullHierarchy(frustum, fresh.now(), scratch, kept); },
                          [&] { by_flat = cullFrustum(frustum, flat.arrays, flat.kept); }},
                         repeat ? repeat : 15);
         const double per_box = 1e3 / static_cast<double>(swarm.boxes.size());
@@ -77,32 +76,6 @@ void measureMovers(Table& table, int repeat) {
     queries(frustumFrom(0.2 * kWorld), where + "; short view");
     queries(frustumOfAll(), where + "; all in view");
     measureManyFrusta(table, tree.now(), "1,000,000 boxes", kWorld, repeat);
-}
-
-/// What it costs to hold the world as it is while it goes on.
-void measureSnapshots(Table& table) {
-    Swarm swarm(1000000, 2);
-    DynamicBvh tree;
-    tree.build(swarm.boxes);
-    Random random(3);
-    for (const uint32_t moves : {0u, 10u, 1000u, 100000u}) {
-        std::vector<double> times, anew;
-        std::shared_ptr<const LivingBvh> held = tree.snapshot();
-        for (int frame = 0; frame < kFrames; ++frame) {
-            times.push_back(millisecondsOf([&] {
-                for (uint32_t i = 0; i < moves; ++i) {
-                    const uint32_t item = static_cast<uint32_t>(random.below(swarm.boxes.size()));
-                    Box3d& box = swarm.boxes[item];
-                    box = {box.min + 0.3, box.max + 0.3};
-                    tree.move(item, box);
-                }
-                tree.update();
-                held = tree.snapshot();
-            }));
-        }
-        table.rows.push_back({"1,000,000 boxes, " + std::to_string(moves) + " move", "moves, update and snapshot",
-                              medianOf(times), "ms/frame", "", 0});
-    }
 }
 
 /// A swarm all of which moves, in a grid.
@@ -149,8 +122,7 @@ void measureGrid(Table& table, uint32_t count, int repeat) {
     table.rows.push_back({where, "insert, at random", medianOf(inserts) * each, "ns", "", 0});
     table.rows.push_back({where, "move, next to none to another cell", medianOf(small_moves) * each, "ns", "", 0});
     table.rows.push_back({where, "move, some to another cell", medianOf(moves) * each, "ns", "", 0});
-    DynamicBvh tree;
-    tree.build(swarm.boxes);
+    const WorldBvh tree = treeOver(swarm.boxes);
     FlatBoxes flat(swarm.boxes);
     HierarchyScratch scratch;
     std::vector<uint32_t> kept(count + 8);
@@ -198,12 +170,10 @@ void measureReach(Table& table, int repeat) {
     }
 }
 
-/// Boxes that hold a share of the world, in all that can be asked.
+/// Boxes that hold a share of the world.
 void measureBoxQueries(Table& table, int repeat) {
     const Swarm swarm(1000000, 7);
-    const Bvh fixed = buildBvh(swarm.boxes);
-    DynamicBvh tree;
-    tree.build(swarm.boxes);
+    const WorldBvh tree = treeOver(swarm.boxes);
     FlatBoxes flat(swarm.boxes);
     HierarchyScratch scratch;
     std::vector<uint32_t> kept(swarm.boxes.size() + 16);
@@ -225,16 +195,13 @@ void measureBoxQueries(Table& table, int repeat) {
         };
         const std::vector<double> times =
             threadTimes({each([&](const Box3d& box) { return queryBox(box, flat.arrays, kept); }),
-                         each([&](const Box3d& box) { return queryBox(box, fixed, scratch, kept); }),
                          each([&](const Box3d& box) { return queryBox(box, tree.now(), scratch, kept); })},
                         repeat ? repeat : 15);
         const double each_one = 1.0 / static_cast<double>(asked.size());
         const std::string where = "1,000,000 boxes, a box that meets " +
                                   std::to_string(static_cast<long>(each_one * static_cast<double>(found) + 0.5));
         table.rows.push_back(
-            {where, "query of the static tree", times[1] * each_one, "us", "flat, SIMD", times[0] * each_one});
-        table.rows.push_back(
-            {where, "query of the living tree", times[2] * each_one, "us", "flat, SIMD", times[0] * each_one});
+            {where, "query of the world's tree", times[1] * each_one, "us", "flat, SIMD", times[0] * each_one});
     }
 }
 
@@ -246,8 +213,7 @@ Table benchHierarchy(const Options& options) {
         addSceneTree(table, options.scene->name, *options.scene, options.repeat);
         return table;
     }
-    measureMovers(table, options.repeat);
-    measureSnapshots(table);
+    measureFrusta(table, options.repeat);
     measureBoxQueries(table, options.repeat);
     for (const uint32_t count : {100000u, 1000000u}) measureGrid(table, count, options.repeat);
     measureReach(table, options.repeat);

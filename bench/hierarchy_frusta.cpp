@@ -1,4 +1,4 @@
-// Several frusta in one walk of a living hierarchy, beside a walk for each.
+// Several frusta in one walk of a world's hierarchy, beside a walk for each.
 // SPDX-License-Identifier: MIT
 #include "bench/hierarchy_frusta.h"
 
@@ -43,13 +43,13 @@ std::vector<Frustum> cubeFaces(double reach) {
 
 }  // namespace
 
-void measureManyFrusta(Table& table, const LivingBvh& tree, const std::string& where, double world, int repeat) {
+void measureManyFrusta(Table& table, const PlacedBvh& tree, const std::string& where, double world, int repeat) {
     struct Case {
         const char* name;
         std::vector<Frustum> frusta;
     };
     HierarchyScratch scratch;
-    std::vector<uint32_t> kept(tree.count + 8), masks(tree.count + 8);
+    std::vector<uint32_t> kept(tree.size() + 8), masks(tree.size() + 8);
     for (const Case& of :
          {Case{"two eyes", eyes()}, Case{"four cascades", cascades(world)},
           Case{"six cube faces", cubeFaces(0.3 * world)}, Case{"six long cube faces", cubeFaces(4 * world)}}) {

@@ -1,16 +1,17 @@
-// A scene's own hierarchy beside a static tree and one that lives, over the same objects.
+// A scene's own hierarchy beside a world's, over the same objects.
 // SPDX-License-Identifier: MIT
 #include "bench/hierarchy_scene.h"
 
 #include "bench/flat_boxes.h"
 #include "bench/stopwatch.h"
-#include "sightline/cull/coherent_frustum.h"
 #include "sightline/cull/hierarchy.h"
-#include "sightline/cull/node_tree.h"
-#include "sightline/load/scene_tree.h"
-#include "sightline/load/seeded_cameras.h"
+#include "sightline/studies/frustum/node_tree_walk.h"
+#include "sightline/tools/load/scene_tree.h"
+#include "sightline/tools/load/seeded_cameras.h"
 
 namespace sightline::bench {
+using namespace studies;
+using namespace tools;
 namespace {
 
 constexpr uint32_t kViews = 16;
@@ -49,25 +50,25 @@ Part partOf(const Scene& scene, size_t most) {
 void addSceneTree(Table& table, const std::string& where, const Scene& scene, int repeat) {
     const SceneTree from = sceneTree(scene);
     NodeTree own;
-    DynamicBvh living;
+    WorldBvh world;
     std::vector<Box3d> boxes;
-    for (const SceneObject& object : scene.objects) boxes.push_back(boxOf(scene, object, glm::dvec3(0.0)));
+    std::vector<uint32_t> items;
+    for (const SceneObject& object : scene.objects) {
+        boxes.push_back(boxOf(scene, object, glm::dvec3(0.0)));
+        items.push_back(static_cast<uint32_t>(items.size()));
+    }
     const double build_own = millisecondsOf([&] { own.build(from.nodes, from.items); });
-    Bvh fixed;
-    const double build_fixed = millisecondsOf([&] { fixed = buildBvh(boxes); });
-    const double build_living = millisecondsOf([&] { living.build(boxes); });
-    table.rows.push_back({where, "build its own hierarchy", build_own, "ms", "static tree", build_fixed});
-    table.rows.push_back({where, "build its own hierarchy", build_own, "ms", "tree that lives", build_living});
+    const double build_world = millisecondsOf([&] { world.build(boxes, items); });
+    table.rows.push_back({where, "build its own hierarchy", build_own, "ms", "a world's tree", build_world});
     std::vector<Frustum> frusta;
     for (const CameraFrame& camera : seededCameras(scene, kViews, 1).frames)
         frusta.push_back(makeFrustum(makeView(camera, 1280, 720)));
     HierarchyScratch scratch;
-    HierarchyCuller culler;
     FlatBoxes flat(boxes);
     std::vector<uint32_t> kept(boxes.size() + 16);
-    size_t by_own = 0, by_living = 0;
+    size_t by_own = 0, by_world = 0;
     HierarchyStats stats;
-    uint64_t own_nodes = 0, living_nodes = 0;
+    uint64_t own_nodes = 0, world_nodes = 0;
     const auto queries = [&](const std::string& when) {
         const std::vector<double> times =
             threadTimes({[&] {
@@ -78,17 +79,10 @@ void addSceneTree(Table& table, const std::string& where, const Scene& scene, in
                              }
                          },
                          [&] {
-                             by_living = living_nodes = 0;
+                             by_world = world_nodes = 0;
                              for (const Frustum& frustum : frusta) {
-                                 by_living += cullHierarchy(frustum, living.now(), scratch, kept, &stats);
-                                 living_nodes += stats.nodes + stats.inside_nodes;
-                             }
-                         },
-                         [&] {
-                             for (const Frustum& frustum : frusta) {
-                                 RefinedVolume volume;
-                                 volume.volume = volumeOf(frustum);
-                                 culler.cull(volume, fixed, {}, kept);
+                                 by_world += cullHierarchy(frustum, world.now(), scratch, kept, &stats);
+                                 world_nodes += stats.nodes;
                              }
                          },
                          [&] {
@@ -97,15 +91,12 @@ void addSceneTree(Table& table, const std::string& where, const Scene& scene, in
                         repeat ? repeat : 15);
         const double each = 1.0 / kViews;
         const std::string what = "query of its own hierarchy" + when;
-        table.rows.push_back({where, what, times[0] * each, "us", "tree that lives", times[1] * each});
-        if (when.empty()) {
-            table.rows.push_back({where, what, times[0] * each, "us", "static tree", times[2] * each});
-            table.rows.push_back({where, what, times[0] * each, "us", "flat, SIMD", times[3] * each});
-        }
+        table.rows.push_back({where, what, times[0] * each, "us", "a world's tree", times[1] * each});
+        if (when.empty()) table.rows.push_back({where, what, times[0] * each, "us", "flat, SIMD", times[2] * each});
         table.rows.push_back({where, "nodes visited" + when, static_cast<double>(own_nodes) * each, "nodes",
-                              "tree that lives", static_cast<double>(living_nodes) * each});
-        table.rows.push_back({where, "kept" + when, static_cast<double>(by_own) * each, "objects", "tree that lives",
-                              static_cast<double>(by_living) * each});
+                              "a world's tree", static_cast<double>(world_nodes) * each});
+        table.rows.push_back({where, "kept" + when, static_cast<double>(by_own) * each, "objects", "a world's tree",
+                              static_cast<double>(by_world) * each});
     };
     queries("");
     const Part part = partOf(scene, std::max<size_t>(scene.objects.size() / 10, 1));
@@ -120,13 +111,18 @@ void addSceneTree(Table& table, const std::string& where, const Scene& scene, in
             own.update();
         }));
         one_by_one.push_back(millisecondsOf([&] {
-            for (const uint32_t object : part.objects) living.move(object, boxOf(scene, scene.objects[object], by));
-            living.update();
+            for (const uint32_t object : part.objects) {
+                const Box3d box = boxOf(scene, scene.objects[object], by);
+                if (world.move(object, box)) continue;
+                world.remove(object);
+                if (world.insert(object, box) == WorldBvh::kNone) world.append({&box, 1}, {&object, 1});
+            }
+            world.mend(2 * static_cast<uint32_t>(part.objects.size()));
         }));
     }
     table.rows.push_back({where + ", " + std::to_string(part.objects.size()) + " objects move as one",
-                          "place a node and update", medianOf(by_node), "ms/frame",
-                          "moves and update of the tree that lives", medianOf(one_by_one)});
+                          "place a node and update", medianOf(by_node), "ms/frame", "the same moves of a world's tree",
+                          medianOf(one_by_one)});
     queries(", then");
 }
 

@@ -4,7 +4,7 @@
 
 #include "bench/stopwatch.h"
 #include "bench/swarm.h"
-#include "sightline/run/query.h"
+#include "sightline/query/query.h"
 
 namespace sightline::bench {
 namespace {
@@ -48,12 +48,14 @@ void addQueries(Table& table, const Living& living, const std::string& where, in
     const Snapshot fresh = anew.commit();
     Query query;
     for (const bool near : {false, true}) {
-        View view = viewFrom(near ? 0.2 * kWorld : std::numeric_limits<double>::infinity());
-        view.stages = stageBit(Stage::kFrustum);
+        const View view = viewFrom(near ? 0.2 * kWorld : std::numeric_limits<double>::infinity());
+        QuerySettings settings;
+        settings.stages = stageBit(Stage::kFrustum);
         size_t kept = 0;
-        const std::vector<double> times = threadTimes(
-            {[&] { kept = query.visible(living.held, view).objects.size(); }, [&] { query.visible(fresh, view); }},
-            repeat ? repeat : 15);
+        const std::vector<double> times =
+            threadTimes({[&] { kept = query.visible(living.held, view, settings).objects.size(); },
+                         [&] { query.visible(fresh, view, settings); }},
+                        repeat ? repeat : 15);
         const double share = 100.0 * static_cast<double>(kept) / static_cast<double>(living.swarm.boxes.size());
         table.rows.push_back({where, near ? "frustum query, short view" : "frustum query, far view", times[0], "us",
                               "of a world made anew", times[1], std::to_string(share) + " % kept"});

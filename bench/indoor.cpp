@@ -10,15 +10,17 @@
 #include "bench/cases.h"
 #include "bench/eye_worlds.h"
 #include "bench/stopwatch.h"
-#include "sightline/cull/eye_cells.h"
-#include "sightline/hidden/render.h"
-#include "sightline/hidden/zbuffer_method.h"
-#include "sightline/load/load_world.h"
-#include "sightline/report/render_list.h"
-#include "sightline/run/query.h"
+#include "sightline/query/query.h"
+#include "sightline/studies/cells/eye_cells.h"
+#include "sightline/studies/hidden/render.h"
+#include "sightline/studies/hidden/zbuffer/zbuffer_method.h"
+#include "sightline/tools/load/load_world.h"
+#include "sightline/tools/report/pictures/render_list.h"
 #include "sightline/visfile/visible_rows.h"
 
 namespace sightline::bench {
+using namespace studies;
+using namespace tools;
 namespace {
 
 constexpr uint64_t kSeed = 6;
@@ -101,10 +103,10 @@ private:
         if (way.stages == kSightLines) {
             asked = threadTimes({[&] { askSightLines(eye, kept); }}, repeat)[0];
         } else if (way.stages != 0) {
-            View view = eye;
-            view.stages = way.stages;
+            QuerySettings settings;
+            settings.stages = way.stages;
             VisibleSet set;
-            asked = threadTimes({[&] { set = query_.visible(now_, view); }}, repeat)[0];
+            asked = threadTimes({[&] { set = query_.visible(now_, eye, settings); }}, repeat)[0];
             for (const Visible& object : set.objects) kept[object.id.index - 1] = 1;  // objects enter in their order
         }
         way.query += asked * share;

@@ -3,17 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include <fmt/format.h>
 
 #include "bench/cases.h"
 #include "bench/stopwatch.h"
-#include "sightline/load/load_world.h"
-#include "sightline/load/seeded_cameras.h"
-#include "sightline/run/query.h"
+#include "sightline/query/query.h"
+#include "sightline/tools/load/load_world.h"
+#include "sightline/tools/load/seeded_cameras.h"
 
 namespace sightline::bench {
+using namespace tools;
 namespace {
 
 constexpr uint32_t kSide = 40;       // statues along each side of the field
@@ -80,21 +82,20 @@ std::vector<Answer> measure(const Snapshot& now, const CameraPath& path, const s
     std::vector<Answer> answers(errors.size());
     Query query;
     for (const CameraFrame& frame : path.frames) {
-        std::vector<std::vector<double>> times(errors.size());
-        for (int round = -1; round < repeat; ++round)  // in turn, so that the machine's moods meet them all alike
-            for (size_t i = 0; i < errors.size(); ++i) {
-                View view = makeView(frame, 1280, 720);
-                view.occluder_error = errors[i];
-                const double start = threadTime();
-                const QueryStats stats = query.visible(now, view).stats;
-                if (round >= 0) times[i].push_back(threadTime() - start);
-                if (round + 1 < repeat) continue;
-                answers[i].triangles += static_cast<double>(stats.occluder_triangles);
-                answers[i].kept += static_cast<double>(stats.visible);
-            }
+        std::vector<QueryStats> stats(errors.size());
+        std::vector<std::function<void()>> jobs;
+        for (size_t i = 0; i < errors.size(); ++i)
+            jobs.push_back([&, i] {
+                const View view = makeView(frame, 1280, 720);
+                QuerySettings settings;
+                settings.occluder_error = errors[i];
+                stats[i] = query.visible(now, view, settings).stats;
+            });
+        const std::vector<double> times = threadTimes(jobs, repeat);
         for (size_t i = 0; i < errors.size(); ++i) {
-            std::nth_element(times[i].begin(), times[i].begin() + repeat / 2, times[i].end());
-            answers[i].time += times[i][static_cast<size_t>(repeat / 2)];
+            answers[i].time += times[i];
+            answers[i].triangles += static_cast<double>(stats[i].occluder_triangles);
+            answers[i].kept += static_cast<double>(stats[i].visible);
         }
     }
     for (Answer& a : answers)

@@ -4,11 +4,12 @@
 
 #include <cmath>
 
-#include "sightline/scene/text_file.h"
-#include "sightline/space/convex_region.h"
-#include "sightline/space/tree_portals.h"
+#include "sightline/bsp/tree_portals.h"
+#include "sightline/geom/convex_region.h"
+#include "sightline/tools/scene/text_file.h"
 
 namespace sightline::bench {
+using namespace tools;
 namespace {
 
 constexpr double kEyeHeight = 46, kRoom = 16, kNear = 4;  // of a player [units of the maps]

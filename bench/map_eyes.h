@@ -9,13 +9,14 @@
 #include <glm/glm.hpp>
 
 #include "sightline/base/random.h"
-#include "sightline/cull/portals.h"
+#include "sightline/cells/cell_space.h"
+#include "sightline/cells/portals.h"
 #include "sightline/geom/view.h"
-#include "sightline/import/quake_bsp.h"
-#include "sightline/space/cell_space.h"
-#include "sightline/truth/tree_rays.h"
+#include "sightline/tools/import/quake/quake_bsp.h"
+#include "sightline/tools/truth/tree_rays.h"
 
 namespace sightline::bench {
+using namespace tools;
 
 /// A map of the Quake family as cells: each open leaf is one; water is a wall, as the maps' own rows have it.
 struct MapCells {

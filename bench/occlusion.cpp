@@ -10,12 +10,13 @@
 #include "bench/query_threads.h"
 #include "bench/small_polygons.h"
 #include "bench/stopwatch.h"
-#include "sightline/load/load_world.h"
-#include "sightline/load/seeded_cameras.h"
-#include "sightline/run/query.h"
-#include "sightline/scene/city.h"
+#include "sightline/query/query.h"
+#include "sightline/tools/load/load_world.h"
+#include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/scene/city/city.h"
 
 namespace sightline::bench {
+using namespace tools;
 namespace {
 
 constexpr uint64_t kSeed = 1;
@@ -28,10 +29,10 @@ struct PathCost {
     double visible = 0;
 };
 
-View viewOf(const CameraFrame& frame, const Options& options) {
-    View view = makeView(frame, kWidth, kHeight);
-    if (options.occlusion_size > 0) view.occlusion_size = options.occlusion_size;
-    return view;
+QuerySettings settingsOf(const Options& options) {
+    QuerySettings settings;
+    if (options.occlusion_size > 0) settings.occlusion_size = options.occlusion_size;
+    return settings;
 }
 
 PathCost measurePath(const Scene& scene, const CameraPath& path, const Options& options, int repeat) {
@@ -41,11 +42,11 @@ PathCost measurePath(const Scene& scene, const CameraPath& path, const Options& 
     Query query;
     PathCost sum;
     for (const CameraFrame& frame : path.frames) {
-        const View view = viewOf(frame, options);
+        const View view = makeView(frame, kWidth, kHeight);
         VisibleSet set;
         size_t kept = 0;
         const std::vector<double> times =
-            timeInterleaved({[&] { set = query.visible(now, view); },
+            timeInterleaved({[&] { set = query.visible(now, view, settingsOf(options)); },
                              [&] { kept = cullFrustum(makeFrustum(view), flat.arrays, flat.kept); }},
                             repeat);
         sum.query += times[0];
@@ -71,10 +72,10 @@ void measureTightness(const Scene& scene, const CameraPath& path, const Options&
     std::vector<uint8_t> reasons(scene.objects.size());
     double kept = 0, exactly_kept = 0, seen = 0;
     for (const CameraFrame& frame : path.frames) {
-        const View view = viewOf(frame, options);
-        kept += static_cast<double>(query.visible(now, view).objects.size());
+        const View view = makeView(frame, kWidth, kHeight);
+        kept += static_cast<double>(query.visible(now, view, settingsOf(options)).objects.size());
         query.reasons(reasons);
-        const ExactBoxes::Answer answer = exact.test(view, 4);
+        const ExactBoxes::Answer answer = exact.test(view, settingsOf(options).occlusion_size, 4);
         for (size_t i = 0; i < reasons.size(); ++i) {
             exactly_kept += answer.kept[i] && reasons[i] != 1 + static_cast<int>(Stage::kFrustum);
             seen += answer.seen[i];

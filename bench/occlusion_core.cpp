@@ -12,6 +12,7 @@
 #include "bench/stopwatch.h"
 
 namespace sightline::bench {
+using namespace studies;
 namespace {
 
 struct Size {
@@ -25,28 +26,21 @@ constexpr int kBaselineEvery = 8;  ///< rounds for one of the baseline, which is
 struct Figures {
     double draw = 0, draw_all = 0, draw_plain = 0, draw_masked = 0;  ///< [microseconds]
     double flat = 0, grouped = 0, plain = 0, masked = 0;             ///< all boxes [microseconds]
-    double draw_centers = 0, centers = 0;                            ///< drawing, and all boxes [microseconds]
     double triangles = 0, offered = 0, boxes = 0, resolved = 0, aside = 0;
-    double kept = 0, kept_exactly = 0, kept_masked = 0, kept_centers = 0;
+    double kept = 0, kept_exactly = 0, kept_masked = 0;
     double truths = 0, kept_of_truths = 0, seen = 0, false_culls = 0, false_culls_exactly = 0;
 
     void add(const Figures& f) {
-        for (auto member :
-             {&Figures::draw,           &Figures::draw_all,    &Figures::draw_plain,   &Figures::draw_masked,
-              &Figures::masked,         &Figures::kept_masked, &Figures::draw_centers, &Figures::centers,
-              &Figures::kept_centers,   &Figures::flat,        &Figures::grouped,      &Figures::plain,
-              &Figures::triangles,      &Figures::offered,     &Figures::boxes,        &Figures::resolved,
-              &Figures::aside,          &Figures::kept,        &Figures::kept_exactly, &Figures::truths,
-              &Figures::kept_of_truths, &Figures::seen,        &Figures::false_culls,  &Figures::false_culls_exactly})
+        for (auto member : {&Figures::draw,         &Figures::draw_all,    &Figures::draw_plain,
+                            &Figures::draw_masked,  &Figures::masked,      &Figures::kept_masked,
+                            &Figures::flat,         &Figures::grouped,     &Figures::plain,
+                            &Figures::triangles,    &Figures::offered,     &Figures::boxes,
+                            &Figures::resolved,     &Figures::aside,       &Figures::kept,
+                            &Figures::kept_exactly, &Figures::truths,      &Figures::kept_of_truths,
+                            &Figures::seen,         &Figures::false_culls, &Figures::false_culls_exactly})
             this->*member += f.*member;
     }
 };
-
-double median(std::vector<double>& times) {
-    const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
-    std::nth_element(times.begin(), middle, times.end());
-    return *middle;
-}
 
 template <class Job>
 void clockJob(std::vector<double>& times, Job job) {
@@ -65,25 +59,23 @@ double openSeams(const DepthTiles& tiles) {
 
 class ViewMeasurement {
 public:
-    ViewMeasurement(const OcclusionScene& scene, OcclusionFrame& frame, const View& view)
+    ViewMeasurement(const OcclusionScene& scene, OcclusionFrame& frame, const View& view, uint32_t occlusion_size)
         : scene_(scene), frame_(frame), view_(view) {
-        frame.begin(view);
+        frame.begin(view, occlusion_size);
         figures_.boxes = static_cast<double>(frame.boxes().size());
         figures_.triangles = static_cast<double>(frame.trianglesInView());
         flat_.resize(frame.boxes().size());
         grouped_.resize(frame.boxes().size());
         masked_.resize(frame.boxes().size());
-        centers_.resize(frame.boxes().size());
         exact_.resize(frame.boxes().size());
     }
 
     /// Each round draws anew before it asks, so that seams are resolved in each of them.
     void time(int repeat) {
-        std::vector<double> draw, draw_all, draw_plain, draw_masked, draw_centers, flat, grouped, plain, masked,
-            centers;
+        std::vector<double> draw, draw_all, draw_plain, draw_masked, flat, grouped, plain, masked;
         for (int round = -1; round < repeat; ++round) {
             if (round == 0)
-                for (auto* times : {&draw, &draw_all, &draw_masked, &draw_centers, &flat, &grouped, &masked, &centers})
+                for (auto* times : {&draw, &draw_all, &draw_masked, &flat, &grouped, &masked})
                     times->clear();  // the first was to warm up
             clockJob(draw_all, [&] { frame_.rasterize(tiles_, OcclusionFrame::SelfTest::kNo); });
             clockJob(draw, [&] { frame_.rasterize(tiles_); });
@@ -95,31 +87,23 @@ public:
             clockJob(draw_masked,
                      [&] { frame_.rasterize(tiles_, OcclusionFrame::SelfTest::kYes, OcclusionDetail::kMasked); });
             clockJob(masked, [&] { frame_.testGrouped(tiles_, masked_); });
-            clockJob(draw_centers, [&] {
-                frame_.rasterize(tiles_, OcclusionFrame::SelfTest::kYes, OcclusionDetail::kFull,
-                                 OcclusionFrame::Coverage::kCenters);
-            });
-            clockJob(centers, [&] { frame_.testGrouped(tiles_, centers_); });
             if (round < 0 || round % kBaselineEvery) continue;
             ZBufferImage image;
             clockJob(draw_plain, [&] { image = drawBatches(scene_, frame_.batches(), view_); });
             clockJob(plain, [&] { testPlainly(image); });
         }
-        figures_.draw = median(draw);
-        figures_.draw_all = median(draw_all);
-        figures_.draw_plain = median(draw_plain);
-        figures_.draw_masked = median(draw_masked);
-        figures_.masked = median(masked);
-        figures_.draw_centers = median(draw_centers);
-        figures_.centers = median(centers);
-        figures_.flat = median(flat);
-        figures_.grouped = median(grouped);
-        figures_.plain = median(plain);
+        figures_.draw = medianOf(draw);
+        figures_.draw_all = medianOf(draw_all);
+        figures_.draw_plain = medianOf(draw_plain);
+        figures_.draw_masked = medianOf(draw_masked);
+        figures_.masked = medianOf(masked);
+        figures_.flat = medianOf(flat);
+        figures_.grouped = medianOf(grouped);
+        figures_.plain = medianOf(plain);
         for (size_t i = 0; i < flat_.size(); ++i) {
             figures_.kept += !flat_[i];
             figures_.kept_exactly += !exact_[i];
             figures_.kept_masked += !masked_[i];
-            figures_.kept_centers += !centers_[i];
         }
     }
 
@@ -148,7 +132,7 @@ private:
     OcclusionFrame& frame_;
     const View view_;
     DepthTiles tiles_;
-    std::vector<uint8_t> flat_, grouped_, masked_, centers_, exact_;  ///< per box in view: hidden
+    std::vector<uint8_t> flat_, grouped_, masked_, exact_;  ///< per box in view: hidden
     Figures figures_;
 };
 
@@ -160,11 +144,6 @@ void addRows(const std::string& where, const Figures& sum, double views, Table& 
     add("rasterize", sum.draw / views * 1e-3, "ms", "scalar z-buffer in double", sum.draw_plain / views * 1e-3);
     add("rasterize", sum.draw / views * 1e-3, "ms", "without self-test", sum.draw_all / views * 1e-3);
     add("rasterize, masked", sum.draw_masked / views * 1e-3, "ms", "a depth per pixel", sum.draw / views * 1e-3);
-    add("draw and ask all boxes, whole pixels", (sum.draw + sum.grouped) / views * 1e-3, "ms",
-        "pixels' centres, not sound", (sum.draw_centers + sum.centers) / views * 1e-3);
-    add("rasterize, whole pixels", sum.draw / views * 1e-3, "ms", "pixels' centres, not sound",
-        sum.draw_centers / views * 1e-3);
-    add("boxes kept, whole pixels", sum.kept / views, "boxes", "pixels' centres, not sound", sum.kept_centers / views);
     add("triangles rasterized", sum.offered / views, "triangles", "in the frustum", sum.triangles / views);
     add("triangles in the frustum a second", sum.triangles / sum.draw, "million/s", "scalar z-buffer in double",
         sum.triangles / sum.draw_plain);
@@ -192,9 +171,8 @@ void measureOcclusionCore(const Options& options, Table& table) {
         for (const Size& size : kSizes) {
             Figures sum;
             for (size_t camera = 0; camera < scene.cameras.size(); ++camera) {
-                View asked = occlusionView(scene, camera, size.width, size.height);
-                if (options.occlusion_size > 0) asked.occlusion_size = options.occlusion_size;
-                ViewMeasurement view(scene, frame, asked);
+                const View asked = occlusionView(scene, camera, size.width, size.height);
+                ViewMeasurement view(scene, frame, asked, options.occlusion_size ? options.occlusion_size : 8192);
                 view.time(repeat);
                 if (camera < size.truths) view.judge();
                 sum.add(view.figures());

@@ -6,8 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "bench/center_draw.h"
-#include "sightline/prepare/occluder.h"
+#include "sightline/prepare/occluder/occluder.h"
 
 namespace sightline::bench {
 namespace {
@@ -64,14 +63,6 @@ std::vector<BvhNode> inEights(std::span<const Box3f> boxes) {
     return nodes;
 }
 
-/// As drawOccluder().
-uint32_t drawByCenters(DepthTiles& tiles, const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box) {
-    DrawnCluster drawn;
-    if (!placeCluster(instance, cluster, box, drawn)) return 0;
-    drawClusterByCenters(tiles, drawn, instance.screen, instance.flips);
-    return instance.occluder->clusters[cluster].triangle_count;
-}
-
 }  // namespace
 
 std::vector<uint32_t> mortonOrder(std::span<const Box3f> boxes) {
@@ -111,8 +102,8 @@ OcclusionFrame::OcclusionFrame(const OcclusionScene& scene)
     }
 }
 
-void OcclusionFrame::begin(const View& view) {
-    screen_ = makeScreen(view, view.occlusion_size);
+void OcclusionFrame::begin(const View& view, uint32_t occlusion_size) {
+    screen_ = makeScreen(view, occlusion_size);
     const Frustum frustum = makeFrustum(view);
     const size_t batches = cullFrustum(frustum, flat_batches_.arrays, flat_batches_.kept);
     batches_.assign(flat_batches_.kept.begin(), flat_batches_.kept.begin() + static_cast<std::ptrdiff_t>(batches));
@@ -147,8 +138,7 @@ void OcclusionFrame::begin(const View& view) {
     groups_ = inEights(groups);
 }
 
-uint64_t OcclusionFrame::rasterize(DepthTiles& tiles, SelfTest self_test, OcclusionDetail detail,
-                                   Coverage coverage) const {
+uint64_t OcclusionFrame::rasterize(DepthTiles& tiles, SelfTest self_test, OcclusionDetail detail) const {
     tiles.clear(screen_.width, screen_.height, detail);
     uint64_t offered = 0;
     const auto covered = [&](const BoxAnswer& box) {
@@ -167,8 +157,7 @@ uint64_t OcclusionFrame::rasterize(DepthTiles& tiles, SelfTest self_test, Occlus
                 if (cluster % 8 == 0) eight = projectClusters(instance.screen, occluder, cluster);
                 const BoxAnswer box(eight, static_cast<int>(cluster % 8));
                 if (box.outside || (occluder.clusters.size() > 1 && covered(box))) continue;
-                offered += coverage == Coverage::kCenters ? drawByCenters(tiles, instance, cluster, box)
-                                                          : drawOccluder(tiles, instance, cluster, box);
+                offered += drawOccluder(tiles, instance, cluster, box);
             }
         }
     }

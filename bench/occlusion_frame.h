@@ -11,7 +11,7 @@
 #include "bench/flat_boxes.h"
 #include "bench/occlusion_scenes.h"
 #include "sightline/cull/occlusion.h"
-#include "sightline/space/bvh.h"
+#include "sightline/tree/bvh.h"
 
 namespace sightline::bench {
 
@@ -32,15 +32,12 @@ public:
     enum class SelfTest { kYes, kNo };
 
     /// Takes up a view: finds the batches in its frustum, nearest first, and the boxes.
-    void begin(const View& view);
-
-    /// What makes a pixel covered. Centres are for a measurement: they hide what can be seen.
-    enum class Coverage { kWholePixels, kCenters };
+    /// @param occlusion_size  longer side of the buffer; of a smaller viewport it is its own  [pixels]
+    void begin(const View& view, uint32_t occlusion_size = 8192);
 
     /// Clears the tiles and draws. Returns the triangles that were offered to the rasterizer.
     uint64_t rasterize(DepthTiles& tiles, SelfTest self_test = SelfTest::kYes,
-                       OcclusionDetail detail = OcclusionDetail::kFull,
-                       Coverage coverage = Coverage::kWholePixels) const;
+                       OcclusionDetail detail = OcclusionDetail::kFull) const;
 
     /// Asks every box in view; hidden[i] answers for boxes()[i]. A box outside the buffer counts as hidden.
     /// @param hidden  [size: boxes().size()]

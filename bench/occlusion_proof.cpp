@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <hwy/targets.h>
 
-#include "sightline/raster/depth_image.h"
+#include "sightline/buffer/depth_image.h"
 
 namespace sightline::bench {
 namespace {
@@ -22,12 +22,6 @@ constexpr uint64_t kHashStart = 0xcbf29ce484222325ull;
 void hashIn(uint64_t& hash, uint64_t word) {
     hash = (hash ^ word) * 0x100000001b3ull;
     hash ^= hash >> 32;  // so that high bits reach low ones
-}
-
-View viewOf(const OcclusionScene& scene, size_t camera, uint32_t width, uint32_t height, uint32_t occlusion_size) {
-    View view = occlusionView(scene, camera, width, height);
-    view.occlusion_size = occlusion_size;
-    return view;
 }
 
 /// Puts an instruction set in force for as long as it lives.
@@ -154,8 +148,8 @@ OcclusionProof proveOcclusion(const OcclusionScene& scene, OcclusionFrame& frame
     const int64_t all = hwy::SupportedTargets();
     proof.targets.push_back({hwy::TargetName(all & -all), {}});
     for (size_t camera = 0; camera < proof.cameras; ++camera) {
-        const View view = viewOf(scene, camera, width, height, settings.occlusion_size);
-        frame.begin(view);
+        const View view = occlusionView(scene, camera, width, height);
+        frame.begin(view, settings.occlusion_size);
         const HiddenBoxes hidden = hiddenBoxes(frame, tiles);
         proof.targets.front().hashes.push_back(hidden.hash);
         proof.boxes += frame.boxes().size();
@@ -169,7 +163,7 @@ OcclusionProof proveOcclusion(const OcclusionScene& scene, OcclusionFrame& frame
         const OnlyTarget only(left & -left);
         OcclusionProof::Target target{hwy::TargetName(left & -left), {}};
         for (size_t camera = 0; camera < proof.cameras; ++camera) {
-            frame.begin(viewOf(scene, camera, width, height, settings.occlusion_size));
+            frame.begin(occlusionView(scene, camera, width, height), settings.occlusion_size);
             target.hashes.push_back(hiddenBoxes(frame, tiles).hash);
         }
         proof.targets.push_back(target);

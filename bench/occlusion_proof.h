@@ -26,7 +26,7 @@ struct ProofSettings {
     size_t most_cameras = ~size_t{0};
     BoxTruthSettings pictures{.supersampling = 4, .jitters = 16};  ///< no jitters: no pictures are drawn
     BoxRays rays;
-    uint32_t occlusion_size = 8192;  ///< View::occlusion_size
+    uint32_t occlusion_size = 8192;  ///< QuerySettings::occlusion_size
     bool every_target = true;        ///< ask also with every other instruction set, and compare the hashes
 };
 

@@ -360,7 +360,6 @@ View occlusionView(const OcclusionScene& scene, size_t camera, uint32_t width, u
     view.width = width;
     view.height = height;
     view.jitter = 0;
-    view.occlusion_size = 8192;
     return view;
 }
 

@@ -9,11 +9,12 @@
 #include <thread>
 
 #include "sightline/base/random.h"
-#include "sightline/hidden/projector.h"
-#include "sightline/hidden/scan.h"
-#include "sightline/hidden/threads.h"
+#include "sightline/studies/hidden/project/projector.h"
+#include "sightline/studies/hidden/project/scan.h"
+#include "sightline/studies/hidden/threads.h"
 
 namespace sightline::bench {
+using namespace studies;
 namespace {
 
 constexpr uint32_t kCorners[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,

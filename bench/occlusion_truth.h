@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "bench/occlusion_scenes.h"
-#include "sightline/hidden/zbuffer.h"
-#include "sightline/raster/tiles.h"
+#include "sightline/buffer/tiles.h"
+#include "sightline/studies/hidden/zbuffer/zbuffer.h"
 
 namespace sightline::bench {
+using namespace studies;
 
 struct BoxTruthSettings {
     uint32_t supersampling = 4;          ///< samples per pixel and axis  [>= 1]

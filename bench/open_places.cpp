@@ -7,6 +7,7 @@
 #include <cmath>
 
 namespace sightline::bench {
+using namespace tools;
 namespace {
 
 bool before(const glm::vec3& a, const glm::vec3& b) {
@@ -66,7 +67,7 @@ SceneEdges::SceneEdges(const OcclusionScene& scene) {
     }
 }
 
-OpenPlaces::OpenPlaces(const SceneEdges& edges, const RayScene& rays, const Sight& sight, const View& view,
+OpenPlaces::OpenPlaces(const SceneEdges& edges, const RayScene& rays, const SightLines& sight, const View& view,
                        uint32_t about, uint64_t seed)
     : size_(view.width, view.height),
       columns_((view.width + kCell - 1) / kCell),

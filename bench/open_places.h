@@ -7,10 +7,11 @@
 
 #include "bench/occlusion_scenes.h"
 #include "sightline/base/random.h"
-#include "sightline/truth/rays.h"
-#include "sightline/truth/sight.h"
+#include "sightline/tools/truth/rays.h"
+#include "sightline/tools/truth/sight.h"
 
 namespace sightline::bench {
+using namespace tools;
 
 /// The edges of a scene's batches, each once, with what meets there.
 class SceneEdges {
@@ -45,7 +46,7 @@ struct PlaceRect {
 class OpenPlaces {
 public:
     OpenPlaces() = default;
-    OpenPlaces(const SceneEdges& edges, const RayScene& rays, const Sight& sight, const View& view, uint32_t about,
+    OpenPlaces(const SceneEdges& edges, const RayScene& rays, const SightLines& sight, const View& view, uint32_t about,
                uint64_t seed);
 
     PlaceRect rectOf(const View& view, const Box3f& box) const;

@@ -6,11 +6,13 @@
 #include "bench/cases.h"
 #include "bench/stopwatch.h"
 #include "sightline/base/random.h"
-#include "sightline/hidden/presort.h"
-#include "sightline/hidden/raycast.h"
-#include "sightline/hidden/zbuffer.h"
+#include "sightline/studies/hidden/methods/presort.h"
+#include "sightline/studies/hidden/rays/raycast.h"
+#include "sightline/studies/hidden/render.h"
+#include "sightline/studies/hidden/zbuffer/zbuffer.h"
 
 namespace sightline::bench {
+using namespace studies;
 namespace {
 
 void addSorting(size_t count, int repeat, Table& table) {

@@ -9,13 +9,15 @@
 #include "bench/cases.h"
 #include "bench/map_eyes.h"
 #include "bench/stopwatch.h"
-#include "sightline/bake/cell_visibility.h"
-#include "sightline/cull/portals.h"
+#include "sightline/bake/flow/cell_visibility.h"
+#include "sightline/cells/portals.h"
 #include "sightline/geom/frustum.h"
-#include "sightline/import/prt.h"
-#include "sightline/import/quake_visibility.h"
+#include "sightline/tools/import/quake/prt.h"
+#include "sightline/tools/import/quake/quake_visibility.h"
 
 namespace sightline::bench {
+using namespace bake;
+using namespace tools;
 namespace {
 
 constexpr uint32_t kViews = 200, kSegments = 10000;

@@ -5,10 +5,11 @@
 #include <string>
 
 #include "bench/table.h"
-#include "sightline/scene/camera_path.h"
-#include "sightline/scene/scene.h"
+#include "sightline/tools/scene/camera_path.h"
+#include "sightline/tools/scene/scene.h"
 
 namespace sightline::bench {
+using namespace tools;
 
 /// The views of a path in one bin and in two, by one worker and by two; times of the clock on the wall, so that the
 /// ratios mean something on idle cores only. Adds its rows to the table.

@@ -9,12 +9,13 @@
 #include "bench/cases.h"
 #include "bench/stopwatch.h"
 #include "sightline/base/random.h"
-#include "sightline/import/prt.h"
-#include "sightline/import/quake_visibility.h"
-#include "sightline/scene/text_file.h"
+#include "sightline/tools/import/quake/prt.h"
+#include "sightline/tools/import/quake/quake_visibility.h"
+#include "sightline/tools/scene/text_file.h"
 #include "sightline/visfile/visibility_file.h"
 
 namespace sightline::bench {
+using namespace tools;
 namespace {
 
 /// Cells that see one another, and the leaves that a lump counts.

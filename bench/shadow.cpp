@@ -7,15 +7,17 @@
 
 #include "bench/cases.h"
 #include "bench/stopwatch.h"
-#include "sightline/hidden/render.h"
-#include "sightline/hidden/shadow_map.h"
-#include "sightline/load/load_world.h"
-#include "sightline/load/seeded_cameras.h"
-#include "sightline/report/render_list.h"
-#include "sightline/run/shadow_query.h"
-#include "sightline/scene/city.h"
+#include "sightline/query/shadow_query.h"
+#include "sightline/studies/hidden/render.h"
+#include "sightline/studies/hidden/shade/shadow_map.h"
+#include "sightline/tools/load/load_world.h"
+#include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/report/pictures/render_list.h"
+#include "sightline/tools/scene/city/city.h"
 
 namespace sightline::bench {
+using namespace studies;
+using namespace tools;
 namespace {
 
 constexpr uint64_t kSeed = 1;
@@ -94,15 +96,8 @@ Sums measure(const Scene& scene, const Snapshot& now, const CameraPath& path, do
         settings.occlusion = false;
         sums.by_mask += static_cast<double>(shadows.casters(now, view, receivers, light, settings).casters.size());
         settings.occlusion = true;
-        std::vector<double> times;
         CasterSet set;
-        for (int round = 0; round < repeat; ++round) {
-            const double start = threadTime();
-            set = shadows.casters(now, view, receivers, light, settings);
-            times.push_back(threadTime() - start);
-        }
-        std::sort(times.begin(), times.end());
-        sums.time += times[times.size() / 2];
+        sums.time += threadTimes({[&] { set = shadows.casters(now, view, receivers, light, settings); }}, repeat)[0];
         sums.kept += static_cast<double>(set.casters.size());
         sums.in_light += static_cast<double>(set.stats.in_light);
         sums.beside += static_cast<double>(set.stats.beside);

@@ -13,7 +13,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "sightline/raster/small_polygons-inl.h"
+#include "sightline/buffer/draw/small_classify-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline {
@@ -32,8 +32,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include "bench/occlusion_scenes.h"
 #include "bench/stopwatch.h"
-#include "sightline/prepare/occluder.h"
-#include "sightline/raster/screen.h"
+#include "sightline/buffer/screen.h"
+#include "sightline/prepare/occluder/occluder.h"
 
 namespace sightline {
 
@@ -65,11 +65,6 @@ void project(const Screen& object, const Occluder& occluder, const OccluderClust
     }
     HWY_DYNAMIC_DISPATCH(snapForBench)
     (out.x.data(), out.y.data(), out.d.data(), static_cast<uint32_t>(count), out.vertices);
-}
-
-double median(std::vector<double>& times) {
-    std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
-    return times[times.size() / 2];
 }
 
 void measureSoup(SoupSize size, int repeat, Table& table) {
@@ -124,8 +119,8 @@ void measureSoup(SoupSize size, int repeat, Table& table) {
         both.back() -= snap.back();
     }
     const std::string where = scene.name + " 1280x720";
-    table.rows.push_back({where, "small polygons, ns each", median(inner), "ns", "with outer masks", median(both)});
-    table.rows.push_back({where, "small polygons, snapping", median(snap), "ns", "classifying", median(inner)});
+    table.rows.push_back({where, "small polygons, ns each", medianOf(inner), "ns", "with outer masks", medianOf(both)});
+    table.rows.push_back({where, "small polygons, snapping", medianOf(snap), "ns", "classifying", medianOf(inner)});
     table.rows.push_back({where, "small polygons, tiles each", records / (polygons - large), "tiles",
                           "left to be drawn one by one, %", 100 * large / polygons});
 }

@@ -18,25 +18,6 @@ inline double threadTime() {
     return static_cast<double>(now.tv_sec) * 1e6 + static_cast<double>(now.tv_nsec) * 1e-3;
 }
 
-/// Runs each job once to warm up and then all of them `repeat` times, one after the other each time.
-/// @returns each job's median time [microseconds]
-inline std::vector<double> timeInterleaved(const std::vector<std::function<void()>>& jobs, int repeat) {
-    std::vector<std::vector<double>> times(jobs.size());
-    for (int round = -1; round < repeat; ++round)
-        for (size_t i = 0; i < jobs.size(); ++i) {
-            const auto start = std::chrono::steady_clock::now();
-            jobs[i]();
-            const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - start;
-            if (round >= 0) times[i].push_back(took.count());
-        }
-    std::vector<double> medians;
-    for (std::vector<double>& t : times) {
-        std::nth_element(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(t.size() / 2), t.end());
-        medians.push_back(t[t.size() / 2]);
-    }
-    return medians;
-}
-
 /// By the time that this thread computes.
 inline double millisecondsOf(const std::function<void()>& job) {
     const double start = threadTime();
@@ -49,17 +30,33 @@ inline double medianOf(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-/// As timeInterleaved(), by the time that this thread computes.
-inline std::vector<double> threadTimes(const std::vector<std::function<void()>>& jobs, int repeat) {
+/// Runs each job once to warm up and then all of them `repeat` times, one after the other each time.
+/// @param now  reads a clock [microseconds]
+/// @returns each job's median time [microseconds]
+inline std::vector<double> timeInTurn(const std::vector<std::function<void()>>& jobs, int repeat, double (*now)()) {
     std::vector<std::vector<double>> times(jobs.size());
     for (int round = -1; round < repeat; ++round)
         for (size_t i = 0; i < jobs.size(); ++i) {
-            const double took = millisecondsOf(jobs[i]);
-            if (round >= 0) times[i].push_back(took * 1e3);
+            const double start = now();
+            jobs[i]();
+            if (round >= 0) times[i].push_back(now() - start);
         }
     std::vector<double> medians;
     for (const std::vector<double>& t : times) medians.push_back(medianOf(t));
     return medians;
+}
+
+/// As timeInTurn(), by the wall's clock.
+inline std::vector<double> timeInterleaved(const std::vector<std::function<void()>>& jobs, int repeat) {
+    return timeInTurn(jobs, repeat, [] {
+        const auto now = std::chrono::steady_clock::now().time_since_epoch();
+        return std::chrono::duration<double, std::micro>(now).count();
+    });
+}
+
+/// As timeInTurn(), by the time that this thread computes.
+inline std::vector<double> threadTimes(const std::vector<std::function<void()>>& jobs, int repeat) {
+    return timeInTurn(jobs, repeat, threadTime);
 }
 
 }  // namespace sightline::bench

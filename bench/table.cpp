@@ -2,29 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "bench/table.h"
 
-#include <bit>
-#include <cstdint>
-#include <fstream>
-#include <thread>
+#include <algorithm>
 
 #include <fmt/format.h>
-#include <hwy/targets.h>
 #include <nlohmann/json.hpp>
 
-namespace sightline::bench {
+#include "sightline/tools/profile/machine.h"
 
-std::string machineName() {
-    std::string model = "unknown processor";
-    std::ifstream info("/proc/cpuinfo");
-    for (std::string line; std::getline(info, line);)
-        if (line.rfind("model name", 0) == 0 && line.find(": ") != std::string::npos) {
-            model = line.substr(line.find(": ") + 2);
-            break;
-        }
-    const int64_t targets = hwy::SupportedTargets();
-    return fmt::format("{}, {}, {} cores", model, hwy::TargetName(targets & -targets),
-                       std::thread::hardware_concurrency());
-}
+namespace sightline::bench {
+using namespace tools;
 
 std::string toText(const Table& table) {
     size_t where = 4, what = 4;

@@ -33,7 +33,4 @@ std::string toText(const Table& table);
 /// The schema `sightline.bench/1`.
 std::string toJson(const Table& table);
 
-/// This machine in words: processor, instruction set in use, cores.
-std::string machineName();
-
 }  // namespace sightline::bench

@@ -7,12 +7,14 @@
 #include "bench/cases.h"
 #include "bench/classic_flow.h"
 #include "bench/stopwatch.h"
-#include "sightline/bake/cell_visibility.h"
+#include "sightline/bake/flow/cell_visibility.h"
 #include "sightline/base/random.h"
 #include "sightline/base/thread_pool.h"
-#include "sightline/import/prt.h"
+#include "sightline/tools/import/quake/prt.h"
 
 namespace sightline::bench {
+using namespace bake;
+using namespace tools;
 namespace {
 
 constexpr double kClassicLimit = 30000;  // [milliseconds]

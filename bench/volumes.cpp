@@ -1,19 +1,21 @@
 // Occluder volumes: what a few large convex occluders hide by themselves, and whether they pay before the tiles.
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <functional>
 
 #include <fmt/format.h>
 
 #include "bench/cases.h"
 #include "bench/stopwatch.h"
-#include "sightline/load/load_world.h"
-#include "sightline/load/seeded_cameras.h"
-#include "sightline/run/query.h"
-#include "sightline/scene/building.h"
-#include "sightline/scene/city.h"
-#include "sightline/scene/terrain.h"
+#include "sightline/query/query.h"
+#include "sightline/tools/load/load_world.h"
+#include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/scene/building/building.h"
+#include "sightline/tools/scene/city/city.h"
+#include "sightline/tools/scene/terrain/terrain.h"
 
 namespace sightline::bench {
+using namespace tools;
 namespace {
 
 constexpr uint64_t kSeed = 1;
@@ -35,20 +37,19 @@ std::vector<Answer> measure(const Snapshot& now, const CameraPath& path, const s
     std::vector<Answer> answers(choices.size());
     Query query;
     for (const CameraFrame& frame : path.frames) {
-        std::vector<std::vector<double>> times(choices.size());
         std::vector<QueryStats> stats(choices.size());
-        for (int round = -1; round < repeat; ++round)  // in turn, so that the machine's moods meet them all alike
-            for (size_t i = 0; i < choices.size(); ++i) {
-                View view = makeView(frame, 1280, 720);
-                view.stages = choices[i].stages;
-                view.occluder_volumes = choices[i].volumes;
-                const double start = threadTime();
-                stats[i] = query.visible(now, view).stats;
-                if (round >= 0) times[i].push_back(threadTime() - start);
-            }
+        std::vector<std::function<void()>> jobs;
+        for (size_t i = 0; i < choices.size(); ++i)
+            jobs.push_back([&, i] {
+                const View view = makeView(frame, 1280, 720);
+                QuerySettings settings;
+                settings.stages = choices[i].stages;
+                settings.occluder_volumes = choices[i].volumes;
+                stats[i] = query.visible(now, view, settings).stats;
+            });
+        const std::vector<double> times = threadTimes(jobs, repeat);
         for (size_t i = 0; i < choices.size(); ++i) {
-            std::nth_element(times[i].begin(), times[i].begin() + repeat / 2, times[i].end());
-            answers[i].time += times[i][static_cast<size_t>(repeat / 2)];
+            answers[i].time += times[i];
             answers[i].by_volumes += static_cast<double>(stats[i].stages[static_cast<int>(Stage::kVolumes)].culled);
             answers[i].by_tiles += static_cast<double>(stats[i].stages[static_cast<int>(Stage::kOcclusion)].culled);
             answers[i].kept += static_cast<double>(stats[i].visible);

@@ -1,33 +1,32 @@
 # What an installation holds: libraries, headers under <sightline/...>, the tool, and how to find them.
 include(CMakePackageConfigHelpers)
 
-# Installs libraries with the headers of their folders and exports them as sightline::NAME.
+# Installs libraries with the headers of their users and exports them as sightline::NAME.
 #   EXPORT     the export set; sightline-config.cmake includes one file for each
 #   LIBRARIES  names as given to sightline_library
-#   FOLDERS    folders of sightline/ whose headers belong to them
+#   HEADERS    of sightline/, that users include; what these include is installed, too, and no other header
 function(sightline_install)
-  cmake_parse_arguments(arg "" "EXPORT" "LIBRARIES;FOLDERS" ${ARGN})
+  cmake_parse_arguments(arg "" "EXPORT" "LIBRARIES;HEADERS" ${ARGN})
   list(TRANSFORM arg_LIBRARIES PREPEND sightline_ OUTPUT_VARIABLE targets)
   install(TARGETS ${targets} EXPORT ${arg_EXPORT})
-  foreach(folder ${arg_FOLDERS})
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/sightline/${folder}
-      DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sightline FILES_MATCHING PATTERN "*.h")
-  endforeach()
+  install(CODE "
+    include(${PROJECT_SOURCE_DIR}/cmake/SightlineInstallHeaders.cmake)
+    sightline_install_headers(${PROJECT_SOURCE_DIR} \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR} ${arg_HEADERS})")
   install(EXPORT ${arg_EXPORT} NAMESPACE sightline:: DESTINATION ${SIGHTLINE_CMAKE_DIR})
 endfunction()
 
 set(SIGHTLINE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/sightline)
 
-sightline_install(EXPORT sightline-runtime LIBRARIES run
-  FOLDERS base math geom space raster cull prepare visfile run)
-sightline_install(EXPORT sightline-hidden LIBRARIES hidden FOLDERS hidden)
+sightline_install(EXPORT sightline-runtime LIBRARIES run HEADERS sightline.h)
+sightline_install(EXPORT sightline-studies LIBRARIES bsp studies
+  HEADERS studies/hidden/render.h studies/hidden/zbuffer/zbuffer.h)
 if(SIGHTLINE_TOOLS)
   sightline_install(EXPORT sightline-tools LIBRARIES scene import bake truth report
-    FOLDERS scene load import bake truth report)
-  install(TARGETS sightline)
-  if(TARGET sightline_pages)
-    set(pages ${PROJECT_BINARY_DIR}/apps/cli/pages)
-    install(FILES ${pages}/sightline.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+    HEADERS bake/bake.h tools/scene/procedural.h tools/import/scene_file.h tools/load/load_world.h tools/truth/verify.h
+            tools/report/page/page.h)
+  install(TARGETS sightline sightline-bench)
+  if(TARGET sightline_completions)
+    set(pages ${PROJECT_BINARY_DIR}/apps/cli/completions)
     install(FILES ${pages}/sightline DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
     install(FILES ${pages}/_sightline DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
     install(FILES ${pages}/sightline.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
@@ -51,7 +50,7 @@ install(CODE "
   set(SIGHTLINE_EMBREE_FLAG $<$<BOOL:${SIGHTLINE_TOOLS}>:-lembree3>)
   set(CMAKE_INSTALL_FULL_LIBDIR \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR})
   set(CMAKE_INSTALL_FULL_INCLUDEDIR \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR})
-  foreach(name sightline sightline-hidden)
+  foreach(name sightline sightline-studies)
     configure_file(${PROJECT_SOURCE_DIR}/cmake/\${name}.pc.in
       \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/pkgconfig/\${name}.pc @ONLY)
   endforeach()")

@@ -36,3 +36,48 @@ function(sightline_sources target)
   list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE files)
   target_sources(sightline_${target} PRIVATE ${files})
 endfunction()
+
+# Compiles the files of a target in groups of eight of the same folder, which reads the large headers once a group. A file
+# with kernels stands alone, because Highway reads it once for every instruction set; so does a file that the build
+# makes. Names in anonymous namespaces must differ within a folder.
+function(sightline_in_groups target)
+  if(SIGHTLINE_GROUPS)
+    # The files are known once the whole project has been read.
+    cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${PROJECT_SOURCE_DIR}]] CALL sightline_group ${target})")
+  endif()
+endfunction()
+
+function(sightline_group target)
+  get_target_property(files ${target} SOURCES)
+  get_target_property(home ${target} SOURCE_DIR)
+  foreach(file ${files})
+    cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY ${home} NORMALIZE)
+    cmake_path(IS_PREFIX PROJECT_BINARY_DIR ${file} made)
+    if(made)
+      continue()  # the build makes it
+    endif()
+    file(STRINGS ${file} kernels REGEX "hwy/foreach_target" LIMIT_COUNT 1)
+    if(kernels)
+      continue()
+    endif()
+    cmake_path(GET file PARENT_PATH folder)
+    string(MAKE_C_IDENTIFIER ${folder} key)
+    if(NOT DEFINED ${key})
+      set(${key} 0)
+    endif()
+    math(EXPR group "${${key}} / 8")
+    math(EXPR ${key} "${${key}} + 1")
+    cmake_path(GET folder FILENAME name)
+    set_source_files_properties(${file} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${name}_${group})
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
+
+# The headers that nearly every file of what a game links reads, precompiled.
+function(sightline_precompile target)
+  target_precompile_headers(${target} PRIVATE
+    <algorithm> <array> <bit> <cmath> <cstdint> <cstring> <functional> <limits> <memory> <numeric> <optional> <span>
+    <string> <utility> <vector> <glm/glm.hpp> ${ARGN})
+  # Without this option ccache does not keep what is compiled with precompiled headers.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+endfunction()

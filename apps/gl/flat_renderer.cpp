@@ -10,10 +10,11 @@
 #include "apps/gl/gl_view.h"
 #include "apps/gl/objects.h"
 #include "apps/gl/provoking.h"
-#include "sightline/hidden/draw_item.h"
 #include "sightline/math/box.h"
+#include "sightline/studies/hidden/draw_item.h"
 
 namespace sightline {
+using namespace studies;
 namespace {
 
 constexpr const char* kVertexShader = R"(#version 450 core

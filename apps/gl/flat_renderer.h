@@ -11,7 +11,10 @@
 
 namespace sightline {
 
+namespace studies {
 class DrawList;
+}  // namespace studies
+using namespace studies;
 
 /// Draws a list as a GL program that wants to be fast does: all items in one vertex buffer, uploaded once and placed in
 /// the world beforehand; one draw call for single-sided and one for double-sided triangles; the light of a triangle is

@@ -6,6 +6,7 @@
 #include <cmath>
 
 namespace sightline {
+using namespace studies;
 namespace {
 
 void setRow(glm::dmat4& matrix, int row, const glm::dvec4& values) {

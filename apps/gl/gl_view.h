@@ -5,9 +5,10 @@
 #include <glm/glm.hpp>
 
 #include "sightline/geom/view.h"
-#include "sightline/hidden/draw_item.h"
+#include "sightline/studies/hidden/draw_item.h"
 
 namespace sightline {
+using namespace studies;
 
 /// For a clip space of [0, w] in depth (glClipControl), greater is nearer.
 struct GlView {

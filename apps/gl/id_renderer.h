@@ -6,13 +6,16 @@
 
 #include "apps/gl/context.h"
 #include "sightline/geom/view.h"
-#include "sightline/hidden/image.h"
+#include "sightline/studies/hidden/image.h"
 
 namespace sightline {
 
+namespace studies {
 class DrawList;
+}  // namespace studies
+using namespace studies;
 
-/// Holds a list's meshes in the GL and draws views of them. What is drawn is what `hidden/` draws: triangles that write
+/// Holds a list's meshes in the GL and draws views of them. What is drawn is what `studies/hidden/` draws: triangles that write
 /// depth, without the back faces of single-sided ones. Vertices are transformed in double and rounded to float in clip
 /// space; the GL then clips in float, snaps to 1/256 of a pixel and keeps a 32-bit float depth, reversed. Triangles with
 /// a position that is not finite are left out.

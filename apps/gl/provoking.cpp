@@ -6,6 +6,7 @@
 #include <numeric>
 
 namespace sightline {
+using namespace studies;
 namespace {
 
 bool isFinite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }

@@ -5,9 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "sightline/hidden/draw_item.h"
+#include "sightline/studies/hidden/draw_item.h"
 
 namespace sightline {
+using namespace studies;
 
 /// What one item draws: triangles that write depth and whose positions are finite. The GL hands a `flat` value of the
 /// last corner to the whole triangle.

@@ -10,9 +10,10 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "sightline/import/scene_stream.h"
+#include "sightline/tools/import/foreign/scene_stream.h"
 
 namespace sightline::import {
+using namespace tools;
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

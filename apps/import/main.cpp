@@ -15,9 +15,10 @@
 #include "apps/import/fault.h"
 #include "apps/import/limits.h"
 #include "apps/import/send_scene.h"
-#include "sightline/import/scene_stream.h"
+#include "sightline/tools/import/foreign/scene_stream.h"
 
 namespace sightline::import {
+using namespace tools;
 namespace {
 
 constexpr const char* kUsage =
@@ -119,11 +120,11 @@ int main(int count, char** words) {
     }
     static Output output(takeOutput());
     setLimits(options.limits);
-    sightline::SceneStreamWriter stream([](const void* bytes, size_t size) { output.write(bytes, size); });
+    sightline::tools::SceneStreamWriter stream([](const void* bytes, size_t size) { output.write(bytes, size); });
     const std::string fault = readInto(options, stream);
     // Assimp reports exhaustion as any other error.
     if (fault.find("bad_alloc") != std::string::npos || fault.find("bad allocation") != std::string::npos)
-        _exit(sightline::kImportOutOfMemory);
+        _exit(sightline::tools::kImportOutOfMemory);
     fault.empty() ? stream.end() : stream.fault(fault);
     output.flush();
     _exit(0);  // the kernel frees the scene faster than its destructors do

@@ -8,6 +8,7 @@
 #include <assimp/material.h>
 
 namespace sightline::import {
+using namespace tools;
 namespace {
 
 /// A number of a material, or what counts if there is none.

@@ -10,10 +10,11 @@
 #include <assimp/scene.h>
 
 #include "apps/import/texture_alpha.h"
-#include "sightline/import/scene_kind.h"
-#include "sightline/import/scene_stream.h"
+#include "sightline/tools/import/foreign/scene_stream.h"
+#include "sightline/tools/import/scene_kind.h"
 
 namespace sightline::import {
+using namespace tools;
 
 /// Sends each material when it is first used.
 class Materials {

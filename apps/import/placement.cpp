@@ -7,9 +7,10 @@
 
 #include <assimp/metadata.h>
 
-#include "sightline/import/gltf_nodes.h"
+#include "sightline/tools/import/gltf/gltf_nodes.h"
 
 namespace sightline::import {
+using namespace tools;
 namespace {
 
 int whole(const aiMetadata& data, const char* key, int otherwise) {

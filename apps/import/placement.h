@@ -8,9 +8,10 @@
 #include <assimp/scene.h>
 #include <glm/glm.hpp>
 
-#include "sightline/scene/scene.h"
+#include "sightline/tools/scene/scene.h"
 
 namespace sightline::import {
+using namespace tools;
 
 /// What turns a scene so that y is up, and scales it to metres, where the format says how and Assimp did not: FBX by
 /// its global settings. The identity for all others.

@@ -9,9 +9,10 @@
 #include <fmt/format.h>
 
 #include "apps/import/fault.h"
-#include "sightline/import/gltf_nodes.h"
+#include "sightline/tools/import/gltf/gltf_nodes.h"
 
 namespace sightline::import {
+using namespace tools;
 namespace {
 
 glm::dvec3 toVector(const aiVector3D& v) { return {v.x, v.y, v.z}; }

@@ -24,9 +24,10 @@
 #include "apps/import/poses.h"
 #include "apps/import/triangles.h"
 #include "apps/import/warnings.h"
-#include "sightline/import/scene_kind.h"
+#include "sightline/tools/import/scene_kind.h"
 
 namespace sightline::import {
+using namespace tools;
 namespace {
 
 constexpr uint64_t kSteps = 100, kReadSteps = 60;  ///< of progress; reading is most of it

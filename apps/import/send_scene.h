@@ -4,9 +4,10 @@
 
 #include <string>
 
-#include "sightline/import/scene_stream.h"
+#include "sightline/tools/import/foreign/scene_stream.h"
 
 namespace sightline::import {
+using namespace tools;
 
 /// Geometry is taken as it is in the file: no vertex is moved or merged with one that is not the same, no triangle is
 /// left out, the tree of nodes stays. A node's meshes become one object with a primitive for each; nodes with the same

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 namespace sightline::import {
+using namespace tools;
 namespace {
 
 constexpr size_t kMostKinds = 1000, kMostNotes = 8;

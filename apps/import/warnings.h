@@ -5,9 +5,10 @@
 #include <map>
 #include <string>
 
-#include "sightline/import/scene_stream.h"
+#include "sightline/tools/import/foreign/scene_stream.h"
 
 namespace sightline::import {
+using namespace tools;
 
 /// Listens from its construction on; one at a time.
 class Warnings {

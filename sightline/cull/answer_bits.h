@@ -1,4 +1,4 @@
-// Answers as bits, eight to a byte: those beyond the last cleared, and counted.
+// Answers as bits, eight to a byte: counted, with the bits behind the last answer cleared.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -13,14 +13,14 @@ namespace sightline::detail {
 /// Bytes of answers to `count` questions that are asked sixteen at a time.
 inline size_t answerBytes(size_t count) { return (count + 15) / 16 * 2; }
 
-/// How many bits of a word are set. Without the instruction that not every processor has; a call costs more.
+/// How many bits of a word are set. Not every processor has an instruction for it, and a call costs more than this.
 inline uint64_t countBits(uint64_t word) {
     word -= word >> 1 & 0x5555555555555555u;
     word = (word & 0x3333333333333333u) + (word >> 2 & 0x3333333333333333u);
     return ((word + (word >> 4)) & 0x0f0f0f0f0f0f0f0fu) * 0x0101010101010101u >> 56;
 }
 
-/// Clears the bits from `count` to the end of the last bytes, and counts those that are set.
+/// Clears the bits behind the last of `count` answers, and returns how many answers are set.
 inline size_t finishAnswers(size_t count, std::span<uint8_t> bits) {
     const size_t bytes = answerBytes(count);
     if (count % 16) {

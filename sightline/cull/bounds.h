@@ -16,6 +16,13 @@
 
 namespace sightline {
 
+/// How much is asked of bounds that the planes of a view volume keep.
+enum class Refinement : uint8_t {
+    kNone,
+    kCorners,         ///< all corners of the volume are beyond one face of the bound
+    kSeparatingAxes,  ///< also planes along one edge of each: exact for boxes, apart from rounding
+};
+
 struct Sphere {
     glm::dvec3 center{0.0};
     double radius = 0.0;  ///< [world units, >= 0]
@@ -42,36 +49,38 @@ struct Dop {
     void grow(const glm::dvec3& point);
 };
 
-/// What a bound is to a volume.
+/// Where a bound lies relative to a volume.
 struct BoundAnswer {
     bool outside = false;  ///< it surely shares no point with the volume
-    uint32_t planes = 0;   ///< bit per plane that it is not surely inside of; 0 of a bound that is kept: it is inside
+    uint32_t planes = 0;   ///< bit per plane that it is not surely inside of; 0, if it is not outside: it is inside
 
     bool inside() const { return !outside && planes == 0; }
     bool crossing() const { return !outside && planes != 0; }
 };
 
-/// Tests a bound against the planes named in `active`: those that hold a parent wholly need not be asked again. A bound
-/// that touches a plane, or that rounding might place on it, is kept; so is one that is not finite. A bound outside
-/// two planes' common edge, or beyond a corner, may be kept as well: the refinements below are for these.
+/// Tests a bound against the planes named in `active`; planes that hold a parent wholly need not be asked again. A
+/// bound is kept if it touches a plane, if rounding might place it there, or if it is not finite. A bound beyond the
+/// common edge of two planes, or beyond a corner, may be kept as well: the refinements below remove it.
 BoundAnswer testBound(const ViewVolume& volume, const Sphere& sphere, uint32_t active = ~0u);
 BoundAnswer testBound(const ViewVolume& volume, const Box3d& box, uint32_t active = ~0u);
 BoundAnswer testBound(const ViewVolume& volume, const OrientedBox& box, uint32_t active = ~0u);
 BoundAnswer testBound(const ViewVolume& volume, const Dop& dop, uint32_t active = ~0u);
 
-/// How far a point is from the volume, 0 inside: the largest that one, two or three planes together prove, which is exact
-/// but for rounding. A sphere is outside if that is more than its radius. O(planes^3), where the point is outside.
+/// How far a point is from the volume; 0 inside. It is the largest distance that one, two or three planes together
+/// prove, which is exact apart from rounding. A sphere is outside if the distance exceeds its radius. O(planes^3) for a
+/// point outside.
 double distanceTo(const ViewVolume& volume, const glm::dvec3& point);
 
 /// True if the sphere shares no point with the volume: exact, beyond edges and corners too.
 bool surelyOutside(const ViewVolume& volume, const Sphere& sphere);
 
-/// True if the box shares no point with the volume, as far as the refinement tells; exact with kSeparatingAxes, of volumes that have
-/// an inside. The planes themselves are not asked. Sets its axes up anew each time: for a few large bounds.
+/// True if the refinement proves that the box shares no point with the volume. It is exact with kSeparatingAxes, if the
+/// volume has an inside. It does not ask the planes of the volume. Each call sets up the axes: meant for a few large
+/// bounds.
 bool separated(const ViewVolume& volume, const OrientedBox& box, Refinement refinement);
 
-/// Planes that hold a volume, found for all boxes with the axes of the world at once: what separates these from it,
-/// if its own planes do not.
+/// Planes that hold a volume, found at once for all boxes along the axes of the world: they separate the boxes that the
+/// volume's own planes do not.
 struct RefinedVolume {
     static constexpr uint32_t kMostCrossed = 72;
 

@@ -10,22 +10,18 @@
 
 #include "sightline/cull/frustum.h"
 #include "sightline/cull/hierarchy.h"
-#include "sightline/space/bvh.h"
 
 namespace sightline {
 
 /// Writes the numbers of the items whose stored boxes overlap the box, and returns how many. Touching counts. The box is
 /// rounded outward to float around the tree's or the list's origin, so that no item is left out whose own box overlaps it;
-/// the set is the same for all three over the same stored boxes and origin, on every machine. A bound that is infinite
+/// the set is the same for both over the same stored boxes and origin, on every machine. A bound that is infinite
 /// leaves that side open; so does one that is NaN. A box that is empty (min > max on some axis) overlaps nothing.
 ///
 /// `nodes` counts the nodes whose children were compared with the box; there are no plane tests.
 /// @param box   world space
-/// @param kept  [size: >= items + 8]; the order hangs on the tree and the box alone
-size_t queryBox(const Box3d& box, const Bvh& tree, HierarchyScratch& scratch, std::span<uint32_t> kept,
-                HierarchyStats* stats = nullptr);
-/// As above; and all that are unbounded, whatever the box.
-size_t queryBox(const Box3d& box, const LivingBvh& tree, HierarchyScratch& scratch, std::span<uint32_t> kept,
+/// @param kept  [size: >= tree.size() + 8]; the order hangs on the tree and the box alone
+size_t queryBox(const Box3d& box, const PlacedBvh& tree, HierarchyScratch& scratch, std::span<uint32_t> kept,
                 HierarchyStats* stats = nullptr);
 /// As above, over a flat list, in rising order.
 /// @param kept  [size: >= count rounded up to 16]

@@ -31,12 +31,12 @@ struct ContributionMeasure {
 /// @param view  isUsable(view)
 ContributionMeasure makeContributionMeasure(const View& view);
 
-/// The squares of the projected radii of eight boxes, infinity where the sphere comes near the plane of the eye (nearer
-/// than 1.41 of its radius, measured from its centre), or where float cannot tell: such a box is not small. Rounded, by
-/// 2^-16 of themselves at most.
+/// The squares of the projected radii of eight boxes, rounded by 2^-16 of themselves at most. Infinity if the sphere
+/// comes near the plane of the eye (its centre is nearer than 1.41 radii), or if float cannot tell: such a box is not
+/// small.
 ///
-/// A box that is no leaf gets a bound instead: no box inside of it has more. So where a node is too small, all below are.
-/// @param leaves   bit per box: measured itself; else bounded for what it may hold
+/// A box that is no leaf gets a bound: no box inside of it has more. So if a node is too small, all boxes below it are.
+/// @param leaves   bit per box: it is measured itself; the others are bounded for all that they may hold
 /// @param squares  [size: 8] [square pixels]
 void squaredRadii(const ContributionMeasure& measure, const EyeBoxes& boxes, uint32_t leaves, float* squares);
 

@@ -59,13 +59,13 @@ DistanceMeasure makeDistanceMeasure(const View& view) {
     return measure;
 }
 
-double distanceZoom(const View& view) {
-    if (!(view.max_distance_fov > 0.0) || isOrthographic(view)) return 1.0;
+double distanceZoom(const View& view, double fov) {
+    if (!(fov > 0.0) || isOrthographic(view)) return 1.0;
     // A thing looks as large as it would at the same share of the limit under the angle that the limit is meant for. The
     // height alone counts: a wider image does not enlarge. Of y only the part across w moves things in the image.
     const glm::dmat4 m = view.projection * glm::dmat4(glm::dmat3(view.view));
     const glm::dvec3 y(m[0][1], m[1][1], m[2][1]), w(m[0][3], m[1][3], m[2][3]);
-    return glm::length(glm::cross(y, w)) / glm::dot(w, w) * std::tan(0.5 * view.max_distance_fov);
+    return glm::length(glm::cross(y, w)) / glm::dot(w, w) * std::tan(0.5 * fov);
 }
 
 void squaredDistances(const DistanceMeasure& measure, const EyeBoxes& boxes, float* squares) {

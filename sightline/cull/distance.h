@@ -9,8 +9,8 @@
 
 namespace sightline {
 
-/// What distance means in a view: in perspective to the eye; in a parallel view, where the eye has no place across the
-/// direction of view, to the plane through it.
+/// What distance means in a view. In perspective it is the distance to the eye. In a parallel view the eye has no place
+/// across the direction of view: there it is the distance to the plane through the eye.
 struct DistanceMeasure {
     bool perspective = true;
     glm::vec3 toward{0.0f};  ///< of a parallel view: unit direction that it looks in
@@ -19,13 +19,14 @@ struct DistanceMeasure {
 /// @param view  isUsable(view)
 DistanceMeasure makeDistanceMeasure(const View& view);
 
-/// How many times as far limits of distance reach in this view: farther where it is narrower than View::max_distance_fov,
-/// by as much as it enlarges what it shows. 1 in parallel views, and where no such angle is given.
-double distanceZoom(const View& view);
+/// By how much limits of distance are multiplied in this view. A view that is narrower than the angle that they are
+/// meant for enlarges what it shows, and sees farther by as much. 1 in parallel views, and without such an angle.
+/// @param fov  QuerySettings::max_distance_fov  [radians; 0: none]
+double distanceZoom(const View& view, double fov);
 
-/// The squares of the distances to the nearest points of eight boxes; 0 of a box that holds the eye, or reaches behind it
-/// in a parallel view. Rounded, by 2^-20 of themselves at most; a box inside another one is never nearer.
-/// Of boxes that are no numbers nothing is promised but that no trap is sprung.
+/// The squares of the distances to the nearest points of eight boxes; 0 for a box that holds the eye, or that reaches
+/// behind it in a parallel view. They are rounded by 2^-20 of themselves at most; a box inside another one is never
+/// nearer. A box that is not a number gets any answer, without a trap.
 /// @param squares  [size: 8] [world units squared]
 void squaredDistances(const DistanceMeasure& measure, const EyeBoxes& boxes, float* squares);
 

@@ -12,11 +12,11 @@
 
 namespace sightline {
 
-/// Tests of a cluster; what one of them calls back-facing is.
+/// Tests of a cluster. A cluster is back-facing if any of them says so.
 enum FacingTests : uint32_t {
     kVolumeTest = 1,  ///< CullingVolume
-    kTurnedTest = 2,  ///< TurnedBox; none of it if the clusters have none
-    kConeTest = 4,    ///< FacingCone; none of it if the clusters have none
+    kTurnedTest = 2,  ///< TurnedBox; does nothing if the clusters have none
+    kConeTest = 4,    ///< FacingCone; does nothing if the clusters have none
     kAllFacingTests = 7,
 };
 
@@ -26,11 +26,11 @@ enum FacingTests : uint32_t {
 /// @param back   [size: >= ceil(count / 16) * 2]
 size_t findBackClusters(const FacingClusters& clusters, const FacingEye& eye, uint32_t tests, std::span<uint8_t> back);
 
-/// The same for clusters of which every triangle is surely seen from its front: nothing of them needs any test.
+/// The same for clusters of which every triangle is surely seen from its front: their triangles need no test.
 size_t findFrontClusters(const FacingClusters& clusters, const FacingEye& eye, std::span<uint8_t> front);
 
-/// As findBackClusters() with kVolumeTest, through a tree: what a node settles is not asked again. Returns how many volumes
-/// were tested.
+/// As findBackClusters() with kVolumeTest, through a tree: clusters below a node that decides are not tested. Returns
+/// how many volumes were tested.
 size_t walkFacingTree(const FacingTree& tree, const FacingClusters& clusters, const FacingEye& eye,
                       std::span<uint8_t> back);
 
@@ -39,7 +39,7 @@ struct TriangleRange {
     uint32_t first = 0, count = 0;
 };
 
-/// The triangles of all clusters but those, in runs. Returns how many runs there are.
+/// Writes the triangles of all other clusters, in runs. Returns how many runs there are.
 /// @param back    of findBackClusters()
 /// @param gap     runs with as many triangles or fewer between them are joined, for fewer draws  [0: only neighbours]
 /// @param ranges  [size: >= clusters.count() / 2 + 1]

@@ -10,7 +10,7 @@
 
 #include "sightline/geom/frustum.h"
 #include "sightline/geom/view_volume.h"
-#include "sightline/space/bvh.h"
+#include "sightline/tree/bvh.h"
 
 namespace sightline {
 
@@ -26,7 +26,7 @@ EyeBoxes eyeBoxes(const BvhNode& node, const glm::dvec3& offset);
 /// The same of any eight boxes.
 EyeBoxes eyeBoxes(const float (&min)[3][8], const float (&max)[3][8], const glm::dvec3& offset);
 
-/// What eight boxes are to the planes of a frustum or of a volume.
+/// Where eight boxes lie relative to the planes of a frustum or of a volume.
 struct FrustumAnswer {
     uint32_t outside = 0;  ///< bit per box: surely outside some plane
     uint32_t planes[8];    ///< per box: bit per plane that it is not surely inside of
@@ -35,7 +35,7 @@ struct FrustumAnswer {
 /// Tests boxes against the planes named in `active`; planes that hold a parent wholly need not be asked again.
 /// A box that touches a plane, or that rounding might place on it, is kept; so is a NaN.
 FrustumAnswer testFrustum(const Frustum& frustum, const EyeBoxes& boxes, uint32_t active);
-/// The same of a volume, relative to the same eye.
+/// The same for a volume, which must be relative to the same eye.
 FrustumAnswer testViewVolume(const ViewVolume& volume, const EyeBoxes& boxes, uint32_t active);
 
 /// Bit per box that is surely outside of one of the planes, which are relative to the eye and of unit length.

@@ -1,4 +1,4 @@
-// Keeps the items of a living hierarchy that may touch a view frustum.
+// Keeps the items of a world's hierarchy that may touch a view frustum, or any of several.
 // SPDX-License-Identifier: MIT
 //
 // Ulf Assarsson, Tomas Moller. Optimized View Frustum Culling Algorithms for Bounding Boxes. 2000.
@@ -8,56 +8,27 @@
 #include <cstdint>
 #include <span>
 
-#include "sightline/base/memory.h"
+#include "sightline/cull/hierarchy_scratch.h"
 #include "sightline/geom/frustum.h"
-#include "sightline/space/dynamic_bvh.h"
+#include "sightline/tree/world_bvh.h"
 
 namespace sightline {
 
-/// What a query of a hierarchy did.
-struct HierarchyStats {
-    uint64_t nodes = 0;         ///< whose children were tested
-    uint64_t plane_tests = 0;   ///< of eight children against one plane
-    uint64_t inside_nodes = 0;  ///< whose items were all kept without a test
-};
-
-/// Frusta that one walk asks at most.
-inline constexpr uint32_t kMostFrusta = 32;
-
-/// What a query needs and does not give back; one for each thread. Once it has seen its hierarchies, queries take no
-/// memory.
-struct HierarchyScratch {
-    struct Visit {
-        uint32_t node = 0;
-        uint32_t planes = 0;  ///< bit per plane that the node is not inside of
-    };
-    /// The same of several frusta.
-    struct ManyVisit {
-        uint32_t node = 0;
-        uint32_t live = 0;            ///< bit per frustum that the node may touch
-        uint32_t crossing = 0;        ///< of these: it is not inside of the frustum
-        uint8_t planes[kMostFrusta];  ///< of each that it crosses
-    };
-    Array<Visit> visits;
-    Array<ManyVisit> many_visits;
-    explicit HierarchyScratch(Memory* memory = defaultMemory()) : visits(memory), many_visits(memory) {}
-};
-
-/// Writes the numbers of the items whose stored boxes may touch the frustum, and of all that are unbounded, and returns
-/// how many. The order hangs on the tree alone. The set is that of cullFrustum() over the stored boxes, to the bit: what
-/// is outside a plane has a parent that rounding puts no farther outside, and what is inside one likewise.
-/// @param kept  [size: >= tree.count + 8]
-size_t cullHierarchy(const Frustum& frustum, const LivingBvh& tree, HierarchyScratch& scratch, std::span<uint32_t> kept,
+/// Writes the numbers of the items whose stored boxes may touch the frustum, and returns how many. Their order depends
+/// on the tree and the frustum alone. The set is exactly that of cullFrustum() over the stored boxes: rounding never
+/// puts a parent farther outside of a plane than its child, nor farther inside.
+/// @param kept  [size: >= tree.size() + 8]
+size_t cullHierarchy(const Frustum& frustum, const PlacedBvh& tree, HierarchyScratch& scratch, std::span<uint32_t> kept,
                      HierarchyStats* stats = nullptr);
 
-/// The same for several frusta in one walk (the eyes of a headset, cascades, the faces of a cube): writes what any of them
-/// may touch, once, with a bit per frustum. Of each frustum these are the items that the walk for it alone keeps, to the
-/// bit and in its order; a node that only some may touch costs the others nothing. Of unbounded items all bits are set.
+/// The same for several frusta in one walk (the eyes of a headset, cascades, the faces of a cube). Writes each item
+/// that any frustum may touch once, with a bit per frustum. Each frustum has the items that a walk for it alone would
+/// keep. A node costs nothing for the frusta that do not touch it.
 /// @param frusta  [size: 1 to kMostFrusta]
-/// @param kept    [size: >= tree.count + 8]
+/// @param kept    [size: >= tree.size() + 8]
 /// @param masks   per kept item: bit i of frusta[i]  [size: as kept]
 /// @param stats   plane tests of all frusta together
-size_t cullHierarchy(std::span<const Frustum> frusta, const LivingBvh& tree, HierarchyScratch& scratch,
+size_t cullHierarchy(std::span<const Frustum> frusta, const PlacedBvh& tree, HierarchyScratch& scratch,
                      std::span<uint32_t> kept, std::span<uint32_t> masks, HierarchyStats* stats = nullptr);
 
 }  // namespace sightline

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "sightline/buffer/screen.h"
 #include "sightline/math/box.h"
-#include "sightline/raster/screen.h"
 
 namespace sightline {
 

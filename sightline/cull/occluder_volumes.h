@@ -10,9 +10,9 @@
 
 #include <glm/glm.hpp>
 
+#include "sightline/buffer/screen.h"
 #include "sightline/cull/frustum.h"
 #include "sightline/cull/volume_parts.h"
-#include "sightline/raster/screen.h"
 
 namespace sightline {
 

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <limits>
 
+#include "sightline/cull/frustum.h"
+
 #ifndef SIGHTLINE_CULL_CORNER_BOUNDS
 #define SIGHTLINE_CULL_CORNER_BOUNDS
 namespace sightline {

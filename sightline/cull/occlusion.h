@@ -6,12 +6,13 @@
 
 #include <cstdint>
 
-#include "sightline/cull/frustum.h"
-#include "sightline/raster/tiles.h"
+#include "sightline/buffer/tiles.h"
 
 namespace sightline {
 
-/// What eight boxes are to an occlusion buffer.
+struct EyeBoxes;
+
+/// Where eight boxes lie in an occlusion buffer.
 struct ScreenAnswer {
     PixelRect rects[8];
     uint32_t doubt = 0;    ///< bit per box: touches the near plane or cannot be projected; it may be visible
@@ -40,8 +41,8 @@ struct BoxAnswer {
 };
 BoxAnswer projectBox(const Screen& object, const Box3f& box);
 
-/// Whether every drawn point of a box surely lies to the left of a column of pixels, or to the right of where it begins:
-/// also of a box that is in doubt.
+/// Whether every drawn point of a box surely lies to the left of a column of pixels, or to the right of its left
+/// border. It may be asked about boxes in doubt, too.
 /// @param object  the map from the box's space
 /// @param x       the column's left border  [pixels]
 bool isLeftOf(const Screen& object, const Box3f& box, double x);
@@ -61,7 +62,7 @@ struct OccluderInstance {
 
 OccluderInstance makeOccluderInstance(const Screen& screen, const Occluder& occluder, const glm::dmat4& transform);
 
-/// What drawCluster() is to be given of a cluster; false if its place is known too badly to be sound.
+/// Makes what drawCluster() needs of a cluster; false if the cluster's place is known too badly to be sound.
 /// @param box  projectClusters() or projectBox() of the cluster's bounds
 bool placeCluster(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box, DrawnCluster& drawn);
 

@@ -16,7 +16,7 @@ namespace sightline {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using F8 = hn::CappedTag<float, 8>;
+using Lanes8 = hn::CappedTag<float, 8>;
 
 struct SlotAnswer {
     uint32_t outside = 0;  ///< bit per slot
@@ -26,7 +26,7 @@ struct SlotAnswer {
 /// Eight boxes as min[3][8] and max[3][8], aligned. The arithmetic is that of cullFrustum(), in its order.
 template <class Boxes>
 HWY_INLINE SlotAnswer testSlots(const RelativePlanes& planes, const Boxes& boxes, uint32_t active) {
-    const F8 d;
+    const Lanes8 d;
     SlotAnswer slots;
     for (uint32_t plane = 0; plane < planes.count; ++plane) {
         slots.inside[plane] = 0xff;

@@ -33,7 +33,7 @@ struct LightGrid {
 /// @param light  isUsable(light); width and height are the mask's
 LightGrid makeLightGrid(const View& light);
 
-/// What a caster is to a mask.
+/// Why a mask keeps or culls a caster.
 enum class CasterAnswer : uint8_t {
     kMayDarken,
     kBesideReceivers,  ///< no ray through it meets a receiver
@@ -53,7 +53,7 @@ public:
 
     explicit ReceiverMask(Memory* memory = defaultMemory()) : farthest_(memory), blocks_(memory) {}
 
-    /// No receivers.
+    /// Empties the mask.
     /// @param spread  of the filter that shadows are looked up with: receivers reach so far into neighbours  [texels]
     /// @param bias    receivers count as so much farther from the light  [world units, >= 0]
     void begin(const LightGrid& grid, double spread = 0, double bias = 0);
@@ -62,7 +62,7 @@ public:
     /// @param cuts  [limit: kMostPlanes - 6]
     void addReceiver(const Box3d& box, std::span<const glm::dvec4> cuts);
 
-    /// After the last receiver.
+    /// Must be called after the last receiver.
     void finish();
 
     /// Whether a box may darken a receiver. Boxes that are not finite may.

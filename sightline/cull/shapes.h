@@ -6,14 +6,14 @@
 
 #include <span>
 
+#include "sightline/buffer/ask/occludee.h"
 #include "sightline/cull/occludee_place.h"
-#include "sightline/raster/occludee.h"
 
 namespace sightline {
 
-/// All of these answer kVisible when in doubt: what touches the near plane, holds the eye, or is not finite; and
-/// kOutside only for what surely misses the viewport widened by the jitter. `screen` is makeScreen() of the view that
-/// the tiles were drawn for.
+/// All of these answer kVisible when in doubt: for shapes that touch the near plane, hold the eye, or are not finite.
+/// They answer kOutside only for shapes that surely miss the viewport widened by the jitter. `screen` is makeScreen()
+/// of the view that the tiles were drawn for.
 
 /// A rectangle of the viewport.
 struct ViewportRect {

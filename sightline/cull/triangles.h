@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "sightline/buffer/ask/occludee.h"
 #include "sightline/cull/occludee_place.h"
-#include "sightline/raster/occludee.h"
 
 namespace sightline {
 
@@ -20,15 +20,15 @@ struct OpenPolygon {
     uint32_t polygon = 0;  ///< of the cluster
 };
 
-/// What one look may cost, what it did cost, and where it ended.
+/// The limit of one look, its cost, and where it ended.
 struct TriangleLook {
-    uint64_t most_polygons = ~0u;  ///< beyond it the answer is kVisible
+    uint64_t most_polygons = ~0u;  ///< the limit; a look that needs more answers kVisible
     uint32_t polygons = 0;         ///< that were looked at
     bool spent = false;            ///< it ran into the limit
     OpenPolygon open;              ///< where the answer is kVisible and nothing was in doubt
 };
 
-/// What the second look needs from object to object.
+/// The scratch memory of second looks.
 struct TriangleScratch {
     Array<ClusterLook> clusters;
     Array<OccludeePolygon> undecided;  ///< by what the tiles hold without resolving seams
@@ -37,9 +37,9 @@ struct TriangleScratch {
     explicit TriangleScratch(Memory* memory) : clusters(memory), undecided(memory), names(memory) {}
 };
 
-/// Asks an object's triangles until one has a pixel that is open: clusters by their boxes, nearest first, then the
-/// polygons. A triangle before the near plane is clipped there; one that is single-sided and turned away is not drawn,
-/// and shows nothing.
+/// Asks an object's triangles until one has an open pixel: first clusters by their boxes, nearest first, then their
+/// polygons. Triangles are clipped at the near plane. A single-sided triangle that is turned away is not drawn, and so
+/// it shows nothing.
 ///
 /// @param place  makeOccludeePlace() of the object and shape.bounds
 /// @param shape  every triangle that may be drawn of the object, in its space

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "sightline/cull/volume_parts.h"
+#include "sightline/base/memory.h"
+#include "sightline/cull/volume_shapes.h"
+#include "sightline/geom/occluder.h"
 
 namespace sightline {
 

@@ -55,7 +55,7 @@ struct TriangleMasks {
 };
 
 /// Clusters of one mesh, in object space, each a run of triangles in an order of their own. Plain data;
-/// prepare/facing_clusters.h makes it. What is drawn by it must have the mesh's own positions: not skinned, not morphed.
+/// prepare/facing/facing_clusters.h makes it. What is drawn by it must have the mesh's own positions: not skinned, not morphed.
 struct FacingClusters {
     static constexpr size_t kPadding = 16;
     /// Rows of the arrays: a number of each cluster after the other.

@@ -20,7 +20,7 @@ inline double classBorder(int i, int cells) {
 }
 
 /// The cube of directions cut into 6 * cells * cells classes: by the axis of the largest component and its sign, then by
-/// the other two over that one, at the classBorder()s. prepare/normal_classes.h makes it.
+/// the other two over that one, at the classBorder()s. prepare/facing/normal_classes.h makes it.
 struct NormalClasses {
     static constexpr int kMaxCells = 18;  ///< so that a byte's number fits into a byte
     static constexpr size_t kPadding = 64;

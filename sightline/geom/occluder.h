@@ -45,7 +45,7 @@ struct OccluderCluster {
     uint32_t triangle_count = 0;              ///< of its own polygons
 };
 
-/// Occluding triangles of one mesh in clusters, in object space. Plain data; prepare/occluder.h makes it.
+/// Occluding triangles of one mesh in clusters, in object space. Plain data; prepare/occluder/occluder.h makes it.
 ///
 /// Every triangle here must be certainly drawn wherever the object is drawn (opaque; not masked, blended,
 /// transmissive, skinned or morphed). Positions are the mesh's own, bit for bit: two triangles share an
@@ -67,16 +67,12 @@ struct Occluder {
     }
 };
 
-/// A simpler occluder in the place of another one; prepare/inner.h makes it. What it hides from an eye outside of
+/// A simpler occluder in the place of another one; prepare/inner/inner.h makes it. What it hides from an eye outside of
 /// `outside`, the other one hides from there, too.
 struct InnerOccluder {
     Occluder occluder;
     Box3f outside;    ///< holds all that is drawn of the solids that it stands for
     float error = 0;  ///< how much less it hides: how far inside it lies, about  [units of the positions]
-
-    /// Every vertex lies a whole number of steps from the origin, 0 to 65,535 along each axis; no step: they need not.
-    glm::vec3 origin{0.0f};
-    float step = 0;
 
     explicit InnerOccluder(Memory* memory = defaultMemory()) : occluder(memory) {}
 };

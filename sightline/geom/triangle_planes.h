@@ -11,7 +11,7 @@
 namespace sightline {
 
 /// One plane per triangle, as one array per number: seen from e, counter-clockwise iff n * (e - origin) + d > 0.
-/// prepare/triangle_planes.h makes it.
+/// studies/facing/triangle_planes.h makes it.
 struct TrianglePlanes {
     static constexpr size_t kPadding = 64;
 

@@ -75,9 +75,9 @@ bool isOrthographic(const View& view) {
     return p[0][3] == 0.0 && p[1][3] == 0.0 && p[2][3] == 0.0;
 }
 
-double closedGap(const View& view) {
-    if (!(view.close_gaps > 0.0)) return 0.0;  // nor where it is not a number
-    return std::floor(std::min(view.close_gaps, 1.0 / 16.0) * kGapSteps) / kGapSteps;
+double closedGap(const QuerySettings& settings) {
+    if (!(settings.close_gaps > 0.0)) return 0.0;  // nor where it is not a number
+    return std::floor(std::min(settings.close_gaps, 1.0 / 16.0) * kGapSteps) / kGapSteps;
 }
 
 namespace {
@@ -99,10 +99,10 @@ bool opensWalls(const View& view) {
 
 }  // namespace
 
-uint32_t stagesInUse(const View& view) {
-    uint32_t stages = view.stages;
-    if (!(view.max_distance > 0.0)) stages &= ~stageBit(Stage::kDistance);  // nor where it is not a number
-    if (!(view.contribution > 0.0)) stages &= ~stageBit(Stage::kContribution);
+uint32_t stagesInUse(const View& view, const QuerySettings& settings) {
+    uint32_t stages = settings.stages;
+    if (!(settings.max_distance > 0.0)) stages &= ~stageBit(Stage::kDistance);  // nor where it is not a number
+    if (!(settings.contribution > 0.0)) stages &= ~stageBit(Stage::kContribution);
     if (opensWalls(view)) stages &= ~kCellStages;
     if (view.eye_radius != 0.0) stages &= stageBit(Stage::kPvs);
     return stages;

@@ -1,5 +1,5 @@
-// Bits as fractions of bits: what is likely costs little. An arithmetic coder, and models that learn how likely a bit
-// is. SPDX-License-Identifier: MIT
+// An arithmetic coder of bits, and models that learn how likely a bit is.
+// SPDX-License-Identifier: MIT
 //
 // Jorma Rissanen, Glen Langdon. Arithmetic Coding. 1979.
 #pragma once

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "sightline/base/result.h"
-#include "sightline/space/cell_space.h"
+#include "sightline/cells/cell_space.h"
 #include "sightline/visfile/placed_parts.h"
 #include "sightline/visfile/section_file.h"
 

@@ -3,7 +3,7 @@
 #include "sightline/visfile/leaf_cells.h"
 
 #include "sightline/base/bytes.h"
-#include "sightline/space/cells.h"
+#include "sightline/cells/cells.h"
 #include "sightline/visfile/bit_coder.h"
 #include "sightline/visfile/section_file.h"
 

@@ -9,7 +9,7 @@
 #include "sightline/base/bit_matrix.h"
 #include "sightline/base/memory.h"
 #include "sightline/base/result.h"
-#include "sightline/space/cell_space.h"
+#include "sightline/cells/cell_space.h"
 #include "sightline/visfile/cell_sections.h"
 #include "sightline/visfile/object_rows.h"
 #include "sightline/visfile/object_section.h"

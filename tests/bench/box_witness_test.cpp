@@ -1,6 +1,7 @@
 // The witness of rays: what stands free is seen, what is hidden is not, and a gap far narrower than a pixel is found.
 // SPDX-License-Identifier: MIT
 #include "bench/box_witness.h"
+#include "tests/bench/panel.h"
 
 #include <algorithm>
 #include <numeric>
@@ -9,13 +10,6 @@
 
 namespace sightline::bench {
 namespace {
-
-Box3f cube(float x, float y, float z, float half) {
-    Box3f box;
-    box.min = glm::vec3(x, y, z) - half;
-    box.max = glm::vec3(x, y, z) + half;
-    return box;
-}
 
 std::vector<uint32_t> allBoxes(const OcclusionScene& scene) {
     std::vector<uint32_t> all(scene.boxes.size());
@@ -29,13 +23,7 @@ size_t seenOf(const BoxVerdict& verdict) {
 }
 
 TEST(BoxWitness, SeesWhatStandsBeforeBesideAndAtThePanel) {
-    OcclusionScene scene{"panel", 1.0, {OcclusionCamera()}, {}, {}};
-    OccluderBatch panel;
-    panel.positions = {{-2, -2, 10}, {-2, 2, 10}, {2, 2, 10}, {2, -2, 10}};
-    panel.indices = {0, 1, 2, 0, 2, 3};
-    for (const glm::vec3& p : panel.positions) panel.bounds.grow(p);
-    scene.batches.push_back(panel);
-    scene.boxes = {
+    const OcclusionScene scene = onePanel({
         cube(0, 0, 8, 0.5f),       // before
         cube(0, 0, 15, 1),         // behind
         cube(4, 0, 15, 0.5f),      // behind, and beside
@@ -43,7 +31,7 @@ TEST(BoxWitness, SeesWhatStandsBeforeBesideAndAtThePanel) {
         cube(2.35f, 0, 15, 0.5f),  // behind, just not beside: at the front of the box it ends at x = 2.9
         cube(0, 0, 10.5f, 0.5f),   // its front lies in the panel's plane
         cube(0, 0, -15, 1),        // behind the eye
-    };
+    });
     const View view = occlusionView(scene, 0, 160, 90);
     const BoxVerdict verdict = BoxWitness(scene).judge(view, allBoxes(scene));
     std::vector<int> seen;

@@ -8,9 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "bench/occlusion_truth.h"
-#include "sightline/raster/depth_image.h"
+#include "sightline/buffer/depth_image.h"
 
 namespace sightline::bench {
+using namespace studies;
 namespace {
 
 TEST(MortonOrder, IsAPermutationThatKeepsNeighboursTogether) {
@@ -58,29 +59,6 @@ TEST_P(Frames, HideNothingThatIsInSightAndAnswerAlikeInGroups) {
         EXPECT_EQ(flat, grouped);
     }
     EXPECT_GT(culled, 0u);
-}
-
-// What soundness is measured against: the drawing that takes a pixel whose centre is covered. A z-buffer does just that.
-TEST_P(Frames, CoverByCentersWhatAZBufferCovers) {
-    const OcclusionScene scene = makeOcclusionScene(GetParam());
-    OcclusionFrame frame(scene);
-    DepthTiles tiles;
-    const View view = occlusionView(scene, 0, 320, 192);  // whole tiles, so that the pixels are the same
-    frame.begin(view);
-    const ZBufferImage image = drawBatches(scene, frame.batches(), view);
-    std::vector<float> nearness(size_t{320} * 192);
-    std::vector<uint8_t> covered(nearness.size());
-    const auto differing = [&](OcclusionFrame::Coverage coverage) {
-        frame.rasterize(tiles, OcclusionFrame::SelfTest::kNo, OcclusionDetail::kFull, coverage);
-        readDepthImage(tiles, Seams::kLeave, nearness, covered);
-        size_t count = 0;
-        for (size_t i = 0; i < covered.size(); ++i) count += (covered[i] != 0) != (image.id[i] != ZBufferImage::kNone);
-        return count;
-    };
-    // Corners are snapped to the 256th of a pixel, so a few centres may lie on the other side of an edge.
-    const size_t by_centers = differing(OcclusionFrame::Coverage::kCenters);
-    EXPECT_LT(by_centers, covered.size() / 500) << GetParam();
-    EXPECT_GE(differing(OcclusionFrame::Coverage::kWholePixels), by_centers) << GetParam();
 }
 
 INSTANTIATE_TEST_SUITE_P(Occlusion, Frames,

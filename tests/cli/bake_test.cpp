@@ -7,15 +7,16 @@
 #include <nlohmann/json.hpp>
 
 #include "sightline/base/random.h"
-#include "sightline/import/map_source.h"
-#include "sightline/import/quake_scene.h"
-#include "sightline/space/tree_portals.h"
+#include "sightline/bsp/tree_portals.h"
+#include "sightline/tools/import/quake/map_source.h"
+#include "sightline/tools/import/quake/quake_scene.h"
 #include "sightline/visfile/visibility_file.h"
 #include "tests/cli/tool.h"
-#include "tests/import/archive_files.h"
-#include "tests/import/map_files.h"
+#include "tests/tools/import/archive_files.h"
+#include "tests/tools/import/map_files.h"
 
 namespace sightline {
+using namespace tools;
 namespace {
 
 using nlohmann::json;

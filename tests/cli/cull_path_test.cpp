@@ -1,12 +1,13 @@
 // What is said about a false cull replays it.
 // SPDX-License-Identifier: MIT
-#include "apps/cli/cull_path.h"
+#include "apps/cli/verbs/cull_path.h"
 
 #include <atomic>
 
 #include "tests/cli/tool.h"
 
 namespace sightline::cli {
+using namespace tools;
 namespace {
 
 /// An object that was wrongly culled in the second of two frames.
@@ -24,7 +25,7 @@ struct WrongRun {
         run.width = 640;
         run.height = 360;
         run.jitter = 0.25;
-        run.stages = stageBit(Stage::kFrustum);
+        run.settings.stages = stageBit(Stage::kFrustum);
         run.frames.resize(2);
         run.frames[1].camera.eye = {0.1, 1.0 / 3, 1e6};
         run.frames[1].verification.emplace();

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/tool.h"
-#include "tests/import/foreign_files.h"
+#include "tests/tools/import/foreign_files.h"
 
 namespace sightline {
 namespace {

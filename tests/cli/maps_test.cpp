@@ -6,10 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/tool.h"
-#include "tests/import/archive_files.h"
-#include "tests/import/map_files.h"
+#include "tests/tools/import/archive_files.h"
+#include "tests/tools/import/map_files.h"
 
 namespace sightline {
+using namespace tools;
 namespace {
 
 using nlohmann::json;

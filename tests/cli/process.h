@@ -1,4 +1,4 @@
-// Starts the built tool beside the test, to send it signals and to change files under it.
+// Starts the built tool beside the test, to send it signals.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -37,6 +37,14 @@ public:
     Process& operator=(const Process&) = delete;
 
     void send(int signal) const { ::kill(pid_, signal); }
+
+    /// True once it catches a signal.
+    bool hears(int signal) const {
+        std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+        for (std::string word; status >> word;)
+            if (word == "SigCgt:" && status >> word) return std::stoull(word, nullptr, 16) >> (signal - 1) & 1;
+        return false;
+    }
 
     /// Waits for its end. Minus the signal that ended it, if one did.
     int join() {

@@ -1,11 +1,7 @@
 // Names and files that nobody means well with: the terminal obeys none, nothing is lost, nothing waits for ever.
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <sys/stat.h>
 
-#include "apps/cli/config_file.h"
-#include "apps/cli/scene_inputs.h"
 #include "tests/cli/tool.h"
 
 namespace sightline {
@@ -137,39 +133,6 @@ TEST_F(StrangeInput, AFileThatMayNotGrowIsToldAndLeavesNothing) {
     EXPECT_EQ(read(path("old.json")), "old");
     const std::filesystem::directory_iterator files(directory_);
     EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "no half file is left beside it";
-}
-
-TEST_F(StrangeInput, AWatchWaitsForNoPipe) {
-    ASSERT_EQ(::mkfifo(path("a.obj").c_str(), 0600), 0);
-    ASSERT_EQ(::mkfifo(path("a.gltf").c_str(), 0600), 0);
-    std::filesystem::create_symlink("/dev/zero", path("b.obj"));
-    for (const char* name : {"a.obj", "a.gltf", "b.obj"})
-        EXPECT_EQ(cli::filesOfScene(path(name)), std::vector<std::string>{path(name)});
-}
-
-TEST_F(StrangeInput, AConfigurationOfManyKeysIsReadOnce) {
-    std::string text;
-    for (int i = 0; text.size() < 1000000; ++i) text += fmt::format("k{}=1\n", i);
-    const Result<cli::ConfigFile> file = cli::parseConfig(text, "many");
-    ASSERT_TRUE(file) << file.error().message;
-    EXPECT_GT(file->entries.size(), 100000u);
-    const Result<cli::ConfigFile> twice = cli::parseConfig(text + "k7=1\n", "many");
-    ASSERT_FALSE(twice);
-    EXPECT_NE(twice.error().message.find("\"k7\" is there already, in line 8"), std::string::npos);
-    EXPECT_TRUE(cli::parseConfig("a=1\n[a]\na=1\n[b]\na=1\n", "same"));
-    EXPECT_FALSE(cli::parseConfig("[a]\n[b]\n[a]\n", "same"));
-}
-
-TEST_F(StrangeInput, SeedsOfTheConfigurationsFuzzerAreReadOrRefused) {
-    const std::filesystem::path corpus = std::filesystem::path(SIGHTLINE_FUZZ_CORPUS) / "config";
-    int seeds = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
-        ++seeds;
-        const Result<cli::ConfigFile> file = cli::parseConfig(read(entry.path().string()), "t");
-        const std::string fault = file ? "" : file.error().message;
-        EXPECT_TRUE(file || fault.rfind("t:", 0) == 0) << fault;
-    }
-    EXPECT_GE(seeds, 3);
 }
 
 }  // namespace

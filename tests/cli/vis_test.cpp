@@ -7,10 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/tool.h"
-#include "tests/import/archive_files.h"
-#include "tests/import/map_files.h"
+#include "tests/tools/import/archive_files.h"
+#include "tests/tools/import/map_files.h"
 
 namespace sightline {
+using namespace tools;
 namespace {
 
 using nlohmann::json;
@@ -103,7 +104,8 @@ TEST_F(Vis, AReportHasItsPictures) {
     ASSERT_EQ(run("vis rooms.prt --report page").exit_code, 0);
     const std::string page = read(path("page/index.html"));
     for (const char* name : {"matrix", "graph", "most", "middle", "sightline"}) {
-        EXPECT_NE(page.find(fmt::format("{}.png", name)), std::string::npos) << name;
+        EXPECT_NE(page.find(fmt::format("{{\"name\":\"{}\",\"image\":\"data:image/png", name)), std::string::npos)
+            << name;
         EXPECT_TRUE(std::filesystem::exists(path(fmt::format("page/{}.png", name)))) << name;
     }
     EXPECT_EQ(json::parse(read(path("page/vis.json")))["clusters"], 4);

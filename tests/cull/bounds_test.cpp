@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/cull/clip_oracle.h"
 #include "tests/cull/long_tests.h"
+#include "tests/studies/frustum/clip_oracle.h"
 
 namespace sightline {
 namespace {

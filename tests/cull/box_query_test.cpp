@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "sightline/base/random.h"
-#include "tests/support_targets.h"
+#include "tests/support/targets.h"
 
 namespace sightline {
 namespace {
@@ -52,20 +52,22 @@ std::vector<uint32_t> bruteForce(const Box3d& box, const std::vector<Box3f>& sto
 
 /// The same boxes in all that can be asked.
 struct Worlds {
-    glm::dvec3 middle;
+    glm::dvec3 middle;  ///< origin of the tree and of the list
     std::vector<Box3d> boxes;
-    Bvh fixed;
-    DynamicBvh living;
+    WorldBvh tree;
     std::vector<float> bounds[6];
     BoxArrays flat;
     HierarchyScratch scratch;
     std::vector<uint32_t> kept;
 
-    Worlds(Random& random, size_t count, const glm::dvec3& around)
-        : middle(around), living({.origin = around}), kept((count + 15) / 16 * 16 + 8) {
-        for (size_t i = 0; i < count; ++i) boxes.push_back(boxIn(random, middle, 100.0));
-        fixed = buildBvh(boxes);
-        living.build(boxes);
+    Worlds(Random& random, size_t count, const glm::dvec3& around) : kept((count + 15) / 16 * 16 + 8) {
+        std::vector<uint32_t> items;
+        for (uint32_t i = 0; i < count; ++i) {
+            boxes.push_back(boxIn(random, around, 100.0));
+            items.push_back(i);
+        }
+        tree.build(boxes, items);
+        middle = tree.now().origin;
         list();
     }
     void list() {
@@ -79,9 +81,9 @@ struct Worlds {
         flat.count = boxes.size();
         flat.origin = middle;
     }
-    std::vector<Box3f> stored(const glm::dvec3& origin) const {
+    std::vector<Box3f> stored() const {
         std::vector<Box3f> out;
-        for (const Box3d& box : boxes) out.push_back(roundOutward(box, origin));
+        for (const Box3d& box : boxes) out.push_back(roundOutward(box, middle));
         return out;
     }
     std::vector<uint32_t> sorted(size_t count) const {
@@ -90,9 +92,8 @@ struct Worlds {
         return found;
     }
     void expectExact(const Box3d& box) {
-        EXPECT_EQ(sorted(queryBox(box, fixed, scratch, kept)), bruteForce(box, stored(fixed.origin), fixed.origin));
-        EXPECT_EQ(sorted(queryBox(box, living.now(), scratch, kept)), bruteForce(box, stored(middle), middle));
-        const std::vector<uint32_t> expected = bruteForce(box, stored(middle), middle);
+        const std::vector<uint32_t> expected = bruteForce(box, stored(), middle);
+        EXPECT_EQ(sorted(queryBox(box, tree.now(), scratch, kept)), expected);
         const size_t count = queryBox(box, flat, kept);
         ASSERT_EQ(count, expected.size());
         EXPECT_TRUE(std::equal(expected.begin(), expected.end(), kept.begin()));  // in rising order
@@ -138,7 +139,7 @@ TEST(BoxQuery, NeverMissesATrueOverlapFarFromTheOrigin) {
             box.max[axis] = box.min[axis];
             box.min[axis] -= random.uniform(0.0, 30.0);
             std::vector<bool> is_found(worlds.boxes.size(), false);
-            const size_t count = queryBox(box, worlds.fixed, worlds.scratch, worlds.kept);
+            const size_t count = queryBox(box, worlds.tree.now(), worlds.scratch, worlds.kept);
             for (size_t k = 0; k < count; ++k) is_found[worlds.kept[k]] = true;
             for (size_t item = 0; item < worlds.boxes.size(); ++item) {
                 const Box3d& other = worlds.boxes[item];
@@ -161,16 +162,14 @@ TEST(BoxQuery, LeavesOpenWhatIsInfiniteOrNoNumber) {
             Box3d box{glm::dvec3(-kInfinity, -20.0, -30.0), glm::dvec3(open, 30.0, 20.0)};
             if (std::isnan(open)) box.min.x = kNan;
             const Box3d closed{glm::dvec3(-1e6, -20.0, -30.0), glm::dvec3(1e6, 30.0, 20.0)};
-            const std::vector<uint32_t> expected = bruteForce(closed, worlds.stored(worlds.middle), worlds.middle);
+            const std::vector<uint32_t> expected = bruteForce(closed, worlds.stored(), worlds.middle);
             ASSERT_GT(expected.size(), 0u);
             ASSERT_LT(expected.size(), worlds.boxes.size());
-            EXPECT_EQ(worlds.sorted(queryBox(box, worlds.fixed, worlds.scratch, worlds.kept)), expected);
-            EXPECT_EQ(worlds.sorted(queryBox(box, worlds.living.now(), worlds.scratch, worlds.kept)), expected);
+            EXPECT_EQ(worlds.sorted(queryBox(box, worlds.tree.now(), worlds.scratch, worlds.kept)), expected);
             EXPECT_EQ(worlds.sorted(queryBox(box, worlds.flat, worlds.kept)), expected);
         }
         const Box3d everything{glm::dvec3(-kInfinity), glm::dvec3(kInfinity)};
-        EXPECT_EQ(queryBox(everything, worlds.fixed, worlds.scratch, worlds.kept), 200u);
-        EXPECT_EQ(queryBox(everything, worlds.living.now(), worlds.scratch, worlds.kept), 200u);
+        EXPECT_EQ(queryBox(everything, worlds.tree.now(), worlds.scratch, worlds.kept), 200u);
         EXPECT_EQ(queryBox(everything, worlds.flat, worlds.kept), 200u);
     });
 }
@@ -181,33 +180,31 @@ TEST(BoxQuery, FindsNothingInAnEmptyBoxOrAnEmptyTree) {
     Box3d inverted{glm::dvec3(-50.0), glm::dvec3(50.0)};
     std::swap(inverted.min.y, inverted.max.y);
     for (const Box3d& box : {Box3d(), inverted}) {
-        EXPECT_EQ(queryBox(box, worlds.fixed, worlds.scratch, worlds.kept), 0u);
-        EXPECT_EQ(queryBox(box, worlds.living.now(), worlds.scratch, worlds.kept), 0u);
+        EXPECT_EQ(queryBox(box, worlds.tree.now(), worlds.scratch, worlds.kept), 0u);
         EXPECT_EQ(queryBox(box, worlds.flat, worlds.kept), 0u);
     }
     const Box3d unit{glm::dvec3(0.0), glm::dvec3(1.0)};
-    EXPECT_EQ(queryBox(unit, buildBvh({}), worlds.scratch, worlds.kept), 0u);
-    EXPECT_EQ(queryBox(unit, DynamicBvh().now(), worlds.scratch, worlds.kept), 0u);
+    EXPECT_EQ(queryBox(unit, WorldBvh().now(), worlds.scratch, worlds.kept), 0u);
     EXPECT_EQ(queryBox(unit, BoxArrays{}, worlds.kept), 0u);
 }
 
 TEST(BoxQuery, HoldsWhileATreeLives) {
     Random random(5);
     Worlds worlds(random, 500, glm::dvec3(10.0));
-    const uint32_t lost = worlds.living.insert({glm::dvec3(kNan), glm::dvec3(1.0)});
-    ASSERT_EQ(lost, 500u);
     for (int frame = 0; frame < 20; ++frame) {
         for (int i = 0; i < 100; ++i) {
             const uint32_t item = static_cast<uint32_t>(random.below(500));
-            worlds.boxes[item] = boxIn(random, worlds.middle, 150.0);
-            worlds.living.move(item, worlds.boxes[item]);
+            const Box3d box = boxIn(random, worlds.middle, 150.0);
+            worlds.boxes[item] = box;
+            if (worlds.tree.move(item, box)) continue;
+            worlds.tree.remove(item);
+            if (worlds.tree.insert(item, box) == WorldBvh::kNone) worlds.tree.append({&box, 1}, {&item, 1});
         }
-        if (frame % 3) worlds.living.update();
+        if (frame % 3) worlds.tree.mend(100);
         for (int i = 0; i < 20; ++i) {
             const Box3d box = boxIn(random, worlds.middle, 150.0);
-            std::vector<uint32_t> expected = bruteForce(box, worlds.stored(worlds.middle), worlds.middle);
-            expected.push_back(lost);  // what has no bounds may be anywhere
-            EXPECT_EQ(worlds.sorted(queryBox(box, worlds.living.now(), worlds.scratch, worlds.kept)), expected);
+            EXPECT_EQ(worlds.sorted(queryBox(box, worlds.tree.now(), worlds.scratch, worlds.kept)),
+                      bruteForce(box, worlds.stored(), worlds.middle));
         }
     }
 }
@@ -215,18 +212,21 @@ TEST(BoxQuery, HoldsWhileATreeLives) {
 TEST(BoxQuery, LooksAtLittleWhereTheBoxIsSmallOrHoldsAll) {
     Random random(6);
     std::vector<Box3d> boxes;
-    for (int i = 0; i < 20000; ++i) {
+    std::vector<uint32_t> items;
+    for (uint32_t i = 0; i < 20000; ++i) {
         const glm::dvec3 at = pointIn(random, 100.0);
         boxes.push_back({at, at + 0.5});
+        items.push_back(i);
     }
-    const Bvh tree = buildBvh(boxes);
+    WorldBvh tree;
+    tree.build(boxes, items);
     HierarchyScratch scratch;
     std::vector<uint32_t> kept(boxes.size() + 8);
     HierarchyStats stats;
-    queryBox({glm::dvec3(-2.0), glm::dvec3(2.0)}, tree, scratch, kept, &stats);
+    queryBox({glm::dvec3(-2.0), glm::dvec3(2.0)}, tree.now(), scratch, kept, &stats);
     EXPECT_GT(stats.nodes, 0u);
-    EXPECT_LT(stats.nodes, tree.nodes.size() / 20);
-    EXPECT_EQ(queryBox({glm::dvec3(-200.0), glm::dvec3(200.0)}, tree, scratch, kept, &stats), boxes.size());
+    EXPECT_LT(stats.nodes, tree.now().nodes.size() / 20);
+    EXPECT_EQ(queryBox({glm::dvec3(-200.0), glm::dvec3(200.0)}, tree.now(), scratch, kept, &stats), boxes.size());
     EXPECT_EQ(stats.nodes, 1u);
 }
 

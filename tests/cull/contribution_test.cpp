@@ -10,28 +10,11 @@
 
 #include "sightline/base/random.h"
 #include "sightline/cull/distance.h"
-#include "tests/support_targets.h"
+#include "tests/support/targets.h"
+#include "tests/support/views.h"
 
 namespace sightline {
 namespace {
-
-/// Views of every kind: angles from 1 to 130 degrees, parallel, off-centre, stretched, far from the origin.
-View randomView(Random& random) {
-    View view;
-    view.width = 50 + static_cast<uint32_t>(random.below(2000));
-    view.height = 50 + static_cast<uint32_t>(random.below(2000));
-    const auto unit = [&] { return glm::dvec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
-    const glm::dvec3 eye = (random.below(2) ? 1e5 : 0.0) * glm::dvec3(1, -1, 0.5) + 5.0 * unit();
-    view.view = lookAt(eye, eye + unit(), unit());
-    const double aspect = random.uniform(0.5, 2);
-    if (random.below(3) == 0) {
-        view.projection = orthographic(random.uniform(0.1, 30), aspect, 0.1, 400.0);
-    } else {
-        view.projection = perspective(glm::radians(random.uniform(1, 130)), aspect, 0.1);
-        if (random.below(2)) view.projection[2] += glm::dvec4(random.uniform(-2, 2), random.uniform(-2, 2), 0, 0);
-    }
-    return view;
-}
 
 glm::dvec3 directionOf(const View& view) { return -glm::transpose(glm::dmat3(view.view))[2]; }
 
@@ -77,7 +60,7 @@ TEST(Contribution, IsTheAreaOfTheSpheresImageInEveryKindOfView) {
         Random random(1);
         int measured = 0;
         for (int round = 0; round < 400; ++round) {
-            const View view = randomView(random);
+            const View view = test::anyView(random, (random.below(2) ? 1e5 : 0.0) * glm::dvec3(1, -1, 0.5));
             const glm::dvec3 toward = directionOf(view);
             std::vector<Box3d> boxes(8);
             for (Box3d& box : boxes) {
@@ -145,7 +128,7 @@ TEST(Contribution, ANodePromisesForAllBoxesInsideAndForTheirDistances) {
         Random random(2);
         int bounded = 0;
         for (int round = 0; round < 4000; ++round) {
-            const View view = randomView(random);
+            const View view = test::anyView(random, (random.below(2) ? 1e5 : 0.0) * glm::dvec3(1, -1, 0.5));
             const ContributionMeasure size = makeContributionMeasure(view);
             const DistanceMeasure distance = makeDistanceMeasure(view);
             const glm::dvec3 center = directionOf(view) * random.uniform(-5, 90) +
@@ -185,7 +168,7 @@ TEST(Distance, IsToTheNearestPointAndInParallelViewsTheDepth) {
     test::forEachTarget([](const std::string& target) {
         Random random(3);
         for (int round = 0; round < 2000; ++round) {
-            const View view = randomView(random);
+            const View view = test::anyView(random, (random.below(2) ? 1e5 : 0.0) * glm::dvec3(1, -1, 0.5));
             std::vector<Box3d> boxes(8);
             for (Box3d& box : boxes)
                 for (int axis = 0; axis < 3; ++axis) {
@@ -219,15 +202,15 @@ TEST(Distance, IsToTheNearestPointAndInParallelViewsTheDepth) {
 TEST(Distance, ReachesFartherWhereTheViewEnlarges) {
     View view;
     view.projection = perspective(glm::radians(60.0), 16.0 / 9.0, 0.1);
-    EXPECT_EQ(distanceZoom(view), 1.0);
-    view.max_distance_fov = glm::radians(60.0);
-    EXPECT_NEAR(distanceZoom(view), 1.0, 1e-12);
+    EXPECT_EQ(distanceZoom(view, 0), 1.0);
+    const double fov = glm::radians(60.0);
+    EXPECT_NEAR(distanceZoom(view, fov), 1.0, 1e-12);
     view.projection = perspective(glm::radians(6.0), 4.0, 0.1);
-    EXPECT_NEAR(distanceZoom(view), std::tan(glm::radians(30.0)) / std::tan(glm::radians(3.0)), 1e-9);
+    EXPECT_NEAR(distanceZoom(view, fov), std::tan(glm::radians(30.0)) / std::tan(glm::radians(3.0)), 1e-9);
     view.projection[2] += glm::dvec4(0.7, -1.3, 0, 0);  // off-centre
-    EXPECT_NEAR(distanceZoom(view), std::tan(glm::radians(30.0)) / std::tan(glm::radians(3.0)), 1e-9);
+    EXPECT_NEAR(distanceZoom(view, fov), std::tan(glm::radians(30.0)) / std::tan(glm::radians(3.0)), 1e-9);
     view.projection = orthographic(2, 1, 0.1, 10);
-    EXPECT_EQ(distanceZoom(view), 1.0);
+    EXPECT_EQ(distanceZoom(view, fov), 1.0);
 }
 
 }  // namespace

@@ -6,24 +6,24 @@
 
 #include <algorithm>
 
-#include "sightline/prepare/culling_volume.h"
-#include "sightline/prepare/facing_clusters.h"
-#include "sightline/prepare/merge_facing.h"
+#include "sightline/prepare/facing/culling_volume.h"
+#include "sightline/prepare/facing/facing_clusters.h"
+#include "sightline/prepare/facing/merge_facing.h"
 #include "tests/cull/facing_oracle.h"
-#include "tests/support_targets.h"
+#include "tests/support/targets.h"
 
 namespace sightline {
 namespace {
 
 /// Clusters of 1 to 40 triangles, about a place and about a direction each, from flat to turned all ways.
 struct World {
-    test::Triangles mesh;
+    test::TestMesh mesh;
     std::vector<uint32_t> triangles, sizes;
 
     World(Random& random, size_t clusters, const glm::dvec3& middle) {
         for (size_t c = 0; c < clusters; ++c) {
             const uint32_t count = 1 + static_cast<uint32_t>(random.below(40));
-            const glm::dvec3 place = middle + test::randomVector(random, 5.0), ahead = test::randomDirection(random);
+            const glm::dvec3 place = middle + test::randomVector(random, 5.0), ahead = test::randomUnit(random);
             const double size = random.uniform(0.05, 1.0);
             const double spread = random.below(4) == 0 ? 0.0 : random.below(8) == 0 ? 3.0 : random.uniform(0.0, 0.8);
             for (uint32_t i = 0; i < count; ++i) {
@@ -53,7 +53,7 @@ int sideOf(const MeshView& mesh, size_t triangle, const FacingEye& eye) {
 }
 
 FacingEye randomEye(Random& random, const glm::dvec3& middle) {
-    if (random.below(5) == 0) return {test::randomDirection(random), 0.0, 0.0, FrontFace::kCounterClockwise};
+    if (random.below(5) == 0) return {test::randomUnit(random), 0.0, 0.0, FrontFace::kCounterClockwise};
     const double far_away = std::ldexp(1.0, static_cast<int>(random.below(12)) - 1);
     return {middle + test::randomVector(random, far_away), 1.0, 0.0, FrontFace::kCounterClockwise};
 }
@@ -132,7 +132,7 @@ TEST(FacingClusters, TheTestsTogetherFindTheUnionAndClockwiseFrontsTheOpposite) 
 TEST(FacingClusters, TheSelectionAsOftenPrintedCullsAFrontFace) {
     // Normals (1, 0, 0) and (-1, 0, 0) at the origin, eye at (10, 0, 0): taking the largest normal for a negative eye and the
     // least for a positive one, as lecture notes have it, gives -10, "all back"; yet one faces the eye.
-    test::Triangles mesh;
+    test::TestMesh mesh;
     mesh.add({0, 0, 0}, {0, 1, 0}, {0, 0, 1});
     mesh.add({0, 0, 0}, {0, 0, 1}, {0, 1, 0});
     const std::vector<uint32_t> triangles{0, 1}, sizes{2};
@@ -145,7 +145,7 @@ TEST(FacingClusters, TheSelectionAsOftenPrintedCullsAFrontFace) {
 }
 
 TEST(FacingClusters, AFlatClusterCullsItsHalfSpaceWithoutEnd) {
-    test::Triangles mesh;
+    test::TestMesh mesh;
     mesh.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     mesh.add({1, 0, 0}, {1, 1, 0}, {0, 1, 0});
     const std::vector<uint32_t> triangles{0, 1}, sizes{2};
@@ -166,7 +166,7 @@ TEST(FacingTree, SettlesWhatItsClustersSayAndNothingElse) {
     size_t asked = 0, found = 0, nodes = 0, clusters_asked = 0;
     for (size_t round = 0; round < rounds && !HasFailure(); ++round) {
         // A merged sheet with waves: neighbours face alike.
-        test::Triangles mesh;
+        test::TestMesh mesh;
         const int side = 40;
         const double wave = random.uniform(0.0, 0.3);
         for (int i = 0; i < side; ++i)
@@ -282,7 +282,7 @@ TEST(FacingClusters, RemainingRangesAreAllThatIsNotCulled) {
 }
 
 TEST(FacingClusters, WhatHasNoNormalIsNeverCulledAndAnUnknownEyeCullsNothing) {
-    test::Triangles mesh;
+    test::TestMesh mesh;
     mesh.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     mesh.add({0, 0, 0}, {1, 0, 0}, {2, 0, 0});  // a line
     mesh.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});

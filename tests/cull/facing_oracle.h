@@ -10,6 +10,8 @@
 
 #include "sightline/base/random.h"
 #include "sightline/geom/mesh_view.h"
+#include "tests/support/meshes.h"
+#include "tests/support/random.h"
 
 namespace sightline::test {
 
@@ -41,42 +43,10 @@ inline Quad trueFacing(const MeshView& mesh, size_t triangle, const glm::dvec3& 
     return trueFacing(corner(0), corner(1), corner(2), quad(eye), w);
 }
 
-/// Cases that a test of random ones makes: SIGHTLINE_LONG_TESTS=1 makes them ten million.
-inline size_t casesToMake(size_t shorter) {
-    const char* wish = std::getenv("SIGHTLINE_LONG_TESTS");
-    return wish && *wish && *wish != '0' ? 10000000 : shorter;
-}
-
-inline glm::dvec3 randomVector(Random& random, double size) {
-    const double x = random.uniform(-size, size), y = random.uniform(-size, size);
-    return {x, y, random.uniform(-size, size)};
-}
-
-inline glm::dvec3 randomDirection(Random& random) {
-    for (;;) {
-        const glm::dvec3 v = randomVector(random, 1.0);
-        const double length = glm::length(v);
-        if (length > 0.1 && length <= 1.0) return v / length;
-    }
-}
-
-struct Triangles {
-    std::vector<glm::vec3> positions;
-    std::vector<uint32_t> indices;
-    MeshView view() const { return {positions, indices}; }
-
-    void add(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-        for (const glm::vec3& p : {a, b, c}) {
-            indices.push_back(static_cast<uint32_t>(positions.size()));
-            positions.push_back(p);
-        }
-    }
-};
-
 /// Triangles of all sorts around a place: some seen nearly or exactly edge-on from the eye, some nearly lines, some without area.
-inline Triangles randomTriangles(Random& random, size_t count, const glm::dvec3& place, double size,
-                                 const glm::dvec3& eye) {
-    Triangles mesh;
+inline TestMesh randomTriangles(Random& random, size_t count, const glm::dvec3& place, double size,
+                                const glm::dvec3& eye) {
+    TestMesh mesh;
     for (size_t i = 0; i < count; ++i) {
         const double small = size * std::ldexp(1.0, -static_cast<int>(random.below(12)));
         const glm::dvec3 a = place + randomVector(random, size), b = a + randomVector(random, small);

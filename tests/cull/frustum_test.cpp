@@ -7,37 +7,11 @@
 #include <limits>
 
 #include "sightline/base/random.h"
-#include "tests/support_targets.h"
+#include "tests/support/targets.h"
+#include "tests/support/views.h"
 
 namespace sightline {
 namespace {
-
-/// Views of every kind: angles from 1 to 150 degrees, parallel, off-centre, far from the origin.
-View randomView(Random& random, double far_from_origin) {
-    View view;
-    view.width = 1 + static_cast<uint32_t>(random.below(2000));
-    view.height = 1 + static_cast<uint32_t>(random.below(2000));
-    const auto unit = [&] { return glm::dvec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
-    const glm::dvec3 eye = far_from_origin * glm::dvec3(1, -1, 0.5) + 5.0 * unit();
-    view.view = lookAt(eye, eye + unit(), {0, 1, 0});
-    const double aspect = double(view.width) / view.height;
-    switch (random.below(4)) {
-        case 0:
-            view.projection = perspective(glm::radians(random.uniform(1, 150)), aspect, 0.1);
-            break;
-        case 1:
-            view.projection = perspective(glm::radians(random.uniform(1, 150)), aspect, 0.01, 30.0);
-            break;
-        case 2:
-            view.projection = orthographic(random.uniform(0.1, 30), aspect, 0.1, 40.0);
-            break;
-        default:
-            view.projection = perspective(1.0, aspect, 0.1);
-            view.projection[2][0] = random.uniform(-1, 1);  // off-centre
-            view.projection[2][1] = random.uniform(-1, 1);
-    }
-    return view;
-}
 
 /// A point inside the view volume by the definition of clip space, in double, found by unprojecting.
 glm::dvec3 pointInside(Random& random, const View& view) {
@@ -66,7 +40,7 @@ TEST(Frustum, KeepsEveryBoxThatHoldsAPointOfTheView) {
         Random random(1);
         for (int round = 0; round < 4000; ++round) {
             const double far = round % 3 == 0 ? 1e6 : round % 3 == 1 ? 1e9 : 0.0;
-            const View view = randomView(random, far);
+            const View view = test::anyView(random, far * glm::dvec3(1, -1, 0.5));
             const Frustum frustum = makeFrustum(view);
             Box3d boxes[8];
             for (Box3d& box : boxes) {
@@ -89,7 +63,7 @@ TEST(Frustum, KeepsEveryBoxThatHoldsAPointOfTheView) {
 TEST(Frustum, AParentInsideAPlaneSparesItsChildrenThatPlane) {
     Random random(2);
     for (int round = 0; round < 2000; ++round) {
-        const View view = randomView(random, 0.0);
+        const View view = test::anyView(random, 0.0 * glm::dvec3(1, -1, 0.5));
         const Frustum frustum = makeFrustum(view);
         Box3d boxes[8];
         for (int i = 0; i < 8; ++i) {
@@ -141,7 +115,7 @@ TEST(Frustum, TheFlatListKeepsWhatTheNodesKeepAndNoMoreThanItsMargin) {
     test::forEachTarget([](const std::string& target) {
         Random random(3);
         for (int round = 0; round < 20; ++round) {
-            const View view = randomView(random, 0.0);
+            const View view = test::anyView(random, 0.0 * glm::dvec3(1, -1, 0.5));
             const Frustum frustum = makeFrustum(view);
             const size_t count = 1000 + random.below(40), padded = (count + 15) / 16 * 16;
             std::vector<float> arrays[6];

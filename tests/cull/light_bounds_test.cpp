@@ -10,26 +10,22 @@
 #include <glm/gtc/constants.hpp>
 
 #include "sightline/base/random.h"
+#include "tests/support/random.h"
 
 namespace sightline {
 namespace {
 
 constexpr double kPi = glm::pi<double>();
 
-glm::dvec3 unit(Random& random) {
-    const double z = random.uniform(-1, 1), turn = random.uniform(0, 2 * kPi), r = std::sqrt(1 - z * z);
-    return {r * std::cos(turn), r * std::sin(turn), z};
-}
-
 Light someLight(Random& random) {
     Light light;
     light.kind = random.below(4) ? LightKind::kSpot : LightKind::kPoint;
-    light.position = std::pow(10.0, random.uniform(-2, 4)) * unit(random);
-    light.direction = std::pow(10.0, random.uniform(-3, 3)) * unit(random);
+    light.position = std::pow(10.0, random.uniform(-2, 4)) * test::randomUnit(random);
+    light.direction = std::pow(10.0, random.uniform(-3, 3)) * test::randomUnit(random);
     if (random.below(4) == 0) {  // along an axis, or nearly so
         light.direction = glm::dvec3(0.0);
         light.direction[static_cast<int>(random.below(3))] = random.below(2) ? 2.0 : -2.0;
-        if (random.below(2)) light.direction += 1e-8 * unit(random);
+        if (random.below(2)) light.direction += 1e-8 * test::randomUnit(random);
     }
     constexpr double kAngles[] = {kPi / 4, kPi / 2, 1e-3, kPi / 4 + 1e-9, kPi};
     light.half_angle = random.below(4) ? random.uniform(0.01, random.below(3) ? 1.5 : kPi) : kAngles[random.below(5)];
@@ -139,7 +135,7 @@ TEST(LightBounds, NoSmallerSphereHoldsWhatIsLit) {
             for (int i = 0; i < 64; ++i) look(lit.point(kPi / 2, 2 * kPi * i / 64, 1.0));
         ASSERT_FALSE(touched.empty()) << "round " << round;
         for (int i = 0; i < 50; ++i) {
-            const glm::dvec3 way = unit(random);
+            const glm::dvec3 way = test::randomUnit(random);
             double least = std::numeric_limits<double>::infinity();
             for (const glm::dvec3& t : touched) least = std::min(least, glm::dot(t, way));
             EXPECT_LE(least, 0.01 * sphere.radius) << "round " << round;

@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "sightline/base/random.h"
-#include "sightline/prepare/occluder.h"
-#include "sightline/space/bvh.h"
-#include "tests/support_targets.h"
+#include "sightline/prepare/occluder/occluder.h"
+#include "sightline/tree/bvh.h"
+#include "tests/support/meshes.h"
+#include "tests/support/targets.h"
+#include "tests/support/views.h"
 
 namespace sightline {
 namespace {
@@ -19,16 +21,16 @@ namespace {
 using Real = long double;
 using Real3 = glm::vec<3, Real, glm::defaultp>;
 
-struct MeshData {
-    std::vector<glm::vec3> positions;
-    std::vector<uint32_t> indices;
+View viewAt(const glm::dvec3& eye, const glm::dvec3& target, double near) {
+    return test::viewAt(eye, target, {.degrees = 68, .width = 1920, .height = 1280, .z_near = near});
+}
+
+struct MeshData : test::TestMesh {
     bool double_sided = false;
 
-    void add(uint32_t a, uint32_t b, uint32_t c) { indices.insert(indices.end(), {a, b, c}); }
-    void quad(uint32_t a, uint32_t b, uint32_t c, uint32_t d) { add(a, b, c), add(a, c, d); }
     Occluder prepared() const {
         const std::vector<uint8_t> both(indices.size() / 3, double_sided);
-        return prepareOccluder({positions, indices}, {}, both);
+        return prepareOccluder(view(), {}, both);
     }
 };
 
@@ -40,22 +42,14 @@ MeshData wall(uint32_t columns, uint32_t rows, float width, float height, float 
             const float u = float(x) / float(columns) - 0.5f, v = float(y) / float(rows) - 0.5f;
             mesh.positions.push_back({width * u, height * v, bend * (u * u - v * v)});
         }
-    const auto at = [&](uint32_t x, uint32_t y) { return y * (columns + 1) + x; };
-    for (uint32_t y = 0; y < rows; ++y)
-        for (uint32_t x = 0; x < columns; ++x) mesh.quad(at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1));
+    mesh.addGrid(columns + 1, rows + 1);
     return mesh;
 }
 
 MeshData box(float x, float y, float z, bool inward = false) {
-    MeshData mesh;
-    for (int i = 0; i < 8; ++i)
-        mesh.positions.push_back(
-            {x * (float(i & 1) - 0.5f), y * (float(i >> 1 & 1) - 0.5f), z * (float(i >> 2) - 0.5f)});
-    const uint32_t faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-    for (const auto& f : faces) {
-        if (inward) mesh.quad(f[3], f[2], f[1], f[0]);
-        else mesh.quad(f[0], f[1], f[2], f[3]);
-    }
+    const glm::vec3 half(0.5f * x, 0.5f * y, 0.5f * z);
+    MeshData mesh{test::boxMesh(-half, half)};
+    if (inward) std::reverse(mesh.indices.begin(), mesh.indices.end());
     return mesh;
 }
 
@@ -69,10 +63,10 @@ MeshData prism(uint32_t sides, float radius, float height) {
     }
     for (uint32_t k = 0; k < sides; ++k) {
         const uint32_t n = (k + 1) % sides;
-        mesh.quad(2 * k, 2 * n, 2 * n + 1, 2 * k + 1);
+        mesh.fan({2 * k, 2 * n, 2 * n + 1, 2 * k + 1});
         if (k > 0 && n > 0) {
-            mesh.add(1, 2 * k + 1, 2 * n + 1);
-            mesh.add(0, 2 * n, 2 * k);
+            mesh.fan({1, 2 * k + 1, 2 * n + 1});
+            mesh.fan({0, 2 * n, 2 * k});
         }
     }
     return mesh;
@@ -84,7 +78,7 @@ MeshData randomMesh(Random& random) {
     switch (random.below(8)) {
         case 0: {
             for (int k = 0; k < 3; ++k) mesh.positions.push_back({side(), side(), side()});
-            mesh.add(0, 1, 2);
+            mesh.fan({0, 1, 2});
             break;
         }
         case 1:
@@ -110,7 +104,7 @@ MeshData randomMesh(Random& random) {
             for (int k = 0; k < 10; ++k) {
                 const uint32_t a = uint32_t(random.below(12)), b = uint32_t(random.below(12)),
                                c = uint32_t(random.below(12));
-                if (a != b && b != c && c != a) mesh.add(a, b, c);
+                if (a != b && b != c && c != a) mesh.fan({a, b, c});
             }
         }
     }
@@ -205,9 +199,7 @@ struct Case {
     Case(Random& random) {
         const double scale = std::pow(10.0, random.uniform(-3, 4));
         const double far = random.below(3) == 0 ? scale * std::pow(10.0, random.uniform(1, 13)) : 0.0;
-        const auto unit = [&] {
-            return glm::dvec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-        };
+        const auto unit = [&] { return test::randomVector(random, 1.0); };
         mesh = randomMesh(random);
         transform = randomTransform(random, scale);
         const glm::dvec3 place = far * unit();
@@ -264,27 +256,41 @@ struct Case {
     }
 };
 
+/// A mesh as an occluder, placed, and looked at.
+struct Placed {
+    const Occluder occluder;
+    const VolumeParts parts;
+    const Screen screen;
+    const VolumeView shared;
+    const VolumePlace place;
+
+    Placed(const MeshData& mesh, const View& view, const glm::dmat4& transform = glm::dmat4(1.0),
+           const glm::dvec3& origin = glm::dvec3(0.0))
+        : occluder(mesh.prepared()),
+          parts(findVolumeParts(occluder)),
+          screen(makeScreen(view, 640)),
+          shared(makeVolumeView(view, screen, origin - screen.eye)),
+          place(placeParts(shared, parts, occluder.bounds, transform)) {}
+    explicit Placed(const Case& test) : Placed(test.mesh, test.view, test.transform, test.origin) {}
+};
+
 TEST(OccluderVolumes, HideNothingThatAPointSeesPastTheOccluder) {
     Random random(33);
     uint64_t asked = 0, hidden = 0, volumes = 0, reaching = 0;
     for (uint32_t round = 0; asked < 1000000; ++round) {
         const Case test(random);
-        const Occluder occluder = test.mesh.prepared();
-        const VolumeParts parts = findVolumeParts(occluder);
-        const Screen screen = makeScreen(test.view, 640);
-        const VolumeView shared = makeVolumeView(test.view, screen, test.origin - screen.eye);
-        ASSERT_TRUE(shared.usable);
-        const VolumePlace place = placeParts(shared, parts, occluder.bounds, test.transform);
-        const EyeBoxes boxes = eyeBoxes(test.node, test.origin - screen.eye);
+        const Placed placed(test);
+        ASSERT_TRUE(placed.shared.usable);
+        const EyeBoxes boxes = eyeBoxes(test.node, test.origin - placed.screen.eye);
         const Oracle oracle(test.view, test.mesh, test.transform);
         bool across = false;
         for (const Real3& corner : oracle.corners) across |= oracle.nearAt(corner) < 0;
-        if (parts.parts.empty()) asked += 8;
-        for (uint32_t part = 0; part < parts.parts.size(); ++part) {
+        if (placed.parts.parts.empty()) asked += 8;
+        for (uint32_t part = 0; part < placed.parts.parts.size(); ++part) {
             asked += 8;
             OccluderVolume volume;
             VolumeOutline outline;
-            if (!makeVolume(shared, place, part, volume, outline)) continue;
+            if (!makeVolume(placed.shared, placed.place, part, volume, outline)) continue;
             ++volumes;
             const VolumeAnswer answer = testVolume(volume, boxes, volume.allPlanes());
             EXPECT_EQ(answer.hidden & answer.outside, 0u);
@@ -308,19 +314,16 @@ TEST(OccluderVolumes, HideNothingThatAPointSeesPastTheOccluder) {
 /// Aimed at the edges of the volume: boxes without extent, ever closer to a side.
 TEST(OccluderVolumes, AreAsTightAsFloatAllows) {
     const MeshData mesh = wall(1, 1, 2, 2);
-    const Occluder occluder = mesh.prepared();
-    const VolumeParts parts = findVolumeParts(occluder);
     for (const double far : {0.0, 1e6}) {
         View view;
         view.view = lookAt(glm::dvec3(far, 0, 2), glm::dvec3(far, 0, 0), {0, 1, 0});
         view.projection = perspective(1.5, 1.0, 0.1);
         glm::dmat4 transform(1.0);
         transform[3][0] = far;
-        const Screen screen = makeScreen(view, 640);
-        const VolumeView shared = makeVolumeView(view, screen, -screen.eye + glm::dvec3(far, 0, 0));
+        const Placed placed(mesh, view, transform, glm::dvec3(far, 0, 0));
         OccluderVolume volume;
         VolumeOutline outline;
-        ASSERT_TRUE(makeVolume(shared, placeParts(shared, parts, occluder.bounds, transform), 0, volume, outline));
+        ASSERT_TRUE(makeVolume(placed.shared, placed.place, 0, volume, outline));
         EXPECT_EQ(volume.planes, 5u);
         // At z = -2 the shadow reaches to 2; the wall itself stands at 0.
         const auto hides = [&](double x, double z) {
@@ -342,15 +345,11 @@ TEST(OccluderVolumes, InheritPlanesWithoutLoss) {
     int compared = 0;
     for (int round = 0; round < 3000; ++round) {
         const Case test(random);
-        const Occluder occluder = test.mesh.prepared();
-        const VolumeParts parts = findVolumeParts(occluder);
-        const Screen screen = makeScreen(test.view, 640);
-        const VolumeView shared = makeVolumeView(test.view, screen, test.origin - screen.eye);
-        const VolumePlace place = placeParts(shared, parts, occluder.bounds, test.transform);
-        const EyeBoxes boxes = eyeBoxes(test.node, test.origin - screen.eye);
+        const Placed placed(test);
+        const EyeBoxes boxes = eyeBoxes(test.node, test.origin - placed.screen.eye);
         OccluderVolume volume;
         VolumeOutline outline;
-        if (parts.parts.empty() || !makeVolume(shared, place, 0, volume, outline)) continue;
+        if (placed.parts.parts.empty() || !makeVolume(placed.shared, placed.place, 0, volume, outline)) continue;
         EyeBoxes whole;  // slot 0 holds all eight
         for (int axis = 0; axis < 3; ++axis)
             for (int i = 0; i < 8; ++i) {
@@ -376,15 +375,12 @@ TEST(OccluderVolumes, AreTheSameOnEveryInstructionSet) {
         std::vector<VolumeAnswer> answers;
         for (int round = 0; round < 500; ++round) {
             const Case test(random);
-            const Occluder occluder = test.mesh.prepared();
-            const VolumeParts parts = findVolumeParts(occluder);
-            const Screen screen = makeScreen(test.view, 640);
-            const VolumeView shared = makeVolumeView(test.view, screen, test.origin - screen.eye);
-            const VolumePlace place = placeParts(shared, parts, occluder.bounds, test.transform);
+            const Placed placed(test);
             OccluderVolume volume;
             VolumeOutline outline;
-            if (parts.parts.empty() || !makeVolume(shared, place, 0, volume, outline)) continue;
-            answers.push_back(testVolume(volume, eyeBoxes(test.node, test.origin - screen.eye), volume.allPlanes()));
+            if (placed.parts.parts.empty() || !makeVolume(placed.shared, placed.place, 0, volume, outline)) continue;
+            answers.push_back(
+                testVolume(volume, eyeBoxes(test.node, test.origin - placed.screen.eye), volume.allPlanes()));
         }
         if (expected.empty()) expected = answers;
         ASSERT_EQ(answers.size(), expected.size());
@@ -402,16 +398,11 @@ TEST(OccluderVolumes, AreTheSameOnEveryInstructionSet) {
 }
 
 TEST(OccluderVolumes, KeepWhatIsNotANumber) {
-    const Occluder occluder = wall(1, 1, 2, 2).prepared();
-    const VolumeParts parts = findVolumeParts(occluder);
-    View view;
-    view.view = lookAt({0, 0, 2}, {0, 0, 0}, {0, 1, 0});
-    view.projection = perspective(1, 1, 0.1);
-    const Screen screen = makeScreen(view, 640);
-    const VolumeView shared = makeVolumeView(view, screen, -screen.eye);
+    const View view = viewAt({0, 0, 2}, {0, 0, 0}, 0.1);
+    const Placed placed(wall(1, 1, 2, 2), view);
     OccluderVolume volume;
     VolumeOutline outline;
-    ASSERT_TRUE(makeVolume(shared, placeParts(shared, parts, occluder.bounds, glm::dmat4(1.0)), 0, volume, outline));
+    ASSERT_TRUE(makeVolume(placed.shared, placed.place, 0, volume, outline));
     EyeBoxes boxes;
     for (int i = 0; i < 8; ++i)
         for (int axis = 0; axis < 3; ++axis) boxes.min[axis][i] = boxes.max[axis][i] = axis == 2 ? -5.0f : 0.0f;
@@ -425,40 +416,30 @@ TEST(OccluderVolumes, KeepWhatIsNotANumber) {
     EXPECT_EQ(testVolume(volume, boxes, volume.allPlanes()).hidden, 0xe0u);
     glm::dmat4 flat(1.0);
     flat[2] = glm::dvec4(0.0);
-    EXPECT_FALSE(placeParts(shared, parts, occluder.bounds, flat).usable) << "a transform without volume";
+    EXPECT_FALSE(placeParts(placed.shared, placed.parts, placed.occluder.bounds, flat).usable)
+        << "a transform without volume";
     flat[2][2] = none;
-    EXPECT_FALSE(placeParts(shared, parts, occluder.bounds, flat).usable);
+    EXPECT_FALSE(placeParts(placed.shared, placed.parts, placed.occluder.bounds, flat).usable);
 }
 
 /// How many volumes of the mesh hide a box.
 int hiddenBehind(const MeshData& mesh, const View& view, const glm::dvec3& low, const glm::dvec3& high,
                  const glm::dmat4& transform = glm::dmat4(1.0)) {
-    const Occluder occluder = mesh.prepared();
-    const VolumeParts parts = findVolumeParts(occluder);
-    const Screen screen = makeScreen(view, 640);
-    const VolumeView shared = makeVolumeView(view, screen, -screen.eye);
-    const VolumePlace place = placeParts(shared, parts, occluder.bounds, transform);
+    const Placed placed(mesh, view, transform);
     EyeBoxes boxes;
     for (int i = 0; i < 8; ++i)
         for (int axis = 0; axis < 3; ++axis) {
-            boxes.min[axis][i] = float(low[axis] - screen.eye[axis]);
-            boxes.max[axis][i] = float(high[axis] - screen.eye[axis]);
+            boxes.min[axis][i] = float(low[axis] - placed.screen.eye[axis]);
+            boxes.max[axis][i] = float(high[axis] - placed.screen.eye[axis]);
         }
     int hiding = 0;
-    for (uint32_t part = 0; part < parts.parts.size(); ++part) {
+    for (uint32_t part = 0; part < placed.parts.parts.size(); ++part) {
         OccluderVolume volume;
         VolumeOutline outline;
-        if (!shared.usable || !makeVolume(shared, place, part, volume, outline)) continue;
+        if (!placed.shared.usable || !makeVolume(placed.shared, placed.place, part, volume, outline)) continue;
         hiding += testVolume(volume, boxes, volume.allPlanes()).hidden == 0xff;
     }
     return hiding;
-}
-
-View viewAt(const glm::dvec3& eye, const glm::dvec3& target, double near) {
-    View view;
-    view.view = lookAt(eye, target, {0, 1, 0});
-    view.projection = perspective(1.2, 1.5, near);
-    return view;
 }
 
 TEST(OccluderVolumes, CountOnlyWhatIsDrawnBeyondTheNearPlane) {
@@ -536,17 +517,14 @@ TEST(VolumeParts, JoinAWallAndABox) {
 }
 
 TEST(VolumeParts, MakeOneVolumeOfABoxWithTheSilhouetteOfThreeFaces) {
-    const Occluder occluder = box(2, 2, 2).prepared();
-    const VolumeParts parts = findVolumeParts(occluder);
     const View view = viewAt({4, 3, 5}, {0, 0, 0}, 0.1);
-    const Screen screen = makeScreen(view, 640);
-    const VolumeView shared = makeVolumeView(view, screen, -screen.eye);
+    const Placed placed(box(2, 2, 2), view);
     OccluderVolume volume;
     VolumeOutline outline;
-    ASSERT_TRUE(makeVolume(shared, placeParts(shared, parts, occluder.bounds, glm::dmat4(1.0)), 0, volume, outline));
+    ASSERT_TRUE(makeVolume(placed.shared, placed.place, 0, volume, outline));
     EXPECT_EQ(outline.count, 6u);
     EXPECT_EQ(volume.planes, 9u);
-    EXPECT_GT(visiblePixels(shared, outline), 1000);
+    EXPECT_GT(visiblePixels(placed.shared, outline), 1000);
     // More than any face hides by itself.
     EXPECT_EQ(hiddenBehind(box(2, 2, 2), view, {-3.6, -3.1, -4.5}, {-2.4, -1.4, -3}), 1);
     glm::dmat4 mirror(1.0);
@@ -555,18 +533,14 @@ TEST(VolumeParts, MakeOneVolumeOfABoxWithTheSilhouetteOfThreeFaces) {
 }
 
 TEST(VolumeParts, CutTheCornersOfAnOutlineWithTooMany) {
-    const Occluder occluder = prism(40, 2, 3).prepared();
-    const VolumeParts parts = findVolumeParts(occluder);
     const View view = viewAt({0, 20, 0.1}, {0, 0, 0}, 0.1);
-    const Screen screen = makeScreen(view, 640);
-    const VolumeView shared = makeVolumeView(view, screen, -screen.eye);
-    const VolumePlace place = placeParts(shared, parts, occluder.bounds, glm::dmat4(1.0));
+    const Placed placed(prism(40, 2, 3), view);
     double most = 0;
-    for (uint32_t part = 0; part < parts.parts.size(); ++part) {
+    for (uint32_t part = 0; part < placed.parts.parts.size(); ++part) {
         OccluderVolume volume;
         VolumeOutline outline;
-        if (!makeVolume(shared, place, part, volume, outline)) continue;
-        if (outline.count > OccluderVolume::kMaxSides) most = std::max(most, visiblePixels(shared, outline));
+        if (!makeVolume(placed.shared, placed.place, part, volume, outline)) continue;
+        if (outline.count > OccluderVolume::kMaxSides) most = std::max(most, visiblePixels(placed.shared, outline));
         EXPECT_LE(volume.planes, OccluderVolume::kMaxPlanes);
     }
     EXPECT_GT(most, 0);

@@ -7,7 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "sightline/base/random.h"
-#include "tests/support_targets.h"
+#include "sightline/cull/frustum.h"
+#include "tests/support/targets.h"
 
 namespace sightline {
 namespace {

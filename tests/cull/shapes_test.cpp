@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "sightline/cull/triangles.h"
-#include "tests/raster/tiles_fixture.h"
+#include "tests/buffer/tiles_fixture.h"
 
 namespace sightline::test {
 namespace {
@@ -64,9 +64,9 @@ View viewOf(int round) {
 TEST(Shapes, AnswerForBoxesHullsAndTrianglesWhatRaysSay) {
     Count boxes, hulls, points, triangles;
     uint64_t tighter = 0;
-    std::vector<glm::vec3> corners;
-    for (int i = 0; i < 8; ++i) corners.push_back({float(i & 1), float(i >> 1 & 1), float(i >> 2)});
-    const std::vector<uint32_t> faces = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
+    const std::vector<glm::vec3> corners = test::boxMesh().positions;
+    std::vector<uint32_t> faces;
+    for (const auto& face : test::kBoxFaces) faces.insert(faces.end(), face, face + 4);
     const std::vector<uint32_t> sizes(6, 4);
     const Box3d box{glm::dvec3(0), glm::dvec3(1)};
     for (int round = 0; round < 60; ++round) {

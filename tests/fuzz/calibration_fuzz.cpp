@@ -7,10 +7,11 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "sightline/report/calibration_json.h"
+#include "sightline/tools/report/run/calibration_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     using namespace sightline;
+    using namespace sightline::tools;
     const Result<FacingCosts> read = parseCalibration({reinterpret_cast<const char*>(data), size}, "c.json");
     if (read.ok()) {
         for (const double cost : {read->test, read->dropped, read->drawn})

@@ -7,10 +7,11 @@
 #include <span>
 
 #include "../import/gltf_check.h"
-#include "sightline/import/gltf.h"
+#include "sightline/tools/import/gltf/gltf.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     using namespace sightline;
+    using namespace sightline::tools;
     const Result<Scene> scene = parseGltf(std::span(data, size), "fuzz.glb");
     const std::string fault = scene.ok() ? test::sceneFault(*scene) : test::messageFault(scene.error(), "fuzz.glb");
     if (fault.empty()) return 0;

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "sightline/base/bytes.h"
-#include "sightline/run/occlusion_replay.h"
+#include "sightline/query/record/occlusion_replay.h"
 
 namespace {
 
@@ -21,7 +21,7 @@ void look(const sightline::Array<char>& bytes) {
         std::abort();
     }
     if (recordingBytes(*read) != bytes) std::abort();
-    if (read->view.occlusion_size > 512) return;  // sound, and slow
+    if (read->settings.occlusion_size > 512) return;  // sound, and slow
     OcclusionReplay replay(*read);
     const ReplayAnswer answer = replay.run();
     if (!answer.same() && describeTest(*read, answer.different).empty()) std::abort();

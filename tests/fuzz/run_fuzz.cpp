@@ -6,13 +6,14 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "sightline/report/compare_runs.h"
-#include "sightline/report/film.h"
-#include "sightline/report/page.h"
-#include "sightline/report/run_reader.h"
+#include "sightline/tools/report/page/cull_page.h"
+#include "sightline/tools/report/pictures/film.h"
+#include "sightline/tools/report/run/compare_runs.h"
+#include "sightline/tools/report/run/run_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     using namespace sightline;
+    using namespace sightline::tools;
     const Result<RunFile> read = parseRun({reinterpret_cast<const char*>(data), size}, "run.json");
     if (!read.ok()) {
         const std::string& line = read.error().message;

@@ -7,10 +7,11 @@
 #include <span>
 
 #include "../import/gltf_check.h"
-#include "sightline/import/scene_stream.h"
+#include "sightline/tools/import/foreign/scene_stream.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     using namespace sightline;
+    using namespace sightline::tools;
     const SceneStream read = parseSceneStream(std::span(data, size));
     const bool whole = read.end == SceneStream::End::kWhole;
     const std::string fault = whole                        ? test::sceneFault(read.scene)

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/cull/facing_oracle.h"
+#include "tests/support/views.h"
 
 namespace sightline {
 namespace {
@@ -22,15 +23,6 @@ glm::dmat4 randomTransform(Random& random) {
     if (random.below(4) == 0) m[2] = m[0] + 0.5 * m[1] + std::ldexp(1.0, -static_cast<int>(random.below(40))) * m[2];
     m[3] = glm::dvec4(test::randomVector(random, random.below(3) ? 10.0 : 1e6), 1.0);
     return m;
-}
-
-View randomView(Random& random, const glm::dvec3& near_to) {
-    View view;
-    const glm::dvec3 eye = near_to + test::randomVector(random, 20.0);
-    view.view = lookAt(eye, eye + test::randomDirection(random), {0, 1, 0});
-    if (random.below(3) == 0) view.projection = orthographic(10.0, 1.6, 0.1, 100.0);
-    else view.projection = perspective(random.uniform(0.1, 2.5), 1.6, 0.1, random.below(2) ? 1e3 : INFINITY);
-    return view;
 }
 
 QuadVector place(const glm::dmat4& m, const glm::dvec3& p, double w) {
@@ -62,7 +54,7 @@ TEST(FacingEye, LiesNoFartherFromTheTruthThanItSays) {
     int known = 0, useful = 0;
     for (int i = 0; i < 20000; ++i) {
         const glm::dmat4 m = randomTransform(random);
-        const View view = randomView(random, glm::dvec3(m[3]));
+        const View view = test::anyView(random, glm::dvec3(m[3]));
         if (isOrthographic(view)) continue;
         const FacingEye eye = facingEye(view, m);
         if (!eye.known()) continue;
@@ -89,7 +81,7 @@ TEST(FacingEye, FacesTheWayThatTheWorldDoesMirroredOrNot) {
     int judged = 0, mirrored = 0;
     for (int i = 0; i < 100000; ++i) {
         const glm::dmat4 m = randomTransform(random);
-        const View view = randomView(random, glm::dvec3(m[3]));
+        const View view = test::anyView(random, glm::dvec3(m[3]));
         const FacingEye eye = facingEye(view, m);
         if (!eye.known()) continue;
         glm::dvec3 p[3];
@@ -131,7 +123,7 @@ TEST(CornerRays, GoThroughTheCornersOfTheWindow) {
     Random random(83);
     int judged = 0;
     for (int i = 0; i < 1000; ++i) {
-        View view = randomView(random, {0, 0, 0});
+        View view = test::anyView(random, {0, 0, 0});
         view.jitter = 0;
         const glm::dmat4 m = randomTransform(random);
         const CornerRays rays = cornerRays(view, m);

@@ -12,13 +12,10 @@
 #include "sightline/geom/depth_order.h"
 #include "sightline/geom/frustum.h"
 #include "sightline/geom/view_limits.h"
+#include "tests/support/random.h"
 
 namespace sightline {
 namespace {
-
-glm::dvec3 somewhere(Random& random, double size) {
-    return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-}
 
 struct Glass {
     glm::dvec3 center, u, v, normal;
@@ -27,9 +24,9 @@ struct Glass {
 
 Glass madeGlass(Random& random, uint32_t corners, const glm::dvec3& around) {
     Glass glass;
-    glass.center = around + somewhere(random, 3);
-    glass.normal = glm::normalize(somewhere(random, 1));
-    glass.u = glm::normalize(glm::cross(glass.normal, somewhere(random, 1)));
+    glass.center = around + test::randomVector(random, 3);
+    glass.normal = glm::normalize(test::randomVector(random, 1));
+    glass.u = glm::normalize(glm::cross(glass.normal, test::randomVector(random, 1)));
     glass.v = glm::cross(glass.normal, glass.u);
     for (uint32_t i = 0; i < corners; ++i) {
         const double angle = 6.283185307179586 * i / corners;
@@ -42,14 +39,14 @@ TEST(Mirror, HoldsWhatIsReflectedIntoTheEye) {
     Random random(5);
     int seen = 0, beside = 0;
     for (int i = 0; i < 20000; ++i) {
-        const glm::dvec3 around = (i % 5 == 0 ? 1e5 : 1.0) * somewhere(random, 1);
+        const glm::dvec3 around = (i % 5 == 0 ? 1e5 : 1.0) * test::randomVector(random, 1);
         const double scale = 1.0 + glm::length(around);
         const Glass glass = madeGlass(random, 3 + static_cast<uint32_t>(random.below(10)), around);
-        const glm::dvec3 eye = glass.center + somewhere(random, 4);
+        const glm::dvec3 eye = glass.center + test::randomVector(random, 4);
         View view;
         // The eye looks at some point of the glass, off-centre.
         const glm::dvec3 on = glass.center + random.uniform(-0.3, 0.3) * glass.u + random.uniform(-0.3, 0.3) * glass.v;
-        view.view = lookAt(eye, on + somewhere(random, 0.3), somewhere(random, 1));
+        view.view = lookAt(eye, on + test::randomVector(random, 0.3), test::randomVector(random, 1));
         view.projection = i % 3 == 0 ? orthographic(3, 1.5, 0.01, 1e3) : perspective(1.2, 1.5, 0.01);
         view.projection[2][0] += i % 3 == 0 ? 0 : 0.2;
         const auto mirrored = mirroredView(view, glass.outline);

@@ -9,13 +9,10 @@
 #include <limits>
 
 #include "sightline/base/random.h"
+#include "tests/support/random.h"
 
 namespace sightline {
 namespace {
-
-glm::dvec3 somewhere(Random& random, double size) {
-    return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-}
 
 /// The least and the largest distance of a box's corners, in multiples of the normal's length.
 std::pair<double, double> reach(const glm::dvec4& plane, const Box3d& box, const glm::dmat4& transform) {
@@ -35,17 +32,18 @@ TEST(ViewLimits, TellWhatIsWholeAndWhatReachesIn) {
     int whole = 0, cut = 0, in = 0, beside = 0;
     for (int i = 0; i < 20000; ++i) {
         const double away = i % 4 == 0 ? 1e6 : 1.0;
-        const glm::dvec3 eye = away * somewhere(random, 10);
+        const glm::dvec3 eye = away * test::randomVector(random, 10);
         View view;
-        const glm::dvec3 n = somewhere(random, 1), p = eye + somewhere(random, 10);
+        const glm::dvec3 n = test::randomVector(random, 1), p = eye + test::randomVector(random, 10);
         const glm::dvec4 plane =
             std::pow(10.0, random.uniform(-200, 200) * (i % 8 == 0)) * glm::dvec4(n, -glm::dot(n, p));
         (i % 2 ? view.sections : view.window).add(plane);
-        glm::dmat4 transform(glm::dmat3(somewhere(random, 2), somewhere(random, 2), somewhere(random, 2)));
-        transform[3] = glm::dvec4(eye + somewhere(random, 10), 1.0);
+        glm::dmat4 transform(
+            glm::dmat3(test::randomVector(random, 2), test::randomVector(random, 2), test::randomVector(random, 2)));
+        transform[3] = glm::dvec4(eye + test::randomVector(random, 10), 1.0);
         Box3d box;
-        box.grow(somewhere(random, 2));
-        box.grow(somewhere(random, 2));
+        box.grow(test::randomVector(random, 2));
+        box.grow(test::randomVector(random, 2));
         const Box3f packed{glm::vec3(box.min), glm::vec3(box.max)};
         box = {glm::dvec3(packed.min), glm::dvec3(packed.max)};
         const ViewLimits limits = makeViewLimits(view, eye);
@@ -90,9 +88,9 @@ TEST(ViewLimits, ARectangleOfTheImageHoldsWhatItShows) {
         view.jitter = 0.25;
         view.projection = i % 2 ? perspective(1.0, 2.0, 0.1) : orthographic(20, 2.0, 0.1, 50);
         view.projection[2][0] = i % 2 ? 0.3 : 0.0;
-        const glm::dvec3 eye = somewhere(random, 100);
-        view.view = lookAt(eye, eye + somewhere(random, 1), {0, 1, 0});
-        const glm::dvec3 point = eye + somewhere(random, 20);
+        const glm::dvec3 eye = test::randomVector(random, 100);
+        view.view = lookAt(eye, eye + test::randomVector(random, 1), {0, 1, 0});
+        const glm::dvec3 point = eye + test::randomVector(random, 20);
         const glm::dvec4 clip = view.projection * view.view * glm::dvec4(point, 1.0);
         if (!(clip.w > 0)) continue;
         const double x = (0.5 + 0.5 * clip.x / clip.w) * 200, y = (0.5 - 0.5 * clip.y / clip.w) * 100;
@@ -114,9 +112,9 @@ TEST(ViewLimits, AWindowOfAVolumeIsTheVolume) {
     Random random(13);
     for (int i = 0; i < 500; ++i) {
         ViewVolume volume;
-        volume.eye = somewhere(random, 1000);
+        volume.eye = test::randomVector(random, 1000);
         for (int k = 0; k < 5; ++k) {
-            const glm::dvec3 n = somewhere(random, 1);
+            const glm::dvec3 n = test::randomVector(random, 1);
             addPlane(volume, {n, -glm::dot(n, volume.eye) + random.uniform(-1, 3)});
         }
         View view;

@@ -7,16 +7,10 @@
 #include <cmath>
 
 #include "sightline/base/random.h"
+#include "tests/support/random.h"
 
 namespace sightline {
 namespace {
-
-glm::dvec3 randomUnit(Random& random) {
-    for (;;) {
-        const glm::dvec3 v(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-        if (const double length = glm::length(v); length > 0.1 && length < 1.0) return v / length;
-    }
-}
 
 /// Turns a depth of -w to w into one of 0 to w, and that round on request.
 glm::dmat4 withDepth(glm::dmat4 projection, const ClipSpace& space) {
@@ -69,8 +63,8 @@ TEST(ViewVolume, HoldsAPointExactlyIfClipSpaceDoes) {
     for (int round = 0; round < 4000; ++round) {
         const ClipSpace space{random.below(2) ? ClipDepth::kZeroToOne : ClipDepth::kMinusOneToOne,
                               random.below(2) == 0};
-        const glm::dvec3 eye = 1e5 * randomUnit(random);
-        const glm::dmat4 rotation = glm::dmat4(glm::dmat3(lookAt({0, 0, 0}, randomUnit(random), {0, 1, 0})));
+        const glm::dvec3 eye = 1e5 * test::randomUnit(random);
+        const glm::dmat4 rotation = glm::dmat4(glm::dmat3(lookAt({0, 0, 0}, test::randomUnit(random), {0, 1, 0})));
         const glm::dmat4 clip = withDepth(randomProjection(random), space) * rotation;
         const ViewVolume volume = volumeOfMatrix(clip, eye, space);
         ASSERT_GE(volume.count, 5u);
@@ -135,8 +129,8 @@ TEST(ViewVolume, AWindowIsSeenThroughExactlyAsTheRayFromTheEyeMeetsIt) {
     size_t inside = 0;
     for (int round = 0; round < 2000; ++round) {
         // A convex window: corners on an ellipse, in either order of turn.
-        const glm::dvec3 center = 10.0 * randomUnit(random), u = randomUnit(random);
-        const glm::dvec3 v = glm::normalize(glm::cross(u, randomUnit(random))), n = glm::cross(u, v);
+        const glm::dvec3 center = 10.0 * test::randomUnit(random), u = test::randomUnit(random);
+        const glm::dvec3 v = glm::normalize(glm::cross(u, test::randomUnit(random))), n = glm::cross(u, v);
         const size_t count = 3 + random.below(6);
         const double turn = random.below(2) ? 1.0 : -1.0;
         std::vector<glm::dvec3> window;
@@ -145,14 +139,14 @@ TEST(ViewVolume, AWindowIsSeenThroughExactlyAsTheRayFromTheEyeMeetsIt) {
                 turn * (static_cast<double>(i) + 0.4 * random.uniform()) * 6.283 / static_cast<double>(count);
             window.push_back(center + 2.0 * std::cos(angle) * u + std::sin(angle) * v);
         }
-        const glm::dvec3 eye = center + 3.0 * randomUnit(random);
+        const glm::dvec3 eye = center + 3.0 * test::randomUnit(random);
         const double height = glm::dot(n, eye - center);
         if (std::abs(height) < 0.05) continue;
         const bool behind = random.below(2) == 0;
         const ViewVolume volume = volumeOfWindow(eye, window, behind);
         ASSERT_EQ(volume.count, count + behind);
         for (int i = 0; i < 20; ++i) {
-            const glm::dvec3 p = center + 3.0 * randomUnit(random) + random.uniform(-3, 3) * n;
+            const glm::dvec3 p = center + 3.0 * test::randomUnit(random) + random.uniform(-3, 3) * n;
             const double along = glm::dot(n, p - center);
             const double t = height / (height - along);  // where the line from the eye to the point meets the plane
             bool expected = t > 0.0 && (!behind || t <= 1.0);
@@ -182,19 +176,20 @@ TEST(ViewVolume, IntersectionsHoldWhatAllHold) {
     Random random(13);
     for (int round = 0; round < 1000; ++round) {
         View view;
-        view.view = lookAt(4.0 * randomUnit(random), {0, 0, 0}, {0, 1, 0});
+        view.view = lookAt(4.0 * test::randomUnit(random), {0, 0, 0}, {0, 1, 0});
         view.projection = perspective(1.0, 1.3, 0.1, 20.0);
         ViewVolume volume = volumeOf(makeFrustum(view));
         const ViewVolume frustum = volume;
-        view.view = lookAt(4.0 * randomUnit(random), {0, 0, 0}, {0, 1, 0});
+        view.view = lookAt(4.0 * test::randomUnit(random), {0, 0, 0}, {0, 1, 0});
         const ViewVolume other = volumeOf(makeFrustum(view));
-        const glm::dvec4 section = planeOfPoints(randomUnit(random), randomUnit(random), randomUnit(random));
+        const glm::dvec4 section =
+            planeOfPoints(test::randomUnit(random), test::randomUnit(random), test::randomUnit(random));
         ASSERT_TRUE(intersect(volume, other));
         ASSERT_TRUE(addPlane(volume, 3.0 * section));
         ASSERT_TRUE(intersect(volume, other));  // again: nothing new
         ASSERT_LE(volume.count, 13u);
         for (int i = 0; i < 50; ++i) {
-            const glm::dvec3 p = random.uniform(0, 4) * randomUnit(random);
+            const glm::dvec3 p = random.uniform(0, 4) * test::randomUnit(random);
             const double expected =
                 std::min({worstPlane(frustum, p), worstPlane(other, p), glm::dot(glm::dvec3(section), p) + section.w});
             ASSERT_NEAR(worstPlane(volume, p), expected, 1e-9);
@@ -225,7 +220,7 @@ TEST(ViewVolume, APlaneOfSupportTouchesTheVolume) {
     for (int round = 0; round < 500; ++round) {
         const glm::dmat4 clip = randomProjection(random);
         const ViewVolume volume = volumeOfMatrix(clip, {0, 0, 0});
-        const glm::dvec3 normal = randomUnit(random);
+        const glm::dvec3 normal = test::randomUnit(random);
         glm::dvec4 plane;
         const bool bounded = supportPlane(volume, normal, plane);
         const glm::dmat4 inverse = glm::inverse(clip);
@@ -254,7 +249,7 @@ TEST(ViewVolume, BothEyesSeeWhatTheirCommonVolumeHolds) {
     for (int round = 0; round < 300; ++round) {
         View left;
         left.jitter = 0.0;
-        left.view = lookAt(5.0 * randomUnit(random), {0, 0, 0}, {0, 1, 0});
+        left.view = lookAt(5.0 * test::randomUnit(random), {0, 0, 0}, {0, 1, 0});
         const bool infinite = round % 2 == 0, canted = round % 4 >= 2;
         left.projection = perspective(1.2, 1.1, 0.05, infinite ? INFINITY : 50.0);
         if (canted) left.projection[2][0] = 0.2;

@@ -9,9 +9,10 @@
 #include <cstdlib>
 
 #include "apps/gl/id_renderer.h"
-#include "tests/hidden/made_lists.h"
+#include "tests/studies/hidden/made_lists.h"
 
 namespace sightline::test {
+using namespace studies;
 namespace {
 
 /// Red and green tell surfaces apart by their ratio, which light does not change.

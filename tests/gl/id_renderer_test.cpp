@@ -9,13 +9,16 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "sightline/hidden/compare.h"
-#include "sightline/import/gltf.h"
-#include "sightline/load/seeded_cameras.h"
-#include "sightline/report/render_list.h"
-#include "tests/hidden/made_lists.h"
+#include "sightline/studies/hidden/compare.h"
+#include "sightline/tools/import/gltf/gltf.h"
+#include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/report/pictures/render_list.h"
+#include "tests/studies/hidden/made_lists.h"
+#include "tests/support/shared_scenes.h"
 
 namespace sightline::test {
+using namespace studies;
+using namespace tools;
 namespace {
 
 /// Mesa snaps vertices to multiples of 1/256 of a pixel: by at most sqrt(2)/512, which moves an edge by no more.
@@ -186,12 +189,8 @@ TEST_F(GlIdRendererTest, LeavesOutWhatWritesNoDepth) {
 }
 
 TEST_F(GlIdRendererTest, SeesWhatTheReferenceSeesInRealScenes) {
-    const std::filesystem::path folder = std::filesystem::path(SIGHTLINE_SHARED_DIR) / "scenes";
-    if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "no scenes in ../shared";
-    std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-        if (entry.path().extension() == ".glb") files.push_back(entry.path());
-    std::sort(files.begin(), files.end());
+    const std::vector<std::filesystem::path> files = test::sharedFiles("scenes", ".glb");
+    if (files.empty()) GTEST_SKIP() << "no scenes beside the repository";
     Agreement all, zbuffer_all;
     for (const std::filesystem::path& file : files) {
         const Result<Scene> scene = loadGltf(file.string());

@@ -7,18 +7,18 @@
 #include <limits>
 
 #include "sightline/base/random.h"
+#include "tests/support/meshes.h"
 
 namespace sightline::test {
+using namespace studies;
 namespace {
 
-struct Mesh {
-    std::vector<glm::vec3> positions;
-    std::vector<uint32_t> indices;
+struct Mesh : test::TestMesh {
     std::vector<uint8_t> double_sided, writes_depth;
 
     DrawItem item() const {
         DrawItem made;
-        made.mesh = {positions, indices};
+        made.mesh = view();
         made.double_sided = double_sided;
         made.writes_depth = writes_depth;
         return made;

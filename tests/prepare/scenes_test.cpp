@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <string>
 
-#include "sightline/import/gltf.h"
-#include "sightline/prepare/occluder.h"
-#include "tests/prepare/patch_laws.h"
+#include "sightline/prepare/occluder/occluder.h"
+#include "tests/prepare/occluder/patch_laws.h"
+#include "tests/support/shared_scenes.h"
 
 namespace sightline {
 namespace {
@@ -35,11 +34,9 @@ Surface surfaceOf(const Occluder& o) {
 }
 
 TEST(PreparedScenes, KeepTheLaws) {
-    const std::filesystem::path folder = std::filesystem::path(SIGHTLINE_SHARED_DIR) / "scenes";
-    if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "no scenes in ../shared";
     for (const char* name : {"bsi-duplex", "cityjson-vienna", "gazebo-willowgarage", "bimwhale-tall-building"}) {
-        const Result<Scene> scene = loadGltf((folder / (std::string(name) + ".glb")).string());
-        ASSERT_TRUE(scene.ok()) << scene.error().message;
+        const auto scene = test::sharedScene(name);
+        if (!scene) GTEST_SKIP() << "no scenes beside the repository";
         uint32_t before = 0, after = 0, closed = 0, edges = 0;
         for (size_t m = 0; m < scene->meshes.size(); ++m) {
             SCOPED_TRACE(::testing::Message() << name << ", mesh " << m);

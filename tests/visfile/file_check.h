@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sightline/space/portal_graph.h"
+#include "sightline/cells/portal_graph.h"
 #include "sightline/visfile/visibility_file.h"
 
 namespace sightline::test {

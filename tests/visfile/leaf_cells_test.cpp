@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "sightline/base/random.h"
-#include "sightline/space/cells.h"
+#include "sightline/cells/cells.h"
 
 namespace sightline {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "sightline/base/bit_matrix.h"
 #include "sightline/base/random.h"
-#include "sightline/space/cell_space.h"
-#include "sightline/space/tree_portals.h"
+#include "sightline/bsp/tree_portals.h"
+#include "sightline/cells/cell_space.h"
 #include "sightline/visfile/object_section.h"
 
 namespace sightline::test {

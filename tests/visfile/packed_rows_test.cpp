@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sightline/visfile/row_order.h"
+#include "tests/support/memory.h"
 #include "tests/visfile/made_rows.h"
 
 namespace sightline::test {
@@ -68,18 +69,6 @@ TEST(PackedRows, OfWhatWasNeverPutAreRefusedOrUnpackToWhatCanBeLookedAt) {
 }
 
 TEST(PackedRows, PromisesOfFewBytesTakeLittle) {
-    struct Counted : std::pmr::memory_resource {
-        size_t now = 0, most = 0;
-        void* do_allocate(size_t bytes, size_t align) override {
-            most = std::max(most, now += bytes);
-            return std::pmr::new_delete_resource()->allocate(bytes, align);
-        }
-        void do_deallocate(void* p, size_t bytes, size_t align) override {
-            now -= bytes;
-            std::pmr::new_delete_resource()->deallocate(p, bytes, align);
-        }
-        bool do_is_equal(const memory_resource& other) const noexcept override { return this == &other; }
-    };
     // All that can be claimed in a head, and then all that bytes may code: the numbers of steps are bounded by the bytes.
     for (const char fill : {'\0', '\xff', '\x55'}) {
         Array<char> bytes(200, fill);
@@ -87,7 +76,7 @@ TEST(PackedRows, PromisesOfFewBytesTakeLittle) {
             bytes[at] = bytes[at + 1] = '\xff';
             bytes[at + 2] = bytes[at + 3] = 0;
         }
-        Counted counted;
+        CountingMemory counted;
         EXPECT_FALSE(unpackedRows(bytes, "rows", 0, &counted).ok());
         EXPECT_LT(counted.most, 4u << 20);
     }
@@ -95,7 +84,7 @@ TEST(PackedRows, PromisesOfFewBytesTakeLittle) {
     Array<char> no_tiles = packed(*tiledRows(onlyThemselves(3000)));
     const size_t whole = no_tiles.size();
     no_tiles.resize(whole - whole / 4);
-    Counted counted;
+    CountingMemory counted;
     EXPECT_FALSE(unpackedRows(no_tiles, "rows", 0, &counted).ok());
     EXPECT_LT(counted.most, 150u << 10);
 }

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "tests/support_targets.h"
+#include "tests/support/targets.h"
 #include "tests/visfile/made_rows.h"
 
 namespace sightline::test {

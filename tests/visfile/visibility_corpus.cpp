@@ -1,22 +1,12 @@
-// Writes seeds for the fuzzer of visibility files: sightline_visibility_corpus tests/fuzz/corpus/visibility_file
+// Writes seeds for the fuzzer of visibility files.
 // SPDX-License-Identifier: MIT
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-
+#include "tests/support/files.h"
 #include "tests/visfile/made_file.h"
 #include "tests/visfile/made_places.h"
 #include "tests/visfile/seal.h"
 
 namespace sightline::test {
 namespace {
-
-bool write(const std::filesystem::path& file, const Array<char>& bytes) {
-    std::ofstream out(file, std::ios::binary);
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush();
-    if (!out) std::fprintf(stderr, "%s: cannot be written\n", file.c_str());
-    return bool(out);
-}
 
 /// With all sections of places.
 Array<char> withPlaces(const MadePlaces& places) {
@@ -46,21 +36,16 @@ bool writeAll(const std::filesystem::path& folder) {
     const SectionFile tree_sections = *SectionFile::open(tree, "");
     loose_child[tree_sections.placeOf(tree_sections.find(visibility_file::kTree)) + 56 + 32] = 0;
     seal(loose_child);
-    return write(folder / "boxes.see", boxes) && write(folder / "tree.see", tree) &&
-           write(folder / "loose_child.see", loose_child) && write(folder / "in_place.see", plain) &&
-           write(folder / "packed.see", packed) && write(folder / "one_cell.see", one) &&
-           write(folder / "many.see", many) && write(folder / "cut.see", cut) &&
-           write(folder / "damaged.see", damaged) && write(folder / "no_tiles.see", no_tiles) &&
-           write(folder / "many_cells.see", many_cells);
+    const auto write = [&](const char* name, const Array<char>& bytes) {
+        return writeBytes(folder / name, {bytes.data(), bytes.size()});
+    };
+    return write("boxes.see", boxes) && write("tree.see", tree) && write("loose_child.see", loose_child) &&
+           write("in_place.see", plain) && write("packed.see", packed) && write("one_cell.see", one) &&
+           write("many.see", many) && write("cut.see", cut) && write("damaged.see", damaged) &&
+           write("no_tiles.see", no_tiles) && write("many_cells.see", many_cells);
 }
 
 }  // namespace
 }  // namespace sightline::test
 
-int main(int argc, char** argv) {
-    if (argc != 2) {
-        std::fprintf(stderr, "usage: sightline_visibility_corpus FOLDER\n");
-        return 2;
-    }
-    return sightline::test::writeAll(argv[1]) ? 0 : 4;
-}
+int main(int argc, char** argv) { return sightline::test::writeInto(argc, argv, sightline::test::writeAll); }

@@ -4,10 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-
+#include "tests/support/corpus.h"
 #include "tests/visfile/file_check.h"
 #include "tests/visfile/made_file.h"
 #include "tests/visfile/seal.h"
@@ -171,16 +168,14 @@ TEST(VisibilityFile, PassesOverSectionsThatItDoesNotKnow) {
 }
 
 TEST(VisibilityFile, ReplaysTheCorpusOfTheFuzzer) {
-    const std::filesystem::path corpus = std::filesystem::path(SIGHTLINE_FUZZ_CORPUS) / "visibility_file";
     int opened = 0, refused = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
-        SCOPED_TRACE(entry.path().filename().string());
-        std::ifstream in(entry.path(), std::ios::binary);
-        Array<char> bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    forCorpus("visibility_file", 8, [&](const std::string& name, const std::string& read) {
+        SCOPED_TRACE(name);
+        Array<char> bytes(read.begin(), read.end());
         ++(opensAndAnswers(bytes) ? opened : refused);
         seal(bytes);
         opensAndAnswers(bytes);
-    }
+    });
     EXPECT_GE(opened, 4);
     EXPECT_GE(refused, 4);
 }

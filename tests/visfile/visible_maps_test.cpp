@@ -4,12 +4,13 @@
 
 #include <filesystem>
 
-#include "sightline/import/prt.h"
-#include "sightline/import/quake_visibility.h"
-#include "sightline/scene/text_file.h"
+#include "sightline/tools/import/quake/prt.h"
+#include "sightline/tools/import/quake/quake_visibility.h"
+#include "sightline/tools/scene/text_file.h"
 #include "sightline/visfile/visibility_file.h"
 
 namespace sightline {
+using namespace tools;
 namespace {
 
 class VisibleMaps : public testing::TestWithParam<const char*> {};

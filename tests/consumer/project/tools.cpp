@@ -1,10 +1,10 @@
 // Links the importer and the witnesses of an installed Sightline.
 // SPDX-License-Identifier: MIT
-#include <sightline/import/gltf.h>
-#include <sightline/truth/verify.h>
+#include <sightline/tools/import/scene_file.h>
+#include <sightline/tools/truth/verify.h>
 
 int main() {
-    const auto scene = sightline::loadGltf("no such file.glb");
-    if (scene.ok()) sightline::Witness witness(*scene);
+    const auto scene = sightline::tools::loadSceneFile("no such file.glb");
+    if (scene.ok()) sightline::tools::Witness witness(*scene);
     return scene.ok() ? 1 : 0;
 }

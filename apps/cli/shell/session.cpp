@@ -1,0 +1,125 @@
+// What holds for a whole run of the tool: how much it says, in which colours, and whether it is to stop.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/shell/session.h"
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+
+#include <CLI/CLI.hpp>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <malloc.h>
+#include <poll.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "apps/cli/shell/fault.h"
+#include "sightline/tools/scene/one_line.h"
+
+namespace sightline::cli {
+using namespace tools;
+namespace {
+
+bool g_quiet = false;
+// What a signal's handler may touch.
+std::atomic<bool> g_gentle{false}, g_interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+/// Only what is safe in a signal's handler.
+extern "C" void onSignal(int) {
+    const int error = errno;
+    ::signal(SIGINT, SIG_DFL);  // the next one ends the process at once
+    ::signal(SIGTERM, SIG_DFL);
+    g_interrupted = true;
+    if (!g_gentle) {
+        constexpr std::string_view kClear = "\r\033[K", kLine = "sightline: interrupted: nothing was finished\n";
+        if (::isatty(STDERR_FILENO)) (void)!::write(STDERR_FILENO, kClear.data(), kClear.size());
+        (void)!::write(STDERR_FILENO, kLine.data(), kLine.size());
+        ::_exit(kInterrupted);
+    }
+    errno = error;
+}
+
+/// What a parent has told to be ignored stays so: a job in the background does not end by another's Ctrl-C.
+void hear(int signal) {
+    struct sigaction old {};
+    if (::sigaction(signal, nullptr, &old) == 0 && old.sa_handler == SIG_IGN) return;
+    struct sigaction action {};
+    action.sa_handler = onSignal;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    ::sigaction(signal, &action, nullptr);
+}
+
+/// True if standard output is a pipe that nobody reads any more, as behind `| head`: no fault that is worth a line.
+bool readerHasLeft() {
+    pollfd out{STDOUT_FILENO, POLLOUT, 0};
+    return ::poll(&out, 1, 0) == 1 && (out.revents & POLLERR);
+}
+
+}  // namespace
+
+void addSessionOptions(CLI::App& app, SessionOptions& options) {
+    app.add_flag("-q,--quiet", options.quiet,
+                 "no progress, notes or summaries of runs; answers to a question (info, explain, bench), what - asks "
+                 "for, and errors stay")
+        ->group("General");
+    app.add_option("--config", options.config, "take defaults of options from this file alone")
+        ->type_name("FILE.toml")
+        ->configurable(false)
+        ->group("General");
+    app.add_flag("--no-config", options.no_config, "take them from no file")->configurable(false)->group("General");
+}
+
+void openSession() {
+    // A file that is opened must not become what others take for standard output. Reading from what is to be written,
+    // and the other way round, fails as it should.
+    for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (::fcntl(descriptor, F_GETFD) < 0 && errno == EBADF)
+            (void)::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+    for (const int signal : {SIGPIPE, SIGXFSZ}) ::signal(signal, SIG_IGN);  // writing then fails, and that is said
+    // Each of malloc's arenas reserves 64 MB of addresses, which a limit of these counts as if they were used.
+    rlimit addresses{};
+    if (::getrlimit(RLIMIT_AS, &addresses) == 0 && addresses.rlim_cur != RLIM_INFINITY) ::mallopt(M_ARENA_MAX, 1);
+    hear(SIGINT);
+    hear(SIGTERM);
+}
+
+int endSession(int exit_code) {
+    const bool flushed = std::fflush(stdout) == 0;
+    if ((flushed && !std::ferror(stdout)) || exit_code == kOutputUnwritable) return exit_code;
+    if (readerHasLeft()) return kOutputUnwritable;
+    return report({Error::Kind::kOutput, "standard output: cannot be written"});
+}
+
+void stopGently() { g_gentle = true; }
+
+bool interrupted() { return g_interrupted; }
+
+int reportInterruption(const std::string& done, bool written) {
+    fmt::print(stderr, "sightline: interrupted after {}: {}\n", done,
+               written ? "what is finished was written" : "nothing was written");
+    return kInterrupted;
+}
+
+void setQuiet(bool quiet) { g_quiet = quiet; }
+
+bool quiet() { return g_quiet; }
+
+void tell(std::FILE* out, std::string_view text) {
+    if (!g_quiet) (void)std::fwrite(text.data(), 1, text.size(), out);
+}
+
+void note(const std::string& text) { tell(stderr, "note: " + oneLine(text) + "\n"); }
+
+std::string paint(std::FILE* out, Tone tone, std::string_view text) {
+    const char* const no_colour = std::getenv("NO_COLOR");
+    const char* const term = std::getenv("TERM");
+    const bool plain = (no_colour && *no_colour) || !term || std::string_view(term) == "dumb";
+    if (plain || ::isatty(::fileno(out)) != 1) return std::string(text);
+    return fmt::format("\033[{}m{}\033[0m", tone == Tone::kGood ? 32 : 31, text);
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,57 @@
+// What holds for a whole run of the tool: how much it says, in which colours, and whether it is to stop.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace CLI {
+class App;
+}
+
+namespace sightline::cli {
+
+/// What every verb takes, and the tool itself before the verb.
+struct SessionOptions {
+    bool quiet = false;
+    std::string config;  ///< file, or empty
+    bool no_config = false;
+};
+
+/// Adds them to the tool or to a verb: they may stand before the verb or after it.
+void addSessionOptions(CLI::App& app, SessionOptions& options);
+
+/// Makes sure that standard input, output and error are open, that a reader who has left, or a file that may not
+/// grow, is an error and not the end, and that Ctrl-C and a request to end are heard. Before anything else, once.
+void openSession();
+/// What standard output did not take makes an error of what would have been well.
+/// @return the exit code of the process
+int endSession(int exit_code);
+
+/// From here on Ctrl-C, or a request to end, only makes interrupted() true. Before, it ends the process at once with
+/// exit code 130; a second one ends it at once in any case.
+void stopGently();
+/// True once Ctrl-C was pressed, or the process asked to end: loops over frames stop and leave what is finished.
+bool interrupted();
+/// Says on standard error how far it came.
+/// @param done  "3 of 16 frames"
+/// @return the exit code for it, kInterrupted
+int reportInterruption(const std::string& done, bool written);
+
+/// With --quiet there is no progress and there are no summaries; errors, and what was asked for on standard output,
+/// remain.
+void setQuiet(bool quiet);
+bool quiet();
+
+/// Gives a summary to a reader, unless quiet. Whether it could be written is endSession()'s concern.
+void tell(std::FILE* out, std::string_view text);
+/// "note: ..." on standard error, unless quiet: something that is no error but of use to know.
+void note(const std::string& text);
+
+enum class Tone : uint8_t { kGood, kBad };
+/// The text, green or red on a terminal, unless NO_COLOR is set or the terminal is dumb.
+std::string paint(std::FILE* out, Tone tone, std::string_view text);
+
+}  // namespace sightline::cli

@@ -1,0 +1,92 @@
+// The verb `bake`: the cells, portals and visible sets of a map or a scene with cells, as a visibility file.
+// SPDX-License-Identifier: MIT
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/cli/shell/apart.h"
+#include "apps/cli/verbs/bake_options.h"
+#include "apps/cli/verbs/bake_run.h"
+#include "apps/cli/verbs/bake_source.h"
+#include "apps/cli/verbs/bake_summary.h"
+#include "apps/cli/verbs/common.h"
+#include "apps/cli/verbs/verbs.h"
+#include "sightline/tools/import/quake/map_source.h"
+#include "sightline/tools/report/output_file.h"
+#include "sightline/tools/report/page/vis_page.h"
+
+namespace sightline::cli {
+using namespace bake;
+using namespace tools;
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
+
+struct SceneBakeOptions : BakeOptions {
+    SceneChoice scene;
+};
+
+/// The page has the rows alone.
+Status writeRowsPage(const Baked& baked, VisSummary rows, const std::string& directory) {
+    rows.objects.reset();
+    return writeVisPage(baked.cells.rows, baked.rows.visible, baked.rows.witnessed, rows, directory);
+}
+
+Result<int> runBake(SceneBakeOptions& options) {
+    const Clock::time_point begin = Clock::now();
+    ApartFiles files;
+    for (const std::string& name : options.scene.names) files.read("SCENE", splitMapName(name).file);
+    if (Status good = finishBakeOptions(options, files); !good) return good.error();
+    const std::string title = options.scene.title();
+    Result<BakeSource> source = loadBakeSource(options.scene, options.visCells(), !options.cells.empty());
+    if (!source) return source.error();
+    if (Status fits = checkSize(source->cells.rows, title, source->of_bsp); !fits) return fits.error();
+    const double cells_seconds = secondsSince(begin);
+
+    BakeRun run(options);
+    const Result<BakeSettings> settings = run.begin(source->cells.rows);
+    if (!settings) return settings.error();
+    const Result<Baked> baked = bake::bake(std::move(source->cells), source->scene, *settings);
+    if (!baked) return baked.error();
+    if (baked->interrupted) return run.reportInterrupted();
+    const std::span<const char> bytes = baked->file.bytes(settings->form);
+    if (!options.output.empty())
+        if (Status written = writeFileAside(options.output, {bytes.data(), bytes.size()}); !written)
+            return written.error();
+    run.end();
+
+    BakeSummary summary = bakeSummary(*source, *baked, settings->form);
+    summary.rows.map = title;
+    summary.rows.threads = run.threads();
+    summary.cells_seconds = cells_seconds;
+    summary.rows.wall_seconds = secondsSince(begin);
+    if (!options.report.empty())
+        if (Status written = writeRowsPage(*baked, summary.rows, options.report); !written) return written.error();
+    printBakeSummary(options.json == "-" ? stderr : stdout, *source, *baked, summary);
+    if (!options.json.empty())
+        if (Status written = writeText(options.json, bakeJson(*source, *baked, summary)); !written)
+            return written.error();
+    return kDone;
+}
+
+}  // namespace
+
+void addBake(CLI::App& tool, int& exit_code) {
+    CLI::App* verb = tool.add_subcommand("bake", "cells, portals and visible sets of a scene as a file");
+    const auto options = std::make_shared<SceneBakeOptions>();
+    addSceneChoice(*verb, options->scene);
+    addBakeOptions(*verb, *options, "write the visibility file");
+    verb->callback([options, &exit_code] {
+        const Result<int> done = runBake(*options);
+        exit_code = done ? *done : report(done.error());
+    });
+}
+
+}  // namespace sightline::cli

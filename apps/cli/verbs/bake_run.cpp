@@ -1,0 +1,100 @@
+// A bake as the tool runs it: reads and writes its state, and shows how far it is.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/verbs/bake_run.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <thread>
+#include <utility>
+
+#include "apps/cli/shell/session.h"
+#include "sightline/bake/flow/bake_state.h"
+#include "sightline/tools/report/output_file.h"
+#include "sightline/tools/scene/text_file.h"
+
+namespace sightline::cli {
+using namespace bake;
+using namespace tools;
+namespace {
+
+constexpr size_t kProgressParts = 100;
+
+/// The state that was left by an earlier run, if it is one of this bake.
+Result<std::optional<CellVisibilityState>> stateLeft(const CellGraph& rows, const BakeOptions& options) {
+    std::error_code error;
+    std::optional<CellVisibilityState> state_left;
+    if (options.state.empty() || !std::filesystem::is_regular_file(options.state, error)) return state_left;
+    const Result<std::string> bytes = readTextFile(options.state, size_t(1) << 36);
+    if (!bytes) {
+        note(bytes.error().message + ": the bake begins anew");
+        return state_left;
+    }
+    Result<CellVisibilityState> state = readBakeState(*bytes, options.state, rows, options.budget);
+    if (!state && !isBakeState(*bytes))
+        return Error{Error::Kind::kOutput, options.state + ": holds something else than the state of a bake"};
+    if (!state) {
+        note(state.error().message + ": the bake begins anew");
+        return state_left;
+    }
+    note("goes on from " + options.state);
+    state_left = std::move(*state);
+    return state_left;
+}
+
+}  // namespace
+
+BakeRun::BakeRun(const BakeOptions& options)
+    : options_(options),
+      threads_(options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency())),
+      pool_(threads_) {
+    stopGently();
+}
+
+Result<BakeSettings> BakeRun::begin(const CellGraph& rows) {
+    Result<std::optional<CellVisibilityState>> left = stateLeft(rows, options_);
+    if (!left) return left.error();
+    left_ = std::move(*left);
+    BakeSettings settings;
+    settings.jobs = &pool_;
+    settings.budget = options_.budget;
+    settings.time_limit = options_.time_limit;
+    settings.object_rows = options_.objects;
+    settings.form = options_.in_place ? VisibilityForm::kInPlace : VisibilityForm::kPacked;
+    settings.stop = [] { return interrupted(); };
+    settings.progress = [this](const BakeProgress& now) { show(now); };
+    settings.resume = left_ ? &*left_ : nullptr;
+    if (!options_.state.empty())
+        settings.checkpoint = [this](const std::string& bytes) { return writeFileAside(options_.state, bytes); };
+    return settings;
+}
+
+void BakeRun::show(const BakeProgress& now) {
+    if (!progress_ || step_ != now.step) {
+        step_ = now.step;
+        progress_.reset();
+        progress_ = std::make_unique<Progress>("visibility, " + step_, "percent", kProgressParts);
+    }
+    progress_->set(static_cast<size_t>(now.done * static_cast<double>(kProgressParts)), kProgressParts);
+    if (now.done >= 1) progress_.reset();
+}
+
+int BakeRun::reportInterrupted() {
+    progress_.reset();
+    return reportInterruption(
+        options_.state.empty() ? "a part of the bake" : "a part of the bake, which goes on from " + options_.state,
+        false);
+}
+
+void BakeRun::end() {
+    progress_.reset();
+    std::error_code ignored;
+    if (!options_.state.empty()) std::filesystem::remove(options_.state, ignored);
+}
+
+Status checkSize(const CellGraph& rows, const std::string& title, bool of_bsp) {
+    Status fits = checkBakeSize(rows, title);
+    if (fits || !of_bsp) return fits;
+    return Error{fits.error().kind, fits.error().message + ": --cells groups makes fewer"};
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,185 @@
+// What `bake` and `vis` tell of a bake: the figures that both have, and those of each.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/verbs/bake_summary.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/cli/shell/session.h"
+#include "apps/cli/verbs/common.h"
+#include "sightline/tools/scene/one_line.h"
+
+namespace sightline::cli {
+using namespace bake;
+using namespace tools;
+namespace {
+
+double ratio(uint64_t part, uint64_t whole) {
+    return whole ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+}
+
+std::string percentText(uint64_t part, uint64_t whole) { return fmt::format("{:.2f} %", 100 * ratio(part, whole)); }
+
+/// What ended early.
+void printLimits(std::FILE* out, const VisSummary& s) {
+    if (s.over_budget)
+        tell(out,
+             fmt::format("  portals over budget {}: what they may see counts as visible\n", grouped(s.over_budget)));
+    if (s.stopped) tell(out, "  stopped by the time limit: what was not settled counts as visible\n");
+}
+
+void printFindings(std::FILE* out, const SceneCellReport& report) {
+    constexpr size_t kMost = 8;
+    if (report.holes)
+        tell(out, fmt::format("holes that nobody marked: {}, of {:.4g} square units; they are portals\n",
+                              grouped(report.holes), report.hole_area));
+    for (size_t i = 0; i < std::min(report.findings.size(), kMost); ++i)
+        tell(out, fmt::format("  {}\n", oneLine(report.findings[i].text)));
+    if (report.findings.size() > kMost)
+        tell(out, fmt::format("  and {} more (--json lists them)\n", grouped(report.findings.size() - kMost)));
+}
+
+}  // namespace
+
+VisSummary rowFigures(const CellGraph& rows, const CellVisibility& visibility) {
+    VisSummary out;
+    out.leafs = out.clusters = rows.cells;
+    out.portals = rows.portals.size();
+    out.visible_leaf_pairs = out.visible_cluster_pairs = visibility.visible.count();
+    out.witnessed_pairs = out.witnessed_cluster_pairs = visibility.witnessed.count();
+    out.unresolved_pairs = out.visible_leaf_pairs - out.witnessed_pairs;
+    out.steps = visibility.steps;
+    out.over_budget = visibility.over_budget;
+    out.stopped = visibility.stopped;
+    return out;
+}
+
+VisSummary::Objects objectFigures(const BoxVisibility& objects) {
+    return {objects.visible.columns(), objects.visible.count(), objects.by_cells, 0};
+}
+
+BakeSummary bakeSummary(const BakeSource& source, const Baked& baked, VisibilityForm form) {
+    BakeSummary out;
+    out.rows = rowFigures(baked.cells.rows, baked.rows);
+    out.rows.cells_are = source.rows_are;
+    if (baked.object_rows) out.rows.objects = objectFigures(*baked.object_rows);
+    out.rows.pvs_bytes = baked.file.bytes(form).size();
+    out.rows.resident_bytes = baked.file.resident_bytes;
+    out.in_place_bytes = baked.file.in_place.size();
+    out.rows_seconds = baked.rows_seconds;
+    out.objects_seconds = baked.objects_seconds;
+    return out;
+}
+
+void printVisSummary(std::FILE* out, const VisSummary& s) {
+    tell(out, fmt::format("{}: {} leaves in {} cells ({}), {} portals\n", s.map, grouped(s.leafs), grouped(s.clusters),
+                          s.cells_are, grouped(s.portals)));
+    const double mean = s.leafs ? static_cast<double>(s.visible_leaf_pairs) / static_cast<double>(s.leafs) : 0;
+    tell(out, fmt::format("visible pairs of leaves {} (a leaf sees {:.1f} of them, {})\n",
+                          grouped(s.visible_leaf_pairs), mean, percentText(s.visible_leaf_pairs, s.leafs * s.leafs)));
+    tell(out, fmt::format("  witnessed by rays     {}\n  unresolved            {} ({} of the visible)\n",
+                          grouped(s.witnessed_pairs), grouped(s.unresolved_pairs),
+                          percentText(s.unresolved_pairs, s.visible_leaf_pairs)));
+    printLimits(out, s);
+    for (const VisSummary::Leak& leak : s.leaks)
+        tell(out,
+             fmt::format("leaks: from {} at {:g} {:g} {:g} there is a way of {} points to the outside, which stays in "
+                         "the rows (--leak "
+                         "writes it)\n",
+                         leak.from, leak.path.front().x + 0.0, 0.0 - leak.path.front().z, leak.path.front().y + 0.0,
+                         leak.path.size()));
+    if (s.objects)
+        tell(out,
+             fmt::format("faces: {} pairs of cells and faces, {} of those in visible cells, in {:.2f} s of CPU\n",
+                         grouped(s.objects->visible_pairs),
+                         percentText(s.objects->visible_pairs, s.objects->pairs_by_cells), s.objects->cpu_seconds));
+    if (s.pvs_bytes)
+        tell(out, fmt::format("bytes: {} packed, {} resident; run-length lump {}\n", grouped(s.pvs_bytes),
+                              grouped(s.resident_bytes), grouped(s.lump_bytes)));
+    tell(out, fmt::format("{:.2f} s of CPU, {:.2f} s\n", s.cpu_seconds, s.wall_seconds));
+    if (s.verification)
+        tell(out, fmt::format("verified: {} segments, {} false negatives\n", grouped(s.verification->segments),
+                              grouped(s.verification->false_negatives)));
+}
+
+void printBakeSummary(std::FILE* out, const BakeSource& source, const Baked& baked, const BakeSummary& summary) {
+    const CellSpace& space = baked.cells.space;
+    const ObjectCells& objects = baked.objects;
+    const VisSummary& s = summary.rows;
+    tell(out, fmt::format("{}: {} cells ({}), {} portals, {} doors\n", oneLine(s.map), grouped(space.graph.cells),
+                          source.cells_are, grouped(space.graph.portals.size()), grouped(space.doors.size())));
+    if (baked.cells.report) printFindings(out, *baked.cells.report);
+    if (source.leaks) tell(out, "leaks: the outside is a place like any other (vis --leak writes the way)\n");
+    tell(out, fmt::format("rows: {} ({}); a row sees {:.1f} of them ({}), {} unresolved\n", grouped(s.clusters),
+                          s.cells_are, ratio(s.visible_cluster_pairs, s.clusters),
+                          percentText(s.visible_cluster_pairs, s.clusters * s.clusters),
+                          percentText(s.unresolved_pairs, s.visible_cluster_pairs)));
+    printLimits(out, s);
+    tell(out,
+         fmt::format("objects: {}, each in {:.2f} cells; {} seen from everywhere, {} outside, {} moving and not in "
+                     "the file\n",
+                     grouped(objects.places.size()), ratio(objects.places.cells.size(), objects.places.size()),
+                     grouped(objects.everywhere), grouped(objects.outside), grouped(objects.moving)));
+    if (s.objects)
+        tell(out,
+             fmt::format("rows of objects: {} pairs, {} of those in visible cells\n", grouped(s.objects->visible_pairs),
+                         percentText(s.objects->visible_pairs, s.objects->pairs_by_cells)));
+    tell(out, fmt::format("bytes: {}, {} resident\n", grouped(s.pvs_bytes), grouped(s.resident_bytes)));
+    tell(out, fmt::format("{:.2f} s: cells {:.2f}, rows {:.2f}, objects {:.2f}\n", s.wall_seconds,
+                          summary.cells_seconds, summary.rows_seconds, summary.objects_seconds));
+}
+
+std::string bakeJson(const BakeSource& source, const Baked& baked, const BakeSummary& summary) {
+    const CellSpace& space = baked.cells.space;
+    const ObjectCells& objects = baked.objects;
+    const VisSummary& s = summary.rows;
+    using Json = nlohmann::ordered_json;
+    Json out = {{"schema", "sightline.bake/1"},
+                {"scene", s.map},
+                {"hash", fmt::format("{:016x}", baked.cells.hash)},
+                {"cells_are", source.cells_are},
+                {"cells", space.graph.cells},
+                {"portals", space.graph.portals.size()},
+                {"doors", space.doors.size()},
+                {"outside", space.outside != CellGraph::kNoCell},
+                {"rows_are", s.cells_are},
+                {"rows", s.clusters},
+                {"visible_pairs", s.visible_cluster_pairs},
+                {"witnessed_pairs", s.witnessed_cluster_pairs},
+                {"over_budget", s.over_budget},
+                {"stopped", s.stopped},
+                {"leaks", source.leaks},
+                {"objects",
+                 {{"count", objects.places.size()},
+                  {"places", objects.places.cells.size()},
+                  {"everywhere", objects.everywhere},
+                  {"outside", objects.outside},
+                  {"by_box", objects.by_box},
+                  {"moving", objects.moving},
+                  {"unbounded", objects.unbounded}}}};
+    if (s.objects)
+        out["object_rows"] = {{"visible_pairs", s.objects->visible_pairs},
+                              {"pairs_by_cells", s.objects->pairs_by_cells}};
+    if (baked.cells.report) {
+        Json findings = Json::array();
+        for (const CellFinding& finding : baked.cells.report->findings)
+            findings.push_back({{"kind", kCellFindingNames[static_cast<size_t>(finding.kind)]},
+                                {"place", {finding.place.x, finding.place.y, finding.place.z}},
+                                {"size", finding.size},
+                                {"text", finding.text}});
+        out["holes"] = baked.cells.report->holes;
+        out["hole_area"] = baked.cells.report->hole_area;
+        out["findings"] = findings;
+    }
+    out["bytes"] = s.pvs_bytes;
+    out["resident_bytes"] = s.resident_bytes;
+    out["in_place_bytes"] = summary.in_place_bytes;
+    out["threads"] = s.threads;
+    out["cells_seconds"] = summary.cells_seconds;
+    out["rows_seconds"] = summary.rows_seconds;
+    out["objects_seconds"] = summary.objects_seconds;
+    out["wall_seconds"] = s.wall_seconds;
+    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,56 @@
+// The verb `calibrate`: what a cluster's test and a triangle cost on this machine.
+// SPDX-License-Identifier: MIT
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/cli/shell/session.h"
+#include "apps/cli/verbs/common.h"
+#include "apps/cli/verbs/verbs.h"
+#include "sightline/tools/profile/machine.h"
+#include "sightline/tools/report/output_file.h"
+#include "sightline/tools/report/run/calibration_json.h"
+
+namespace sightline::cli {
+using namespace tools;
+namespace {
+
+struct CalibrateOptions {
+    std::string json;
+};
+
+Result<int> runCalibrate(const CalibrateOptions& options) {
+    const bool to_file = !options.json.empty() && options.json != "-";
+    if (to_file)
+        if (Status writable = canWriteFile(options.json); !writable) return writable.error();
+    const std::string machine = machineName();
+    const FacingCosts costs = measureFacingCosts();
+    tell(options.json == "-" ? stderr : stdout,
+         fmt::format("{}\n"
+                     "a cluster's test                    {:8.2f} ns\n"
+                     "a back face that is dropped         {:8.2f} ns   a test is worth {:.3g} triangles\n"
+                     "a back face that is drawn           {:8.2f} ns   a test is worth {:.3g} triangles\n",
+                     machine, costs.test, costs.dropped, costs.testInTriangles(ShadingCost::kCheap), costs.drawn,
+                     costs.testInTriangles(ShadingCost::kDear)));
+    if (!options.json.empty())
+        if (Status written = writeText(options.json, calibrationJson(costs, machine)); !written) return written.error();
+    return kDone;
+}
+
+}  // namespace
+
+void addCalibrate(CLI::App& tool, int& exit_code) {
+    CLI::App* verb = tool.add_subcommand("calibrate", "what a cluster's test and a triangle cost on this machine");
+    const auto options = std::make_shared<CalibrateOptions>();
+    verb->add_option("--json", options->json, "write the figures as JSON (-: standard output): for --calibration")
+        ->type_name("FILE");
+    verb->callback([options, &exit_code] {
+        const Result<int> done = runCalibrate(*options);
+        exit_code = done ? *done : report(done.error());
+    });
+}
+
+}  // namespace sightline::cli

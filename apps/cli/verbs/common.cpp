@@ -1,0 +1,212 @@
+// What several verbs share: the common options, scenes by name, camera paths, errors.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/verbs/common.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include "apps/cli/shell/session.h"
+#include "apps/cli/verbs/cluster_options.h"
+#include "apps/cli/verbs/section_options.h"
+#include "apps/cli/verbs/setting_options.h"
+#include "apps/cli/verbs/size_options.h"
+#include "apps/cli/verbs/verbs.h"
+#include "apps/cli/verbs/visibility_options.h"
+#include "sightline/geom/view.h"
+#include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/report/output_file.h"
+#include "sightline/tools/report/readable.h"
+#include "sightline/tools/scene/city/city.h"
+#include "sightline/tools/scene/one_line.h"
+
+namespace sightline::cli {
+using namespace tools;
+namespace {
+
+constexpr uint32_t kLargestSide = 16384;  // [pixels]
+constexpr uint32_t kMostFrames = 1000000;
+constexpr uint32_t kMostThreads = 1024;
+
+/// Reads a whole number that is all of the text.
+template <class T>
+bool readWhole(std::string_view text, T& out) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+    return error == std::errc() && end == text.data() + text.size();
+}
+
+std::string stageNames() {
+    std::string names;
+    for (const char* name : kStageNames) names += (names.empty() ? "" : ", ") + std::string(name);
+    return names;
+}
+
+Result<uint32_t> readStages(const std::string& option, const std::vector<std::string>& names) {
+    uint32_t bits = 0;
+    for (const std::string& name : names) {
+        const auto* const found = std::find(std::begin(kStageNames), std::end(kStageNames), name);
+        if (found == std::end(kStageNames))
+            return usageError(fmt::format("{}: there is no stage \"{}\" (there are: {})", option, name, stageNames()));
+        bits |= 1u << (found - std::begin(kStageNames));
+    }
+    return bits;
+}
+
+/// The city's seed in `city:SEED:OBJECTS`, which has been checked by making the city.
+bool isCity(const std::string& scene, uint64_t& seed) {
+    const std::string_view text = scene;
+    if (text.substr(0, 5) != "city:") return false;
+    return readWhole(text.substr(5, text.find(':', 5) - 5), seed);
+}
+
+}  // namespace
+
+Status readSize(const std::string& option, const std::string& text, uint32_t& width, uint32_t& height) {
+    const std::string_view size = text;
+    const size_t cross = size.find('x');
+    const bool good = cross != std::string_view::npos && readWhole(size.substr(0, cross), width) &&
+                      readWhole(size.substr(cross + 1), height) && width >= 1 && height >= 1 && width <= kLargestSide &&
+                      height <= kLargestSide;
+    if (good) return success();
+    return usageError(fmt::format("{} {}: not WxH with sides from 1 to {}", option, text, kLargestSide));
+}
+
+void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& shared) {
+    addSceneChoice(verb, options.scene);
+    verb.add_option("--cameras", options.cameras, "camera path (JSON)")->type_name("PATH.json")->group("Cameras");
+    verb.add_option("--frames", options.frames,
+                    "so many seeded cameras; a city without --seed is walked along its streets")
+        ->check(CLI::Range(1u, kMostFrames))
+        ->type_name("N")
+        ->group("Cameras");
+    verb.add_option("--seed", options.seed, "of the seeded cameras")
+        ->type_name("S")
+        ->capture_default_str()
+        ->group("Cameras");
+    verb.add_option("--size", options.size, "of the viewport [pixels]")
+        ->type_name("WxH")
+        ->capture_default_str()
+        ->group("Cameras");
+    verb.add_option("--threads", options.threads, "share " + shared + " among so many threads (default: one a core)")
+        ->check(CLI::Range(1u, kMostThreads))
+        ->type_name("N")
+        ->group("General");
+    verb.add_option("--json", options.json, "write the result as JSON (-: standard output)")->type_name("FILE");
+}
+
+void addSceneOptions(CLI::App& verb, RunOptions& options) {
+    addCameraOptions(verb, options, "the frames");
+    verb.add_option("--repeat", options.repeat, "queries a frame; times are their medians")
+        ->check(CLI::Range(1, 100000))
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Culling");
+    verb.add_option("--use", options.use,
+                    "only these stages, separated by commas (" + stageNames() +
+                        "; default: all but volumes, if --distance and --contribution say how much)")
+        ->delimiter(',')
+        ->type_name("LIST")
+        ->group("Culling");
+    verb.add_option("--skip", options.skip, "not these stages")->delimiter(',')->type_name("LIST")->group("Culling");
+    addSizeOptions(verb, options);
+    addSectionOptions(verb, options);
+    addVisibilityOptions(verb, options);
+    addClusterOptions(verb, options);
+    verb.add_option("--jitter", options.jitter, "largest shift of the image that the answer must hold for")
+        ->check(CLI::Range(0.0, 1024.0))
+        ->type_name("PX")
+        ->capture_default_str()
+        ->group("Culling");
+    addOtherSettingOptions(verb, options.settings);
+    verb.add_option("--rays", options.rays, "that the first witness casts for a frame")
+        ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Culling");
+}
+
+void addStereoOption(CLI::App& verb, RunOptions& options) {
+    constexpr double kLeast = 1e-9, kMost = 1e9;
+    const auto check = [](const std::string& text) -> std::string {
+        double value = 0;
+        if (!CLI::detail::lexical_cast(text, value)) return "\"" + text + "\" is not a number";
+        if (value >= kLeast && value <= kMost) return {};
+        return text + " is not a distance between the eyes, from 1e-9 to 1e9; for one eye leave it out";
+    };
+    verb.add_option("--stereo", options.stereo,
+                    "two eyes so far apart [world units], each with a buffer of its own; pictures are the left one's")
+        ->check(CLI::Validator(check, "", "distance"))
+        ->type_name("IPD")
+        ->group("Culling");
+}
+
+void addQueryOptions(CLI::App& verb, RunOptions& options) {
+    addStereoOption(verb, options);
+    addSettingOptions(verb, options.settings, {"bins", "hysteresis"});
+    verb.add_option("--query-threads", options.query_threads, "share the bins of each query among so many threads")
+        ->check(CLI::Range(1u, kMostThreads))
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Culling");
+}
+
+Status finish(const CLI::App& verb, RunOptions& options) {
+    if (Status size = readSize("--size", options.size, options.width, options.height); !size) return size;
+    if (std::isnan(options.jitter)) return usageError("--jitter: not a number");  // no range leaves it out
+    if (std::isnan(options.stereo)) return usageError("--stereo: not a number");
+    if (Status settings = checkSettings(options.settings); !settings) return settings;
+    const QuerySettings& settings = options.settings;
+    if (settings.hysteresis > 0 && !(settings.max_distance > 0) && !(settings.contribution > 0))
+        return usageError("--hysteresis: there is no limit; see --distance and --contribution");
+    if (options.query_threads > 1 && settings.bins == 1 && options.stereo == 0)
+        return usageError("--query-threads: one bin has nothing to share; see --bins");
+    const Result<uint32_t> use = readStages("--use", options.use), skip = readStages("--skip", options.skip);
+    if (!use) return use.error();
+    if (!skip) return skip.error();
+    // Clusters take long to prepare: they are for those who ask for them.
+    options.settings.stages = (options.use.empty() ? kDefaultStages & ~stageBit(Stage::kClusters) : *use) & ~*skip;
+    if (Status sizes = finishSizeOptions(options); !sizes) return sizes;
+    if (Status cells = finishVisibilityOptions(options); !cells) return cells;
+    if (Status clusters = finishClusterOptions(options); !clusters) return clusters;
+    options.seed_given = verb.count("--seed") > 0;
+    if (!options.cameras.empty() && (options.frames > 0 || options.seed_given))
+        return usageError("--cameras excludes --frames and --seed");
+    if (options.threads == 0) options.threads = std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads);
+    if (options.json.empty() && verb.count("--json") > 0) return usageError("--json: the name is empty");
+    return success();
+}
+
+Result<CameraPath> loadPath(const Scene& scene, const RunOptions& options) {
+    constexpr uint32_t kDefaultFrames = 16;
+    uint64_t city_seed = 0;
+    if (options.cameras.empty() && options.frames > 0 && !options.seed_given &&
+        isCity(options.scene.procedural(), city_seed))
+        return cityStreetPath(city_seed, options.frames);
+    PathChoice choice;
+    choice.file = options.cameras;
+    choice.frames = options.frames == 0 && options.seed_given ? kDefaultFrames : options.frames;
+    choice.seed = options.seed;
+    return choosePath(scene, choice);
+}
+
+Status writeText(const std::string& file, const std::string& text) {
+    if (file != "-") return writeFileAside(file, text);
+    if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return success();
+    return Error{Error::Kind::kOutput, "standard output: cannot be written"};
+}
+
+std::string lower(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+std::string grouped(uint64_t number) { return readable(static_cast<double>(number)); }
+
+}  // namespace sightline::cli

@@ -1,0 +1,51 @@
+// What several verbs share: the common options, scenes by name, camera paths, errors.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "apps/cli/shell/fault.h"
+#include "apps/cli/shell/quoted.h"
+#include "apps/cli/verbs/run_options.h"
+#include "sightline/base/result.h"
+#include "sightline/geom/view.h"
+#include "sightline/tools/scene/camera_path.h"
+#include "sightline/tools/scene/scene.h"
+
+namespace CLI {
+class App;
+}
+
+namespace sightline::cli {
+using namespace tools;
+
+/// The scene, its cameras, the size, threads and JSON: what every verb has that looks at a scene.
+/// @param shared  what the threads share: "the frames"
+void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& shared);
+/// These, and what culling needs.
+void addSceneOptions(CLI::App& verb, RunOptions& options);
+/// --stereo.
+void addStereoOption(CLI::App& verb, RunOptions& options);
+/// And what cull and verify may ask a query for besides: two eyes, strips of the image, a memory.
+void addQueryOptions(CLI::App& verb, RunOptions& options);
+/// Checks what single options cannot: sizes, stage names. Errors are kUsage.
+Status finish(const CLI::App& verb, RunOptions& options);
+
+/// Reads "1920x1080".  [1 to 16384]
+/// @param option  what an error, kUsage, calls it
+Status readSize(const std::string& option, const std::string& text, uint32_t& width, uint32_t& height);
+
+/// Which path: --cameras; --frames and --seed; a city's streets for --frames alone; the scene's own; 16 seeded.
+Result<CameraPath> loadPath(const Scene& scene, const RunOptions& options);
+
+/// Writes text to a file aside and renames it, or to standard output for `-`.
+Status writeText(const std::string& file, const std::string& text);
+
+/// With small letters for capitals.
+std::string lower(std::string text);
+
+/// 1234567 as "1,234,567".
+std::string grouped(uint64_t number);
+
+}  // namespace sightline::cli

@@ -1,0 +1,98 @@
+// One frame of a path: asked, timed, and judged; by one eye or two.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/verbs/cull_frame.h"
+
+#include <algorithm>
+
+namespace sightline::cli {
+using namespace tools;
+namespace {
+
+/// @returns what the query did, of both eyes together
+QueryStats ask(const Snapshot& now, const CullRun& run, const CameraFrame& camera, const QuerySettings& settings,
+               Query& query) {
+    const View view = viewOf(camera, run);
+    if (!(run.stereo > 0)) return query.visible(now, view, settings).stats;
+    const StereoSet set = query.visibleStereo(now, view, shiftedEye(view, run.stereo), settings);
+    QueryStats sum = set.left;
+    sum.addWork(set.right);
+    return sum;
+}
+
+/// What is held to be hidden: not what distance, contribution and a limited depth of portals culled, which may be seen.
+std::vector<uint8_t> provable(std::vector<uint8_t> reasons, const CullRun& run) {
+    for (uint8_t& reason : reasons)
+        if (isLossy(reason, run)) reason = 0;
+    return reasons;
+}
+
+}  // namespace
+
+void cullFrame(const Snapshot& now, const CullRun& run, const CameraFrame* before, Query& query, FrameResult& frame) {
+    // Each frame stands by itself, whichever thread answered the one before it, unless it is asked after that one.
+    QuerySettings alone = run.settings;
+    alone.hysteresis = 0;
+    QuerySettings settings = before ? run.settings : alone;
+    const auto answer = [&] {
+        if (settings.hysteresis > 0) ask(now, run, *before, alone, query);
+        return ask(now, run, frame.camera, settings, query);
+    };
+    std::vector<double> times;
+    for (int i = 0; i < run.repeat; ++i) times.push_back(1e-3 * static_cast<double>(answer().nanoseconds));
+    frame.query_microseconds = medianOf(std::move(times));
+    // Apart from the others, since the clock that stages are timed by takes time itself.
+    settings.time_stages = true;
+    std::vector<double> stage_times[kStageCount];
+    QueryStats stats;
+    for (int i = 0; i < run.repeat; ++i) {
+        stats = answer();
+        for (int stage = 0; stage < kStageCount; ++stage)
+            stage_times[stage].push_back(1e-3 * static_cast<double>(stats.stages[stage].nanoseconds));
+    }
+    for (int stage = 0; stage < kStageCount; ++stage) {
+        frame.stages[stage].doubt = stats.stages[stage].doubt;
+        frame.stages[stage].microseconds = medianOf(std::move(stage_times[stage]));
+    }
+    frame.stats = stats;
+    if (run.settings.stages & stageBit(Stage::kClusters) && !(run.stereo > 0))
+        frame.clusters = {stats.clusters_tested,   stats.clusters_back,   stats.clusters_outside, stats.clusters_hidden,
+                          stats.cluster_triangles, stats.drawn_triangles, stats.draw_ranges};
+    if (run.settings.stages & stageBit(Stage::kPortals) && !(run.stereo > 0)) {
+        const CellStats cells = query.cellStats();
+        frame.cells = {cells.cells, cells.portals, cells.whole, cells.too_deep, cells.known};
+    }
+    frame.reasons.resize(now.objectCount());
+    query.reasons(frame.reasons);
+    if (!(run.stereo > 0)) return;
+    for (const uint8_t eye : {kLeftEye, kRightEye}) {
+        std::vector<uint8_t>& reasons = frame.eye_reasons[eye - 1];
+        reasons.resize(now.objectCount());
+        query.reasons(reasons, eye);
+    }
+}
+
+FrameVerdict judgeFrame(const Witness& witness, const CullRun& run, const FrameResult& frame,
+                        const WitnessSettings& settings) {
+    const View view = viewOf(frame.camera, run);
+    if (!(run.stereo > 0)) return witness.judge(view, provable(frame.reasons, run), settings);
+    FrameVerdict both = witness.judge(view, provable(frame.eye_reasons[0], run), settings);
+    const FrameVerdict right =
+        witness.judge(shiftedEye(view, run.stereo), provable(frame.eye_reasons[1], run), settings);
+    for (const FalseCull& cull : right.false_culls) {
+        const auto same = [&](const FalseCull& other) { return other.object == cull.object; };
+        if (std::none_of(both.false_culls.begin(), both.false_culls.end(), same)) both.false_culls.push_back(cull);
+    }
+    std::sort(both.false_culls.begin(), both.false_culls.end(),
+              [](const FalseCull& a, const FalseCull& b) { return a.object < b.object; });
+    both.rays += right.rays;
+    both.aimed_rays += right.aimed_rays;
+    both.id_samples += right.id_samples;
+    both.supersampling = std::min(both.supersampling, right.supersampling);
+    both.unconfirmed += right.unconfirmed;
+    both.seen.resize(std::max(both.seen.size(), right.seen.size()), 0);
+    for (size_t i = 0; i < right.seen.size(); ++i) both.seen[i] |= right.seen[i];
+    both.exactly_visible = static_cast<uint64_t>(std::count(both.seen.begin(), both.seen.end(), uint8_t{1}));
+    return both;
+}
+
+}  // namespace sightline::cli

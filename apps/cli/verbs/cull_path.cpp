@@ -1,0 +1,309 @@
+// Culls a scene along a camera path on several threads, and lets the witnesses judge the answers.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/verbs/cull_path.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <set>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "apps/cli/shell/progress.h"
+#include "apps/cli/shell/session.h"
+#include "apps/cli/verbs/cluster_options.h"
+#include "apps/cli/verbs/cull_frame.h"
+#include "apps/cli/verbs/section_options.h"
+#include "apps/cli/verbs/setting_options.h"
+#include "apps/cli/verbs/verbs.h"
+#include "apps/cli/verbs/visibility_choice.h"
+#include "apps/cli/verbs/visibility_options.h"
+#include "sightline/base/thread_pool.h"
+#include "sightline/query/explain/credits.h"
+#include "sightline/query/query.h"
+#include "sightline/studies/hidden/threads.h"
+#include "sightline/tools/report/output_file.h"
+#include "sightline/tools/scene/one_line.h"
+#include "sightline/tools/truth/changed_pixels.h"
+#include "sightline/tools/truth/verify.h"
+
+namespace sightline::cli {
+using namespace studies;
+using namespace tools;
+namespace {
+
+/// What a thread answers frames with.
+struct Answerer {
+    explicit Answerer(uint32_t threads) : pool(threads) {}
+
+    ThreadPool pool;  ///< that shares each query
+    Query query{defaultMemory(), pool.workers() > 1 ? &pool : nullptr};
+    std::optional<CreditBook> book;  ///< if credits were asked for
+};
+
+void creditFrame(const CullRun& run, CreditBook& book, FrameResult& frame) {
+    for (const Credit& credit : book.credits(viewOf(frame.camera, run), run.settings))
+        frame.credits.push_back({credit.item, credit.triangles, credit.hidden, credit.hidden_weight});
+}
+
+uint64_t countOnce(std::vector<uint64_t>& keys) {
+    std::sort(keys.begin(), keys.end());
+    return static_cast<uint64_t>(std::unique(keys.begin(), keys.end()) - keys.begin());
+}
+
+VerificationRow rowOf(const FrameVerdict& verdict, const FrameResult& frame, const Scene& scene, const CullRun& run) {
+    VerificationRow row;
+    row.rays = verdict.rays;
+    row.aimed_rays = verdict.aimed_rays;
+    row.id_samples = verdict.id_samples;
+    row.supersampling = verdict.supersampling;
+    row.unconfirmed = verdict.unconfirmed;
+    std::vector<uint64_t> keys, lossy;
+    for (size_t i = 0; i < verdict.seen.size(); ++i)
+        if (verdict.seen[i]) (isLossy(frame.reasons[i], run) ? lossy : keys).push_back(scene.objects[i].key);
+    row.exactly_visible = countOnce(keys);
+    row.lossy_seen = countOnce(lossy);
+    for (size_t i = 0; i < frame.reasons.size(); ++i)
+        if (frame.reasons[i] == 0 && !(i < verdict.seen.size() && verdict.seen[i]))
+            row.kept_unseen.push_back(static_cast<uint32_t>(i));
+    std::set<uint64_t> hidden;
+    for (const FalseCull& cull : verdict.false_culls) {
+        const uint64_t key = scene.objects[cull.object].key;
+        hidden.insert(key);
+        row.rows.push_back({cull.object, key, cull.x, cull.y, cull.witness});
+    }
+    row.false_culls = hidden.size();
+    return row;
+}
+
+using Worker = std::function<void(size_t)>;
+
+/// Calls worker(i) for i in [0, count), in rising order as far as threads allow, until `stop` says so: what was begun
+/// is then finished. Where memory does not reach for so many threads, those that find none end, and what they had
+/// begun is done again when the others are through. Throws what work throws, once all threads have ended.
+/// @param stop  may be empty
+/// @param make  makes the worker of a thread, on that thread
+/// @return how many were done: those before it, and no others
+size_t shareOut(size_t count, uint32_t threads, const std::function<bool()>& stop,
+                const std::function<Worker(uint32_t thread)>& make) {
+    std::mutex mutex;
+    size_t next = 0;
+    std::vector<size_t> again;
+    FirstFault fault;
+    const auto take = [&]() -> std::optional<size_t> {
+        const std::lock_guard lock(mutex);
+        if (fault.any() || next >= count || (stop && stop())) return std::nullopt;
+        return next++;
+    };
+    threads = static_cast<uint32_t>(std::min<size_t>(threads, count));
+    again.reserve(threads);
+    const auto loop = [&](uint32_t thread) {
+        fault.guard([&] {
+            std::optional<size_t> mine;
+            try {
+                const Worker work = make(thread);
+                while ((mine = take())) work(*mine);
+            } catch (const std::bad_alloc&) {
+                const std::lock_guard lock(mutex);
+                if (mine) again.push_back(*mine);
+            }
+        });
+    };
+    std::vector<std::thread> others = startThreads(threads, loop);
+    loop(0);
+    for (std::thread& other : others) other.join();
+    fault.rethrow();
+    if (again.empty() && (next >= count || (stop && stop()))) return next;
+    const Worker alone = make(0);
+    for (const size_t i : again) alone(i);
+    while (const auto mine = take()) alone(*mine);
+    return next;
+}
+
+/// Where the run's other files go, with a slash, or nothing for the current directory.
+std::string directoryOfOutputs(const RunOptions& options) {
+    std::filesystem::path directory;
+    if (!options.report.empty()) directory = options.report;
+    else if (!options.json.empty() && options.json != "-")
+        directory = std::filesystem::path(options.json).parent_path();
+    return directory.empty() ? "" : (directory / "").string();
+}
+
+/// The command that judges one frame again in the same way.
+std::string replayCommand(const RunOptions& options, const CullRun& run, const std::string& camera_file) {
+    std::string command = fmt::format("sightline verify {} --cameras {} --size {}x{} --rays {}", options.scene.words(),
+                                      quoted(camera_file), run.width, run.height, options.rays);
+    if (run.jitter != View().jitter) command += fmt::format(" --jitter {}", run.jitter);
+    command += settingWords(run.settings) + sectionOptionsOf(run.sections) + visibilityOptionsOf(run.visibility) +
+               clusterOptionsOf(run.cluster_test);
+    if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
+    QuerySettings asked;
+    asked.max_distance = run.settings.max_distance;
+    asked.contribution = run.settings.contribution;
+    const uint32_t unnamed = stageBit(Stage::kClusters) | (run.visibility.file.empty() ? kCellStages : 0);
+    const uint32_t stages = stagesInUse(View(), asked) & ~unnamed;  // if none are named
+    std::string used, skipped;
+    for (int stage = 0; stage < kStageCount; ++stage) {
+        const bool uses = run.settings.stages >> stage & 1;
+        if (!uses && !(stages >> stage & 1)) continue;  // left out anyway
+        std::string& names = uses ? used : skipped;
+        names += (names.empty() ? "" : ",") + std::string(kStageNames[stage]);
+    }
+    if (run.settings.stages & ~stages) command += " --use " + used;
+    else if (run.settings.stages != stages) command += " --skip " + skipped;
+    return command;
+}
+
+}  // namespace
+
+void forEach(size_t count, uint32_t threads, const std::function<void(size_t)>& work) {
+    shareOut(count, threads, nullptr, [&](uint32_t) { return work; });
+}
+
+CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options,
+                 std::optional<LoadedWorld>* world) {
+    CullRun run;
+    const std::vector<uint32_t> key_order = orderByKey(scene);
+    run.scene = options.scene.title();
+    run.objects = countKeys(scene, key_order);
+    run.instances = scene.objects.size();
+    run.triangles = drawnTriangles(scene);
+    run.width = options.width;
+    run.height = options.height;
+    run.jitter = options.jitter;
+    run.settings = options.settings;
+    run.sections = options.sections;
+    run.visibility = options.visibility;
+    run.cluster_test = options.cluster_test;
+    run.stereo = options.stereo;
+    run.repeat = options.repeat;
+    run.frames.resize(path.frames.size());
+
+    LoadedWorld loaded = [&] {
+        Progress progress("preparing", "meshes", scene.meshes.size());
+        return loadWorld(
+            scene, [&](size_t done, size_t total) { progress.set(done, total); },
+            loadSettings((options.settings.stages & stageBit(Stage::kVolumes)) != 0, options.settings.occluder_error,
+                         (options.settings.stages & stageBit(Stage::kClusters)) != 0, options.cluster_test));
+    }();
+    attachVisibility(options, loaded.world);
+    const Snapshot now = loaded.world.commit();
+
+    std::vector<double> weights;
+    if (options.credits)
+        for (const SceneObject& object : scene.objects)
+            weights.push_back(static_cast<double>(scene.meshes[object.mesh].triangles()));
+
+    stopGently();
+    Progress progress("culling", "frames", path.frames.size());
+    const auto begin = std::chrono::steady_clock::now();
+    const auto since = [&] {
+        return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+    };
+    const size_t done = shareOut(path.frames.size(), options.threads, interrupted, [&](uint32_t thread) {
+        const auto answerer = std::make_shared<Answerer>(options.query_threads);
+        if (options.credits) answerer->book.emplace(now, weights);
+        return [&, thread, answerer](size_t i) {
+            FrameResult& frame = run.frames[i];
+            frame = FrameResult();
+            frame.thread = thread;
+            frame.begin_microseconds = since();
+            frame.camera = path.frames[i];
+            cullFrame(now, run, i > 0 ? &path.frames[i - 1] : nullptr, answerer->query, frame);
+            countByKey(scene, key_order, run.settings.stages, frame);
+            frame.end_microseconds = since();
+            if (answerer->book) creditFrame(run, *answerer->book, frame);
+            progress.step();
+        };
+    });
+    run.frames_wanted = path.frames.size();
+    run.interrupted = done < path.frames.size();
+    run.frames.resize(done);
+    if (world) world->emplace(std::move(loaded));
+    return run;
+}
+
+void verifyPath(const Scene& scene, const RunOptions& options, CullRun& run) {
+    WitnessSettings settings;
+    settings.rays = options.rays;
+    settings.aimed_rays = std::min(settings.aimed_rays, options.rays / 5);
+    if (interrupted()) return;
+    const Witness witness(scene);
+    Progress progress("verifying", "frames", run.frames.size());
+    const Worker judge = [&](size_t i) {
+        FrameResult& frame = run.frames[i];
+        const FrameVerdict verdict = judgeFrame(witness, run, frame, settings);
+        frame.verification = rowOf(verdict, frame, scene, run);
+        progress.step();
+    };
+    shareOut(run.frames.size(), options.threads, interrupted, [&](uint32_t) { return judge; });
+}
+
+void countChanges(const Scene& scene, const RunOptions& options, CullRun& run) {
+    if (!lossyStages(run) || interrupted()) return;
+    const SceneFacts facts(scene);
+    Progress progress("comparing", "frames", run.frames.size());
+    forEach(run.frames.size(), options.threads, [&](size_t i) {
+        FrameResult& frame = run.frames[i];
+        const View view = viewOf(frame.camera, run);
+        const std::vector<uint8_t>& reasons = frame.eye_reasons[0].empty() ? frame.reasons : frame.eye_reasons[0];
+        if (!isUsable(view)) frame.changed_pixels = 0;
+        if (frame.changed_pixels || interrupted()) return;
+        std::vector<Drawn> drawn(reasons.size());
+        for (size_t object = 0; object < reasons.size(); ++object)
+            drawn[object] = reasons[object] == 0            ? Drawn::kAlways
+                            : isLossy(reasons[object], run) ? Drawn::kFullOnly
+                                                            : Drawn::kNever;
+        frame.changed_pixels = countChangedPixels(facts, view, drawn);
+        progress.step();
+    });
+}
+
+size_t judgedFrames(const CullRun& run) {
+    const auto judged = [](const FrameResult& frame) { return frame.verification.has_value(); };
+    return static_cast<size_t>(std::count_if(run.frames.begin(), run.frames.end(), judged));
+}
+
+int exitCodeOf(const CullRun& run, size_t frames, bool verify) {
+    const size_t judged = judgedFrames(run), culled = run.frames.size();
+    int exit_code = kDone;
+    if (culled < frames || (verify && judged < culled)) {
+        std::string done = fmt::format("{} of {} frames", culled, frames);
+        if (verify && culled > 0) done += fmt::format(", {} of them verified", judged);
+        exit_code = reportInterruption(done, culled > 0);
+    }
+    const auto sum = sumVerification(run);
+    return sum && sum->false_culls > 0 ? kAnswerIsNo : exit_code;
+}
+
+Status explainFalseCulls(const Scene& scene, const RunOptions& options, const CullRun& run) {
+    constexpr size_t kMostLines = 20;  // a frame
+    const auto say = [](auto format, const auto&... values) {
+        const std::string line = fmt::format(fmt::runtime(format), values...);
+        (void)std::fwrite(line.data(), 1, line.size(), stderr);
+    };
+    for (size_t i = 0; i < run.frames.size(); ++i) {
+        const FrameResult& frame = run.frames[i];
+        if (!frame.verification || frame.verification->rows.empty()) continue;
+        const std::string file = fmt::format("{}replay-frame-{}.json", directoryOfOutputs(options), i);
+        CameraPath path;
+        if (run.settings.hysteresis > 0 && i > 0) path.frames.push_back(run.frames[i - 1].camera);
+        path.frames.push_back(frame.camera);
+        if (Status written = writeFileAside(file, cameraPathJson(path)); !written) return written;
+        const auto& rows = frame.verification->rows;
+        for (size_t k = 0; k < std::min(rows.size(), kMostLines); ++k)
+            say("false cull: frame {}: object {} \"{}\" is seen at pixel ({:.3f}, {:.3f}) by {}\n", i, rows[k].key,
+                oneLine(scene.objects[rows[k].object].name, 200), rows[k].x, rows[k].y, rows[k].witness);
+        if (rows.size() > kMostLines) say("false cull: frame {}: and {} more\n", i, rows.size() - kMostLines);
+        say("replay: {}\n", replayCommand(options, run, file));
+    }
+    return success();
+}
+
+}  // namespace sightline::cli

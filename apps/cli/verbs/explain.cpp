@@ -1,0 +1,250 @@
+// The verb `explain`: why an object is, or is not, in the visible set; and what a whole path tells of a scene.
+// SPDX-License-Identifier: MIT
+#include <charconv>
+#include <cstdio>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/cli/shell/apart.h"
+#include "apps/cli/shell/session.h"
+#include "apps/cli/verbs/common.h"
+#include "apps/cli/verbs/cull_path.h"
+#include "apps/cli/verbs/explain_object.h"
+#include "apps/cli/verbs/verbs.h"
+#include "apps/cli/verbs/visibility_choice.h"
+#include "sightline/query/query.h"
+#include "sightline/tools/report/output_file.h"
+#include "sightline/tools/report/pictures/explain_picture.h"
+#include "sightline/tools/report/run/explain_text.h"
+#include "sightline/tools/scene/one_line.h"
+
+namespace sightline::cli {
+using namespace tools;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool readNumber(std::string_view text, uint32_t& out) {
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), out);
+    return fault == std::errc() && end == text.data() + text.size();
+}
+
+/// Reads --frame and --at, and refuses what does not go together.
+Status readQuestion(const CLI::App& verb, ExplainOptions& options) {
+    options.all_frames = options.frame == "all";
+    if (!options.all_frames && !readNumber(options.frame, options.first_frame))
+        return usageError(fmt::format("--frame {}: neither a number nor \"all\"", options.frame));
+    options.has_pixel = verb.count("--at") > 0;
+    if (options.has_pixel) {
+        const std::string_view text = options.at;
+        const size_t comma = text.find(',');
+        if (comma == std::string_view::npos || !readNumber(text.substr(0, comma), options.x) ||
+            !readNumber(text.substr(comma + 1), options.y) || options.x >= options.width || options.y >= options.height)
+            return usageError(
+                fmt::format("--at {}: not X,Y of a pixel of {}x{}", options.at, options.width, options.height));
+    }
+    const bool object = verb.count("--object") > 0;
+    if (object && options.has_pixel) return usageError("--at excludes --object");
+    if (options.all_frames && options.has_pixel) return usageError("--at needs one --frame");
+    if (!options.picture.empty() && (options.all_frames || (!object && !options.has_pixel)))
+        return usageError("-o needs an --object or a pixel, and one --frame");
+    if (!object && !options.has_pixel && verb.count("--frame") > 0)
+        return usageError("--frame needs an --object or a pixel");
+    return success();
+}
+
+Status checkFrame(const ExplainOptions& options, const CameraPath& path) {
+    if (options.all_frames || options.first_frame < path.frames.size()) return success();
+    return usageError(fmt::format("--frame {}: the path has {} frames, from 0", options.frame, path.frames.size()));
+}
+
+Status checkExplainOutputs(const ExplainOptions& options) {
+    ApartFiles files;
+    for (const std::string& name : options.scene.names) files.read("SCENE", name);
+    files.read("--cameras", options.cameras);
+    files.read("--visibility", options.visibility.file);
+    files.write("--json", options.json);
+    files.write("-o", options.picture);
+    if (!files.status()) return files.status();
+    if (!options.json.empty() && options.json != "-")
+        if (Status writable = canWriteFile(options.json); !writable) return writable;
+    return options.picture.empty() ? success() : canWriteFile(options.picture);
+}
+
+Status writeJson(const ExplainOptions& options, const Scene& scene, const Json& body) {
+    if (options.json.empty()) return success();
+    Json out;
+    out["schema"] = "sightline.explain/1";
+    out["scene"] = {{"file", options.scene.title()},
+                    {"objects", countKeys(scene, orderByKey(scene))},
+                    {"triangles", drawnTriangles(scene)}};
+    out["width"] = options.width;
+    out["height"] = options.height;
+    out.update(body);
+    return writeText(options.json, out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+std::FILE* readerOf(const ExplainOptions& options) { return options.json == "-" ? stderr : stdout; }
+
+Status writePicture(const ExplainOptions& options, const AskedScene& asked, const View& view,
+                    const ObjectAnswer& answer) {
+    if (options.picture.empty()) return success();
+    std::vector<uint32_t> occluders;
+    for (const Hider& hider : answer.why.occlusion.hiders) occluders.push_back(AskedScene::objectOf(hider.id));
+    Emphasis emphasis;
+    emphasis.object = answer.object;
+    emphasis.occluders = occluders;
+    if (answer.why.verdict == Verdict::kVisible && answer.why.visible.because == KeptBecause::kOpenPixel) {
+        emphasis.has_pixel = true;
+        emphasis.x = answer.why.visible.x;
+        emphasis.y = answer.why.visible.y;
+    }
+    return writeFileAside(options.picture, encodePng(explainPicture(asked.scene, view, emphasis)));
+}
+
+/// The object, or those that share its key, in one frame.
+Status explainInFrame(const ExplainOptions& options, const AskedScene& asked, const CameraFrame& camera,
+                      const std::vector<uint32_t>& objects, Json& body) {
+    constexpr size_t kMost = 5;  // of those that share a key
+    for (const EyeView& eye : eyesOfFrame(camera, options)) {
+        Explainer explainer(asked.now, eye.view, options.settings);
+        for (size_t i = 0; i < std::min(objects.size(), kMost); ++i) {
+            const uint32_t object = objects[i];
+            ObjectAnswer answer{options.first_frame, object, explainer.explain(asked.loaded.ids[object]), {}, eye.eye};
+            if (answer.why.verdict == Verdict::kVisible && isUsable(eye.view))
+                answer.sighting = lookFor(asked.scene, eye.view, object, options);
+            fmt::print(readerOf(options), "{}", answerText(asked, answer));
+            body["answers"].push_back(answerJson(asked, answer));
+            if (i == 0 && eye.eye != kRightEye)
+                if (Status drawn = writePicture(options, asked, eye.view, answer); !drawn) return drawn;
+        }
+    }
+    if (objects.size() > kMost)
+        fmt::print(readerOf(options), "and {} more objects with the key {}\n", objects.size() - kMost,
+                   asked.scene.objects[objects.front()].key);
+    return success();
+}
+
+/// One line a frame and eye. Of objects that share a key: the first, and how many there are.
+/// @returns the exit code
+int explainInAll(const ExplainOptions& options, const AskedScene& asked, const CameraPath& path,
+                 const std::vector<uint32_t>& objects, Json& body) {
+    const uint32_t object = objects.front();
+    fmt::print(readerOf(options), "{}\n", titleOf(asked.scene, object));
+    if (objects.size() > 1) fmt::print(readerOf(options), "the first of {} objects with this key\n", objects.size());
+    stopGently();
+    uint32_t done = 0;
+    for (; done < path.frames.size() && !interrupted(); ++done) {
+        for (const EyeView& eye : eyesOfFrame(path.frames[done], options)) {
+            Explainer explainer(asked.now, eye.view, options.settings);
+            const ObjectAnswer answer{
+                done, object, explainer.explain(asked.loaded.ids[object], {true, false}), {}, eye.eye};
+            fmt::print(readerOf(options), "{}", answerLine(asked, answer));
+            body["answers"].push_back(answerJson(asked, answer));
+        }
+    }
+    if (done == path.frames.size()) return kDone;
+    return reportInterruption(fmt::format("{} of {} frames", done, path.frames.size()), done > 0);
+}
+
+/// What lies at a pixel, front to back, and why the first of it is kept.
+Status explainPixel(const ExplainOptions& options, const AskedScene& asked, const CameraFrame& camera, Json& body) {
+    constexpr size_t kMost = 16;
+    const View view = viewOf(camera, options);
+    const std::vector<Layer> layers = layersAt(asked.scene, view, options.x, options.y, kMost);
+    std::FILE* const out = readerOf(options);
+    body["pixel"] = {options.x, options.y};
+    if (layers.empty()) {
+        fmt::print(out, "pixel ({}, {}): nothing\n", options.x, options.y);
+        return success();
+    }
+    if (Status done = explainInFrame(options, asked, camera, {layers.front().object}, body); !done) return done;
+    Explainer explainer(asked.now, view, options.settings);
+    if (layers.size() > 1) fmt::print(out, "behind it, at pixel ({}, {}):\n", options.x, options.y);
+    for (size_t i = 1; i < layers.size(); ++i) {
+        const uint32_t object = layers[i].object;
+        const ObjectAnswer answer{
+            options.first_frame, object, explainer.explain(asked.loaded.ids[object], {true, false}), {}, 0};
+        const std::string line =
+            fmt::format("{:>10.4g} units  {:<10} {}", layers[i].depth,
+                        answer.why.verdict == Verdict::kVisible ? "kept" : verdictName(answer.why.verdict),
+                        titleOf(asked.scene, object));
+        fmt::print(out, "{}\n", shortened(line, 100));
+        body["answers"].push_back(answerJson(asked, answer));
+    }
+    return success();
+}
+
+Status explainPath(const ExplainOptions& options, const Scene& scene, const CameraPath& path, int& exit_code) {
+    const CullRun run = cullPath(scene, path, options);
+    exit_code = exitCodeOf(run, path.frames.size(), false);
+    if (run.frames.empty()) return success();
+    fmt::print(readerOf(options), "{}", pathText(scene, run, options.top));
+    return writeJson(options, scene, pathJson(scene, run));
+}
+
+Status explainObjects(const ExplainOptions& options, const Scene& scene, const CameraPath& path, int& exit_code) {
+    Json body;
+    body["answers"] = Json::array();
+    Result<std::vector<uint32_t>> objects = std::vector<uint32_t>();
+    if (!options.has_pixel) objects = findObjects(scene, options.object);
+    if (!objects) return objects.error();
+    const AskedScene asked(scene, options);
+    if (options.all_frames) {
+        exit_code = explainInAll(options, asked, path, *objects, body);
+    } else {
+        const CameraFrame& camera = path.frames[options.first_frame];
+        Status done = options.has_pixel ? explainPixel(options, asked, camera, body)
+                                        : explainInFrame(options, asked, camera, *objects, body);
+        if (!done) return done;
+    }
+    return writeJson(options, scene, body);
+}
+
+Status runExplain(const CLI::App& verb, ExplainOptions& options, int& exit_code) {
+    if (Status good = finish(verb, options); !good) return good;
+    if (Status good = readQuestion(verb, options); !good) return good;
+    const Result<Scene> scene = loadScene(options.scene);
+    if (!scene) return scene.error();
+    if (Status opened = openVisibility(*scene, options); !opened) return opened;
+    const Result<CameraPath> path = loadPath(*scene, options);
+    if (!path) return path.error();
+    if (Status good = checkFrame(options, *path); !good) return good;
+    if (Status writable = checkExplainOutputs(options); !writable) return writable;
+    options.credits = true;
+    if (verb.count("--object") == 0 && !options.has_pixel) return explainPath(options, *scene, *path, exit_code);
+    return explainObjects(options, *scene, *path, exit_code);
+}
+
+}  // namespace
+
+void addExplain(CLI::App& tool, int& exit_code) {
+    CLI::App* verb = tool.add_subcommand("explain", "why an object is, or is not, in the visible set");
+    const auto options = std::make_shared<ExplainOptions>();
+    options->repeat = 1;
+    addSceneOptions(*verb, *options);
+    addStereoOption(*verb, *options);
+    verb->add_option("--object", options->object,
+                     "its key, its name or path, or a part that only it has; without: what the whole path tells")
+        ->type_name("K");
+    verb->add_option("--frame", options->frame, "of the path, from 0; all: one line a frame")
+        ->type_name("N")
+        ->capture_default_str();
+    verb->add_option("--at", options->at, "the object at this pixel, and what lies behind it")->type_name("X,Y");
+    verb->add_option("-o,--output", options->picture, "draw the frame: the object's box, its occluders, the rest pale")
+        ->type_name("FILE.png");
+    verb->add_option("--top", options->top, "how many rows the lists of the whole path have")
+        ->check(CLI::Range(1u, 1000000u))
+        ->type_name("N")
+        ->capture_default_str();
+    verb->callback([verb, options, &exit_code] {
+        exit_code = kDone;
+        const Status done = runExplain(*verb, *options, exit_code);
+        if (!done) exit_code = report(done.error());
+    });
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,261 @@
+// Why one object is kept or culled, along a path: for a reader, and as JSON.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/verbs/explain_object.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/cli/shell/progress.h"
+#include "apps/cli/verbs/visibility_choice.h"
+#include "apps/cli/verbs/visibility_options.h"
+#include "sightline/query/query.h"
+#include "sightline/tools/report/run/explain_text.h"
+#include "sightline/tools/scene/one_line.h"
+#include "sightline/tools/truth/verify.h"
+
+namespace sightline::cli {
+using namespace tools;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr size_t kColumns = 100;
+
+Json objectJson(const Scene& scene, uint32_t object) {
+    return {{"key", scene.objects[object].key},
+            {"name", scene.objects[object].name},
+            {"path", objectPath(scene, scene.objects[object])}};
+}
+
+Json hidersJson(const AskedScene& asked, const Array<Hider>& hiders) {
+    Json list = Json::array();
+    for (const Hider& hider : hiders) {
+        Json row = objectJson(asked.scene, AskedScene::objectOf(hider.id));
+        row["share"] = hider.share;
+        list.push_back(row);
+    }
+    return list;
+}
+
+/// What of an object was asked when its fate was decided.
+const char* askedName(bool by_faces, bool by_triangles) {
+    return by_triangles ? "triangles" : by_faces ? "faces" : "rectangle";
+}
+
+Json frustumJson(const FrustumReason& reason) {
+    Json out;
+    out["plane"] = kPlaneNames[reason.plane];
+    out["distance"] = reason.distance();
+    for (uint32_t plane = 0; plane < FrustumReason::kPlanes; ++plane)
+        if (reason.outside[plane] != FrustumReason::kNoPlane)
+            out["outside"][kPlaneNames[plane]] = reason.outside[plane];
+    out["by_rectangle"] = reason.by_rectangle;
+    out["by_faces"] = reason.by_faces;
+    out["by_triangles"] = reason.by_triangles;
+    return out;
+}
+
+Json occlusionJson(const AskedScene& asked, const OcclusionReason& reason) {
+    constexpr const char* kWithout[] = {"not asked", "visible", "occluded", "outside frustum", "too far", "too small"};
+    Json out;
+    out["occluders"] = hidersJson(asked, reason.hiders);
+    if (reason.stage == Stage::kOcclusion) out["asked"] = askedName(reason.by_faces, reason.by_triangles);
+    out["sufficient"] = reason.sufficient;
+    out["outside_too"] = reason.outside_too;
+    out["without"] = kWithout[static_cast<int>(reason.without)];
+    out["others"] = hidersJson(asked, reason.others);
+    return out;
+}
+
+Json keptJson(const AskedScene& asked, const VisibleReason& reason) {
+    Json out;
+    out["because"] = keptBecauseName(reason.because);
+    if (reason.because == KeptBecause::kStageOff) out["stage"] = kStageNames[static_cast<int>(reason.stage)];
+    if (reason.because == KeptBecause::kBudgetSpent)
+        out["budget"] = reason.second_look_spent ? "second-look-polygons" : "occluder-triangles";
+    if (reason.because != KeptBecause::kOpenPixel) return out;
+    out["asked"] = askedName(reason.by_faces, reason.by_triangles);
+    out["pixel"] = {reason.x, reason.y};
+    out["open_pixels"] = reason.open_pixels;
+    out["pixels"] = reason.pixels;
+    out["covered"] = reason.covered;
+    if (reason.cover != ObjectId()) out["cover"] = objectJson(asked.scene, AskedScene::objectOf(reason.cover));
+    return out;
+}
+
+/// What the witnesses say, as a sentence.
+std::string sightingText(const ObjectAnswer& answer) {
+    const Sighting& sighting = *answer.sighting;
+    if (sighting.seen)
+        return fmt::format("It is seen: {} at pixel ({:.1f}, {:.1f}).",
+                           sighting.witness == "rays" ? "a ray meets it" : "the id-buffer has it", sighting.x,
+                           sighting.y);
+    std::string text = fmt::format("No witness saw it, by {} rays and an id-buffer", grouped(sighting.rays));
+    const VisibleReason& kept = answer.why.visible;
+    if (kept.because == KeptBecause::kOpenPixel)
+        text += kept.by_triangles ? ": it is kept because pixels of the occlusion buffer say less than rays"
+                                  : ": it is kept because its box is larger than it is";
+    return text + ".";
+}
+
+std::string cellName(const AskedScene& asked, uint32_t cell) {
+    const bool named = cell < asked.cells.size() && !asked.cells[cell].empty();
+    return named ? "'" + oneLine(asked.cells[cell], 60) + "'" : fmt::format("cell {}", cell);
+}
+
+std::string cellNames(const AskedScene& asked, const Array<uint32_t>& cells, const char* between) {
+    constexpr size_t kMost = 8;
+    std::string text;
+    for (size_t i = 0; i < std::min(cells.size(), kMost); ++i) text += (i ? between : "") + cellName(asked, cells[i]);
+    if (cells.size() > kMost) text += fmt::format("{}{} more", between, cells.size() - kMost);
+    return text;
+}
+
+bool isByCells(const Explanation& why) {
+    return why.verdict == Verdict::kNotInPvs || why.verdict == Verdict::kNoWindow;
+}
+
+/// Where the eye and what cells culled are, and the way between them.
+std::string cellsText(const AskedScene& asked, const CellsReason& reason) {
+    std::string text;
+    if (!reason.eye.empty()) text += " The eye is in " + cellNames(asked, reason.eye, ", ") + ".";
+    if (!reason.object.empty()) text += " It stands in " + cellNames(asked, reason.object, ", ") + ".";
+    if (reason.way.size() > 1) text += " The way there: " + cellNames(asked, reason.way, ", then ") + ".";
+    return text;
+}
+
+Json cellsJson(const AskedScene& asked, const CellsReason& reason) {
+    const auto list = [&](const Array<uint32_t>& cells) {
+        Json out = Json::array();
+        for (const uint32_t cell : cells) {
+            out.push_back({{"cell", cell}});
+            if (cell < asked.cells.size()) out.back()["name"] = asked.cells[cell];
+        }
+        return out;
+    };
+    Json out;
+    out["eye"] = list(reason.eye);
+    out["object"] = list(reason.object);
+    out["reached"] = reason.reached;
+    out["way"] = list(reason.way);
+    out["portals"] = Json::array();
+    for (const uint32_t portal : reason.portals) out["portals"].push_back(portal);
+    if (reason.work_spent) out["work_spent"] = true;
+    return out;
+}
+
+std::string eyeText(const ObjectAnswer& answer) {
+    return answer.eye == 0 ? "" : answer.eye == kLeftEye ? "left eye:  " : "right eye: ";
+}
+
+}  // namespace
+
+AskedScene::AskedScene(const Scene& from, const RunOptions& options) : scene(from) {
+    Progress progress("preparing", "meshes", scene.meshes.size());
+    loaded = loadWorld(
+        scene, [&](size_t done, size_t total) { progress.set(done, total); },
+        loadSettings(true, options.settings.occluder_error, (options.settings.stages & stageBit(Stage::kClusters)) != 0,
+                     options.cluster_test));
+    attachVisibility(options, loaded.world);
+    if (options.opened) cells = options.opened->file.cellSpace().names;
+    now = loaded.world.commit();
+}
+
+AskedScene::AskedScene(const Scene& from, LoadedWorld world) : scene(from), loaded(std::move(world)) {
+    now = loaded.world.commit();
+}
+
+std::vector<EyeView> eyesOfFrame(const CameraFrame& camera, const RunOptions& options) {
+    const View first = viewOf(camera, options);
+    if (!(options.stereo > 0)) return {{first, 0}};
+    return {{first, kLeftEye}, {shiftedEye(first, options.stereo), kRightEye}};
+}
+
+Sighting lookFor(const Scene& scene, const View& view, uint32_t object, const RunOptions& options) {
+    // Witnesses tell where they saw what was culled: so this object, and no other, is called culled.
+    std::vector<uint8_t> culled(scene.objects.size(), 0);
+    culled[object] = 1;
+    WitnessSettings settings;
+    settings.rays = options.rays;
+    settings.aimed_rays = std::min(settings.aimed_rays, options.rays / 5);
+    const FrameVerdict verdict = Witness(scene).judge(view, culled, settings);
+    Sighting sighting;
+    sighting.rays = verdict.rays;
+    for (const FalseCull& seen : verdict.false_culls) {
+        if (seen.object != object) continue;
+        sighting.seen = true;
+        sighting.x = seen.x;
+        sighting.y = seen.y;
+        sighting.witness = seen.witness;
+    }
+    return sighting;
+}
+
+std::string answerText(const AskedScene& asked, const ObjectAnswer& answer) {
+    const auto name = [&](ObjectId id) { return asked.nameOf(id); };
+    std::string text = eyeText(answer) + explanationText(answer.why, titleOf(asked.scene, answer.object), name);
+    if (isByCells(answer.why)) text += cellsText(asked, answer.why.cells);
+    if (answer.sighting) text += " " + sightingText(answer);
+    return wrapped(text, kColumns, "  ") + "\n";
+}
+
+std::string answerLine(const AskedScene& asked, const ObjectAnswer& answer) {
+    // Where there is no room, one occluder is named; and of a long path its end, which tells most.
+    constexpr std::pair<size_t, size_t> kRooms[] = {{6, kColumns}, {1, kColumns}, {1, 48}};
+    const std::string stage = stageOf(answer.why);
+    std::string line;
+    for (const auto& [occluders, width] : kRooms) {
+        if (!line.empty() && line.size() <= kColumns) break;
+        const auto name = [&, most = width](ObjectId id) {
+            std::string call = asked.nameOf(id);
+            return call.size() > most && call.front() == '\'' ? "'" + oneLine(call.substr(1), most - 1) : call;
+        };
+        line = fmt::format("frame {:>4}  {}{:<10} {}", answer.frame, eyeText(answer), stage.empty() ? "kept" : stage,
+                           explanationClause(answer.why, name, occluders));
+    }
+    return shortened(line, kColumns) + "\n";
+}
+
+Json answerJson(const AskedScene& asked, const ObjectAnswer& answer) {
+    const Explanation& why = answer.why;
+    Json out;
+    out["frame"] = answer.frame;
+    if (answer.eye) out["eye"] = answer.eye == kLeftEye ? "left" : "right";
+    out.update(objectJson(asked.scene, answer.object));
+    out["verdict"] = verdictName(why.verdict);
+    out["stage"] = stageOf(why).empty() ? Json(nullptr) : Json(stageOf(why));
+    out["together"] = why.together;
+    if (why.cut) out["cut"] = true;
+    out["rectangle"] = nullptr;
+    if (why.on_screen) {
+        out["rectangle"] = {why.rect.left, why.rect.top, why.rect.right, why.rect.bottom};
+        out["depth"] = why.depth;
+    }
+    if (why.verdict == Verdict::kOutsideFrustum || why.occlusion.outside_too) out["frustum"] = frustumJson(why.frustum);
+    if (why.verdict == Verdict::kOccluded) out["occlusion"] = occlusionJson(asked, why.occlusion);
+    if (why.verdict == Verdict::kTooFar)
+        out["distance"] = {{"distance", why.size.distance}, {"limit", why.size.distance_limit}};
+    if (why.verdict == Verdict::kTooSmall)
+        out["contribution"] = {{"radius", why.size.radius}, {"limit", why.size.radius_limit}};
+    if (isByCells(why)) out["cells"] = cellsJson(asked, why.cells);
+    if (why.clusters.clusters > 0)
+        out["clusters"] = {{"clusters", why.clusters.clusters},   {"back", why.clusters.back},
+                           {"outside", why.clusters.outside},     {"hidden", why.clusters.hidden},
+                           {"triangles", why.clusters.triangles}, {"drawn", why.clusters.drawn}};
+    if (why.verdict == Verdict::kVisible) out["kept"] = keptJson(asked, why.visible);
+    if (answer.sighting) {
+        const Sighting& sighting = *answer.sighting;
+        out["witness"] = {{"seen", sighting.seen}, {"rays", sighting.rays}};
+        if (sighting.seen) {
+            out["witness"]["pixel"] = {sighting.x, sighting.y};
+            out["witness"]["by"] = sighting.witness;
+        }
+    }
+    out["text"] =
+        explanationText(why, titleOf(asked.scene, answer.object), [&](ObjectId id) { return asked.nameOf(id); });
+    return out;
+}
+
+}  // namespace sightline::cli

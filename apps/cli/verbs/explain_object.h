@@ -1,0 +1,84 @@
+// Why one object is kept or culled, along a path: for a reader, and as JSON.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "apps/cli/verbs/common.h"
+#include "apps/cli/verbs/cull_frame.h"
+#include "apps/cli/verbs/explain_find.h"
+#include "sightline/query/explain/explain.h"
+#include "sightline/tools/load/load_world.h"
+#include "sightline/tools/report/run/cull_run.h"
+
+namespace sightline::cli {
+using namespace tools;
+
+/// What `explain` is asked.
+struct ExplainOptions : RunOptions {
+    std::string object, frame = "0", at, picture;
+    bool all_frames = false;  ///< from `frame`
+    uint32_t first_frame = 0;
+    bool has_pixel = false;  ///< from `at`
+    uint32_t x = 0, y = 0;
+    uint32_t top = 10;
+};
+
+/// What the witnesses say of an object that is kept.
+struct Sighting {
+    bool seen = false;
+    double x = 0, y = 0;  ///< [pixels from the left and the top]
+    std::string witness;  ///< "rays" or "id-buffer"
+    uint64_t rays = 0;
+};
+
+/// One object in one frame.
+struct ObjectAnswer {
+    uint32_t frame = 0;
+    uint32_t object = 0;  ///< index into Scene::objects
+    Explanation why;
+    std::optional<Sighting> sighting;
+    uint8_t eye = 0;  ///< of two, kLeftEye or kRightEye; 0: there is one
+};
+
+/// The scene as a world that can be asked.
+struct AskedScene {
+    const Scene& scene;
+    LoadedWorld loaded;
+    Snapshot now;
+    std::vector<std::string> cells;  ///< names, by number; empty: not known
+
+    AskedScene(const Scene& scene, const RunOptions& options);
+    /// @param loaded  of this scene
+    AskedScene(const Scene& scene, LoadedWorld loaded);
+    /// Scene::objects' index of an object of the world.
+    static uint32_t objectOf(ObjectId id) { return id.index - 1; }
+    std::string nameOf(ObjectId id) const { return callOf(scene, objectOf(id)); }
+};
+
+/// A view, and whose it is: ObjectAnswer::eye.
+struct EyeView {
+    View view;
+    uint8_t eye = 0;
+};
+/// Both eyes', the left one's first; or the only one's.
+std::vector<EyeView> eyesOfFrame(const CameraFrame& camera, const RunOptions& options);
+
+/// Lets the witnesses look for an object that is kept.
+Sighting lookFor(const Scene& scene, const View& view, uint32_t object, const RunOptions& options);
+
+/// The answer in sentences, at most 100 characters a line.
+std::string answerText(const AskedScene& asked, const ObjectAnswer& answer);
+/// The answer in one line of at most 100 characters.
+std::string answerLine(const AskedScene& asked, const ObjectAnswer& answer);
+nlohmann::ordered_json answerJson(const AskedScene& asked, const ObjectAnswer& answer);
+
+/// What a path has to tell of its scene; see tools/report/run/insight.h.
+std::string pathText(const Scene& scene, const CullRun& run, uint32_t top);
+nlohmann::ordered_json pathJson(const Scene& scene, const CullRun& run);
+
+}  // namespace sightline::cli

@@ -1,0 +1,188 @@
+// Which scene a verb is to look at: files, procedural ones or several of both, and how files are read.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/verbs/scene_choice.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/cli/shell/progress.h"
+#include "apps/cli/shell/quoted.h"
+#include "apps/cli/shell/session.h"
+#include "sightline/tools/import/scene_file.h"
+#include "sightline/tools/scene/procedural.h"
+
+namespace sightline::cli {
+using namespace tools;
+namespace {
+
+struct Unit {
+    std::string_view name;
+    double metres;
+};
+
+constexpr std::array kUnits =
+    std::to_array<Unit>({{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"km", 1000}, {"in", 0.0254}, {"ft", 0.3048}});
+
+/// A positive number at the beginning of a text; what follows it stays in the text.
+std::optional<double> takeNumber(std::string_view& text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || !(value > 0) || !std::isfinite(value)) return std::nullopt;
+    text.remove_prefix(static_cast<size_t>(end - text.data()));
+    return value;
+}
+
+Error wrongValue(const std::string& option, const std::string& value, const std::string& what) {
+    return {Error::Kind::kUsage, fmt::format("{} {}: {}", option, value, what)};
+}
+
+Status readUnit(const std::string& text, double& out) {
+    for (const Unit& unit : kUnits)
+        if (unit.name == text) {
+            out = unit.metres;
+            return success();
+        }
+    std::string_view rest = text;
+    const std::optional<double> value = takeNumber(rest);
+    if (!value || !rest.empty() || *value < 1e-12 || *value > 1e12)
+        return wrongValue("--unit", text, "not m, cm, mm, km, in, ft or a length in metres");
+    out = *value;
+    return success();
+}
+
+Status readMemory(const std::string& text, uint64_t& out) {
+    std::string_view rest = text;
+    const std::optional<double> value = takeNumber(rest);
+    constexpr std::string_view kPrefixes = "KMGT";
+    int shift = 0;
+    if (!rest.empty())
+        if (const size_t at = kPrefixes.find(rest[0]); at != std::string_view::npos) {
+            shift = 10 * (static_cast<int>(at) + 1);
+            rest.remove_prefix(1);
+        }
+    if (rest == "B" || rest == "iB") rest = {};
+    const double bytes = value ? std::ldexp(*value, shift) : 0;
+    if (!value || !rest.empty() || bytes < double(1 << 20) || bytes > 1e18)
+        return wrongValue("--import-memory", text, "not a size from 1M on, as in 8G");
+    out = static_cast<uint64_t>(bytes);
+    return success();
+}
+
+Status readTime(const std::string& text, double& out) {
+    std::string_view rest = text;
+    const std::optional<double> value = takeNumber(rest);
+    if (rest == "s") rest = {};
+    if (!value || !rest.empty() || *value > 1e8) return wrongValue("--import-time", text, "not a number of seconds");
+    out = *value;
+    return success();
+}
+
+Result<ImportSettings> settingsOf(const SceneChoice& choice) {
+    ImportSettings out;
+    if (!choice.up.empty()) out.up = choice.up == "x" ? UpAxis::kX : choice.up == "y" ? UpAxis::kY : UpAxis::kZ;
+    if (!choice.sides.empty())
+        out.sides = choice.sides == "one" ? Sides::kOne : choice.sides == "both" ? Sides::kBoth : Sides::kAsFileSays;
+    if (!choice.unit.empty())
+        if (Status good = readUnit(choice.unit, out.scale); !good) return good.error();
+    if (!choice.memory.empty())
+        if (Status good = readMemory(choice.memory, out.memory_limit); !good) return good.error();
+    if (!choice.time.empty())
+        if (Status good = readTime(choice.time, out.time_limit); !good) return good.error();
+    return out;
+}
+
+/// The options that were given, as pairs of a name and a value.
+std::vector<std::pair<std::string, std::string>> optionsOf(const SceneChoice& choice) {
+    std::vector<std::pair<std::string, std::string>> out;
+    for (const auto& [name, value] : {std::pair<const char*, const std::string&>{"--up", choice.up},
+                                      {"--unit", choice.unit},
+                                      {"--sides", choice.sides},
+                                      {"--import-memory", choice.memory},
+                                      {"--import-time", choice.time}})
+        if (!value.empty()) out.emplace_back(name, value);
+    return out;
+}
+
+Result<Scene> loadOne(const std::string& name, ImportSettings settings) {
+    if (isProcedural(name)) return makeProcedural(name);
+    Progress progress("reading " + std::filesystem::path(name).filename().string(), "parts", 0);
+    settings.progress = [&](size_t done, size_t total) { progress.set(done, total); };
+    settings.note = [](const std::string& text) { note(text); };
+    return loadSceneFile(name, settings);
+}
+
+}  // namespace
+
+std::string SceneChoice::title() const { return fmt::format("{}", fmt::join(names, " + ")); }
+
+std::string SceneChoice::words() const {
+    std::string words;
+    for (const std::string& name : names)  // a name that looks like an option needs its directory
+        words += (words.empty() ? "" : " ") + quoted(name.starts_with('-') ? "./" + name : name);
+    for (const auto& [name, value] : optionsOf(*this)) words += " " + name + " " + quoted(value);
+    return words;
+}
+
+std::string SceneChoice::procedural() const {
+    return names.size() == 1 && isProcedural(names.front()) ? names.front() : std::string();
+}
+
+void addSceneChoice(CLI::App& verb, SceneChoice& choice) {
+    verb.add_option("SCENE", choice.names,
+                    "files (sightline info --formats lists what can be read) or procedural scenes, as city:1:100000, "
+                    "building:1:3, terrain:1:256 or made:cycle; several are joined")
+        ->required()
+        ->expected(1, 1000);
+    addImportOptions(verb, choice);
+}
+
+void addImportOptions(CLI::App& verb, SceneChoice& choice) {
+    verb.add_option("--up", choice.up, "the axis of the files that points up")
+        ->check(CLI::IsMember({"x", "y", "z"}))
+        ->type_name("x|y|z")
+        ->group("Input");
+    verb.add_option("--unit", choice.unit, "length of one unit of the files: m, cm, mm, km, in, ft or so many metres")
+        ->type_name("UNIT")
+        ->group("Input");
+    verb.add_option("--sides", choice.sides, "which sides of surfaces are drawn (default: as the files say)")
+        ->check(CLI::IsMember({"file", "one", "both"}))
+        ->type_name("file|one|both")
+        ->group("Input");
+    verb.add_option("--import-memory", choice.memory, "for readers of foreign formats (default: 8G)")
+        ->type_name("SIZE")
+        ->group("Input");
+    verb.add_option("--import-time", choice.time, "for readers of foreign formats (default: 300 seconds)")
+        ->type_name("S")
+        ->group("Input");
+}
+
+Result<Scene> loadScene(const SceneChoice& choice) {
+    const Result<ImportSettings> settings = settingsOf(choice);
+    if (!settings) return settings.error();
+    if (std::all_of(choice.names.begin(), choice.names.end(), isProcedural) && !optionsOf(choice).empty())
+        return Error{Error::Kind::kUsage,
+                     fmt::format("{}: says how files are read, but there is none", optionsOf(choice).front().first)};
+    std::vector<Scene> scenes;
+    for (const std::string& name : choice.names) {
+        Result<Scene> scene = loadOne(name, *settings);
+        if (!scene) return scene;
+        scenes.push_back(std::move(*scene));
+    }
+    Scene joined = joinScenes(std::move(scenes));
+    if (joined.objects.empty())
+        return Error{
+            Error::Kind::kInput,
+            joined.name + ": draws nothing: it has cells or portals alone; name the scene that they belong to, too"};
+    return joined;
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,40 @@
+// Which scene a verb is to look at: files, procedural ones or several of both, and how files are read.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sightline/base/result.h"
+#include "sightline/tools/scene/scene.h"
+
+namespace CLI {
+class App;
+}
+
+namespace sightline::cli {
+using namespace tools;
+
+struct SceneChoice {
+    std::vector<std::string> names;  ///< files and procedural scenes; several are joined in this order
+    // How files are read, as the options say it; empty: not given.
+    std::string up, unit, sides, memory, time;
+
+    /// For a reader: "a.glb + b.glb".
+    std::string title() const;
+    /// As a shell takes it, with the options that differ from their defaults.
+    std::string words() const;
+    /// The one procedural scene's specification, or empty.
+    std::string procedural() const;
+};
+
+/// SCENE and the options of importing.
+void addSceneChoice(CLI::App& verb, SceneChoice& choice);
+/// The options of importing alone.
+void addImportOptions(CLI::App& verb, SceneChoice& choice);
+
+/// Files by their formats, procedural scenes by their specifications; shows progress and notes. Errors name the file
+/// and say what is wrong.
+Result<Scene> loadScene(const SceneChoice& choice);
+
+}  // namespace sightline::cli

@@ -1,0 +1,173 @@
+// What a run says to a reader: totals of a path, verdicts of its frames.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/verbs/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include "apps/cli/shell/session.h"
+#include "apps/cli/verbs/cluster_options.h"
+#include "apps/cli/verbs/cull_path.h"
+#include "apps/cli/verbs/section_options.h"
+#include "apps/cli/verbs/setting_options.h"
+#include "apps/cli/verbs/visibility_options.h"
+#include "sightline/tools/scene/one_line.h"
+
+namespace sightline::cli {
+using namespace tools;
+namespace {
+
+double percentOf(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
+
+/// 1234567 as "1.23 M".
+std::string rounded(double number) {
+    if (number >= 1e9) return fmt::format("{:.2f} G", number * 1e-9);
+    if (number >= 1e6) return fmt::format("{:.2f} M", number * 1e-6);
+    if (number >= 1e4) return fmt::format("{:.1f} k", number * 1e-3);
+    return fmt::format("{:.4g}", number);
+}
+
+double medianQuery(const CullRun& run) {
+    std::vector<double> times;
+    for (const FrameResult& frame : run.frames) times.push_back(frame.query_microseconds);
+    return medianOf(std::move(times));
+}
+
+void addSums(std::string& text, const Verification& sum, const CullRun& run) {
+    const size_t judged = judgedFrames(run);
+    fmt::format_to(std::back_inserter(text),
+                   "verified     {} of {} culled objects were visible, by {} rays and {} id samples\n",
+                   grouped(sum.false_culls), grouped(sum.culled), rounded(static_cast<double>(sum.rays)),
+                   rounded(static_cast<double>(sum.id_samples)));
+    fmt::format_to(std::back_inserter(text), "over-estimate {:.3f}: {} reported, {} exactly visible, over {} frames\n",
+                   sum.overEstimate(), grouped(sum.reported), grouped(sum.exactly_visible), judged);
+    if (sum.lossy_seen > 0)
+        fmt::format_to(std::back_inserter(text),
+                       "not proved   {} objects that were culled by distance, contribution or depth were seen: so they "
+                       "were asked to\n",
+                       grouped(sum.lossy_seen));
+    if (judged < run.frames.size())
+        fmt::format_to(std::back_inserter(text), "unverified   {} of {} frames\n", run.frames.size() - judged,
+                       run.frames.size());
+}
+
+void addChanges(std::string& text, const CullRun& run) {
+    if (const auto changes = sumChanges(run))
+        fmt::format_to(std::back_inserter(text),
+                       "changed      {:>10} pixels   {:7.4f} %: what was culled although it may be visible\n",
+                       grouped(changes->changed),
+                       percentOf(static_cast<double>(changes->changed), static_cast<double>(changes->pixels)));
+}
+
+/// What the stage of clusters left of the triangles of kept objects.
+void addClusters(std::string& text, const CullRun& run) {
+    ClusterRow sum;
+    for (const FrameResult& frame : run.frames) {
+        if (!frame.clusters) continue;
+        sum.tested += frame.clusters->tested;
+        sum.back += frame.clusters->back;
+        sum.outside += frame.clusters->outside;
+        sum.hidden += frame.clusters->hidden;
+        sum.whole += frame.clusters->whole;
+        sum.drawn += frame.clusters->drawn;
+        sum.draws += frame.clusters->draws;
+    }
+    if (sum.tested == 0) return;
+    const auto all = static_cast<double>(sum.tested), frames = static_cast<double>(run.frames.size());
+    fmt::format_to(std::back_inserter(text),
+                   "clusters     {:>10} tested   {:.1f} % seen from the back, {:.1f} % outside, {:.1f} % hidden\n",
+                   rounded(all / frames), percentOf(static_cast<double>(sum.back), all),
+                   percentOf(static_cast<double>(sum.outside), all), percentOf(static_cast<double>(sum.hidden), all));
+    fmt::format_to(std::back_inserter(text), "of these     {:>10} triangles {:.3f} % of those objects', in {} draws\n",
+                   rounded(static_cast<double>(sum.drawn) / frames),
+                   percentOf(static_cast<double>(sum.drawn), static_cast<double>(sum.whole)),
+                   rounded(static_cast<double>(sum.draws) / frames));
+}
+
+}  // namespace
+
+void printSummary(std::FILE* out, const CullRun& run) {
+    const auto frames = static_cast<double>(run.frames.size());
+    double visible = 0, triangles = 0, slowest = 0;
+    StageRow sums[kStageCount];
+    bool budget_spent = false;
+    for (const FrameResult& frame : run.frames) {
+        visible += static_cast<double>(frame.visible.size());
+        triangles += static_cast<double>(frame.triangles);
+        slowest = std::max(slowest, frame.query_microseconds);
+        budget_spent |= frame.stats.budget_spent;
+        for (int stage = 0; stage < kStageCount; ++stage) {
+            sums[stage].culled += frame.stages[stage].culled;
+            sums[stage].microseconds += frame.stages[stage].microseconds;
+        }
+    }
+    std::string text;
+    fmt::format_to(std::back_inserter(text),
+                   "{}: {} object{}, {} triangles; {} frame{} of {}x{}, means over the frames\n", oneLine(run.scene),
+                   grouped(run.objects), run.objects == 1 ? "" : "s", grouped(run.triangles), run.frames.size(),
+                   run.frames.size() == 1 ? "" : "s", run.width, run.height);
+    fmt::format_to(std::back_inserter(text), "visible      {:>10} objects  {:7.3f} %\n", rounded(visible / frames),
+                   percentOf(visible / frames, static_cast<double>(run.objects)));
+    for (int stage = 0; stage < kStageCount; ++stage) {
+        if (!(run.settings.stages >> stage & 1)) continue;
+        const double culled = static_cast<double>(sums[stage].culled) / frames;
+        fmt::format_to(std::back_inserter(text), "{:<12} {:>10} culled   {:7.3f} %  {:9.1f} us\n", kStageNames[stage],
+                       rounded(culled), percentOf(culled, static_cast<double>(run.objects)),
+                       sums[stage].microseconds / frames);
+    }
+    fmt::format_to(std::back_inserter(text), "triangles    {:>10} submitted {:6.3f} % of the scene's\n",
+                   rounded(triangles / frames), percentOf(triangles / frames, static_cast<double>(run.triangles)));
+    addClusters(text, run);
+    fmt::format_to(std::back_inserter(text), "query        {:>10.1f} us median, {:.1f} us at most\n", medianQuery(run),
+                   slowest);
+    if (budget_spent)
+        fmt::format_to(std::back_inserter(text),
+                       "the work budget was spent in some frames: more was kept than need be\n");
+    addChanges(text, run);
+    if (const auto sum = sumVerification(run)) addSums(text, *sum, run);
+    tell(out, text);
+}
+
+void printVerdicts(std::FILE* out, const CullRun& run) {
+    std::string text;
+    for (size_t i = 0; i < run.frames.size(); ++i) {
+        const FrameResult& frame = run.frames[i];
+        if (!frame.verification) continue;
+        const VerificationRow& row = *frame.verification;
+        Verification one;
+        one.reported = frame.visible.size();
+        one.exactly_visible = row.exactly_visible;
+        fmt::format_to(std::back_inserter(text),
+                       "frame {:>4}: {}, {} false culls, {} reported, {} exactly visible, over-estimate {:.3f}\n", i,
+                       row.false_culls == 0 ? paint(out, Tone::kGood, "sound") : paint(out, Tone::kBad, "WRONG"),
+                       row.false_culls, frame.visible.size(), row.exactly_visible, one.overEstimate());
+    }
+    addChanges(text, run);
+    if (const auto sum = sumVerification(run)) addSums(text, *sum, run);
+    tell(out, text);
+}
+
+std::string replayOfRun(const RunOptions& options, bool verify) {
+    std::string command = "sightline cull " + options.scene.words();
+    if (!options.cameras.empty()) command += " --cameras " + quoted(options.cameras);
+    if (options.frames > 0) command += fmt::format(" --frames {}", options.frames);
+    if (options.seed_given) command += fmt::format(" --seed {}", options.seed);
+    command += fmt::format(" --size {}x{}", options.width, options.height);
+    const auto list = [&](const char* option, const std::vector<std::string>& names) {
+        if (!names.empty()) command += fmt::format(" {} {}", option, fmt::join(names, ","));
+    };
+    list("--use", options.use);
+    list("--skip", options.skip);
+    command += settingWords(options.settings) + sectionOptionsOf(options.sections) +
+               visibilityOptionsOf(options.visibility) + clusterOptionsOf(options.cluster_test);
+    if (options.jitter != View().jitter) command += fmt::format(" --jitter {}", options.jitter);
+    if (options.stereo > 0) command += fmt::format(" --stereo {}", options.stereo);
+    if (verify) command += fmt::format(" --verify --rays {}", options.rays);
+    return command;
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,226 @@
+// The verb `vis`: which leaves of a Quake-family map see one another.
+// SPDX-License-Identifier: MIT
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/cli/shell/apart.h"
+#include "apps/cli/shell/session.h"
+#include "apps/cli/verbs/bake_options.h"
+#include "apps/cli/verbs/bake_run.h"
+#include "apps/cli/verbs/bake_summary.h"
+#include "apps/cli/verbs/common.h"
+#include "apps/cli/verbs/verbs.h"
+#include "apps/cli/verbs/vis_map.h"
+#include "apps/cli/verbs/vis_verify.h"
+#include "sightline/bake/brushes/outside.h"
+#include "sightline/tools/import/quake/map_source.h"
+#include "sightline/tools/import/quake/quake_visibility.h"
+#include "sightline/tools/report/output_file.h"
+#include "sightline/tools/report/page/vis_page.h"
+
+namespace sightline::cli {
+using namespace bake;
+using namespace tools;
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct VisOptions : BakeOptions {
+    VisMapChoice map;
+    std::string leak;  ///< file, or empty
+    bool verify = false;
+    uint64_t rays = 1000000;
+};
+
+std::string endOf(const std::string& name) { return lower(std::filesystem::path(name).extension().string()); }
+
+/// `-o` names a map (.bsp), and not a visibility file.
+bool writesMap(const VisOptions& options) { return endOf(options.output) == ".bsp"; }
+
+Status checkVisFiles(VisOptions& options) {
+    if (options.in_place && writesMap(options))
+        return Error{Error::Kind::kUsage, "--in-place goes with -o of a visibility file"};
+    for (const char* end : {".map", ".prt", ".pak", ".pk3"})
+        for (const std::string& name : {options.output, options.json, options.state, options.leak})
+            if (endOf(name) == end)
+                return Error{Error::Kind::kUsage,
+                             name + ": an output of vis does not end in " + end + ", as its inputs do"};
+    if (!options.leak.empty() && mapKind(options.map.name) != ".map")
+        return Error{Error::Kind::kUsage, "--leak goes with a .map"};
+    ApartFiles files;
+    files.read("MAP", splitMapName(options.map.name).file);
+    files.read("--bsp", options.map.bsp);
+    files.read("--prt", portalFileOf(options.map));
+    files.write("--leak", options.leak);
+    if (Status good = finishBakeOptions(options, files); !good) return good.error();
+    return options.leak.empty() ? success() : canWriteFile(options.leak);
+}
+
+/// Rows of leaves, as a lump has them: leaf i + 1 of the map is row i.
+BitMatrix leafRows(const VisMap& map, const BitMatrix& cells) {
+    if (map.map) return clusterRows(*map.map, cells, map.graph.cell_of_leaf);
+    const auto& cell_of_leaf = map.graph.cell_of_leaf;
+    const size_t leaves = cell_of_leaf.empty() ? 0 : cell_of_leaf.size() - 1;
+    BitMatrix rows(leaves, leaves);
+    for (size_t a = 0; a < leaves; ++a)
+        for (size_t b = 0; b < leaves; ++b) {
+            const uint32_t from = cell_of_leaf[a + 1], to = cell_of_leaf[b + 1];
+            if (from != CellGraph::kNoCell && to != CellGraph::kNoCell && cells.at(from, to)) rows.set(a, b);
+        }
+    return rows;
+}
+
+/// What is written, and its sizes.
+struct VisOutputs {
+    BakedFile rows;
+    std::vector<unsigned char> map;  ///< with its new lump; empty: not asked for
+    uint64_t lump_bytes = 0;
+};
+
+Result<VisOutputs> makeOutputs(const VisOptions& options, const VisMap& map, const CellVisibility& visibility) {
+    VisOutputs out;
+    const bool write_map = writesMap(options), figures = !options.json.empty();
+    const std::string name = std::filesystem::path(splitMapName(options.map.name).file).filename().string();
+    if (figures || (!options.output.empty() && !write_map)) {
+        const VisibilityContent content{visibility.visible, map.graph.cell_of_leaf, name, map.content_hash};
+        Result<BakedFile> rows = bakedFile(content, true);
+        if (!rows) return rows.error();
+        out.rows = std::move(*rows);
+    }
+    if (figures || write_map) {
+        const BitMatrix rows = leafRows(map, visibility.visible);
+        const QuakeFormat format = map.map ? map.map->format : QuakeFormat::kQuake;
+        out.lump_bytes = packQuakeVisibility(format, rows).bytes.size();
+        if (write_map) {
+            Result<std::vector<unsigned char>> bytes = replaceQuakeVisibility(map.map_bytes, map.map_name, rows);
+            if (!bytes) return bytes.error();
+            out.map = std::move(*bytes);
+        }
+    }
+    return out;
+}
+
+Status writeOutput(const std::string& file, const VisOutputs& outputs, VisibilityForm form) {
+    if (file.empty()) return success();
+    if (!outputs.map.empty())
+        return writeFileAside(file, {reinterpret_cast<const char*>(outputs.map.data()), outputs.map.size()});
+    const std::span<const char> bytes = outputs.rows.bytes(form);
+    return writeFileAside(file, {bytes.data(), bytes.size()});
+}
+
+/// None: interrupted.
+std::optional<VisSummary::Objects> bakeFaces(const VisMap& map, const CellVisibility& visibility,
+                                             const BakeSettings& settings) {
+    const std::clock_t begin = std::clock();
+    const BoxVisibility faces = bakeObjectRows(map.graph, visibility, facesOf(map), settings);
+    if (faces.stopped) return std::nullopt;
+    VisSummary::Objects figures = objectFigures(faces);
+    figures.cpu_seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    return figures;
+}
+
+/// All figures but the times.
+VisSummary summaryOf(const VisMap& map, const CellVisibility& visibility, const VisOutputs& outputs) {
+    VisSummary summary = rowFigures(map.graph, visibility);
+    summary.cells_are = map.cells_are;
+    summary.leafs = map.leaves;
+    summary.visible_leaf_pairs = leafPairs(map, visibility.visible);
+    summary.witnessed_pairs = leafPairs(map, visibility.witnessed);
+    summary.unresolved_pairs = summary.visible_leaf_pairs - summary.witnessed_pairs;
+    summary.pvs_bytes = outputs.rows.packed.size();
+    summary.resident_bytes = outputs.rows.resident_bytes;
+    summary.lump_bytes = outputs.lump_bytes;
+    for (const MapLeak& leak : map.leaks) summary.leaks.push_back({leak.what, leak.path});
+    return summary;
+}
+
+Result<VisMap> loadCheckedMap(VisOptions& options) {
+    options.map.cells = options.visCells();
+    options.map.needs_bsp = writesMap(options);
+    if (Status good = checkVisFiles(options); !good) return good.error();
+    Result<VisMap> map = loadVisMap(options.map);
+    if (!map) return map;
+    if (Status fits = checkSize(map->graph, options.map.name, map->map.has_value()); !fits) return fits.error();
+    if (options.objects && !map->map) return Error{Error::Kind::kUsage, "--objects needs a .bsp: it has the faces"};
+    if (!options.leak.empty() && !map->leaks.empty())
+        if (Status written = writeFileAside(options.leak, pointFile(map->leaks[0])); !written) return written.error();
+    return map;
+}
+
+Result<int> runVis(VisOptions& options) {
+    const Clock::time_point begin = Clock::now();
+    const Result<VisMap> map = loadCheckedMap(options);
+    if (!map) return map.error();
+    BakeRun run(options);
+    const Result<BakeSettings> settings = run.begin(map->graph);
+    if (!settings) return settings.error();
+    const Result<CellVisibility> visibility = bakeRows(map->graph, *settings);
+    if (!visibility) return visibility.error();
+    if (visibility->stopped && interrupted()) return run.reportInterrupted();
+
+    const Result<VisOutputs> outputs = makeOutputs(options, *map, *visibility);
+    if (!outputs) return outputs.error();
+    if (Status written = writeOutput(options.output, *outputs, settings->form); !written) return written.error();
+    run.end();
+
+    VisSummary summary = summaryOf(*map, *visibility, *outputs);
+    summary.map = options.map.name;
+    summary.threads = run.threads();
+    summary.cpu_seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+    summary.wall_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    if (options.objects) summary.objects = bakeFaces(*map, *visibility, *settings);
+    if (options.objects && !summary.objects) return reportInterruption("the cells, in the midst of the objects", true);
+    if (options.verify) summary.verification = verifyVis(*map, visibility->visible, options.rays, run.jobs());
+
+    if (!options.report.empty())
+        if (Status written =
+                writeVisPage(map->graph, visibility->visible, visibility->witnessed, summary, options.report);
+            !written)
+            return written.error();
+    printVisSummary(options.json == "-" ? stderr : stdout, summary);
+    if (!options.json.empty())
+        if (Status written = writeText(options.json, visJson(summary)); !written) return written.error();
+    return summary.verification && summary.verification->false_negatives > 0 ? kAnswerIsNo : kDone;
+}
+
+}  // namespace
+
+void addVis(CLI::App& tool, int& exit_code) {
+    CLI::App* verb = tool.add_subcommand("vis", "which leaves of a Quake-family map see one another");
+    const auto options = std::make_shared<VisOptions>();
+    verb->add_option("MAP", options->map.name, "a .prt, a .bsp, a .bsp in a .pak or .pk3 (x.pk3:maps/y.bsp), or a .map")
+        ->required()
+        ->type_name("FILE");
+    addBakeOptions(*verb, *options,
+                   "write the .bsp with its visibility lump, or, if the name ends otherwise, a visibility file");
+    verb->add_option("--bsp", options->map.bsp,
+                     "the .bsp that a .prt belongs to (default: beside it, of the same name)")
+        ->type_name("FILE");
+    verb->add_option("--prt", options->map.prt,
+                     "take the clusters of a .bsp from this portal file (default: beside it, of the same name)")
+        ->type_name("FILE");
+    verb->add_flag("--opaque-water", options->map.water_is_opaque,
+                   "nothing is seen from one kind of contents into another");
+    verb->add_option("--leak", options->leak, "write the way by which a .map leaks, as engines draw it (.pts)")
+        ->type_name("FILE");
+    verb->add_flag("--verify", options->verify, "hold the rows against rays through the map, and through its portals");
+    verb->add_option("--rays", options->rays, "of --verify")
+        ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
+        ->capture_default_str();
+    verb->callback([options, &exit_code] {
+        const Result<int> done = runVis(*options);
+        exit_code = done ? *done : report(done.error());
+    });
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,33 @@
+// What the brushes of a map's source are for sight: by their entity's class, their textures' names and flags.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "sightline/geom/leaf_tree.h"
+#include "sightline/tools/scene/quake_map.h"
+
+namespace sightline::bake {
+using namespace tools;
+
+/// What a brush does to the tree.
+enum class BrushRole : uint8_t {
+    kSolid,    ///< hides, and seals
+    kSky,      ///< seals; a sight line ends in it
+    kLiquid,   ///< another medium
+    kNothing,  ///< neither: detail, clips, triggers, hints; what hides only sometimes hides nothing here
+};
+
+/// Whether an entity's brushes are part of the world, as of func_group; of func_detail and its kin they are, too, but
+/// only as detail, unless they are sky. Those of all others move, or come and go.
+bool isWorldEntity(const QuakeMap& map, const QuakeMapEntity& entity);
+
+/// Of a brush of an entity. A brush is what the least hiding of its sides says it is.
+///
+/// Names are Quake's (sky..., *water, clip, hint, origin, ...), without the folders of Quake 2 and 3, of which
+/// `common/` holds what is not drawn: of it only caulk is solid. Flags of Quake 2 and 3: detail, liquids, sky,
+/// windows, clips. What a name of Quake 3's shaders means is not known here: all that is not named above is solid,
+/// which is wrong of windows that are not detail.
+BrushRole roleOf(const QuakeMap& map, const QuakeMapEntity& entity, const QuakeMapBrush& brush);
+
+}  // namespace sightline::bake

@@ -1,0 +1,28 @@
+// A checkpoint of a bake as bytes, so that another process can go on from it.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "sightline/bake/flow/cell_visibility.h"
+#include "sightline/base/result.h"
+
+namespace sightline::bake {
+
+/// A number that two graphs share only if they are the same: cells, portals and points, to the last bit.
+uint64_t hashOf(const CellGraph& graph);
+
+/// The bytes: small where the matrices are empty far and wide.
+std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash, uint64_t budget);
+
+/// Whether bytes begin as a state does.
+bool isBakeState(std::span<const char> bytes);
+
+/// The state again. Errors (kInput): one line with the file: no such file, of another graph or budget, damaged.
+/// @param name  what errors call the bytes
+Result<CellVisibilityState> readBakeState(std::span<const char> bytes, const std::string& name, const CellGraph& graph,
+                                          uint64_t budget);
+
+}  // namespace sightline::bake

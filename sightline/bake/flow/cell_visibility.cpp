@@ -1,0 +1,244 @@
+// The bake of rows, step by step: bounds by half-spaces, rays, then flows in batches.
+// SPDX-License-Identifier: MIT
+#include "sightline/bake/flow/cell_visibility.h"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "sightline/bake/flow/base_visibility.h"
+#include "sightline/bake/flow/flow_pool.h"
+#include "sightline/bake/flow/random_point.h"
+#include "sightline/bake/flow/thin_cells.h"
+#include "sightline/bake/flow/witness_rays.h"
+
+namespace sightline::bake {
+namespace {
+
+constexpr uint32_t kRaysPerPortal = 8;
+constexpr uint32_t kRayTask = 64;  // portals
+/// This many flows read the same frozen state. The answer depends on the number, and so the number does not depend on
+/// the threads.
+constexpr uint32_t kBatch = 64;
+
+template <class Visit>
+void forEachBit(std::span<const uint64_t> row, Visit&& visit) {
+    for (size_t w = 0; w < row.size(); ++w)
+        for (uint64_t left = row[w]; left; left &= left - 1)
+            visit(static_cast<uint32_t>(w * 64) + static_cast<uint32_t>(std::countr_zero(left)));
+}
+
+uint32_t bitsOf(std::span<const uint64_t> row) {
+    uint32_t bits = 0;
+    for (const uint64_t word : row) bits += static_cast<uint32_t>(std::popcount(word));
+    return bits;
+}
+
+bool has(std::span<const uint64_t> row, uint32_t i) { return row[i / 64] >> (i % 64) & 1; }
+
+/// Marks all cells of one ray: they see one another.
+void markRun(BitMatrix& witnessed, std::span<const uint32_t> run) {
+    for (const uint32_t a : run)
+        for (const uint32_t b : run) witnessed.set(a, b);
+}
+
+/// Runs of cells, one after the other.
+struct Runs {
+    std::vector<uint32_t> cells;
+    std::vector<uint32_t> first{0};
+
+    void add(std::span<const uint32_t> run) {
+        cells.insert(cells.end(), run.begin(), run.end());
+        first.push_back(static_cast<uint32_t>(cells.size()));
+    }
+};
+
+void markRuns(BitMatrix& witnessed, std::span<const uint32_t> cells, std::span<const uint32_t> first) {
+    for (size_t i = 0; i + 1 < first.size(); ++i) markRun(witnessed, cells.subspan(first[i], first[i + 1] - first[i]));
+}
+
+class Bake {
+public:
+    Bake(const CellGraph& graph, const CellVisibilitySettings& settings)
+        : settings_(settings),
+          thin_(mergeThinCells(graph)),
+          directed_(flowPortalsOf(thin_.any ? thin_.graph : graph)),
+          rays_(directed_),
+          places_(directed_) {}
+
+    CellVisibility run() {
+        if (settings_.resume) {
+            state_ = std::move(*settings_.resume);
+        } else {
+            tell("base", 0);
+            state_.may = baseVisibility(directed_, settings_.jobs);
+            tightenBase(directed_, state_.may, settings_.jobs);
+            state_.witnessed = BitMatrix(directed_.cells(), directed_.cells());
+            state_.reached = BitMatrix(directed_.cells(), directed_.cells());
+            for (uint32_t cell = 0; cell < directed_.cells(); ++cell) state_.witnessed.set(cell, cell);
+            tell("rays", 0);
+            castRays();
+            orderFlows();
+        }
+        flow();
+        return join();
+    }
+
+private:
+    void tell(const char* step, double done) const {
+        if (settings_.progress) settings_.progress({step, done});
+    }
+
+    /// Casts rays from points of each portal to points of portals that may follow it.
+    void castRays() {
+        const uint32_t tasks = (directed_.size() + kRayTask - 1) / kRayTask;
+        std::vector<Runs> found(tasks);
+        runJobs(settings_.jobs, tasks, [&](uint32_t task) {
+            std::vector<uint32_t> may, run;
+            for (uint32_t p = task * kRayTask; p < std::min(directed_.size(), (task + 1) * kRayTask); ++p) {
+                may.clear();
+                forEachBit(state_.may.row(p), [&](uint32_t q) { may.push_back(q); });
+                Random random(mixSeed(1, p));
+                for (uint32_t i = 0; i < kRaysPerPortal; ++i) {
+                    const glm::dvec3 from = randomPoint(directed_.outline(p), random);
+                    const glm::dvec3 to = may.empty()
+                                              ? from + directed_.portals[p].normal
+                                              : randomPoint(directed_.outline(may[random.below(may.size())]), random);
+                    rays_.through(p, from, to - from, run);
+                    if (run.size() > 1) found[task].add(run);
+                }
+            }
+        });
+        for (const Runs& runs : found) markRuns(state_.witnessed, runs.cells, runs.first);
+    }
+
+    /// Puts portals first that few others may follow: what their flows find out serves the later ones.
+    void orderFlows() {
+        std::vector<uint32_t> sizes(directed_.size());
+        for (uint32_t p = 0; p < directed_.size(); ++p) sizes[p] = bitsOf(state_.may.row(p));
+        state_.order.resize(directed_.size());
+        std::iota(state_.order.begin(), state_.order.end(), 0);
+        std::stable_sort(state_.order.begin(), state_.order.end(),
+                         [&](uint32_t a, uint32_t b) { return sizes[a] < sizes[b]; });
+    }
+
+    void flow() {
+        FlowPool pool(places_, rays_, state_.may);
+        std::vector<FlowAnswer> answers(kBatch);
+        std::vector<std::vector<uint64_t>> asked(kBatch);
+        const size_t words = state_.witnessed.wordsPerRow();
+        while (state_.flowed < state_.order.size()) {
+            if (settings_.stop && settings_.stop()) {
+                stopped_ = true;
+                break;
+            }
+            const auto batch = std::span<const uint32_t>(state_.order)
+                                   .subspan(state_.flowed)
+                                   .first(std::min<size_t>(kBatch, state_.order.size() - state_.flowed));
+            runJobs(settings_.jobs, static_cast<uint32_t>(batch.size()), [&](uint32_t i) {
+                const uint32_t from = directed_.portals[batch[i]].from;
+                asked[i].resize(words);
+                for (size_t w = 0; w < words; ++w) asked[i][w] = ~state_.witnessed.row(from)[w];
+                if (directed_.cells() % 64 != 0) asked[i].back() &= ~(~uint64_t(0) << (directed_.cells() % 64));
+                pool.from(batch[i], asked[i], settings_.budget, answers[i]);
+            });
+            for (uint32_t i = 0; i < batch.size(); ++i) apply(batch[i], asked[i], answers[i]);
+            state_.flowed += batch.size();
+            tell("flow", shareOf(state_.flowed));
+            if (settings_.checkpoint) settings_.checkpoint(state_);
+        }
+    }
+
+    /// The share of the work that is done. Late flows have more to do than early ones.
+    double shareOf(uint64_t flowed) const {
+        const double share = static_cast<double>(flowed) / static_cast<double>(state_.order.size());
+        return share * share;
+    }
+
+    void apply(uint32_t p, std::span<const uint64_t> asked, const FlowAnswer& answer) {
+        state_.steps += answer.steps;
+        state_.over_budget += answer.spent;
+        state_.empty_chains += answer.empty_chains;
+        const FlowPortal& portal = directed_.portals[p];
+        const std::span<uint64_t> reached = state_.reached.row(portal.from);
+        for (size_t w = 0; w < reached.size(); ++w) reached[w] |= answer.reached[w];
+        state_.reached.set(portal.from, portal.to);
+        markRuns(state_.witnessed, answer.seen, answer.seen_first);
+        if (answer.spent) return;
+        // The flow asked for these cells and did not reach them: portals into them cannot follow.
+        forEachBit(state_.may.row(p), [&](uint32_t q) {
+            const uint32_t to = directed_.portals[q].to;
+            if (!has(asked, to) || has(answer.reached, to)) return;
+            state_.may.clear(p, q);
+            state_.may.clear(directed_.portals[q].reverse, portal.reverse);
+        });
+    }
+
+    CellVisibility join() {
+        // Portals whose flow was not run see all that may follow them.
+        for (size_t i = state_.flowed; i < state_.order.size(); ++i) {
+            const FlowPortal& portal = directed_.portals[state_.order[i]];
+            state_.reached.set(portal.from, portal.to);
+            forEachBit(state_.may.row(state_.order[i]),
+                       [&](uint32_t q) { state_.reached.set(portal.from, directed_.portals[q].to); });
+        }
+        CellVisibility answer;
+        answer.over_budget = state_.over_budget;
+        answer.steps = state_.steps;
+        answer.empty_chains = state_.empty_chains;
+        answer.stopped = stopped_;
+        answer.visible = state_.witnessed;
+        for (uint32_t a = 0; a < directed_.cells(); ++a)
+            forEachBit(state_.reached.row(a), [&](uint32_t b) {
+                if (state_.reached.at(b, a)) answer.visible.set(a, b);
+            });
+        answer.witnessed = std::move(state_.witnessed);
+        if (thin_.any) {
+            // A ray that witnesses a merged cell need not pass each of its parts.
+            answer.visible = apart(answer.visible);
+            answer.witnessed = apart(answer.witnessed);
+            keepWitnesses(answer);
+        }
+        if (settings_.keep_follows) answer.follows = std::move(state_.may);
+        return answer;
+    }
+
+    /// Takes back the witness of every pair with a part of a merged cell, unless both are the same cell.
+    void keepWitnesses(CellVisibility& answer) const {
+        const size_t cells = thin_.cell_of_cell.size();
+        std::vector<uint32_t> parts(directed_.cells(), 0);
+        for (const uint32_t cell : thin_.cell_of_cell) ++parts[cell];
+        for (size_t a = 0; a < cells; ++a)
+            for (size_t b = 0; b < cells; ++b)
+                if (a != b && (parts[thin_.cell_of_cell[a]] > 1 || parts[thin_.cell_of_cell[b]] > 1))
+                    answer.witnessed.clear(a, b);
+    }
+
+    /// Turns a matrix of merged cells into one of the cells of the graph.
+    BitMatrix apart(const BitMatrix& merged) const {
+        const size_t cells = thin_.cell_of_cell.size();
+        BitMatrix out(cells, cells);
+        for (size_t a = 0; a < cells; ++a)
+            for (size_t b = 0; b < cells; ++b)
+                if (merged.at(thin_.cell_of_cell[a], thin_.cell_of_cell[b])) out.set(a, b);
+        return out;
+    }
+
+    const CellVisibilitySettings& settings_;
+    const ThinMerged thin_;
+    const FlowPortals directed_;
+    const WitnessRays rays_;
+    const FlowPlaces places_;
+    CellVisibilityState state_;
+    bool stopped_ = false;
+};
+
+}  // namespace
+
+CellVisibility bakeCellVisibility(const CellGraph& graph, const CellVisibilitySettings& settings) {
+    return Bake(graph, settings).run();
+}
+
+}  // namespace sightline::bake

@@ -1,0 +1,227 @@
+// Lays out a cell graph for light: welds points, finds planes, and sorts portals by the cell that they leave.
+// SPDX-License-Identifier: MIT
+#include "sightline/bake/flow/flow_portals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <unordered_map>
+
+#include "sightline/base/random.h"
+#include "sightline/geom/outline_hull.h"
+
+namespace sightline::bake {
+namespace {
+
+/// Coordinates are known to a few units in the last place of the largest; what a chain of a map compiler's clips adds
+/// is a few thousand times that.
+constexpr double kRelativePrecision = 0x1p-35;
+
+/// Welds points that are near one another to the first of them.
+class Welder {
+public:
+    Welder(std::vector<glm::dvec3>& points, double precision) : points_(points), size_(4 * precision) {
+        cells_.reserve(points.size());
+    }
+
+    void weld() {
+        for (uint32_t i = 0; i < points_.size(); ++i) {
+            const uint32_t same = find(i);
+            if (same != i) points_[i] = points_[same];
+            else cells_.emplace(keyOf(placeOf(points_[i])), i);
+        }
+    }
+
+private:
+    using Place = glm::tvec3<int64_t>;
+
+    Place placeOf(const glm::dvec3& point) const { return Place(glm::floor(point / size_)); }
+    static uint64_t keyOf(const Place& place) {
+        return mixSeed(mixSeed(static_cast<uint64_t>(place.x), static_cast<uint64_t>(place.y)),
+                       static_cast<uint64_t>(place.z));
+    }
+
+    uint32_t find(uint32_t i) const {
+        const glm::dvec3 reach(size_ / 4);
+        const Place low = placeOf(points_[i] - reach), high = placeOf(points_[i] + reach);
+        uint32_t best = i;
+        for (int64_t x = low.x; x <= high.x; ++x)
+            for (int64_t y = low.y; y <= high.y; ++y)
+                for (int64_t z = low.z; z <= high.z; ++z) {
+                    const auto [begin, end] = cells_.equal_range(keyOf({x, y, z}));
+                    for (auto other = begin; other != end; ++other) {
+                        const glm::dvec3 apart = glm::abs(points_[other->second] - points_[i]);
+                        if (std::max({apart.x, apart.y, apart.z}) <= reach.x) best = std::min(best, other->second);
+                    }
+                }
+        return best;
+    }
+
+    std::vector<glm::dvec3>& points_;
+    double size_;
+    std::unordered_multimap<uint64_t, uint32_t> cells_;
+};
+
+/// Numbers the planes of portals: portals with one number lie in one plane to within the precision.
+class Sheets {
+public:
+    explicit Sheets(double tolerance) : tolerance_(tolerance) {}
+
+    uint32_t of(const FlowPortal& portal, std::span<const glm::dvec3> outline) {
+        // Both sides of a plane are the same sheet.
+        const double sign = firstSign(portal.normal);
+        const glm::dvec3 normal = sign * portal.normal;
+        const double offset = sign * portal.offset;
+        const double step = 0x1p-10;  // coarse: neighbouring buckets are searched too
+        const glm::dvec3 at = normal / step;
+        for (int64_t x = floorOf(at.x - .01); x <= floorOf(at.x + .01); ++x)
+            for (int64_t y = floorOf(at.y - .01); y <= floorOf(at.y + .01); ++y)
+                for (int64_t z = floorOf(at.z - .01); z <= floorOf(at.z + .01); ++z) {
+                    const double low = offset - 64 * tolerance_, high = offset + 64 * tolerance_;
+                    for (int64_t w = floorOf(low); w <= floorOf(high); ++w) {
+                        const auto [begin, end] = known_.equal_range(key(x, y, z, w));
+                        for (auto other = begin; other != end; ++other)
+                            if (holds(sheets_[other->second], outline)) return other->second;
+                    }
+                }
+        const auto number = static_cast<uint32_t>(sheets_.size());
+        sheets_.push_back(glm::dvec4(normal, offset));
+        known_.emplace(key(floorOf(at.x), floorOf(at.y), floorOf(at.z), floorOf(offset)), number);
+        return number;
+    }
+
+    /// The number of a bent portal, which lies in no plane.
+    uint32_t ofItsOwn() {
+        sheets_.emplace_back(0.0);
+        return static_cast<uint32_t>(sheets_.size()) - 1;
+    }
+
+private:
+    static int64_t floorOf(double value) { return static_cast<int64_t>(std::floor(value)); }
+    static double firstSign(const glm::dvec3& normal) {
+        int axis = 0;
+        for (int i = 1; i < 3; ++i)
+            if (std::abs(normal[i]) > std::abs(normal[axis]) + 1e-6) axis = i;
+        return normal[axis] < 0 ? -1 : 1;
+    }
+    static uint64_t key(int64_t x, int64_t y, int64_t z, int64_t w) {
+        return mixSeed(mixSeed(static_cast<uint64_t>(x), static_cast<uint64_t>(y)),
+                       mixSeed(static_cast<uint64_t>(z), static_cast<uint64_t>(w)));
+    }
+    bool holds(const glm::dvec4& plane, std::span<const glm::dvec3> outline) const {
+        return std::all_of(outline.begin(), outline.end(), [&](const glm::dvec3& point) {
+            return std::abs(glm::dot(glm::dvec3(plane), point) + plane.w) <= tolerance_;
+        });
+    }
+
+    double tolerance_;
+    std::vector<glm::dvec4> sheets_;
+    std::unordered_multimap<uint64_t, uint32_t> known_;
+};
+
+/// The plane of an outline by its area vector, through the mean of its points.
+bool findPlane(std::span<const glm::dvec3> outline, FlowPortal& portal) {
+    glm::dvec3 area(0), sum(0);
+    for (size_t i = 1; i + 1 < outline.size(); ++i)
+        area += glm::cross(outline[i] - outline[0], outline[i + 1] - outline[0]);
+    const double length = glm::length(area);
+    if (!(length > 0)) return false;
+    for (const glm::dvec3& point : outline) sum += point;
+    portal.center = sum / static_cast<double>(outline.size());
+    portal.normal = area / length;
+    portal.offset = -glm::dot(portal.normal, portal.center);
+    double squared = 0;
+    for (const glm::dvec3& point : outline)
+        squared = std::max(squared, glm::dot(point - portal.center, point - portal.center));
+    portal.radius = std::sqrt(squared) * (1 + 0x1p-40);
+    return true;
+}
+
+/// How far a corner lies beyond the line of an edge, at most.
+double bulgeOf(std::span<const glm::dvec3> outline, const glm::dvec3& normal) {
+    double bulge = 0;
+    for (size_t i = 0; i < outline.size(); ++i) {
+        const glm::dvec3 edge = outline[i + 1 == outline.size() ? 0 : i + 1] - outline[i];
+        const double length = glm::length(edge);
+        if (!(length > 0)) continue;
+        const glm::dvec3 outward = glm::cross(edge, normal) / length;
+        for (const glm::dvec3& point : outline) bulge = std::max(bulge, glm::dot(outward, point - outline[i]));
+    }
+    return bulge;
+}
+
+/// The place of a portal, and its convex outline. The graph's normal points into cells[0]: this is the way from cells[1].
+FlowPortal wayThrough(const CellPortal& portal, std::span<const glm::dvec3> given, std::vector<glm::dvec3>& hull) {
+    hull = outlineHull(given, glm::dvec3(portal.plane));
+    if (hull.size() < 3) hull.assign(given.begin(), given.end());
+    FlowPortal way;
+    if (findPlane(hull, way)) return way;
+    // No area is left: the graph's plane is taken.
+    hull.assign(given.begin(), given.end());
+    way.normal = glm::dvec3(portal.plane);
+    way.center = hull[0];
+    way.offset = -glm::dot(way.normal, way.center);
+    for (const glm::dvec3& point : hull) way.radius = std::max(way.radius, glm::length(point - way.center));
+    return way;
+}
+
+}  // namespace
+
+FlowPortals flowPortalsOf(const CellGraph& graph) {
+    FlowPortals directed;
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+    for (const glm::dvec3& point : graph.points) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+    directed.first_of_cell.assign(graph.cells + 1, 0);
+    if (graph.portals.empty()) return directed;
+    directed.center = glm::round(0.5 * low + 0.5 * high);
+    const glm::dvec3 half = glm::max(high - directed.center, directed.center - low);
+    directed.extent = std::max({half.x, half.y, half.z});
+    const double largest = std::max({glm::length(low), glm::length(high), directed.extent});
+    directed.precision = largest * kRelativePrecision;
+    directed.rounding = directed.extent * 0x1p-48;
+
+    std::vector<glm::dvec3> points = graph.points;
+    for (glm::dvec3& point : points) point -= directed.center;
+    Welder(points, directed.precision).weld();
+
+    // Portals are sorted by the cell that they leave; those of one cell keep the graph's order.
+    for (const CellPortal& portal : graph.portals)
+        for (const uint32_t cell : portal.cells) ++directed.first_of_cell[cell + 1];
+    std::partial_sum(directed.first_of_cell.begin(), directed.first_of_cell.end(), directed.first_of_cell.begin());
+    std::vector<uint32_t> next(directed.first_of_cell.begin(), directed.first_of_cell.end() - 1);
+    directed.portals.resize(2 * graph.portals.size());
+    Sheets sheets(4 * directed.precision);
+    for (uint32_t i = 0; i < graph.portals.size(); ++i) {
+        const CellPortal& portal = graph.portals[i];
+        const std::span<const glm::dvec3> given{points.data() + portal.first, portal.count};
+        std::vector<glm::dvec3> hull;
+        FlowPortal way = wayThrough(portal, given, hull);
+        way.portal = i;
+        for (const glm::dvec3& point : hull) way.bend = std::max(way.bend, std::abs(way.height(point)));
+        way.straight = bulgeOf(hull, way.normal) <= directed.rounding;
+        // A line that leaves a flat portal rises, so it passes every later portal higher up. It may leave a bent portal
+        // as far below its plane as it is bent.
+        const bool flat = way.bend <= directed.precision;
+        way.above = flat ? directed.precision : -way.bend;
+        way.sheet = flat ? sheets.of(way, hull) : sheets.ofItsOwn();
+        const uint32_t there = next[portal.cells[1]]++, back = next[portal.cells[0]]++;
+        way.count = static_cast<uint32_t>(hull.size());
+        for (const bool forward : {true, false}) {
+            way.first = static_cast<uint32_t>(directed.points.size());
+            way.from = portal.cells[forward ? 1 : 0];
+            way.to = portal.cells[forward ? 0 : 1];
+            way.reverse = forward ? back : there;
+            directed.points.insert(directed.points.end(), hull.begin(), hull.end());
+            directed.portals[forward ? there : back] = way;
+            std::reverse(hull.begin(), hull.end());
+            way.normal = -way.normal;
+            way.offset = -way.offset;
+        }
+    }
+    return directed;
+}
+
+}  // namespace sightline::bake

@@ -1,0 +1,54 @@
+// A cell graph laid out for light: each portal twice, once for each way through it, sorted by the cell that it leaves.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "sightline/cells/cells.h"
+
+namespace sightline::bake {
+
+/// A portal and a way through it. Its plane's normal points along the way, into the cell that is entered.
+struct FlowPortal {
+    glm::dvec3 normal{0.0};
+    double offset = 0;  ///< dot(normal, p) + offset: the height of p, negative in the cell that is left
+    glm::dvec3 center{0.0};
+    double radius = 0;      ///< no point of the outline is farther from the center
+    double bend = 0;        ///< no point of the outline is farther from the plane
+    double above = 0;       ///< a portal that reaches no higher than this is not passed after this one
+    bool straight = false;  ///< Window::straight
+    uint32_t first = 0,
+             count = 0;         ///< of FlowPortals::points; counter-clockwise as seen from the tip of the normal
+    uint32_t from = 0, to = 0;  ///< cells
+    uint32_t reverse = 0;       ///< the other way through it
+    uint32_t portal = 0;        ///< of the graph
+    uint32_t sheet = 0;  ///< portals of one sheet lie in one plane, exactly: none of them is passed after another
+
+    double height(const glm::dvec3& point) const { return glm::dot(normal, point) + offset; }
+};
+
+struct FlowPortals {
+    std::vector<FlowPortal> portals;      ///< sorted by the cell that they leave
+    std::vector<uint32_t> first_of_cell;  ///< [size: cells + 1] the portals that leave cell c: from first_of_cell[c] on
+    std::vector<glm::dvec3> points;       ///< the graph's points less `center`
+    glm::dvec3 center{0.0};
+    double extent = 0;    ///< no coordinate of a point is larger
+    double rounding = 0;  ///< what sums of three products of coordinates with unit vectors may be off by  [world units]
+    double precision = 0;  ///< how well points are known: closer points are the same  [world units]
+
+    uint32_t cells() const { return static_cast<uint32_t>(first_of_cell.size()) - 1; }
+    uint32_t size() const { return static_cast<uint32_t>(portals.size()); }
+    std::span<const glm::dvec3> outline(uint32_t portal) const {
+        return {points.data() + portals[portal].first, portals[portal].count};
+    }
+};
+
+/// Points closer than the precision become one; outlines that are not convex are replaced by their convex hulls, so
+/// that the portals only grow.
+FlowPortals flowPortalsOf(const CellGraph& graph);
+
+}  // namespace sightline::bake

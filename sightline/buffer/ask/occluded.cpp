@@ -1,0 +1,183 @@
+// Asks the depth tiles whether they hide a rectangle: the SIMD kernel of every occlusion test.
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "sightline/buffer/seam/seam.h"
+#include "sightline/buffer/tile_log.h"
+
+#define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sightline/buffer/ask/occluded.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "sightline/buffer/tile_ops-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline {
+namespace HWY_NAMESPACE {
+
+/// What a tile leaves open of a rectangle: pixels that are not surely nearer than the rectangle.
+HWY_INLINE uint64_t openInTile(const DepthTiles& tiles, uint32_t tile, const PixelRect& rect, int32_t column,
+                               int32_t row) {
+    if (tiles.base[tile] > rect.nearness) return 0;
+    const uint64_t window = windowBits(rect.x0, rect.y0, rect.x1, rect.y1, 8 * column, 8 * row);
+    return openTilePixels(tiles, tile, static_cast<uint32_t>(column), static_cast<uint32_t>(row), window,
+                          rect.nearness);
+}
+
+/// Pixels that seams have not decided yet for what lies at a nearness, if they are open to it now.
+HWY_INLINE uint64_t undecidedPixels(const DepthTiles& tiles, uint32_t tile, float nearness) {
+    if (tiles.seams[tile] == DepthTiles::kNone) return 0;
+    const uint64_t seams = tiles.seam_mask[tile] & ~tiles.tried[tile];
+    return tiles.lid[tile] <= nearness ? seams & ~tiles.lid_mask[tile] : seams;
+}
+
+/// Calls `look` with each tile of the rectangle that is not wholly nearer; stops when it returns false.
+template <class Look>
+HWY_INLINE bool forOpenTiles(DepthTiles& tiles, const PixelRect& rect, Look look) {
+    const F16 d;
+    const auto limit = hn::Set(d, rect.nearness);
+    const int32_t first = rect.x0 >> 3, last = rect.x1 >> 3;
+    for (int32_t row = rect.y0 >> 3; row <= rect.y1 >> 3; ++row) {
+        const float* base = tiles.base.data() + static_cast<size_t>(row) * tiles.stride;
+        for (int32_t chunk = first & ~15; chunk <= last; chunk += 16) {
+            uint32_t open = 0xffffu << std::max(0, first - chunk) & 0xffffu >> std::max(0, chunk + 15 - last);
+            for (size_t h = 0; h < 16; h += hn::Lanes(d))
+                open &= ~static_cast<uint32_t>(bitsFromMask(d, hn::Gt(hn::LoadU(d, base + chunk + h), limit)) << h);
+            for (; open; open &= open - 1) {
+                const int32_t column = chunk + std::countr_zero(open);
+                if (!look(static_cast<uint32_t>(row) * tiles.stride + static_cast<uint32_t>(column), column, row))
+                    return false;
+            }
+        }
+    }
+    return true;
+}
+
+/// Tiles in which seams decide, as far as they fit.
+struct Undecided {
+    static constexpr int kMost = 64;
+    uint32_t tile[kMost];
+    uint64_t open[kMost];
+    int count = 0;
+
+    HWY_INLINE void add(uint32_t which, uint64_t pixels) {
+        if (count < kMost) {
+            tile[count] = which;
+            open[count] = pixels;
+        }
+        ++count;
+    }
+};
+
+/// Whether seams close the pixels of a tile that are open to what lies at a nearness.
+bool closeSeams(DepthTiles& tiles, uint32_t tile, uint64_t open, float nearness) {
+    pairSeams(tiles, tile);
+    alignas(64) float claims[64];
+    claimsOfTile(tiles, tile, claims);
+    open &= ~pixelsNearer(claims, nearness);
+    if (!open) return true;
+    // Those first that few polygons share: they are the cheapest, and the likeliest to stay open.
+    const uint64_t few = lookAtSeams(tiles, tile, open, nearness).few;
+    for (uint64_t part : {open & few, open & ~few})
+        for (; part; part &= part - 1)
+            if (!resolveSeam(tiles, tile, std::countr_zero(part), nearness)) return false;
+    return true;
+}
+
+bool isHiddenKernel(DepthTiles& tiles, const PixelRect& rect, Seams seams) {
+    // First the cheap answer: one pixel that stays open makes the rectangle visible.
+    Undecided undecided;
+    const bool closed = forOpenTiles(tiles, rect, [&](uint32_t tile, int32_t column, int32_t row) HWY_ATTR {
+        const uint64_t open = openInTile(tiles, tile, rect, column, row);
+        if (!open) return true;
+        if (seams == Seams::kLeave || open & ~undecidedPixels(tiles, tile, rect.nearness)) return false;
+        undecided.add(tile, open);
+        return true;
+    });
+    if (!closed || !undecided.count) return closed;
+    const int listed = std::min(undecided.count, Undecided::kMost);
+    // Then what the masks of the seams tell; then pixel by pixel.
+    for (int i = 0; i < listed; ++i)
+        if (lookAtSeams(tiles, undecided.tile[i], undecided.open[i], rect.nearness).open) return false;
+    for (int i = 0; i < listed; ++i)
+        if (!closeSeams(tiles, undecided.tile[i], undecided.open[i], rect.nearness)) return false;
+    if (listed == undecided.count) return true;
+    return forOpenTiles(tiles, rect, [&](uint32_t tile, int32_t column, int32_t row) HWY_ATTR {
+        const uint64_t open = openInTile(tiles, tile, rect, column, row);
+        return !open || closeSeams(tiles, tile, open, rect.nearness);
+    });
+}
+
+HWY_INLINE uint64_t openAgainst(const DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64]) {
+    const F16 d;
+    alignas(64) float claims[64];
+    claimsOfTile(tiles, tile, claims);
+    uint64_t nearer = 0;
+    for (size_t i = 0; i < 64; i += hn::Lanes(d))
+        nearer |= bitsFromMask(d, hn::Gt(hn::Load(d, claims + i), hn::LoadU(d, nearest + i))) << i;
+    return window & ~nearer;
+}
+
+uint64_t openPixelsKernel(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64], Seams seams) {
+    const uint64_t open = openAgainst(tiles, tile, window, nearest);
+    const uint64_t undecided = open & undecidedSeams(tiles, tile);
+    if (seams == Seams::kLeave || !undecided) return open;
+    pairSeams(tiles, tile);
+    for (uint64_t set = openAgainst(tiles, tile, undecided, nearest); set; set &= set - 1) {
+        const int bit = std::countr_zero(set);
+        resolveSeam(tiles, tile, bit, nearest[bit]);
+    }
+    return openAgainst(tiles, tile, window, nearest);
+}
+
+void readClaimsKernel(const DepthTiles& tiles, uint32_t tile, float (&claims)[64]) {
+    claimsOfTile(tiles, tile, claims);
+}
+
+void raiseClaimsKernel(DepthTiles& tiles, uint32_t tile, uint64_t mask, const float (&depths)[64]) {
+    raiseBlockBy(tiles, tile, mask, depths);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sightline
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline {
+
+HWY_EXPORT(isHiddenKernel);
+HWY_EXPORT(openPixelsKernel);
+HWY_EXPORT(readClaimsKernel);
+HWY_EXPORT(raiseClaimsKernel);
+
+bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams) {
+    const bool hidden = HWY_DYNAMIC_DISPATCH(isHiddenKernel)(tiles, rect, seams);
+    if (tiles.log) tiles.log->note(rect, seams, hidden);
+    return hidden;
+}
+
+uint64_t openPixels(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64], Seams seams) {
+    const uint64_t open = HWY_DYNAMIC_DISPATCH(openPixelsKernel)(tiles, tile, window, nearest, seams);
+    if (tiles.log) tiles.log->note(tile, window, nearest, seams, open);
+    return open;
+}
+
+uint64_t undecidedSeams(const DepthTiles& tiles, uint32_t tile) {
+    return tiles.seams[tile] == DepthTiles::kNone ? 0 : tiles.seam_mask[tile] & ~tiles.tried[tile];
+}
+
+void readClaims(const DepthTiles& tiles, uint32_t tile, float (&claims)[64]) {
+    HWY_DYNAMIC_DISPATCH(readClaimsKernel)(tiles, tile, claims);
+}
+
+void raiseClaims(DepthTiles& tiles, uint32_t tile, uint64_t mask, const float (&depths)[64]) {
+    HWY_DYNAMIC_DISPATCH(raiseClaimsKernel)(tiles, tile, mask, depths);
+}
+
+}  // namespace sightline
+#endif  // HWY_ONCE

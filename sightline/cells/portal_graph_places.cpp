@@ -1,0 +1,259 @@
+// Where bodies stand in a graph of cells: down the tree, or among the regions.
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include "sightline/cells/point_body.h"
+#include "sightline/cells/portal_graph.h"
+
+namespace sightline {
+namespace {
+
+using Node = PortalGraph::Node;
+
+struct Heights {
+    double least, most;
+};
+
+Heights heightsOf(std::span<const glm::dvec3> points, const glm::dvec4& plane) {
+    Heights heights{INFINITY, -INFINITY};
+    for (const glm::dvec3& point : points) {
+        const double height = glm::dot(glm::dvec3(plane), point) + plane.w;
+        heights.least = std::min(heights.least, height);
+        heights.most = std::max(heights.most, height);
+    }
+    return heights;
+}
+
+Heights heightsOf(const Box3d& box, const glm::dvec4& plane) {
+    Heights heights{plane.w, plane.w};
+    for (int axis = 0; axis < 3; ++axis) {
+        const double a = plane[axis] * box.min[axis], b = plane[axis] * box.max[axis];
+        heights.least += std::min(a, b);
+        heights.most += std::max(a, b);
+    }
+    return heights;
+}
+
+Box3d boxOf(std::span<const glm::dvec3> points) {
+    Box3d box;
+    for (const glm::dvec3& point : points) box.grow(point);
+    return box;
+}
+
+Box3d grown(Box3d box, double by) {
+    box.min -= by;
+    box.max += by;
+    return box;
+}
+
+bool meet(const Box3d& a, const Box3d& b) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(a.min[axis] <= b.max[axis] && b.min[axis] <= a.max[axis])) return false;
+    return true;
+}
+
+bool isWithin(const Box3d& inner, const Box3d& outer) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(inner.min[axis] >= outer.min[axis] && inner.max[axis] <= outer.max[axis])) return false;
+    return true;
+}
+
+/// Pushes a body down the tree; each leaf gets what planes leave of it.
+class TreeDescent {
+public:
+    /// @param slack  what is within it of a leaf is in the leaf; how deep the body may be in solid leaves
+    TreeDescent(std::span<const Node> nodes, std::span<const glm::dvec3> body, double radius, double slack,
+                Array<uint32_t>& cells)
+        : nodes_(nodes), body_(body), radius_(radius), slack_(slack), cells_(cells) {}
+
+    /// @returns false if the body reaches into a solid leaf, or it is cut too often to tell
+    bool down(uint32_t child, uint32_t place, std::span<const glm::dvec3> points, int depth) {
+        PointBody rest, part;
+        const double reach = radius_ + slack_;
+        while ((child & Node::kLeaf) == 0) {
+            const Node& node = nodes_[child];
+            const Heights heights = heightsOf(points, node.plane);
+            const bool behind = heights.least <= reach, front = heights.most >= -reach;
+            if (behind && front) {
+                if (depth == kMostCuts || !cutBody(points, -node.plane, -reach, part)) return false;
+                if (!down(node.child[0], child << 1, part.all(), depth + 1)) return false;
+                if (!cutBody(points, node.plane, -reach, part)) return false;
+                rest = part;
+                points = rest.all();
+            }
+            if (!behind && !front) return false;  // not a number
+            place = child << 1 | (front ? 1 : 0);
+            child = node.child[front ? 1 : 0];
+        }
+        if (child == Node::kSolid) return !isDeepIn(place);
+        cells_.push_back(child & ~Node::kLeaf);
+        return true;
+    }
+
+private:
+    static constexpr int kMostCuts = 24;
+
+    /// Whether a part of the body is deeper in a leaf than the slack.
+    bool isDeepIn(uint32_t place) const {
+        PointBody body, part;
+        std::span<const glm::dvec3> points = body_;
+        for (uint32_t node = place >> 1, side = place & 1; node != PortalGraph::kNoCell;) {
+            const glm::dvec4& plane = nodes_[node].plane;
+            if (!cutBody(points, side == 1 ? plane : -plane, slack_ - radius_, part)) return true;
+            if (part.count == 0) return false;
+            body = part;
+            points = body.all();
+            const uint32_t parent = nodes_[node].parent;
+            if (parent != PortalGraph::kNoCell) side = nodes_[parent].child[1] == node ? 1 : 0;
+            node = parent;
+        }
+        return true;
+    }
+
+    std::span<const Node> nodes_;
+    std::span<const glm::dvec3> body_;
+    double radius_, slack_;
+    Array<uint32_t>& cells_;
+};
+
+void sortOnce(Array<uint32_t>& cells) {
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+}
+
+}  // namespace
+
+template <class Visit>
+void PortalGraph::visitRegions(const Box3d& box, Visit visit) const {
+    if (boxes_.empty()) return;
+    uint32_t stack[64];
+    uint32_t open = 0;
+    stack[open++] = 0;
+    while (open > 0) {
+        const BoxNode& node = boxes_[stack[--open]];
+        if (!meet(node.box, box)) continue;
+        if (node.count == 0) {
+            stack[open++] = node.first + 1;
+            stack[open++] = node.first;
+            continue;
+        }
+        for (uint32_t i = node.first; i < node.first + node.count; ++i)
+            if (meet(regions_[order_[i]].bounds, box)) visit(order_[i]);
+    }
+}
+
+bool PortalGraph::cellsAround(std::span<const glm::dvec3> points, double radius, Array<uint32_t>& cells) const {
+    cells.clear();
+    if (points.empty() || points.size() > PointBody::kMost || !(radius >= 0) || !std::isfinite(radius)) return false;
+    for (const glm::dvec3& point : points)
+        for (int axis = 0; axis < 3; ++axis)
+            if (!std::isfinite(point[axis])) return false;
+    const bool known = of_tree_ ? cellsOfTree(points, radius, cells) : cellsOfRegions(points, radius, cells);
+    sortOnce(cells);
+    return known && !cells.empty();
+}
+
+bool PortalGraph::cellsOfTree(std::span<const glm::dvec3> points, double radius, Array<uint32_t>& cells) const {
+    if (!bounds_.empty() && !isWithin(grown(boxOf(points), radius), grown(bounds_, tolerance_))) return false;
+    if (root_ == Node::kSolid) return false;
+    return TreeDescent(nodes_, points, radius, tolerance_, cells).down(root_, kNoCell, points, 0);
+}
+
+bool PortalGraph::isCovered(std::span<const glm::dvec3> points, std::span<const uint32_t> regions, double slack) const {
+    if (points.empty()) return true;
+    if (regions.empty()) return false;
+    const CellRegion& region = regions_[regions[0]];
+    PointBody rest, part;
+    for (uint32_t i = region.first_plane; i < region.first_plane + region.plane_count; ++i) {
+        if (heightsOf(points, planes_[i]).least >= -slack) continue;
+        if (!cutBody(points, -planes_[i], slack, part) || !isCovered(part.all(), regions.subspan(1), slack))
+            return false;
+        if (!cutBody(points, planes_[i], -slack, part)) return false;
+        rest = part;
+        points = rest.all();
+        if (points.empty()) return true;
+    }
+    return true;
+}
+
+bool PortalGraph::cellsOfRegions(std::span<const glm::dvec3> points, double radius, Array<uint32_t>& cells) const {
+    // Around each point the cube that holds the ball.
+    PointBody wide;
+    if (radius > 0) {
+        if (8 * points.size() > PointBody::kMost) return false;
+        for (const glm::dvec3& point : points)
+            for (int corner = 0; corner < 8; ++corner)
+                wide.points[wide.count++] =
+                    point + radius * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+        points = wide.all();
+    }
+    bool within_one = false;
+    visitRegions(grown(boxOf(points), tolerance_), [&](uint32_t i) {
+        const CellRegion& region = regions_[i];
+        PointBody body, part;
+        std::span<const glm::dvec3> left = points;
+        bool whole = true;
+        for (uint32_t p = region.first_plane; p < region.first_plane + region.plane_count; ++p) {
+            const Heights heights = heightsOf(left, planes_[p]);
+            if (heights.least >= -tolerance_) continue;
+            whole = false;
+            if (!(heights.most >= -tolerance_)) return;
+            if (!cutBody(left, planes_[p], -tolerance_, part)) break;
+            body = part;
+            left = body.all();
+        }
+        within_one |= whole;
+        cells.push_back(i);
+    });
+    constexpr size_t kMostRegions = 16;
+    if (within_one || (cells.size() <= kMostRegions && isCovered(points, cells, tolerance_))) return true;
+    if (outside_ == kNoCell) return false;
+    cells.push_back(outside_);
+    return true;
+}
+
+bool PortalGraph::cellsOf(const Box3d& box, Array<uint32_t>& cells) const {
+    cells.clear();
+    if (box.empty()) return false;
+    const Box3d wide = grown(box, tolerance_);
+    if (of_tree_) {
+        struct Part {
+            uint32_t child;
+            Box3d box;
+        };
+        Array<Part> open(cells.get_allocator());
+        if (root_ != Node::kSolid) open.push_back({root_, wide});
+        while (!open.empty()) {
+            const Part part = open.back();
+            open.pop_back();
+            if ((part.child & Node::kLeaf) != 0) {
+                if (part.child != Node::kSolid) cells.push_back(part.child & ~Node::kLeaf);
+                continue;
+            }
+            const Node& node = nodes_[part.child];
+            const Heights heights = heightsOf(part.box, node.plane);
+            if (!(heights.least > tolerance_)) open.push_back({node.child[0], part.box});
+            if (!(heights.most < -tolerance_)) open.push_back({node.child[1], part.box});
+        }
+        if (!bounds_.empty() && !meet(wide, bounds_)) cells.clear();
+    } else {
+        visitRegions(wide, [&](uint32_t i) {
+            const CellRegion& region = regions_[i];
+            for (uint32_t p = region.first_plane; p < region.first_plane + region.plane_count; ++p)
+                if (heightsOf(box, planes_[p]).most < -tolerance_) return;
+            cells.push_back(i);
+        });
+        if (outside_ != kNoCell) {
+            glm::dvec3 corners[8];
+            for (int corner = 0; corner < 8; ++corner)
+                corners[corner] = {corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                                   corner & 4 ? box.max.z : box.min.z};
+            if (cells.size() > 16 || !isCovered(corners, cells, tolerance_)) cells.push_back(outside_);
+        }
+    }
+    sortOnce(cells);
+    return !cells.empty();
+}
+
+}  // namespace sightline

@@ -1,0 +1,89 @@
+// What a view fixes for one answer, computed once: its planes, its screen, its limits, and what is left of the world.
+// SPDX-License-Identifier: MIT
+#include "sightline/frame/frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sightline/frame/image_part.h"
+#include "sightline/geom/depth_order.h"
+
+namespace sightline::detail {
+
+void Frame::begin(const SnapshotState* now, const View& from, const QuerySettings& how,
+                  std::span<const uint32_t> shown) {
+    world = now;
+    view = from;
+    settings = how;
+    stages = stagesInUse(view, settings);
+    candidates = nullptr;
+    volumes = {};
+    volume_owners = {};
+    sizes.clear();
+    objects = 0;
+    usable = isUsable(view) && runsOutward(view);
+    if (usable) {
+        frustum = makeFrustum(view);
+        limits = makeViewLimits(view, frustum.eye);
+        if (!uses(Stage::kFrustum)) limits.dropWindow();
+        screen = makeScreen(view, settings.occlusion_size);
+    }
+    if (!world) return;
+    if (usable) sizes.begin(*world, view, settings, stages, frustum.eye, shown);
+    every_layer = (world->common_layers & view.layers) != 0 || world->count == 0;
+    objects = world->count;
+    if (every_layer) return;
+    objects = 0;
+    for (uint32_t place = 0; place < world->placed.size(); ++place) objects += isInLayers(place);
+    for (const uint32_t row : world->unbounded) objects += (world->objects[row].layers & view.layers) != 0;
+}
+
+void Frame::narrowTo(const Candidates* left) {
+    candidates = left;
+    stages &= ~kCellStages | (left ? left->stages() : 0);
+}
+
+uint64_t Frame::countObjects(const PlaceRange& places) const {
+    if (candidates) return candidates->count(places.first, places.first + places.count);
+    if (every_layer) return places.count - places.empty;
+    uint64_t within = 0;
+    for (uint32_t place = places.first; place < places.first + places.count; ++place) within += isInLayers(place);
+    return within;
+}
+
+uint32_t Frame::candidateSlots(const BvhNode& node) const {
+    uint32_t slots = 0;
+    for (int slot = 0; slot < 8; ++slot)
+        slots |= uint32_t{node.count[slot] != 0 &&
+                          (!candidates || candidates->any(node.first[slot], node.first[slot] + node.count[slot]))}
+                 << slot;
+    return slots;
+}
+
+PixelRect Frame::inWindow(uint32_t place, PixelRect rect) const {
+    const WindowRect* const window = candidates ? candidates->window(place) : nullptr;
+    if (!window) return rect;
+    // A thousandth of a pixel is far more than rounding, in float, moves it.
+    const auto pixel = [](float at, double wide, uint32_t size, double more) {
+        const double x = 0.5 * size * (static_cast<double>(at) / wide + 1.0) + more;
+        return static_cast<int32_t>(std::floor(std::clamp(x, -1.0, size + 1.0)));
+    };
+    const double wide_x = 1.0 + 2.0 * view.jitter / view.width, wide_y = 1.0 + 2.0 * view.jitter / view.height;
+    rect.x0 = std::max(rect.x0, pixel(window->left, wide_x, screen.width, -1e-3));
+    rect.x1 = std::min(rect.x1, pixel(window->right, wide_x, screen.width, 1e-3));
+    rect.y0 = std::max(rect.y0, pixel(window->bottom, wide_y, screen.height, -1e-3));
+    rect.y1 = std::min(rect.y1, pixel(window->top, wide_y, screen.height, 1e-3));
+    return rect;
+}
+
+uint32_t allPlanes(const Frame& frame) {
+    return ((1u << frame.frustum.count) - 1) | (frame.limits.volume.allPlanes() << kLimitBit);
+}
+
+uint32_t partCount(const Frame& frame) {
+    const uint32_t both = stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion);
+    if (frame.settings.bins < 2 || !frame.usable || (frame.stages & both) != both) return 1;
+    return std::clamp(frame.columns(), 1u, std::min(frame.settings.bins, ImagePart::kMost));
+}
+
+}  // namespace sightline::detail

@@ -1,0 +1,25 @@
+// The stages of a query: their names, their order, and sets of them as bits.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+namespace sightline {
+
+/// The stages of a query, coarse to fine. PVS and portals need a world with cells: World::attach(). Distance and
+/// contribution are not conservative: they do nothing unless the settings say how far and how small. Volumes are
+/// occluder volumes. Clusters are those of objects that have some.
+enum class Stage : uint8_t { kPvs, kPortals, kFrustum, kDistance, kContribution, kVolumes, kOcclusion, kClusters };
+inline constexpr int kStageCount = 8;
+inline constexpr const char* kStageNames[kStageCount] = {"pvs",          "portals", "frustum",   "distance",
+                                                         "contribution", "volumes", "occlusion", "clusters"};
+inline constexpr uint32_t stageBit(Stage stage) { return 1u << static_cast<uint32_t>(stage); }
+inline constexpr uint32_t kAllStages = (1u << kStageCount) - 1;
+/// The stages that need cells.
+inline constexpr uint32_t kCellStages = stageBit(Stage::kPvs) | stageBit(Stage::kPortals);
+/// The stages that cull what may be visible.
+inline constexpr uint32_t kLossyStages = stageBit(Stage::kDistance) | stageBit(Stage::kContribution);
+/// The stages that pay in most worlds.
+inline constexpr uint32_t kDefaultStages = kAllStages & ~stageBit(Stage::kVolumes);
+
+}  // namespace sightline

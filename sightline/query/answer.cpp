@@ -1,0 +1,171 @@
+// One view's answer: its frame, a traversal for each part of its image, and the union of what these keep.
+// SPDX-License-Identifier: MIT
+#include "sightline/query/answer.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "sightline/base/assert.h"
+#include "sightline/buffer/depth_image.h"
+#include "sightline/frame/stopwatch.h"
+#include "sightline/query/traversal.h"
+
+namespace sightline::detail {
+
+Answer::Answer(Memory* memory)
+    : memory_(memory), memory_of_stages_(memory), parts_(memory), merged_(memory), counted_(memory) {
+    parts_.push_back(makeOwned<TraversalState>(memory, memory));
+}
+
+void Answer::begin(const Snapshot& now, const View& view, const QuerySettings& settings,
+                   std::span<const uint32_t> shown) {
+    const Stopwatch watch;
+    frame_.begin(now, view, settings, shown);
+    chooseStages(frame_, memory_of_stages_, settings.time_stages ? choose_nanoseconds_ : nullptr);
+    count_ = now ? partCount(frame_) : 1;
+    while (parts_.size() < count_) parts_.push_back(makeOwned<TraversalState>(memory_, memory_));
+    merged_.clear();
+    memory_of_stages_.clusters.clear();
+    choosing_ = watch.nanoseconds();
+}
+
+void Answer::run(uint32_t part) {
+    const Stopwatch watch;
+    TraversalState& state = *parts_[part];
+    traverse(frame_, state, count_ == 1 ? ImagePart() : imagePart(part, count_, frame_.columns()),
+             frame_.settings.time_stages);
+    state.stats.nanoseconds = watch.nanoseconds();
+}
+
+/// Notes a place; false if it has been in this answer.
+bool Answer::countOnce(uint32_t place) {
+    if (counted_[place] == answer_) return false;
+    counted_[place] = answer_;
+    return true;
+}
+
+/// Objects without bounds, and each object that a part keeps, once.
+void Answer::mergeVisible() {
+    for (const uint32_t row : frame_.world->unbounded) {
+        const ObjectRecord& object = frame_.world->objects[row];
+        if (!(object.layers & frame_.view.layers)) continue;
+        merged_.push_back({object.key, object.id});
+        ++stats.of(Stage::kFrustum).doubt;
+    }
+    uint32_t at[ImagePart::kMost] = {};
+    for (;;) {
+        uint32_t best = count_;
+        for (uint32_t part = 0; part < count_; ++part) {
+            if (at[part] == parts_[part]->kept.size()) continue;
+            if (best == count_) {
+                best = part;
+                continue;
+            }
+            const KeptPlace &here = parts_[part]->kept[at[part]], &there = parts_[best]->kept[at[best]];
+            if (here.nearness != there.nearness ? here.nearness > there.nearness : here.place < there.place)
+                best = part;
+        }
+        if (best == count_) return;
+        const TraversalState& state = *parts_[best];
+        const uint32_t next = at[best]++;
+        if (!countOnce(state.kept[next].place)) continue;
+        merged_.push_back(state.visible[next]);
+        stats.of(Stage::kOcclusion).doubt += state.kept[next].nearness == std::numeric_limits<float>::infinity();
+    }
+}
+
+/// The stages before occlusion cull the same nodes and objects in all parts that meet them. All other objects that are
+/// not kept are occluded.
+void Answer::finish() {
+    stats = parts_[0]->stats;
+    stats.objects = frame_.objects;
+    for (uint32_t part = 1; part < count_; ++part) stats.addWork(parts_[part]->stats);
+    if (count_ > 1) {
+        stats.of(Stage::kOcclusion).doubt = 0;
+        for (StageStats& stage : stats.stages) stage.culled = 0;
+        if (counted_.size() < frame_.world->placed.size()) counted_.resize(frame_.world->placed.size(), 0);
+        if (++answer_ == 0) {
+            std::fill(counted_.begin(), counted_.end(), 0);
+            answer_ = 1;
+        }
+        mergeVisible();
+        for (uint32_t part = 0; part < count_; ++part)
+            for (const CulledRange& range : parts_[part]->culled)
+                if (range.stage != Stage::kOcclusion && countOnce(range.places.first))
+                    stats.of(range.stage).culled += frame_.countObjects(range.places);
+    }
+    stats.visible = visible().size();
+    addStages();
+}
+
+/// Counts what the stages of cells did, and how many objects each stage had to test.
+void Answer::addStages() {
+    for (const Stage stage : {Stage::kPvs, Stage::kPortals}) {
+        if (frame_.candidates) stats.of(stage).culled += frame_.candidates->culled(stage);
+        stats.of(stage).doubt = cells().doubt(stage);
+    }
+    uint64_t left = stats.objects;
+    for (int i = 0; i < kStageCount; ++i) {
+        StageStats& stage = stats.stages[i];
+        if (count_ > 1 && static_cast<Stage>(i) == Stage::kOcclusion) stage.culled = left - stats.visible;
+        stage.tested = frame_.uses(static_cast<Stage>(i)) ? left : 0;
+        if (frame_.settings.time_stages) stage.nanoseconds += choose_nanoseconds_[i];
+        left -= stage.culled;
+    }
+    SIGHTLINE_ASSERT(left == stats.visible);
+    stats.nanoseconds += choosing_;
+}
+
+void Answer::timed(uint64_t nanoseconds) {
+    if (frame_.settings.time_stages && frame_.uses(Stage::kOcclusion)) {
+        uint64_t others = 0;
+        for (int stage = 0; stage < static_cast<int>(Stage::kOcclusion); ++stage)
+            others += stats.stages[stage].nanoseconds;
+        stats.of(Stage::kOcclusion).nanoseconds = stats.nanoseconds - others;
+    }
+    stats.nanoseconds = nanoseconds;
+}
+
+void Answer::refine() {
+    if (!frame_.world || !frame_.usable) return;
+    for (const PipelineStep& row : kPipeline) {
+        if (!row.of_answer || !frame_.uses(row.stage)) continue;
+        const Stopwatch watch;
+        AnswerView answer = view();
+        row.of_answer(frame_, memory_of_stages_, answer);
+        const uint64_t took = watch.nanoseconds();
+        stats.nanoseconds += took;
+        if (frame_.settings.time_stages) stats.of(row.stage).nanoseconds = took;
+    }
+}
+
+void Answer::reasons(std::span<uint8_t> reasons) const {
+    const SnapshotState* const world = frame_.world;
+    SIGHTLINE_ASSERT(!world || reasons.size() >= world->count);
+    std::fill(reasons.begin(), reasons.end(), uint8_t{0});
+    if (!world) return;
+    const auto reasonOf = [](Stage stage) { return static_cast<uint8_t>(1 + static_cast<int>(stage)); };
+    const auto isEmpty = [&](uint32_t place) { return world->bvh.order[place] == PlacedBvh::kNone; };
+    if (frame_.candidates)
+        for (uint32_t place = 0; place < world->placed.size(); ++place)
+            if (!isEmpty(place) && !frame_.candidates->admits(place))
+                reasons[world->itemAt(place)] = reasonOf(frame_.candidates->stageOf(place));
+    for (uint32_t part = 0; part < count_; ++part)
+        for (const CulledRange& range : parts_[part]->culled)
+            for (uint32_t place = range.places.first; place < range.places.first + range.places.count; ++place) {
+                if (isEmpty(place) || !frame_.isCandidate(place)) continue;
+                uint8_t& reason = reasons[world->itemAt(place)];
+                reason = std::max(reason, reasonOf(range.stage));
+            }
+    for (uint32_t part = 0; part < count_; ++part)
+        for (const KeptPlace& object : parts_[part]->kept) reasons[world->itemAt(object.place)] = 0;
+    if (frame_.every_layer) return;
+    for (uint32_t item = 0; item < world->count; ++item)
+        if (!(world->object(item).layers & frame_.view.layers)) reasons[item] = 255;
+}
+
+void Answer::depthImage(Seams seams, std::span<float> nearness, std::span<uint8_t> covered) {
+    for (uint32_t part = 0; part < count_; ++part) readDepthImage(parts_[part]->tiles, seams, nearness, covered, 0.0f);
+}
+
+}  // namespace sightline::detail

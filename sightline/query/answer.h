@@ -1,0 +1,71 @@
+// One view's answer: its frame, a traversal for each part of its image, and the union of what these keep.
+// SPDX-License-Identifier: MIT
+//
+// The argument. The strips of the image cover the buffer, and each strip's traversal is sound by itself for what lies in
+// the strip: so an object that every strip passes over or hides has no visible point, and the answer is the union of
+// theirs. Strips share nothing that is written. What each finds depends on the view and on how many strips there are, and
+// so does the answer, for they are put together in their order.
+#pragma once
+
+#include <span>
+
+#include "sightline/frame/frame.h"
+#include "sightline/frame/traversal_state.h"
+#include "sightline/stages/pipeline.h"
+
+namespace sightline::detail {
+
+/// Keeps its scratch memory from answer to answer.
+class Answer {
+public:
+    explicit Answer(Memory* memory);
+
+    /// Takes up a view. Then run(part) once for each part, by any threads, and finish().
+    /// @param shown  SizeLimits::shown; until all is run
+    void begin(const Snapshot& now, const View& view, const QuerySettings& settings,
+               std::span<const uint32_t> shown = {});
+    uint32_t parts() const { return count_; }
+    void run(uint32_t part);
+    void finish();
+    /// Lets the stages work that look at the whole answer.
+    void refine();
+    /// Notes how long the whole answer took.
+    void timed(uint64_t nanoseconds);
+
+    /// The answer. If there are several parts: nearest first, equally near objects in the hierarchy's order.
+    Array<Visible>& visible() { return count_ == 1 ? parts_[0]->visible : merged_; }
+    const Array<Visible>& visible() const { return count_ == 1 ? parts_[0]->visible : merged_; }
+    QueryStats stats;
+
+    const Frame& frame() const { return frame_; }
+    const CellMemory& cells() const { return memory_of_stages_.cells; }
+    ClusterMemory& clusters() { return memory_of_stages_.clusters; }
+    const ClusterMemory& clusters() const { return memory_of_stages_.clusters; }
+    AnswerView view() { return {visible(), stats, count_ == 1 && frame_.usable ? &parts_[0]->tiles : nullptr}; }
+
+    /// As Query::reasons(). An object that one part hides and another part does not meet is hidden: of two stages the
+    /// finer one is reported.
+    void reasons(std::span<uint8_t> reasons) const;
+    /// As Query::DepthImage has it.  [size: pixels of the buffer]
+    void depthImage(Seams seams, std::span<float> nearness, std::span<uint8_t> covered);
+    uint32_t width() const { return parts_[0]->tiles.width; }
+    uint32_t height() const { return parts_[0]->tiles.height; }
+
+private:
+    bool countOnce(uint32_t place);
+    void mergeVisible();
+    void addStages();
+
+    Memory* const memory_;
+    Frame frame_;
+    StageMemory memory_of_stages_;
+    Array<Owned<TraversalState>> parts_;
+    uint32_t count_ = 1;
+    uint64_t choosing_ = 0;  ///< what begin() took  [nanoseconds]
+    uint64_t choose_nanoseconds_[kStageCount] = {};
+    Array<Visible> merged_;
+    Array<uint32_t> counted_;  ///< per place: the last answer in which it was kept, or culled with those that follow it
+    uint32_t answer_ = 0;
+};
+
+}  // namespace sightline::detail

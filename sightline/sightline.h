@@ -1,0 +1,39 @@
+// All that a program needs which asks what can be seen: each header that it may include, and what it is for.
+// SPDX-License-Identifier: MIT
+//
+// These headers and what they include are what an installation holds of sightline::run. Names in a namespace `detail` are
+// not for users.
+#pragma once
+
+// Asking: a World, its Snapshots, a View, and a Query, which answers with a VisibleSet.
+#include "sightline/geom/mirror.h"         // a View of what a flat mirror shows
+#include "sightline/geom/view.h"           // a View: camera, viewport, and what is declared of the frame
+#include "sightline/geom/view_limits.h"    // sections and windows of a view, from boxes and rectangles
+#include "sightline/query/query.h"         // Query: what can be seen
+#include "sightline/query/shadow_query.h"  // ShadowQuery: which objects can darken what a view shows
+#include "sightline/world/world.h"         // World: objects that change; Snapshot: one state of them
+
+// Preparing: once a mesh, when it is made or loaded.
+#include "sightline/prepare/facing/draw_clusters.h"  // clusters that a renderer draws one by one
+#include "sightline/prepare/inner/inner.h"           // simpler occluders inside of dense solids
+#include "sightline/prepare/occluder/occluder.h"     // occluders: what hides
+
+// Indoors: cells and portals.
+#include "sightline/cells/cell_space_build.h"   // from code
+#include "sightline/visfile/visibility_file.h"  // from a file that was baked
+
+// Understanding an answer.
+#include "sightline/query/explain/credits.h"             // which occluder hides how much
+#include "sightline/query/explain/explain.h"             // why one object is, or is not, in an answer
+#include "sightline/query/record/occlusion_recording.h"  // a frame's occlusion calls, in a file
+#include "sightline/query/record/occlusion_replay.h"     // the same done again, and timed
+
+// The occlusion buffer alone: draw occluders into DepthTiles and ask, without a world.
+#include "sightline/buffer/depth_image.h"
+#include "sightline/cull/occlusion.h"
+
+// What the program brings with it, if it likes.
+#include "sightline/base/assert.h"       // who hears of a broken invariant
+#include "sightline/base/jobs.h"         // threads that share out a query
+#include "sightline/base/memory.h"       // where memory comes from
+#include "sightline/base/thread_pool.h"  // threads for programs that have none of their own

@@ -1,0 +1,58 @@
+// The closer looks at objects that their boxes' rectangles would keep: by the boxes' faces, and at the end by triangles.
+// SPDX-License-Identifier: MIT
+#include "sightline/cull/shapes.h"
+#include "sightline/stages/pipeline.h"
+
+namespace sightline::detail {
+namespace {
+
+/// What a closer look says. Without the frustum stage, what lies outside of the view is kept. What a strip finds outside
+/// may lie in another: to the strip it is hidden.
+TurnAnswer settle(const Frame& frame, const TraversalState& state, Look look, Sight sight) {
+    if (sight == Sight::kVisible || (sight == Sight::kOutside && !frame.uses(Stage::kFrustum)))
+        return {false, Stage::kOcclusion, look};
+    const bool outside = sight == Sight::kOutside && state.part.whole();
+    return {true, outside ? Stage::kFrustum : Stage::kOcclusion, look};
+}
+
+}  // namespace
+
+TurnAnswer cullByFaces(const Frame& frame, TraversalState& state, const Pending& entry) {
+    const Look by_box = frame.settings.faces && entry.testable ? Look::kFaces : Look::kBox;
+    if (entry.kind != Pending::Kind::kObject) return {};
+    const ObjectRecord& object = frame.world->objectAt(entry.index);
+    const bool in_layers = object.layers & frame.view.layers;
+    if (frame.settings.faces && in_layers) {
+        const OccludeePlace place = makeOccludeePlace(frame.screen, object.transform, object.bounds);
+        ++state.stats.faces_tested;
+        const TurnAnswer answer = settle(frame, state, Look::kFaces, askBox(state.tiles, place, object.bounds));
+        state.stats.faces_culled += answer.culled;
+        if (answer.culled) return answer;
+    }
+    // Its triangles are asked once all is drawn: an object whose box is near may well be hidden by what is met later.
+    if (frame.settings.second_look && object.shape.index != 0 && in_layers) {
+        state.second.push_back({entry, static_cast<uint32_t>(state.visible.size())});
+        return {false, Stage::kOcclusion, Look::kTriangles};
+    }
+    return {false, Stage::kOcclusion, by_box};
+}
+
+/// Objects that are culled here were drawn, and may have hidden others. That is sound: along each ray the nearest point
+/// of all that was drawn has nothing in front of it, so that its object is kept, and it hides what they hid.
+TurnAnswer cullByTriangles(const Frame& frame, TraversalState& state, const SecondLook& kept) {
+    const ObjectRecord& object = frame.world->objectAt(kept.entry.index);
+    const OccludeePlace place = makeOccludeePlace(frame.screen, object.transform, object.bounds);
+    TriangleLook look;
+    look.most_polygons = frame.settings.second_look_polygons - state.stats.second_look_polygons;
+    ++state.stats.second_looks;
+    const Sight sight =
+        askTriangles(state.tiles, place, *frame.world->occluders[object.shape.index], state.looks, look);
+    state.stats.second_look_polygons += look.polygons;
+    state.stats.second_look_spent |= look.spent;
+    TurnAnswer answer = settle(frame, state, Look::kTriangles, sight);
+    state.stats.second_look_culled += answer.culled;
+    if (!answer.culled && look.spent) answer.look = Look::kBox;
+    return answer;
+}
+
+}  // namespace sightline::detail

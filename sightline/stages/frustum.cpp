@@ -1,0 +1,27 @@
+// The frustum stage: culls what lies outside of the view's planes, its sections and its window, and what misses the buffer.
+// SPDX-License-Identifier: MIT
+#include "sightline/cull/frustum.h"
+
+#include "sightline/stages/pipeline.h"
+
+namespace sightline::detail {
+
+uint32_t cullOutside(const Frame& frame, TraversalState&, Group& group, uint32_t live) {
+    FrustumAnswer answer = testFrustum(frame.frustum, group.boxes, group.inherited);
+    if (group.inherited >> kLimitBit != 0) {
+        const FrustumAnswer beside = testViewVolume(frame.limits.volume, group.boxes, group.inherited >> kLimitBit);
+        answer.outside |= beside.outside;
+        for (int slot = 0; slot < 8; ++slot) answer.planes[slot] |= beside.planes[slot] << kLimitBit;
+    }
+    for (int slot = 0; slot < 8; ++slot) {
+        group.planes[slot] = answer.planes[slot];
+        group.undecided |= uint32_t{answer.planes[slot] != 0} << slot;
+    }
+    return answer.outside & live;
+}
+
+uint32_t cullOffScreen(const Frame&, TraversalState&, Group& group, uint32_t live) {
+    return group.on_screen.outside & live;
+}
+
+}  // namespace sightline::detail

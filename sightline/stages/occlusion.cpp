@@ -1,0 +1,60 @@
+// The occlusion stage: what the depth tiles hide is culled, and what is kept is drawn into them.
+// SPDX-License-Identifier: MIT
+#include "sightline/stages/occlusion.h"
+
+#include <algorithm>
+
+#include "sightline/stages/occluder_form.h"
+#include "sightline/stages/pipeline.h"
+
+namespace sightline::detail {
+
+bool isHiddenHere(TraversalState& state, PixelRect rect, Seams seams) {
+    return !state.tiles.clip(rect) || isHidden(state.tiles, rect, seams);
+}
+
+bool isSmall(const Screen& screen, const PixelRect& rect) {
+    const auto least = static_cast<int32_t>(std::max(screen.width, screen.height) / 32);
+    return rect.x1 - rect.x0 < least && rect.y1 - rect.y0 < least;
+}
+
+TurnAnswer cullHidden(const Frame&, TraversalState& state, const Pending& entry) {
+    // A node in doubt is opened: its children's smaller rectangles need fewer seams.
+    const Seams seams = entry.kind == Pending::Kind::kNode ? Seams::kLeave : Seams::kResolve;
+    return {entry.testable && isHiddenHere(state, entry.rect, seams), Stage::kOcclusion, Look::kBox};
+}
+
+OfferedOccluder occluderOf(const Frame& frame, uint32_t place) {
+    const PlacedObject& placed = frame.world->placed[place];
+    if (placed.occluder.index == 0 || !(placed.layers & frame.view.layers)) return {};
+    const glm::dmat4& transform = frame.world->objectAt(place).transform;
+    const HeldOccluder& held = *frame.world->occluders[placed.occluder.index];
+    if (frame.limits.cut() && !isWhole(frame.limits, held, transform)) return {&held, true};
+    // A simpler form hides in the name of all that is drawn of the object.
+    return {&formFor(held, frame.screen, transform, frame.settings.occluder_error), false};
+}
+
+bool mayDraw(const Frame& frame, const TraversalState& state, const OfferedOccluder& offered,
+             const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box) {
+    const OccluderCluster& of = offered.occluder->clusters[cluster];
+    if (box.outside) return false;
+    if (!state.part.whole()) {
+        PixelRect rect = box.rect;
+        if (box.doubt ? state.part.misses(instance.screen, of.bounds) : !state.tiles.clip(rect)) return false;
+    }
+    return !offered.cut || isWhole(frame.limits, *offered.occluder, of, *instance.transform);
+}
+
+bool drawCluster(const Frame& frame, TraversalState& state, const OccluderInstance& instance, uint32_t cluster,
+                 const BoxAnswer& box, uint32_t& triangles) {
+    if (!box.doubt && isSmall(frame.screen, box.rect)) return false;
+    if (state.stats.occluder_triangles >= frame.settings.occluder_triangles) {
+        state.stats.budget_spent = true;
+        return false;
+    }
+    triangles = drawOccluder(state.tiles, instance, cluster, box);
+    state.stats.occluder_triangles += triangles;
+    return true;
+}
+
+}  // namespace sightline::detail

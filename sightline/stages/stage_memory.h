@@ -1,0 +1,188 @@
+// What the stages keep from frame to frame: cells and what is seen from them, volumes, and clusters.
+// SPDX-License-Identifier: MIT
+//
+// John Airey, John Rohlf, Frederick Brooks. Towards Image Realism with Interactive Update Rates in Complex Virtual
+// Building Environments. 1990.
+// David Luebke, Chris Georges. Portals and Mirrors: Simple, Fast Evaluation of Potentially Visible Sets. 1995.
+// Satyan Coorg, Seth Teller. Real-Time Occlusion Culling for Models with Large Occluders. 1997.
+// Andreas Johannsen, Michael Carter. Clustered Backface Culling. 1998.
+// Ulrich Haar, Sebastian Aaltonen. GPU-Driven Rendering Pipelines. 2015.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "sightline/cells/portals.h"
+#include "sightline/cells/pvs.h"
+#include "sightline/cull/occluder_volumes.h"
+#include "sightline/frame/candidates.h"
+#include "sightline/frame/draw_range.h"
+#include "sightline/frame/frame.h"
+#include "sightline/frame/traversal_state.h"
+#include "sightline/world/world.h"
+
+namespace sightline::detail {
+
+/// Keeps the rows of visibility as long as the eye's cells stay the same, and the objects in them as long as the
+/// snapshot stays the same. begin(), then findRows(), then findWindows(), for each view.
+class CellMemory {
+public:
+    explicit CellMemory(Memory* memory) : start_(memory), pvs_(memory), flood_(memory), candidates_(memory) {}
+
+    /// Takes up a view: finds the cells that the eye may be in.
+    void begin(const Frame& frame);
+    /// Stage::kPvs: the candidates are the objects in cells that the rows show.  O(objects in these cells).
+    void findRows(const Frame& frame);
+    /// Stage::kPortals: the candidates are those of the rows' candidates that reach into windows.
+    void findWindows(const Frame& frame);
+    /// The candidates that both stages leave; null: neither culls anything. Good until the next view.
+    const Candidates* candidates() { return stages_ ? &candidates_ : nullptr; }
+
+    /// How many objects were kept in the last view because the eye is in no cell or the work was spent.
+    uint64_t doubt(Stage stage) const { return doubt_[static_cast<int>(stage)]; }
+    /// The cells that the eye may be in; empty if it is in none, or if the stages are off.
+    std::span<const uint32_t> start() const { return start_; }
+    /// Null unless Stage::kPortals decided something.
+    const PortalFlood* flood() const { return flooded_ ? &flood_ : nullptr; }
+    const PortalStats& portalStats() const { return portal_stats_; }
+
+private:
+    bool uses(Stage stage) const { return stages_ & stageBit(stage); }
+    void giveUp(Stage stage, const Frame& frame);
+    void fillRows();
+    void fillWindows(const glm::dvec3& eye);
+
+    Snapshot now_;  ///< the snapshot of `candidates_`
+    uint32_t layers_ = 0;
+    uint32_t stages_ = 0;  ///< those of the two stages that decide
+    bool rows_filled_ = false;
+    Array<uint32_t> start_;
+    PotentiallyVisible pvs_;
+    std::shared_ptr<const AttachedCells> pvs_of_;
+    PortalFlood flood_;
+    Candidates candidates_;
+    bool flooded_ = false;
+    PortalStats portal_stats_;
+    uint64_t doubt_[2] = {};
+};
+
+/// Chooses the volumes of a view. Its scratch stays from view to view.
+///
+/// Candidates are found by a descent of its own over the hierarchy, the nodes first that look largest from the eye,
+/// within limits that count work: so the choice is the same everywhere. Every face and every body of an object that is
+/// met gets an estimate of the pixels that it may cover, its solid angle; volumes are made for the best, and of these
+/// the ones are taken that hold the most objects, as far as the topmost boxes of the hierarchy tell (ground covers many
+/// pixels, and hides nothing), but none whose occluder another one hides. Occluders need not be visible (OccluderVolume
+/// says why), but their objects must be in the view's layers: only what is surely drawn, or hidden by what is drawn,
+/// hides.
+class VolumeChooser {
+public:
+    static constexpr uint32_t kMostVolumes = 64;
+    static constexpr uint32_t kMostNodes = 32;    ///< opened while choosing
+    static constexpr uint32_t kMostObjects = 64;  ///< looked at while choosing
+    static constexpr uint32_t kMostOfObject = 8;  ///< parts of one object that are estimated
+
+    explicit VolumeChooser(Memory* memory)
+        : volumes_(memory), owners_(memory), heap_(memory), places_(memory), candidates_(memory), made_(memory) {}
+
+    /// Writes Frame::volumes; they are good until the next view. Objects hide nothing if they are no candidates, too
+    /// far, too small, or cut by a section.
+    void choose(Frame& frame);
+
+private:
+    struct Met {
+        double pixels = 0;
+        uint32_t serial = 0;
+        uint32_t index = 0;  ///< node, or place of an object
+        uint32_t planes = 0;
+        uint8_t depth = 0;  ///< below the root; 2 stands for more
+        bool leaf = false;
+        bool operator<(const Met& other) const {
+            return pixels != other.pixels ? pixels < other.pixels : serial > other.serial;
+        }
+    };
+    struct Candidate {
+        double pixels = 0;
+        uint32_t owner = 0;  ///< index into places_
+        uint32_t part = 0;
+        uint32_t object = 0;  ///< place
+    };
+    struct Made {
+        uint32_t object = 0;
+        OccluderVolume volume;
+        VolumeOutline outline;
+    };
+
+    void gather(const Frame& frame, const VolumeView& shared);
+    void openNode(const Frame& frame, const VolumeView& shared, const Met& from);
+    void lookAt(const Frame& frame, const VolumeView& shared, uint32_t place);
+    void take(const VolumeView& shared, uint32_t most);
+    double heldObjects(const OccluderVolume& volume) const;
+
+    Array<OccluderVolume> volumes_;
+    Array<uint32_t> owners_;  ///< per volume
+    Array<Met> heap_;
+    Array<VolumePlace> places_;
+    Array<Candidate> candidates_;
+    Array<Made> made_;
+    /// The boxes of the root's children and of their children, with how many objects in view each has.
+    struct Top {
+        EyeBoxes boxes;
+        float objects[8];
+    };
+    Top top_[9];
+    uint32_t top_count_ = 0;
+    double least_ = 0;  ///< a part that covers less is not worth a volume  [pixels]
+    uint32_t serial_ = 0;
+};
+
+/// An answer as the last stages work on it.
+struct AnswerView {
+    Array<Visible>& visible;
+    QueryStats& stats;
+    DepthTiles* tiles = nullptr;  ///< of the whole image; null: it was answered in parts
+};
+
+/// The clusters of one answer. Its arrays stay from answer to answer.
+///
+/// Clusters are hidden by what the traversal drew. That is sound as the second look is: along each ray the nearest
+/// point of all that is drawn has nothing in front of it, so that its cluster is kept, and hides what others hid. Of an
+/// image in parts no cluster is asked whether it is hidden.
+class ClusterMemory {
+public:
+    explicit ClusterMemory(Memory* memory) : ranges_(memory), culled_(memory), left_(memory) {}
+
+    /// Looks at the clusters of the kept objects, removes objects without a cluster left from the answer, and counts.
+    void run(const Frame& frame, AnswerView& answer);
+    void clear();
+
+    std::span<const DrawRange> ranges() const { return ranges_; }
+    /// Counts what the stage finds of one object's clusters. The answer of the same frame must keep the object.
+    QueryStats look(const Frame& frame, uint32_t row, AnswerView& answer);
+    /// Writes the objects that it culled into an answer's reasons.
+    void reasons(const SnapshotState& now, std::span<uint8_t> reasons) const;
+
+private:
+    bool select(const Frame& frame, const DrawClusters& clusters, const ObjectRecord& object, DepthTiles* tiles,
+                uint32_t visible, QueryStats& stats);
+    void findFacing(const DrawClusters& clusters, const ObjectRecord& object, const View& view, const Screen* screen,
+                    QueryStats& stats);
+    void findSeen(const DrawClusters& clusters, const Frame& frame, const Screen& screen, DepthTiles& tiles,
+                  QueryStats& stats);
+    void addRanges(const DrawClusters& clusters, uint32_t gap, uint32_t visible, QueryStats& stats);
+
+    Array<DrawRange> ranges_;
+    Array<uint32_t> culled_;  ///< rows
+    Array<uint8_t> left_;     ///< a bit per cluster of the object at hand
+};
+
+struct StageMemory {
+    explicit StageMemory(Memory* memory) : cells(memory), volumes(memory), clusters(memory) {}
+
+    CellMemory cells;
+    VolumeChooser volumes;
+    ClusterMemory clusters;
+};
+
+}  // namespace sightline::detail

@@ -1,0 +1,45 @@
+// Bounds of skinned and morphed meshes that hold for every pose.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "sightline/tools/import/gltf/gltf_animation.h"
+#include "sightline/tools/import/gltf/gltf_meshes.h"
+#include "sightline/tools/import/gltf/gltf_nodes.h"
+
+namespace sightline::tools::gltf {
+
+/// Where morph targets may take the vertices of a mesh.
+struct MorphReach {
+    std::vector<glm::dvec3> rest, low, high;  ///< [size: vertices]; finite, low <= high on each axis
+};
+
+/// @param rest    weights of the rest pose; missing ones are 0
+/// @param ranges  what each weight may be, whatever the other weights are
+MorphReach morphReach(Document& document, const BuiltMesh& built, const std::vector<float>& rest,
+                      const std::vector<Range>& ranges);
+
+/// Makes a mesh that only morphs: positions of the rest pose, bounds of all.
+void applyMorph(const MorphReach& reach, Mesh& mesh);
+
+struct Skin {
+    std::vector<uint32_t> joints;  ///< nodes
+    std::optional<uint32_t> inverse_binds;
+};
+
+std::vector<Skin> readSkins(const Document& document, size_t nodes);
+
+/// Poses a skinned mesh: positions of the rest pose in the world's axes, relative to an anchor, and bounds of
+/// every pose.
+///
+/// A pose may turn every joint in any way; a node is translated and scaled as at rest or as some animation
+/// asks. So a point that hangs from a chain of nodes stays in a ball around the uppermost moving node, of
+/// radius scale * (|translation of the next node| + its radius); blending stays in the balls' common box.
+///
+/// @return  the anchor, a place in the world near the mesh: precision far from the origin is kept
+glm::dvec3 applySkin(Document& document, const NodeTree& tree, const std::vector<Motion>& motions, const Skin& skin,
+                     const MorphReach& reach, const std::string& place, BuiltMesh& built);
+
+}  // namespace sightline::tools::gltf

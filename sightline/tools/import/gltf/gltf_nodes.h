@@ -1,0 +1,63 @@
+// The node forest: transforms composed in double, parents before children, without recursion.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "sightline/tools/import/gltf/gltf_mark.h"
+#include "sightline/tools/import/gltf/gltf_text.h"
+#include "sightline/tools/scene/scene.h"
+
+namespace sightline::tools::gltf {
+
+constexpr uint32_t kNoNode = SceneNode::kNone;
+
+struct Node {
+    std::optional<uint32_t> mesh, skin, camera;
+    glm::dmat4 world{1.0};
+    glm::dvec3 translation{0.0};  ///< in the parent's frame
+    double scale = 1;             ///< the most by which it stretches any vector of its own
+    std::vector<float> weights;   ///< of morph targets; empty: the mesh's own
+    bool placed = false;          ///< the default scene reaches it
+    bool drawn = false;           ///< and nothing hides it
+    bool marked = false;          ///< its mesh is the shape of a cell or a portal, and is not drawn
+    bool extended = false;        ///< its JSON has extensions
+};
+
+struct NodeTree {
+    std::vector<Node> nodes;
+    std::vector<SceneNode> names;  ///< and parents  [size: nodes]
+    std::vector<NodeMark> marks;   ///< in the order of nodes
+    std::vector<uint32_t> order;   ///< all nodes, parents before children
+    std::vector<uint32_t> rank;    ///< where each node stands in `order`
+};
+
+/// How many elements the tables that a node refers to have.
+struct NodeTargets {
+    size_t meshes = 0, skins = 0, cameras = 0;
+};
+
+/// Reads nodes and scenes. A Fault if a node has two parents or is its own ancestor, if a transform is not
+/// finite or not affine, or if a scene's root has a parent.
+/// @param told  is called now and then with how many nodes have been read
+NodeTree readNodes(const JsonText& json, const NodeTargets& targets, const std::function<void(size_t)>& told);
+
+/// Rotation (x, y, z, w), of any length: normalised; all zeros is no rotation.
+glm::dmat3 rotationMatrix(const double rotation[4]);
+
+/// translate * rotate * scale
+glm::dmat4 composeTransform(const double translation[3], const double rotation[4], const double scale[3]);
+
+/// An upper bound on how much the linear part stretches any vector: exact if its columns are orthogonal.
+double largestStretch(const glm::dmat4& matrix);
+
+/// False if any element is NaN or infinite.
+bool finiteMatrix(const glm::dmat4& matrix);
+
+}  // namespace sightline::tools::gltf

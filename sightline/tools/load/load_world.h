@@ -1,0 +1,41 @@
+// Carries a scene into a world: one object per drawn instance, one prepared occluder per mesh.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "sightline/prepare/facing/draw_clusters.h"
+#include "sightline/prepare/inner/inner.h"
+#include "sightline/tools/scene/scene.h"
+#include "sightline/world/world.h"
+
+namespace sightline::tools {
+
+struct LoadedWorld {
+    World world;
+    std::vector<ObjectId> ids;  ///< [size: scene.objects; the same order]
+};
+
+struct LoadSettings {
+    bool volumes = false;  ///< WorldDef::volumes
+    /// How each mesh is prepared. Buildings have many walls of some tens of large polygons: `few` is 64.
+    OccluderSettings occluders = {.few = 64};
+    bool inner = false;  ///< prepare simpler occluders for dense meshes, too: prepareInner()
+    InnerSettings inner_occluders;
+    bool clusters = false;  ///< prepare clusters of meshes of some size, too: prepareDrawClusters()
+    DrawClusterSettings draw_clusters;
+};
+
+/// What the tool loads with.
+/// @param occluder_error  QuerySettings::occluder_error of the queries to come; 0: no simpler occluders are prepared
+/// @param clusters        prepare them, for a test that costs so many triangles: FacingCost::test
+LoadSettings loadSettings(bool volumes, double occluder_error, bool clusters = false,
+                          double cluster_test = FacingCost().test);
+
+/// Deforming meshes and materials that do not hide give no occluder triangles.
+/// @param progress  called with (done, total) meshes now and then; may be empty
+LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_t)>& progress = {},
+                      const LoadSettings& settings = {});
+
+}  // namespace sightline::tools

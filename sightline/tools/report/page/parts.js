@@ -1,0 +1,81 @@
+// What all pages are made of: elements, numbers for reading, cards, tables and tiles.
+// SPDX-License-Identifier: MIT
+'use strict';
+
+const data = JSON.parse(document.getElementById('data').textContent);
+const at = (id) => document.getElementById(id);
+const all = (selector, within = document) => [...within.querySelectorAll(selector)];
+
+/** An element: h('td', {class: 'path'}, 'text', node, [more]). Text stays text; null, false and '' are left out. */
+function h(tag, attributes, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes || {})) {
+    if (value === null || value === undefined || value === false) continue;
+    if (name.startsWith('on')) made.addEventListener(name.slice(2), value);
+    else made.setAttribute(name, value === true ? '' : value);
+  }
+  made.append(...children.flat(9).filter((child) => child || child === 0));
+  return made;
+}
+
+const grouped = (value) => Math.round(value).toString().replace(/\B(?=(\d{3})+$)/g, ',');
+/** Four digits, grouped if it is large. */
+const readable = (value) => value === null || value === undefined || !isFinite(value) ? '–'
+  : Math.abs(value) < 1000 ? String(+value.toPrecision(4)) : grouped(value);
+const short = (value) => String(+value.toPrecision(3));
+const plural = (count, one, many = one + 's') => grouped(count) + ' ' + (count === 1 ? one : many);
+function percent(part, whole) {
+  const value = whole > 0 ? 100 * part / whole : 0;
+  return value > 0 && value < 0.01 ? 'under 0.01 %' : value.toFixed(value < 1 ? 2 : 1) + ' %';
+}
+const sum = (values) => values.reduce((total, value) => total + value, 0);
+const mean = (values) => values.length ? sum(values) / values.length : 0;
+function median(values) {
+  const sorted = [...values].sort((a, b) => a - b), n = sorted.length;
+  return n ? (sorted[n >> 1] + sorted[(n - 1) >> 1]) / 2 : 0;
+}
+/** The index of the largest value. */
+const largest = (values) => values.reduce((best, value, i) => value > values[best] ? i : best, 0);
+const fileName = (path) => path.slice(path.lastIndexOf('/') + 1);
+
+function card(id, heading, ...body) {
+  if (!body.flat(9).some(Boolean)) return null;
+  return h('section', {class: 'card', id, 'aria-labelledby': 'h-' + id}, h('h2', {id: 'h-' + id}, heading), body);
+}
+/** Two cards beside one another, or one alone. */
+const pair = (...cards) => cards.some(Boolean) ? h('div', {class: 'pair cards'}, cards) : null;
+const note = (...text) => h('p', {class: 'soft'}, text);
+const tiles = (...list) => h('div', {class: 'tiles'}, list.filter(Boolean).map(([value, text]) =>
+  h('div', {class: 'tile'}, h('b', {}, value), h('span', {class: 'soft'}, text))));
+const verdict = (kind, strong, ...lines) => h('div', {class: 'verdict ' + kind, role: 'status'},
+  h('strong', {}, strong), lines.flat().filter(Boolean).map((line) => h('span', {}, line)));
+const definitions = (rows) => h('dl', {}, rows.filter(Boolean).map(([term, text]) =>
+  [h('dt', {}, term), h('dd', {}, text)]));
+const legend = (entries) => h('div', {class: 'legend'}, entries.map(([css, name]) =>
+  h('span', {}, h('i', {class: 'swatch ' + css}), name)));
+const bytes = (count) => count < 1e6 ? readable(count / 1e3) + ' kB' : readable(count / 1e6) + ' MB';
+
+/** A table in an area that scrolls. The first cell of a row is its heading; a cell is text, a number or an element. */
+function table(label, head, rows, css = '') {
+  return h('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': label},
+    h('table', {class: css},
+      h('thead', {}, h('tr', {}, head.map((cell) => cell === '' ? h('td') : h('th', {scope: 'col'}, cell)))),
+      h('tbody', {}, rows.map(tableRow))));
+}
+const tableRow = ([first, ...cells]) =>
+  h('tr', {}, h('th', {scope: 'row'}, first), cells.map((cell) => h('td', {}, cell)));
+
+const picture = (src, alt, attributes = {}) => h('img', {src, alt, ...attributes});
+const figure = (image, caption, css = '') => h('figure', {class: css}, image, h('figcaption', {}, caption));
+/** The colours of heat maps with their values, which grow with the square. */
+function heatLegend(full) {
+  const ticks = [0, 0.125, 0.25, 0.5, 1].map((part) => h('span', {style:
+    `left:${100 * Math.sqrt(part)}%;transform:translateX(-${part === 0 ? 0 : part < 1 ? 50 : 100}%)`},
+    short(part * full) + (part < 1 ? '' : ' or more')));
+  return [h('div', {class: 'bar', role: 'img', 'aria-label': 'Colour scale'}), h('div', {class: 'scale'}, ticks)];
+}
+function setHead(title, subtitle, ...below) {
+  document.title = title + ' – Sightline';
+  at('head').append(h('h1', {}, title), note(subtitle), ...below.filter(Boolean));
+}
+const repeatRow = () => data.command && ['Repeat it', h('code', {}, data.command)];

@@ -1,0 +1,110 @@
+// A frame drawn to show why one object is kept or culled: its box, its occluders, and the rest pale.
+// SPDX-License-Identifier: MIT
+#include "sightline/tools/report/pictures/explain_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "sightline/studies/hidden/render.h"
+#include "sightline/tools/report/pictures/render_list.h"
+#include "sightline/tools/report/pictures/render_pictures.h"
+
+namespace sightline::tools {
+using namespace studies;
+namespace {
+
+constexpr glm::dvec3 kObject(30, 100, 220), kOccluder(232, 119, 20), kOutline(196, 18, 110);
+constexpr double kPale = 0.72;  // of white, in what is not meant
+constexpr double kTint = 0.55;  // of the colour, in what is
+
+Rgb mix(const Rgb& from, const glm::dvec3& to, double part) {
+    return Rgb(glm::clamp(glm::dvec3(from) * (1 - part) + to * part + 0.5, 0.0, 255.0));
+}
+
+/// Draws over the picture what lies on a line between two places, three pixels wide.
+void drawLine(Image<Rgb>& image, const glm::dvec2& from, const glm::dvec2& to) {
+    const glm::dvec2 step = to - from;
+    const double length = std::max(std::abs(step.x), std::abs(step.y));
+    const auto steps = static_cast<int64_t>(std::ceil(length)) + 1;
+    for (int64_t i = 0; i <= steps; ++i) {
+        const glm::dvec2 at = from + step * (static_cast<double>(i) / static_cast<double>(steps));
+        for (int dy = -1; dy <= 1; ++dy)
+            for (int dx = -1; dx <= 1; ++dx) {
+                const double x = std::floor(at.x) + dx, y = std::floor(at.y) + dy;
+                if (x < 0 || y < 0 || x >= image.width || y >= image.height) continue;
+                image.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y)) = Rgb(kOutline);
+            }
+    }
+}
+
+/// A line in clip space, cut at the near plane and at the picture's borders.
+void drawEdge(Image<Rgb>& image, const glm::dvec4& a, const glm::dvec4& b) {
+    double first = 0, last = 1;
+    const glm::dvec4 planes[6] = {{1, 0, 0, 1}, {-1, 0, 0, 1}, {0, 1, 0, 1}, {0, -1, 0, 1}, {0, 0, 1, 1}, {0, 0, 0, 1}};
+    for (const glm::dvec4& plane : planes) {
+        const double da = glm::dot(plane, a), db = glm::dot(plane, b);
+        if (da < 0 && db < 0) return;
+        if (da < 0) first = std::max(first, da / (da - db));
+        if (db < 0) last = std::min(last, da / (da - db));
+    }
+    if (!(first < last)) return;
+    const auto place = [&](double t) {
+        const glm::dvec4 p = a + (b - a) * t;
+        return glm::dvec2(0.5 * (p.x / p.w + 1) * image.width, 0.5 * (1 - p.y / p.w) * image.height);
+    };
+    const glm::dvec2 from = place(first), to = place(last);
+    if (std::isfinite(from.x) && std::isfinite(from.y) && std::isfinite(to.x) && std::isfinite(to.y))
+        drawLine(image, from, to);
+}
+
+/// The twelve edges of an object's box.
+void drawBox(Image<Rgb>& image, const View& view, const Box3d& box, const glm::dmat4& transform) {
+    if (!box.finite() || box.empty()) return;
+    glm::dvec4 corners[8];
+    for (int which = 0; which < 8; ++which) {
+        const glm::dvec4 corner(which & 1 ? box.max.x : box.min.x, which & 2 ? box.max.y : box.min.y,
+                                which & 4 ? box.max.z : box.min.z, 1.0);
+        corners[which] = view.projection * (view.view * (transform * corner));
+    }
+    for (int which = 0; which < 8; ++which)
+        for (const int axis : {1, 2, 4})
+            if (!(which & axis)) drawEdge(image, corners[which], corners[which | axis]);
+}
+
+void drawRing(Image<Rgb>& image, const glm::dvec2& centre) {
+    constexpr int kSides = 24;
+    const double radius = std::max(6.0, image.height / 60.0);
+    const auto place = [&](int side) {
+        const double angle = 2 * std::acos(-1.0) * side / kSides;
+        return centre + radius * glm::dvec2(std::cos(angle), std::sin(angle));
+    };
+    for (int side = 0; side < kSides; ++side) drawLine(image, place(side), place(side + 1));
+}
+
+}  // namespace
+
+Image<Rgb> explainPicture(const Scene& scene, const View& view, const Emphasis& emphasis) {
+    const RenderList list(scene, view);
+    RenderSettings settings;
+    const HiddenImage drawn = render(list.list(), view, settings);
+    PictureSettings look;
+    look.shadows = false;
+    Image<Rgb> image = shadedPicture(list, view, drawn, look);
+    std::unordered_map<uint32_t, glm::dvec3> tints;
+    for (const uint32_t occluder : emphasis.occluders) tints[occluder] = kOccluder;
+    tints[emphasis.object] = kObject;
+    for (uint32_t y = 0; y < image.height; ++y)
+        for (uint32_t x = 0; x < image.width; ++x) {
+            const uint32_t surface = drawn.surface[size_t{image.height - 1 - y} * image.width + x];
+            Rgb& pixel = image.at(x, y);
+            const auto tint = surface == HiddenImage::kNone ? tints.end() : tints.find(list.list().idOf(surface));
+            pixel = tint == tints.end() ? mix(pixel, glm::dvec3(255), kPale) : mix(pixel, tint->second, kTint);
+        }
+    const SceneObject& object = scene.objects[emphasis.object];
+    drawBox(image, view, scene.meshes[object.mesh].bounds, object.transform);
+    if (emphasis.has_pixel) drawRing(image, {emphasis.x, emphasis.y});
+    return image;
+}
+
+}  // namespace sightline::tools

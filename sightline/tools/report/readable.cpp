@@ -1,0 +1,20 @@
+// Numbers as a reader takes them.
+// SPDX-License-Identifier: MIT
+#include "sightline/tools/report/readable.h"
+
+#include <cmath>
+
+#include <fmt/core.h>
+
+namespace sightline::tools {
+
+std::string readable(double value) {
+    if (!std::isfinite(value)) return "–";
+    if (std::abs(value) < 1000) return fmt::format("{:.4g}", value);
+    std::string text = fmt::format("{:.0f}", value);
+    const size_t first = text[0] == '-' ? 1 : 0;
+    for (size_t place = text.size(); place > first + 3; place -= 3) text.insert(place - 3, 1, ',');
+    return text;
+}
+
+}  // namespace sightline::tools

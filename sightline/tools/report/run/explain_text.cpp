@@ -1,0 +1,318 @@
+// An explanation in plain sentences.
+// SPDX-License-Identifier: MIT
+#include "sightline/tools/report/run/explain_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "sightline/tools/report/readable.h"
+
+namespace sightline::tools {
+namespace {
+
+/// A length with three or four digits that matter.
+std::string units(double length) {
+    const double size = std::abs(length);
+    return size >= 1000 ? fmt::format("{:.0f}", length)
+           : size >= 10 ? fmt::format("{:.1f}", length)
+                        : fmt::format("{:.3g}", length);
+}
+
+std::string percent(double share) {
+    if (share > 0 && share < 0.005) return "under 1 %";
+    return fmt::format("{:.0f} %", 100 * share);
+}
+
+/// "'Wall' (71 %), 'Door' (20 %) and 3 others (9 %)".
+/// @param most  names; of more than one, another rather than "1 other"
+std::string listOf(const Array<Hider>& hiders, const NameOfObject& name, size_t most = 6) {
+    const size_t shown = hiders.size() > most + (most > 1) ? most : hiders.size();
+    std::vector<std::string> parts;
+    double rest = 1;
+    for (size_t i = 0; i < shown; ++i) {
+        const std::string share = hiders.size() > 1 ? fmt::format(" ({})", percent(hiders[i].share)) : "";
+        parts.push_back(name(hiders[i].id) + share);
+        rest -= hiders[i].share;
+    }
+    if (shown < hiders.size())
+        parts.push_back(fmt::format("{} other{} ({})", hiders.size() - shown, hiders.size() - shown == 1 ? "" : "s",
+                                    percent(std::max(rest, 0.0))));
+    std::string text;
+    for (size_t i = 0; i < parts.size(); ++i) text += (i == 0 ? "" : i + 1 < parts.size() ? ", " : " and ") + parts[i];
+    return text;
+}
+
+const char* pronoun(size_t count) { return count == 1 ? "that one" : count == 2 ? "these two" : "these"; }
+
+std::string clustersText(const ClustersReason& found) {
+    return fmt::format("of {} cluster{}, {} seen from the back, {} outside of the view, {} hidden",
+                       readable(static_cast<double>(found.clusters)), found.clusters == 1 ? "" : "s",
+                       readable(static_cast<double>(found.back)), readable(static_cast<double>(found.outside)),
+                       readable(static_cast<double>(found.hidden)));
+}
+
+std::string drawnText(const ClustersReason& found) {
+    if (found.clusters == 0) return "";
+    return fmt::format(" Of its {} triangles {} are left to draw: {}.", readable(static_cast<double>(found.triangles)),
+                       readable(static_cast<double>(found.drawn)), clustersText(found));
+}
+
+std::string togetherText(const Explanation& why) {
+    if (why.together <= 1) return "";
+    return fmt::format(" It was culled in one step with {} object{} that {} near it.", readable(why.together - 1.0),
+                       why.together == 2 ? "" : "s", why.together == 2 ? "lies" : "lie");
+}
+
+std::string rectangleText(const Explanation& why) {
+    if (!why.on_screen) return "";
+    const double left = std::max(why.rect.left, 0.0), right = std::min<double>(why.rect.right, why.width);
+    const double top = std::max(why.rect.top, 0.0), bottom = std::min<double>(why.rect.bottom, why.height);
+    return fmt::format(" Its box takes {:.0f} x {:.0f} pixels from ({:.0f}, {:.0f}) and begins {} units away.",
+                       std::max(right - left, 0.0), std::max(bottom - top, 0.0), left, top, units(why.depth));
+}
+
+/// "beyond the left plane by 3.2 units".
+std::string planeText(const FrustumReason& reason) {
+    if (reason.by_triangles)
+        return "out of view: its box reaches into it, but none of its triangles that would be drawn";
+    if (reason.by_faces) return "out of view: the box along the axes reaches into it, but not its own, which is turned";
+    const char* const name = kPlaneNames[reason.plane];
+    const std::string where = reason.plane < FrustumReason::kFirstSection ? fmt::format("the {} plane", name) : name;
+    return fmt::format("beyond {} by {} units", where, units(reason.distance()));
+}
+
+std::string frustumText(const Explanation& why, const std::string& subject) {
+    const FrustumReason& reason = why.frustum;
+    std::string text = fmt::format("culled by frustum: {} lies {}", subject, planeText(reason));
+    std::string also;
+    for (uint32_t plane = 0; plane < FrustumReason::kPlanes; ++plane)
+        if (plane != reason.plane && reason.outside[plane] > 0)
+            also +=
+                fmt::format("{}{} by {}", also.empty() ? "" : ", ", kPlaneNames[plane], units(reason.outside[plane]));
+    if (!also.empty()) text += " (and beyond " + also + ")";
+    text +=
+        reason.by_rectangle ? "; its rectangle on the screen showed it, the planes could not tell for rounding." : ".";
+    return text + togetherText(why);
+}
+
+std::string withoutText(const OcclusionReason& reason, const NameOfObject& name) {
+    const std::string who = fmt::format("without {}", pronoun(reason.hiders.size()));
+    switch (reason.without) {
+        case Without::kNotAsked:
+            return "";
+        case Without::kVisible:
+            return "; " + who + " it would be kept";
+        case Without::kOutsideFrustum:
+            return "; " + who + " the frustum would cull it";
+        case Without::kTooFar:
+            return "; " + who + " it would be left out as too far away";
+        case Without::kTooSmall:
+            return "; " + who + " it would be left out as too small";
+        case Without::kOccluded:
+            break;
+    }
+    return "; " + who + " it would still be hidden, by " + listOf(reason.others, name);
+}
+
+/// What was asked where the rectangle around its box was open.
+std::string askedText(const OcclusionReason& reason) {
+    if (reason.by_triangles) return " Its box is not hidden all over; its own triangles are.";
+    if (reason.by_faces) return " The rectangle around its box is not hidden all over; the faces of the box are.";
+    return "";
+}
+
+std::string occlusionText(const Explanation& why, const std::string& subject, const NameOfObject& name) {
+    const OcclusionReason& reason = why.occlusion;
+    if (reason.hiders.empty()) return fmt::format("culled by occlusion: {}.", subject) + rectangleText(why);
+    const std::string hiders = listOf(reason.hiders, name);
+    std::string text;
+    if (reason.stage == Stage::kVolumes)
+        text = fmt::format("culled by volumes: all of {} lies in the shadow of {}", subject, hiders);
+    else if (reason.outside_too)
+        text = fmt::format(
+            "culled by occlusion: {} was culled in one step with {} objects near it, all behind {}. By "
+            "itself it lies {}, out of view",
+            subject, readable(why.together - 1.0), hiders, planeText(why.frustum));
+    else if (reason.sufficient) text = fmt::format("culled by occlusion: {} lies behind {}", subject, hiders);
+    else
+        text =
+            fmt::format("culled by occlusion: {} lies behind {}, and is hidden only with the rest of the world there",
+                        subject, hiders);
+    text += withoutText(reason, name) + ".";
+    if (reason.outside_too && reason.stage == Stage::kOcclusion) return text;
+    return text + askedText(reason) + togetherText(why) + rectangleText(why);
+}
+
+std::string farText(const SizeReason& reason) {
+    return fmt::format("{} away, more than {}", units(reason.distance), units(reason.distance_limit));
+}
+
+std::string smallText(const SizeReason& reason) {
+    return fmt::format("as large as a disk of radius {:.3g} pixels, less than {:.3g}", reason.radius,
+                       reason.radius_limit);
+}
+
+std::string keptText(const Explanation& why, const NameOfObject& name) {
+    const VisibleReason& reason = why.visible;
+    switch (reason.because) {
+        case KeptBecause::kOpenPixel:
+            break;
+        case KeptBecause::kViewNotUsable:
+            return "in doubt: the view's matrices cannot be used, so that everything is kept";
+        case KeptBecause::kBoundsNotUsable:
+            return "in doubt: its bounds are empty, not finite or too far away";
+        case KeptBecause::kHoldsEye:
+            return "in doubt: the eye is inside its box";
+        case KeptBecause::kNearPlane:
+            return "in doubt: its box reaches across the near plane";
+        case KeptBecause::kNotProjectable:
+            return "in doubt: its box cannot be projected without too much rounding";
+        case KeptBecause::kStageOff:
+            if (reason.stage == Stage::kFrustum)
+                return fmt::format("the frustum stage is off; it lies {}", planeText(why.frustum));
+            return "the occlusion stage is off, and it is in the frustum";
+        case KeptBecause::kBudgetSpent:
+            return reason.second_look_spent
+                       ? "in doubt: the budget of polygons for a second look (--second-look-polygons) was spent before "
+                         "its triangles were asked, which are hidden"
+                       : "in doubt: the budget of occluder triangles (--occluder-triangles) was spent before what "
+                         "would "
+                         "hide it was drawn";
+    }
+    std::string where = fmt::format("nothing hides pixel ({:.1f}, {:.1f})", reason.x, reason.y);
+    if (reason.covered)
+        where += fmt::format(": {} covers it, but not in front of the nearest point of {}",
+                             reason.cover == ObjectId() ? "something" : name(reason.cover),
+                             reason.by_triangles ? "its triangles there"
+                             : reason.by_faces   ? "its box's faces there"
+                                                 : "its box");
+    const double part = reason.pixels ? double(reason.open_pixels) / double(reason.pixels) : 0.0;
+    return where + fmt::format("; {} of {} is open", percent(part),
+                               reason.by_triangles ? "what its own triangles touch"
+                               : reason.by_faces   ? "what its box's faces touch"
+                                                   : "its rectangle");
+}
+
+std::string countOf(size_t count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+/// "it stands in 2 cells, of which 1 is seen through 3 portals, beside it".
+std::string cellsText(const CellsReason& cells) {
+    const std::string stands = "it stands in " + countOf(cells.object.size(), "cell");
+    if (cells.reached == 0) return stands + ", into which no window leads";
+    return fmt::format("{}, of which {} {} seen, through {}, but it lies beside all windows", stands, cells.reached,
+                       cells.reached == 1 ? "is" : "are", countOf(cells.portals.size(), "portal"));
+}
+
+std::string rowsText(const CellsReason& cells) {
+    return fmt::format("it stands in {}, none of which is seen from {} that the eye may be in",
+                       countOf(cells.object.size(), "cell"), countOf(cells.eye.size(), "cell"));
+}
+
+}  // namespace
+
+std::string explanationText(const Explanation& why, const std::string& subject, const NameOfObject& name) {
+    switch (why.verdict) {
+        case Verdict::kNoSuchObject:
+            return "there is no such object.";
+        case Verdict::kOutsideLayers:
+            return fmt::format("left out: {} is in none of the view's layers.", subject);
+        case Verdict::kOutsideFrustum:
+            return frustumText(why, subject);
+        case Verdict::kOccluded:
+            return occlusionText(why, subject, name);
+        case Verdict::kTooFar:
+            return fmt::format("culled by distance: {} is {}. It may be visible.", subject, farText(why.size)) +
+                   togetherText(why) + rectangleText(why);
+        case Verdict::kTooSmall:
+            return fmt::format("culled by contribution: {} looks {}. It may be visible.", subject,
+                               smallText(why.size)) +
+                   togetherText(why) + rectangleText(why);
+        case Verdict::kNoCluster:
+            return fmt::format("culled by clusters: of {} none is left: {}.", subject, clustersText(why.clusters)) +
+                   rectangleText(why);
+        case Verdict::kNotInPvs:
+            return fmt::format("culled by pvs: {}: {}.", subject, rowsText(why.cells));
+        case Verdict::kNoWindow:
+            return fmt::format("culled by portals: {}: {}.", subject, cellsText(why.cells));
+        case Verdict::kVisible:
+            break;
+    }
+    return fmt::format("kept: {}: {}.", subject, keptText(why, name)) + rectangleText(why) + drawnText(why.clusters);
+}
+
+std::string explanationClause(const Explanation& why, const NameOfObject& name, size_t most) {
+    switch (why.verdict) {
+        case Verdict::kNoSuchObject:
+            return "no such object";
+        case Verdict::kOutsideLayers:
+            return "in none of the view's layers";
+        case Verdict::kOutsideFrustum:
+            return planeText(why.frustum);
+        case Verdict::kOccluded:
+            return "behind " + listOf(why.occlusion.hiders, name, most) +
+                   (why.occlusion.by_triangles ? ", by its triangles" : "");
+        case Verdict::kTooFar:
+            return farText(why.size);
+        case Verdict::kTooSmall:
+            return smallText(why.size);
+        case Verdict::kNoCluster:
+            return clustersText(why.clusters);
+        case Verdict::kNotInPvs:
+            return rowsText(why.cells);
+        case Verdict::kNoWindow:
+            return cellsText(why.cells);
+        case Verdict::kVisible:
+            break;
+    }
+    return keptText(why, name);
+}
+
+std::string stageOf(const Explanation& why) {
+    if (why.verdict == Verdict::kOutsideFrustum) return kStageNames[static_cast<int>(Stage::kFrustum)];
+    if (why.verdict == Verdict::kOccluded) return kStageNames[static_cast<int>(why.occlusion.stage)];
+    if (why.verdict == Verdict::kTooFar) return kStageNames[static_cast<int>(Stage::kDistance)];
+    if (why.verdict == Verdict::kTooSmall) return kStageNames[static_cast<int>(Stage::kContribution)];
+    if (why.verdict == Verdict::kNoCluster) return kStageNames[static_cast<int>(Stage::kClusters)];
+    if (why.verdict == Verdict::kNotInPvs) return kStageNames[static_cast<int>(Stage::kPvs)];
+    if (why.verdict == Verdict::kNoWindow) return kStageNames[static_cast<int>(Stage::kPortals)];
+    return "";
+}
+
+const char* verdictName(Verdict verdict) {
+    constexpr const char* kNames[] = {"no such object", "outside layers", "visible",    "outside frustum", "occluded",
+                                      "too far",        "too small",      "no cluster", "not in PVS",      "no window"};
+    return kNames[static_cast<int>(verdict)];
+}
+
+const char* keptBecauseName(KeptBecause because) {
+    constexpr const char* kNames[] = {"open pixel", "view not usable", "bounds not usable", "holds the eye",
+                                      "near plane", "not projectable", "stage off",         "budget spent"};
+    return kNames[static_cast<int>(because)];
+}
+
+std::string wrapped(const std::string& text, size_t width, const std::string& indent) {
+    std::string out, line;
+    const std::string_view all = text;
+    for (size_t at = 0; at < all.size();) {
+        const size_t end = std::min(all.find(' ', at), all.size());
+        const std::string_view word = all.substr(at, end - at);
+        if (!line.empty() && line.size() + 1 + word.size() > width) {
+            out += line + "\n";
+            line = indent;
+            line += word;
+        } else {
+            if (!line.empty()) line += ' ';
+            line += word;
+        }
+        at = end + 1;
+    }
+    return out + line;
+}
+
+}  // namespace sightline::tools

@@ -1,0 +1,67 @@
+// What leaving objects out costs: the pixels of a frame that show another object without them.
+// SPDX-License-Identifier: MIT
+#include "sightline/tools/truth/changed_pixels.h"
+
+#include <algorithm>
+
+#include "sightline/base/assert.h"
+#include "sightline/studies/hidden/zbuffer/zbuffer.h"
+#include "sightline/tools/truth/id_buffer.h"
+#include "sightline/tools/truth/sight.h"
+
+namespace sightline::tools {
+using namespace studies;
+namespace {
+
+constexpr uint64_t kBandSamples = 1u << 24;  // drawn at once: 12 bytes each
+
+/// One band of an image as the objects that it shows, with what hides nothing as it is, and as if it hid.
+struct Band {
+    std::vector<uint32_t> plain, solid;  ///< DrawItem::id; `solid` is empty where it is the same
+};
+
+Band drawBand(std::vector<DrawItem> items, const View& view, const ZBufferSettings& pass) {
+    Band band;
+    band.plain = renderZBuffer(items, view, pass).id;
+    const auto see_through = [](const DrawItem& item) { return !item.writes_depth.empty(); };
+    if (std::none_of(items.begin(), items.end(), see_through)) return band;
+    for (DrawItem& item : items) item.writes_depth = {};
+    band.solid = renderZBuffer(items, view, pass).id;
+    return band;
+}
+
+uint64_t countChanges(const Band& a, const Band& b) {
+    uint64_t changed = 0;
+    const std::vector<uint32_t>& solid_a = a.solid.empty() ? a.plain : a.solid;
+    const std::vector<uint32_t>& solid_b = b.solid.empty() ? b.plain : b.solid;
+    for (size_t i = 0; i < a.plain.size(); ++i) changed += a.plain[i] != b.plain[i] || solid_a[i] != solid_b[i];
+    return changed;
+}
+
+}  // namespace
+
+uint64_t countChangedPixels(const SceneFacts& facts, const View& view, std::span<const Drawn> drawn) {
+    SIGHTLINE_ASSERT(drawn.size() == facts.scene().objects.size());
+    const SightLines sight(view);
+    std::vector<uint32_t> full, kept;
+    for (uint32_t object = 0; object < drawn.size(); ++object) {
+        if (drawn[object] == Drawn::kNever || !sight.touches(facts.box(object))) continue;
+        full.push_back(object);
+        if (drawn[object] == Drawn::kAlways) kept.push_back(object);
+    }
+    if (full.size() == kept.size()) return 0;
+    std::vector<DrawItem> all = drawItems(facts, full), some = drawItems(facts, kept);
+    for (size_t i = 0; i < all.size(); ++i) all[i].id = full[i];
+    for (size_t i = 0; i < some.size(); ++i) some[i].id = kept[i];
+    ZBufferSettings pass;
+    pass.want_generated = false;
+    pass.row_count = static_cast<uint32_t>(std::clamp<uint64_t>(kBandSamples / view.width, 1, view.height));
+    uint64_t changed = 0;
+    for (uint64_t row = 0; row < view.height; row += pass.row_count) {
+        pass.first_row = static_cast<uint32_t>(row);
+        changed += countChanges(drawBand(all, view, pass), drawBand(some, view, pass));
+    }
+    return changed;
+}
+
+}  // namespace sightline::tools

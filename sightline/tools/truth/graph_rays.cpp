@@ -1,0 +1,164 @@
+// Lines through a graph of cells: in each, which of its portals are crossed, and where.
+// SPDX-License-Identifier: MIT
+#include "sightline/tools/truth/graph_rays.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sightline/base/assert.h"
+
+namespace sightline::tools {
+
+GraphRays::GraphRays(const CellGraph& graph, double margin) : graph_(graph), margin_(margin) {
+    first_exit_.assign(graph.cells + 1, 0);
+    for (const CellPortal& portal : graph.portals)
+        for (const uint32_t cell : portal.cells) ++first_exit_[cell + 1];
+    for (uint32_t cell = 0; cell < graph.cells; ++cell) first_exit_[cell + 1] += first_exit_[cell];
+    exits_.resize(2 * graph.portals.size());
+    std::vector<uint32_t> next(first_exit_.begin(), first_exit_.end() - 1);
+    inward_.assign(graph.points.size(), glm::dvec3(0.0));
+    for (uint32_t i = 0; i < graph.portals.size(); ++i) {
+        const CellPortal& portal = graph.portals[i];
+        for (uint32_t side = 0; side < 2; ++side)
+            exits_[next[portal.cells[side]]++] = {i, portal.cells[1 - side], side == 0 ? 1.0 : -1.0};
+        const auto outline = graph.outline(portal);
+        for (size_t k = 0; k < outline.size(); ++k) {
+            const glm::dvec3 edge = outline[(k + 1) % outline.size()] - outline[k];
+            const glm::dvec3 inward = glm::cross(glm::dvec3(portal.plane), edge);
+            const double length = glm::length(inward);
+            if (length > 0) inward_[portal.first + k] = inward / length;
+        }
+    }
+}
+
+bool GraphRays::isThrough(const CellPortal& portal, const glm::dvec3& point) const {
+    for (uint32_t k = portal.first; k < portal.first + portal.count; ++k) {
+        const glm::dvec3& inward = inward_[k];
+        if (inward == glm::dvec3(0.0)) continue;  // two corners are one
+        if (!(glm::dot(inward, point - graph_.points[k]) > margin_)) return false;
+    }
+    return true;
+}
+
+void GraphRays::follow(uint32_t cell, const glm::dvec3& point, const glm::dvec3& direction,
+                       std::vector<GraphStep>& steps) const {
+    steps.clear();
+    steps.push_back({cell, GraphStep::kStart, 0});
+    const double speed = glm::length(direction);
+    for (uint32_t s = 0; s < steps.size(); ++s) {
+        const GraphStep step = steps[s];
+        for (uint32_t e = first_exit_[step.cell]; e < first_exit_[step.cell + 1]; ++e) {
+            const Exit& exit = exits_[e];
+            const CellPortal& portal = graph_.portals[exit.portal];
+            const double toward = glm::dot(glm::dvec3(portal.plane), direction) * exit.side;
+            if (!(toward < -1e-9 * speed)) continue;
+            const double height = glm::dot(glm::dvec3(portal.plane), point) + portal.plane.w;
+            const double at = -height * exit.side / toward;
+            if (!(at > step.at) || !isThrough(portal, point + at * direction)) continue;
+            steps.push_back({exit.to, s, at});
+            // Unions of cells can be entered again and again, but not without end.
+            if (steps.size() > 4096) return;
+        }
+    }
+}
+
+namespace {
+
+class Checker {
+public:
+    Checker(const GraphRays& rays, const BitMatrix& rows, bool gather) : rays_(rays), judge_(rows, gather) {
+        const CellGraph& graph = rays.graph();
+        first_portal_.assign(graph.cells + 1, 0);
+        for (const CellPortal& portal : graph.portals)
+            for (const uint32_t cell : portal.cells) ++first_portal_[cell + 1];
+        for (uint32_t cell = 0; cell < graph.cells; ++cell) first_portal_[cell + 1] += first_portal_[cell];
+        portals_.resize(2 * graph.portals.size());
+        std::vector<uint32_t> next(first_portal_.begin(), first_portal_.end() - 1);
+        for (uint32_t i = 0; i < graph.portals.size(); ++i)
+            for (const uint32_t cell : graph.portals[i].cells) portals_[next[cell]++] = i;
+    }
+
+    void line(Random& random) {
+        const CellGraph& graph = rays_.graph();
+        const CellPortal& portal = graph.portals[random.below(graph.portals.size())];
+        const glm::dvec3 through = pointInHole(random, graph.outline(portal));
+        glm::dvec3 direction = randomDirection(random);
+        if (random.below(2) == 0) {
+            const uint32_t cell = portal.cells[random.below(2)];
+            const uint64_t count = first_portal_[cell + 1] - first_portal_[cell];
+            const CellPortal& other = graph.portals[portals_[first_portal_[cell] + random.below(count)]];
+            const glm::dvec3 toward = pointInHole(random, graph.outline(other)) - through;
+            if (glm::length(toward) > 0) direction = glm::normalize(toward);
+        }
+        const double along = glm::dot(glm::dvec3(portal.plane), direction);
+        if (!(std::abs(along) > 1e-9) || !isInside(portal, through)) return;
+        // Forward and backward are two walks; each chain of the one and each of the other make one line.
+        const uint32_t ahead = along > 0 ? 0 : 1;
+        rays_.follow(portal.cells[ahead], through, direction, forward_);
+        rays_.follow(portal.cells[1 - ahead], through, -direction, backward_);
+        chainsOf(backward_, back_chains_);
+        chainsOf(forward_, front_chains_);
+        for (const std::vector<uint32_t>& back : back_chains_)
+            for (const std::vector<uint32_t>& front : front_chains_) {
+                places_.assign(back.rbegin(), back.rend());
+                places_.insert(places_.end(), front.begin(), front.end());
+                judge_.judge(places_, through - direction, through + direction, [](size_t, size_t) { return true; });
+            }
+    }
+
+    const RowJudge& judge() const { return judge_; }
+
+private:
+    bool isInside(const CellPortal& portal, const glm::dvec3& point) const {
+        const auto outline = rays_.graph().outline(portal);
+        for (size_t k = 0; k < outline.size(); ++k) {
+            const glm::dvec3 edge = outline[(k + 1) % outline.size()] - outline[k];
+            const glm::dvec3 inward = glm::cross(glm::dvec3(portal.plane), edge);
+            if (edge != glm::dvec3(0.0) &&
+                !(glm::dot(inward, point - outline[k]) > rays_.margin() * glm::length(inward)))
+                return false;
+        }
+        return true;
+    }
+
+    /// The ways from the start to each last step.
+    static void chainsOf(const std::vector<GraphStep>& steps, std::vector<std::vector<uint32_t>>& chains) {
+        std::vector<bool> inner(steps.size(), false);
+        for (const GraphStep& step : steps)
+            if (step.before != GraphStep::kStart) inner[step.before] = true;
+        chains.clear();
+        for (uint32_t s = 0; s < steps.size() && chains.size() < 64; ++s) {
+            if (inner[s]) continue;
+            chains.emplace_back();
+            for (uint32_t k = s; k != GraphStep::kStart; k = steps[k].before) chains.back().push_back(steps[k].cell);
+            std::reverse(chains.back().begin(), chains.back().end());
+        }
+    }
+
+    const GraphRays& rays_;
+    RowJudge judge_;
+    std::vector<uint32_t> first_portal_, portals_;
+    std::vector<GraphStep> forward_, backward_;
+    std::vector<std::vector<uint32_t>> front_chains_, back_chains_;
+    std::vector<uint32_t> places_;
+};
+
+}  // namespace
+
+RowReport checkCellRows(const GraphRays& rays, const BitMatrix& rows, const RowCheckSettings& settings,
+                        BitMatrix* seen) {
+    SIGHTLINE_ASSERT(rows.rows() >= rays.graph().cells && rows.columns() >= rays.graph().cells);
+    RowReport report;
+    if (rays.graph().portals.empty()) return report;
+    constexpr uint32_t kParts = 16;
+    std::vector<Checker> parts(kParts, Checker(rays, rows, seen != nullptr));
+    runJobs(settings.jobs, kParts, [&](uint32_t part) {
+        Random random(mixSeed(settings.seed, part));
+        for (uint64_t i = 0; i < (settings.segments + kParts - 1) / kParts; ++i) parts[part].line(random);
+    });
+    BitMatrix missed(rows.rows(), rows.columns());
+    for (const Checker& part : parts) part.judge().addTo(report, missed, settings.most_examples, seen);
+    return report;
+}
+
+}  // namespace sightline::tools

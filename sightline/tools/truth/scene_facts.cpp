@@ -1,0 +1,77 @@
+// What the witnesses know of a scene beyond its data: where objects lie, and which triangles show and hide.
+// SPDX-License-Identifier: MIT
+#include "sightline/tools/truth/scene_facts.h"
+
+#include <algorithm>
+
+namespace sightline::tools {
+namespace {
+
+void gather(const Scene& scene, const Mesh& mesh, MeshFacts& facts) {
+    const size_t count = mesh.triangles();
+    facts.double_sided.assign(count, 0);
+    facts.hides.assign(count, mesh.deforms ? 0 : 1);
+    for (const Primitive& primitive : mesh.primitives) {
+        if (primitive.material >= scene.materials.size()) continue;
+        const Material& material = scene.materials[primitive.material];
+        const size_t end = std::min<size_t>(count, size_t(primitive.first_triangle) + primitive.triangle_count);
+        for (size_t t = primitive.first_triangle; t < end; ++t) {
+            facts.double_sided[t] = material.double_sided ? 1 : 0;
+            if (!material.hides()) facts.hides[t] = 0;
+        }
+    }
+    facts.area_sum.resize(count);
+    double sum = 0;
+    for (size_t t = 0; t < count; ++t) {
+        glm::dvec3 p[3];
+        for (int k = 0; k < 3; ++k) {
+            p[k] = mesh.positions[mesh.indices[3 * t + k]];
+            facts.bounds.grow(p[k]);
+        }
+        sum += 0.5 * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
+        facts.area_sum[t] = sum;
+        facts.all_hide = facts.all_hide && facts.hides[t] != 0;
+        facts.all_plain = facts.all_plain && facts.hides[t] != 0 && facts.double_sided[t] != 0;
+    }
+}
+
+bool withinReach(const Box3d& box) {
+    constexpr double kReach = 1e15;
+    for (int axis = 0; axis < 3; ++axis)
+        if (box.min[axis] < -kReach || box.max[axis] > kReach) return false;
+    return true;
+}
+
+}  // namespace
+
+const BoxTree& MeshFacts::triangles(const Mesh& mesh) const {
+    std::call_once(built_, [&] {
+        std::vector<Box3d> boxes(mesh.triangles());
+        for (size_t i = 0; i < mesh.indices.size(); ++i) boxes[i / 3].grow(glm::dvec3(mesh.positions[mesh.indices[i]]));
+        tree_.build(boxes);
+    });
+    return tree_;
+}
+
+SceneFacts::SceneFacts(const Scene& scene) : scene_(scene) {
+    for (const Mesh& mesh : scene.meshes) {
+        meshes_.push_back(std::make_unique<MeshFacts>());
+        gather(scene, mesh, *meshes_.back());
+    }
+    Box3d world;
+    boxes_.resize(scene.objects.size());
+    for (size_t i = 0; i < scene.objects.size(); ++i) {
+        const SceneObject& object = scene.objects[i];
+        const Box3d box = transformBox(meshes_[object.mesh]->bounds, object.transform);
+        if (!box.finite() || !withinReach(box)) continue;
+        boxes_[i] = box;
+        world.grow(box);
+    }
+    tree_.build(boxes_);
+    if (world.empty()) return;
+    center_ = world.center();
+    const glm::dvec3 half = 0.5 * world.size();
+    radius_ = std::max({half.x, half.y, half.z});
+}
+
+}  // namespace sightline::tools

@@ -1,0 +1,265 @@
+// Segments through a tree: front to back, until something stops them.
+// SPDX-License-Identifier: MIT
+#include "sightline/tools/truth/tree_rays.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sightline/base/assert.h"
+
+namespace sightline::tools {
+namespace {
+
+constexpr uint32_t kTop = ~0u;
+constexpr uint32_t kLeaf = LeafTreeNode::kLeaf;
+
+double heightAt(const double (&plane)[4], const glm::dvec3& point) {
+    return plane[0] * point.x + plane[1] * point.y + plane[2] * point.z + plane[3];
+}
+
+}  // namespace
+
+TreeRays::TreeRays(const LeafTree& tree, const TreeRaySettings& settings)
+    : tree_(tree), contents_stop_(settings.contents_stop), above_(tree.nodes.size(), kTop) {
+    for (const LeafContents contents : tree.contents)
+        passes_.push_back(contents == LeafContents::kEmpty || contents == LeafContents::kLiquid ||
+                          (contents == LeafContents::kSky && settings.sky_is_open));
+    nodes_.reserve(tree.nodes.size());
+    for (uint32_t i = 0; i < tree.nodes.size(); ++i) {
+        const LeafTreeNode& from = tree.nodes[i];
+        Node node{};
+        for (int k = 0; k < 4; ++k) node.plane[k] = from.plane[k];
+        for (uint32_t side = 0; side < 2; ++side) {
+            node.child[side] = from.child[side];
+            if ((from.child[side] & kLeaf) == 0) above_[from.child[side]] = i << 1 | side;
+        }
+        nodes_.push_back(node);
+    }
+    if (!tree.bounds.empty()) {
+        const glm::dvec3 far = glm::max(glm::abs(tree.bounds.min), glm::abs(tree.bounds.max));
+        margin_ = 0x1p-42 * std::max({far.x, far.y, far.z});
+    }
+}
+
+uint32_t TreeRays::leafAt(const glm::dvec3& point) const {
+    uint32_t child = nodes_.empty() ? kLeaf : 0;
+    while ((child & kLeaf) == 0) child = nodes_[child].child[heightAt(nodes_[child].plane, point) >= 0];
+    return child & ~kLeaf;
+}
+
+void TreeRays::follow(const glm::dvec3& a, const glm::dvec3& b, TreeWalk& walk) const {
+    walk.stretches.clear();
+    walk.stack.clear();
+    walk.arrived = false;
+    uint32_t child = nodes_.empty() ? kLeaf : 0, place = kTop;
+    double from = 0, to = 1;
+    for (;;) {
+        while ((child & kLeaf) == 0) {
+            const Node& node = nodes_[child];
+            const double at_a = heightAt(node.plane, a), at_b = heightAt(node.plane, b);
+            const double slope = at_b - at_a;
+            const uint32_t near = at_a + from * slope >= 0, far = at_a + to * slope >= 0;
+            if (near != far) {
+                const double cross = std::clamp(-at_a / slope, from, to);
+                walk.stack.push_back({node.child[far], child << 1 | far, cross, to});
+                to = cross;
+            }
+            place = child << 1 | near;
+            child = node.child[near];
+        }
+        const uint32_t leaf = child & ~kLeaf;
+        if (!passes_[leaf]) return;
+        if (contents_stop_ && !walk.stretches.empty() && tree_.contents[leaf] != tree_.contents[walk.stretches[0].leaf])
+            return;
+        walk.stretches.push_back({leaf, place, from, to});
+        if (walk.stack.empty()) break;
+        child = walk.stack.back().child;
+        place = walk.stack.back().place;
+        from = walk.stack.back().from;
+        to = walk.stack.back().to;
+        walk.stack.pop_back();
+    }
+    walk.arrived = true;
+}
+
+bool TreeRays::isInside(uint32_t place, uint32_t but, const glm::dvec3& point) const {
+    for (; place != kTop; place = above_[place >> 1]) {
+        if (place >> 1 == but) continue;
+        const Node& node = nodes_[place >> 1];
+        const double height = heightAt(node.plane, point);
+        if (((place & 1) != 0 ? height : -height) > margin_) continue;
+        // The same plane once more is no other plane.
+        const glm::dvec4 &here = tree_.nodes[place >> 1].plane, &crossed = tree_.nodes[but].plane;
+        if (here != crossed && here != -crossed) return false;
+    }
+    return true;
+}
+
+bool TreeRays::stands(const glm::dvec3& a, const glm::dvec3& b, const TreeWalk& walk, size_t i, size_t j) const {
+    const double length = glm::distance(a, b);
+    for (const size_t end : {i, j}) {
+        const TreeStretch& stretch = walk.stretches[end];
+        if (!((stretch.to - stretch.from) * length > margin_)) return false;
+    }
+    for (size_t k = i; k < j; ++k) {
+        const TreeStretch &before = walk.stretches[k], &after = walk.stretches[k + 1];
+        // Where two paths from the top part is the node whose plane was crossed: the lower of them is raised first, for
+        // parents come before children.
+        uint32_t x = before.place, y = after.place;
+        while (x >> 1 != y >> 1) {
+            if (x >> 1 > y >> 1) x = above_[x >> 1];
+            else y = above_[y >> 1];
+            if (x == kTop || y == kTop) return false;
+        }
+        const glm::dvec3 point = a + after.from * (b - a);
+        if (!isInside(before.place, x >> 1, point) || !isInside(after.place, x >> 1, point)) return false;
+    }
+    return true;
+}
+
+namespace {
+
+/// A line of sight as two walks from one point, or as one: the places that it passes, in order.
+class Checker {
+public:
+    Checker(const TreeRays& rays, const BitMatrix& rows, std::span<const uint32_t> row_of_leaf, const AimedHoles& holes,
+            bool gather)
+        : rays_(rays), row_of_leaf_(row_of_leaf), holes_(holes), judge_(rows, gather) {
+        diagonal_ = rays.tree().bounds.empty() ? 0 : glm::length(rays.tree().bounds.size());
+    }
+
+    void uniform(Random& random) {
+        if (left_from_here_ == 0) {
+            // A place in the open is dear to find: sixteen segments leave from it.
+            for (int tries = 0; tries < 1000; ++tries) {
+                start_ = pointInBounds(random);
+                if (rays_.passes(rays_.leafAt(start_))) break;
+            }
+            left_from_here_ = 16;
+        }
+        --left_from_here_;
+        pass(start_, pointInBounds(random));
+    }
+
+    void aimed(Random& random) {
+        const size_t hole = random.below(holes_.size());
+        const glm::dvec3 through = pointInHole(random, holes_.outline(hole));
+        glm::dvec3 direction = randomDirection(random);
+        if (random.below(2) == 0) {
+            // Holes are listed as the tree has them: those with near numbers are often near.
+            const size_t other =
+                (hole + random.below(128) + holes_.size() - std::min<size_t>(64, holes_.size())) % holes_.size();
+            const glm::dvec3 at = pointInHole(random, holes_.outline(other));
+            const double distance = glm::distance(at, through);
+            if (distance > 1e-9 * diagonal_) direction = (at - through) / distance;
+        }
+        // Both ways from the hole, as far as they go; together they are one segment.
+        const glm::dvec3 back = endOf(through, -direction), to = endOf(through, direction);
+        rays_.follow(through, back, back_walk_);
+        rays_.follow(through, to, walk_);
+        if (back_walk_.stretches.empty() || walk_.stretches.empty()) return;
+        const glm::dvec3 from = middleOf(back_walk_.stretches.back(), through, back);
+        places_.clear();
+        const double least_back = leastOf(through, back), least = leastOf(through, to);
+        for (size_t i = back_walk_.stretches.size(); i-- > 0;) addPlace(back_walk_.stretches[i], least_back);
+        for (const TreeStretch& stretch : walk_.stretches) addPlace(stretch, least);
+        const glm::dvec3 end = middleOf(walk_.stretches.back(), through, to);
+        seen_.assign(places_.begin(), places_.end());
+        bool walked = false;
+        judge_.judge(seen_, from, end, [&](size_t i, size_t j) {
+            // Only an alarm needs the walk as a whole. If that finds other places, the segment passes a corner too
+            // closely.
+            if (!walked) walkWhole(from, to);
+            walked = true;
+            return places_ == seen_ && rays_.stands(from, to, walk_, stretch_[i], stretch_[j]);
+        });
+    }
+
+    const RowJudge& judge() const { return judge_; }
+
+private:
+    glm::dvec3 pointInBounds(Random& random) const {
+        const Box3d& box = rays_.tree().bounds;
+        const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+        return box.min + glm::dvec3(x, y, z) * box.size();
+    }
+
+    /// Where a ray leaves the bounds.
+    glm::dvec3 endOf(const glm::dvec3& from, const glm::dvec3& direction) const {
+        const Box3d& box = rays_.tree().bounds;
+        double reach = diagonal_;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (direction[axis] == 0) continue;
+            const double to = direction[axis] > 0 ? box.max[axis] : box.min[axis];
+            reach = std::min(reach, std::max(0.0, (to - from[axis]) / direction[axis]));
+        }
+        return from + reach * direction;
+    }
+
+    double leastOf(const glm::dvec3& a, const glm::dvec3& b) const {
+        return rays_.margin() / std::max(glm::distance(a, b), rays_.margin());
+    }
+    static glm::dvec3 middleOf(const TreeStretch& stretch, const glm::dvec3& a, const glm::dvec3& b) {
+        return a + 0.5 * (stretch.from + stretch.to) * (b - a);
+    }
+
+    /// Adds where a stretch lies, unless it is too short to tell or goes on where the last one was. True if it was
+    /// added.
+    bool addPlace(const TreeStretch& stretch, double least) {
+        if (!(stretch.to - stretch.from > least)) return false;
+        const uint32_t row = row_of_leaf_.empty() ? stretch.leaf : row_of_leaf_[stretch.leaf];
+        if (!places_.empty() && places_.back() == row) return false;
+        places_.push_back(row);
+        return true;
+    }
+
+    void walkWhole(const glm::dvec3& a, const glm::dvec3& b) {
+        rays_.follow(a, b, walk_);
+        places_.clear();
+        stretch_.clear();
+        const double least = leastOf(a, b);
+        for (uint32_t i = 0; i < walk_.stretches.size(); ++i)
+            if (addPlace(walk_.stretches[i], least)) stretch_.push_back(i);
+    }
+
+    void pass(const glm::dvec3& a, const glm::dvec3& b) {
+        walkWhole(a, b);
+        if (places_.empty()) return;
+        // To the middle of the last stretch: the way back is a segment, too.
+        judge_.judge(places_, a, middleOf(walk_.stretches.back(), a, b),
+                     [&](size_t i, size_t j) { return rays_.stands(a, b, walk_, stretch_[i], stretch_[j]); });
+    }
+
+    const TreeRays& rays_;
+    std::span<const uint32_t> row_of_leaf_;
+    const AimedHoles& holes_;
+    RowJudge judge_;
+    double diagonal_ = 0;
+    glm::dvec3 start_{0.0};
+    int left_from_here_ = 0;
+    TreeWalk walk_, back_walk_;
+    std::vector<uint32_t> places_, seen_, stretch_;
+};
+
+}  // namespace
+
+RowReport checkLeafRows(const TreeRays& rays, const BitMatrix& rows, std::span<const uint32_t> row_of_leaf,
+                        const AimedHoles& holes, const RowCheckSettings& settings, BitMatrix* seen) {
+    SIGHTLINE_ASSERT(row_of_leaf.empty() ? rays.tree().contents.size() <= rows.rows()
+                                         : row_of_leaf.size() == rays.tree().contents.size());
+    constexpr uint32_t kParts = 16;
+    std::vector<Checker> parts(kParts, Checker(rays, rows, row_of_leaf, holes, seen != nullptr));
+    runJobs(settings.jobs, kParts, [&](uint32_t part) {
+        Random random(mixSeed(settings.seed, part));
+        for (uint64_t i = 0; i < (settings.segments + kParts - 1) / kParts; ++i) {
+            if (holes.size() > 0 && random.uniform() < settings.aimed) parts[part].aimed(random);
+            else parts[part].uniform(random);
+        }
+    });
+    RowReport report;
+    BitMatrix missed(rows.rows(), rows.columns());
+    for (const Checker& part : parts) part.judge().addTo(report, missed, settings.most_examples, seen);
+    return report;
+}
+
+}  // namespace sightline::tools

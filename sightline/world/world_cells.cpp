@@ -1,0 +1,137 @@
+// The cells of a world as it changes: what stands in which, what in none, and the doors.
+// SPDX-License-Identifier: MIT
+#include "sightline/world/world_cells.h"
+
+namespace sightline::detail {
+
+void WorldCells::attach(std::shared_ptr<const AttachedCells> cells) {
+    cells_ = std::move(cells);
+    doors_.assign(cells_ ? cells_->graph.doors() : 0, DoorState());
+    shared_doors_ = nullptr;
+    ranges_.clear();
+    all_ = true;
+}
+
+bool WorldCells::setDoor(uint32_t door, float open) {
+    if (door >= doors_.size()) return false;
+    if (doors_[door].open == open) return true;
+    doors_[door].open = open;
+    shared_doors_ = nullptr;
+    return true;
+}
+
+void WorldCells::begin() {
+    if (!all_) return;
+    objects_.reset(cells_ ? cells_->graph.cells() : 0);
+    free_.clear();
+    places_ = 0;
+    free_rows_.clear();
+    free_count_ = 0;
+    claims_.assign(cells_ ? cells_->objects.size() : 0, kNobody);
+    claimed_.clear();
+    walls_ = claimed_walls_ = 0;
+    for (size_t i = 0; i < claims_.size(); ++i) walls_ += cells_->objects.isWall(i);
+}
+
+void WorldCells::setFree(uint32_t row, bool free) {
+    if (isFree(row) == free) return;
+    if (free_rows_.size() <= row / 64) free_rows_.resize(row / 64 + 1, 0);
+    free_rows_[row / 64] ^= uint64_t{1} << row % 64;
+    free ? ++free_count_ : --free_count_;
+    rows_.push_back(row);
+}
+
+void WorldCells::put(uint32_t row, const ObjectRecord& object) {
+    const Box3d box = worldBounds(object);
+    if (!box.finite()) return take(row);
+    unclaim(row);
+    if (object.moved || !putAsBaked(row, object, box)) putByBox(row, box);
+}
+
+void WorldCells::putByBox(uint32_t row, const Box3d& box) {
+    const bool any = cells_->graph.cellsOf(box, cells_scratch_);
+    if (any) objects_.put(row, roundOutward(box, cells_->origin), cells_scratch_);
+    else objects_.take(row);
+    setFree(row, !any);
+}
+
+/// Puts an object into the cells that it was baked into; false if it is not known to be what was baked.
+bool WorldCells::putAsBaked(uint32_t row, const ObjectRecord& object, const Box3d& box) {
+    const uint32_t baked = cells_->objectOf(object.key, box);
+    if (baked == AttachedCells::kNone || claims_[baked] == kMany) return false;
+    if (claims_[baked] != kNobody) {
+        // Two objects have this key and these bounds: nobody knows which of them was baked.
+        const uint32_t other = claims_[baked];
+        unclaim(other);
+        claims_[baked] = kMany;
+        Box3d either = cells_->objects.bounds(baked);
+        either.grow(box);
+        putByBox(other, either);
+        return false;
+    }
+    claims_[baked] = row;
+    claimed_walls_ += cells_->objects.isWall(baked);
+    if (claimed_.size() <= row) claimed_.resize(row + 1, kNobody);
+    claimed_[row] = baked;
+    const bool everywhere = cells_->objects.seenFromEverywhere(baked);
+    cells_scratch_.clear();
+    const PlacedNumbers<uint32_t> cells = cells_->objects.cells(baked);
+    for (size_t i = 0; i < cells.size() && !everywhere; ++i) cells_scratch_.push_back(cells[i]);
+    if (everywhere) objects_.take(row);
+    else objects_.put(row, roundOutward(box, cells_->origin), cells_scratch_);
+    setFree(row, everywhere);
+    return true;
+}
+
+/// Notes that an object is no longer the one of the file that it stood for.
+void WorldCells::unclaim(uint32_t row) {
+    if (row >= claimed_.size() || claimed_[row] == kNobody) return;
+    claims_[claimed_[row]] = kNobody;
+    claimed_walls_ -= cells_->objects.isWall(claimed_[row]);
+    claimed_[row] = kNobody;
+}
+
+void WorldCells::take(uint32_t row) {
+    unclaim(row);
+    objects_.take(row);
+    setFree(row, false);
+}
+
+void WorldCells::finish(const PlacedBvh& bvh) {
+    const auto look = [&](uint32_t place) {
+        const uint32_t row = bvh.order[place];
+        free_.set(place, row != PlacedBvh::kNone && isFree(row));
+    };
+    const uint32_t places = bvh.order.size();
+    if (all_ || places < places_) {  // built anew
+        free_.clear();
+        places_ = 0;
+        ranges_.assign(1, {0, places});
+    }
+    if (places > places_) free_.resize(places);
+    places_ = places;
+    if (free_count_ > 0 || !rows_.empty())
+        for (const WorldBvh::Places& range : ranges_)
+            for (uint32_t place = range.first; place < std::min(range.end, places); ++place) look(place);
+    for (const uint32_t row : rows_) {
+        const uint32_t place = bvh.placeOf(row);
+        if (place != PlacedBvh::kNone) look(place);
+    }
+    ranges_.clear();
+    rows_.clear();
+    all_ = false;
+}
+
+void WorldCells::share(CellState& state) {
+    if (!cells_) return;
+    if (!shared_doors_) shared_doors_ = makeShared<Array<DoorState>>(memory_, doors_);
+    state.cells = cells_;
+    state.doors = shared_doors_;
+    state.lists = objects_.share();
+    state.free = free_.share();
+    state.free_count = free_count_;
+    state.has_walls = walls_ > 0;
+    state.walls_stand = claimed_walls_ == walls_;
+}
+
+}  // namespace sightline::detail

@@ -1,0 +1,291 @@
+// A world as its user changes it, and how the next snapshot is made of the last one.
+// SPDX-License-Identifier: MIT
+#include "sightline/world/world_changes.h"
+
+#include <algorithm>
+
+#include "sightline/base/assert.h"
+
+namespace sightline::detail {
+namespace {
+
+void setBit(Array<uint64_t>& bits, uint32_t i) {
+    if (bits.size() <= i / 64) bits.resize(i / 64 + 1, 0);
+    bits[i / 64] |= uint64_t{1} << i % 64;
+}
+
+bool hasBit(const Array<uint64_t>& bits, uint32_t i) { return i / 64 < bits.size() && (bits[i / 64] >> i % 64 & 1); }
+
+/// A commit moves at most this many objects to new places for each object that was changed.
+constexpr size_t kMendedToChanged = 2;
+
+void clearBit(Array<uint64_t>& bits, uint32_t i) { bits[i / 64] &= ~(uint64_t{1} << i % 64); }
+
+}  // namespace
+
+WorldState::WorldState(Memory* from) : memory(from) {
+    occluders.push_back(nullptr);
+    clusters.push_back(nullptr);
+}
+
+void WorldState::reserve(uint32_t objects) {
+    living_.reserve(objects / 64 + 1);
+    moved_bits_.reserve(objects / 64 + 1);
+}
+
+/// The row of an object, or IdSlot::kNowhere.
+uint32_t WorldState::find(ObjectId id) const {
+    if (id.index == 0 || id.index > ids_.size()) return IdSlot::kNowhere;
+    const IdSlot& slot = ids_[id.index - 1];
+    return slot.generation == id.generation ? slot.row : IdSlot::kNowhere;
+}
+
+/// An id for the object that is appended next.
+ObjectId WorldState::newId() {
+    if (free_ids_.empty()) {
+        ids_.push_back({});
+        free_ids_.push_back(ids_.size());
+    }
+    const uint32_t index = free_ids_.back();
+    free_ids_.pop_back();
+    IdSlot& slot = ids_.change(index - 1);
+    slot.row = objects_.size();
+    return {index, ++slot.generation};
+}
+
+OccluderId WorldState::addOccluder(const Occluder& occluder, std::span<const InnerOccluder> inner) {
+    occluders.push_back(makeShared<HeldOccluder>(memory, occluder, inner, volumes, memory));
+    changed_ = true;
+    return {occluders.size() - 1};
+}
+
+ClustersId WorldState::addClusters(const DrawClusters& given) {
+    auto held = makeShared<DrawClusters>(memory, memory);
+    *held = given;
+    clusters.push_back(std::move(held));
+    changed_ = true;
+    return {clusters.size() - 1};
+}
+
+ObjectId WorldState::add(const ObjectDef& object) {
+    SIGHTLINE_ASSERT(object.occluder.index < occluders.size());
+    SIGHTLINE_ASSERT(object.shape.index < occluders.size());
+    SIGHTLINE_ASSERT(object.clusters.index < clusters.size());
+    const ObjectId id = newId();
+    setBit(living_, objects_.size());
+    objects_.push_back({object.transform, object.bounds, object.key, id, object.occluder, object.layers, object.shape,
+                        object.limits, object.clusters});
+    limited_ += object.limits != ObjectLimits();
+    changed_ = true;
+    return id;
+}
+
+bool WorldState::move(ObjectId id, const glm::dmat4& transform) {
+    const uint32_t row = find(id);
+    if (row == IdSlot::kNowhere) return false;
+    ObjectRecord& object = objects_.change(row);
+    object.moved |= object.transform != transform;
+    object.transform = transform;
+    if (row < committed_ && !hasBit(moved_bits_, row)) {
+        setBit(moved_bits_, row);
+        moved_.push_back(row);
+    }
+    changed_ = true;
+    return true;
+}
+
+bool WorldState::remove(ObjectId id) {
+    const uint32_t row = find(id);
+    if (row == IdSlot::kNowhere) return false;
+    limited_ -= objects_[row].limits != ObjectLimits();
+    objects_.set(row, {});
+    clearBit(living_, row);
+    ++gaps_;
+    ids_.change(id.index - 1).row = IdSlot::kNowhere;
+    free_ids_.push_back(id.index);
+    if (row < committed_) removed_.push_back(row);
+    changed_ = true;
+    return true;
+}
+
+/// Closes the gaps that removed objects left, once they are as many as the living.
+void WorldState::compact() {
+    if (gaps_ < size() + 1024) return;
+    ObjectTable packed(memory);
+    living_.clear();
+    for (uint32_t row = 0; row < objects_.size(); ++row) {
+        const ObjectRecord& object = objects_[row];
+        if (object.id.index == 0) continue;
+        ids_.change(object.id.index - 1).row = packed.size();
+        setBit(living_, packed.size());
+        packed.push_back(object);
+    }
+    objects_ = std::move(packed);
+    gaps_ = 0;
+    cells_.renumber();
+}
+
+/// Takes an object out of the hierarchy, or from among the unbounded.
+void WorldState::takeOut(uint32_t row) {
+    if (bvh_.contains(row)) {
+        const uint32_t place = bvh_.remove(row);
+        cells_.notePlaces(place, place + 1);
+        return placed_.set(place, {});
+    }
+    const auto at = std::lower_bound(unbounded_.begin(), unbounded_.end(), row);
+    SIGHTLINE_ASSERT(at != unbounded_.end() && *at == row);
+    unbounded_.erase(at);
+}
+
+/// Notes an object for the hierarchy, or puts it among the unbounded.
+void WorldState::putIn(uint32_t row) {
+    const Box3d box = worldBounds(objects_[row]);
+    if (box.finite()) {
+        boxes_.push_back(box);
+        rows_.push_back(row);
+    } else {
+        unbounded_.insert(std::lower_bound(unbounded_.begin(), unbounded_.end(), row), row);
+    }
+}
+
+/// Writes down what stands in a range of the hierarchy's places.
+void WorldState::place(uint32_t first, uint32_t end) {
+    cells_.notePlaces(first, end);
+    for (uint32_t at = first; at < end; ++at) {
+        const uint32_t row = bvh_.now().order[at];
+        placed_.set(at, row == PlacedBvh::kNone ? PlacedObject() : placedObject(objects_[row]));
+        if (at < limits_.objects.size()) limits_.objects.set(at, limitsAt(row));
+    }
+}
+
+PlacedLimits::One WorldState::limitsAt(uint32_t row) const {
+    return row == PlacedBvh::kNone ? PlacedLimits::One() : placedLimits(objects_[row].limits);
+}
+
+/// Brings all else up to date that goes by places, after some were given anew.
+void WorldState::noteLimits() {
+    if (limited_ == 0) return limits_.clear();
+    const Paged<uint32_t, 1024>& order = bvh_.now().order;
+    for (uint32_t at = limits_.objects.size(); at < order.size(); ++at) limits_.objects.push_back(limitsAt(order[at]));
+    noteLimitsBelow(bvh_.now(), limits_);
+}
+
+/// Builds the hierarchy anew.
+void WorldState::build() {
+    compact();
+    unbounded_.clear();
+    boxes_.clear();
+    rows_.clear();
+    common_layers_ = ~0u;
+    for (uint32_t row = 0; row < objects_.size(); ++row) {
+        if (!lives(row)) continue;
+        common_layers_ &= objects_[row].layers;
+        putIn(row);
+    }
+    bvh_.build(boxes_, rows_);
+    limits_.clear();
+    placed_.clear();
+    placed_.resize(bvh_.now().order.size());
+    place(0, placed_.size());
+    noteLimits();
+}
+
+/// Brings the hierarchy up to date, or builds it anew where that is better.
+void WorldState::update() {
+    boxes_.clear();
+    rows_.clear();
+    for (const uint32_t row : removed_) takeOut(row);
+    for (const uint32_t row : moved_) {
+        if (!lives(row)) continue;
+        const Box3d box = bvh_.contains(row) ? worldBounds(objects_[row]) : Box3d();
+        if (box.finite() && bvh_.move(row, box)) continue;
+        takeOut(row);
+        putIn(row);
+    }
+    for (uint32_t row = committed_; row < objects_.size(); ++row) {
+        if (!lives(row)) continue;
+        common_layers_ &= objects_[row].layers;
+        putIn(row);
+    }
+    if (bvh_.isWorn()) return build();
+    const bool came = !rows_.empty();
+    size_t left = 0;
+    for (size_t i = 0; i < rows_.size(); ++i) {
+        const uint32_t at = bvh_.insert(rows_[i], boxes_[i]);
+        if (at == PlacedBvh::kNone) {
+            rows_[left] = rows_[i];
+            boxes_[left++] = boxes_[i];
+        } else {
+            place(at, at + 1);
+        }
+    }
+    rows_.resize(left);
+    boxes_.resize(left);
+    if (bvh_.isWorn(static_cast<uint32_t>(left))) return build();
+    if (left > 0) {
+        const uint32_t first = bvh_.append(boxes_, rows_);
+        placed_.resize(bvh_.now().order.size());
+        if (!limits_.empty()) limits_.objects.resize(std::min(first, limits_.objects.size()));
+        place(first, placed_.size());
+    }
+    const size_t changes = moved_.size() + removed_.size() + (objects_.size() - committed_);
+    const std::span<const WorldBvh::Places> mended = bvh_.mend(static_cast<uint32_t>(kMendedToChanged * changes));
+    for (const WorldBvh::Places& places : mended) place(places.first, places.end);
+    if (came || !mended.empty()) noteLimits();
+}
+
+void WorldState::attach(std::shared_ptr<const AttachedCells> cells) {
+    cells_.attach(std::move(cells));
+    changed_ = true;
+}
+
+bool WorldState::setDoor(uint32_t door, float open) {
+    if (!cells_.setDoor(door, open)) return false;
+    changed_ = true;
+    return true;
+}
+
+/// Puts objects that have changed into the cells that they are in now. The hierarchy must be up to date.
+void WorldState::updateCells() {
+    cells_.begin();
+    if (cells_.isAllNew()) {
+        for (uint32_t row = 0; row < objects_.size(); ++row)
+            if (lives(row)) cells_.put(row, objects_[row]);
+    } else {
+        for (const uint32_t row : removed_) cells_.take(row);
+        for (const uint32_t row : moved_)
+            if (lives(row)) cells_.put(row, objects_[row]);
+        for (uint32_t row = committed_; row < objects_.size(); ++row)
+            if (lives(row)) cells_.put(row, objects_[row]);
+    }
+    cells_.finish(bvh_.now());
+}
+
+std::shared_ptr<const SnapshotState> WorldState::commit() {
+    if (!changed_) return last_;
+    if (last_) update();
+    else build();
+    if (cells_.attached()) updateCells();
+    for (const uint32_t row : moved_) clearBit(moved_bits_, row);
+    moved_.clear();
+    removed_.clear();
+    committed_ = objects_.size();
+    changed_ = false;
+    auto state = makeShared<SnapshotState>(memory, memory);
+    state->objects = objects_.share();
+    state->ids = ids_.share();
+    state->occluders = occluders.share();
+    state->clusters = clusters.share();
+    if (gaps_ > 0) state->living = makeShared<RankedBits>(memory, living_, memory);
+    state->unbounded = unbounded_;
+    state->bvh = bvh_.share();
+    state->placed = placed_.share();
+    state->limits = limits_.share(memory);
+    cells_.share(state->cell_state);
+    state->count = size();
+    state->common_layers = common_layers_;
+    last_ = state;
+    return last_;
+}
+
+}  // namespace sightline::detail

@@ -1,0 +1,57 @@
+// What snapshots of a world hold, in pages that they share: objects, and the hierarchy over them.
+// SPDX-License-Identifier: MIT
+#include "sightline/world/world_state.h"
+
+#include <cmath>
+
+namespace sightline::detail {
+
+Box3d worldBounds(const ObjectRecord& object) {
+    constexpr double kLargest = 1e30;  // [world units]: float must hold it with room for sums
+    Box3d box;
+    if (!object.bounds.finite() || object.bounds.empty()) return box;
+    box = transformBox(object.bounds, object.transform);
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(std::abs(box.min[axis]) < kLargest && std::abs(box.max[axis]) < kLargest)) return Box3d();
+    return box;
+}
+
+std::shared_ptr<SnapshotState> stateOfSome(const SnapshotState& from, std::span<const uint32_t> items, Memory* memory) {
+    auto state = makeShared<SnapshotState>(memory, memory);
+    ObjectTable objects(memory);
+    Array<Box3d> boxes(memory);
+    Array<uint32_t> rows(memory);
+    for (const uint32_t item : items) {
+        const uint32_t row = objects.size();
+        objects.push_back(from.object(item));
+        state->common_layers &= objects.back().layers;
+        const Box3d box = worldBounds(objects.back());
+        if (box.finite()) {
+            boxes.push_back(box);
+            rows.push_back(row);
+        } else {
+            state->unbounded.push_back(row);
+        }
+    }
+    WorldBvh bvh(memory);
+    bvh.build(boxes, rows);
+    PlacedObjectTable placed(memory);
+    PlacedLimits limits(memory);
+    const bool limited = !from.limits.empty();
+    for (uint32_t place = 0; place < bvh.now().order.size(); ++place) {
+        const uint32_t row = bvh.now().order[place];
+        const bool empty = row == PlacedBvh::kNone;
+        placed.push_back(empty ? PlacedObject() : placedObject(objects[row]));
+        if (limited) limits.objects.push_back(empty ? PlacedLimits::One() : placedLimits(objects[row].limits));
+    }
+    if (limited) noteLimitsBelow(bvh.now(), limits);
+    state->count = objects.size();
+    state->objects = objects.share();
+    state->occluders = from.occluders.copy();
+    state->bvh = bvh.share();
+    state->placed = placed.share();
+    state->limits = limits.share(memory);
+    return state;
+}
+
+}  // namespace sightline::detail

@@ -1,0 +1,334 @@
+// Rays out of checked cells: what leaves a cell meets a wall there, or goes through a portal into what is behind it.
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sightline/bake/marked/scene_cells.h"
+#include "sightline/base/random.h"
+#include "sightline/tools/import/scene_file.h"
+#include "sightline/tools/scene/procedural.h"
+#include "sightline/tools/truth/rays.h"
+#include "tests/bake/marked/made_rooms.h"
+
+namespace sightline {
+using namespace bake;
+using namespace tools;
+namespace {
+
+using namespace test;
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+/// All triangles of a scene, tried one by one.
+class Triangles {
+public:
+    explicit Triangles(const Scene& scene) {
+        for (const SceneObject& object : scene.objects) {
+            const Mesh& mesh = scene.meshes[object.mesh];
+            for (size_t t = 0; t < mesh.triangles(); ++t) {
+                Triangle triangle;
+                triangle.both = scene.materials[mesh.primitives[0].material].double_sided;
+                if (!scene.materials[mesh.primitives[0].material].hides()) continue;
+                for (size_t c = 0; c < 3; ++c)
+                    triangle.corners[c] = glm::dvec3(
+                        object.transform * glm::dvec4(glm::dvec3(mesh.positions[mesh.indices[3 * t + c]]), 1));
+                all_.push_back(triangle);
+            }
+        }
+    }
+
+    /// Whether an opaque front, grown by `room`, is met between two distances.
+    bool meets(const glm::dvec3& from, const glm::dvec3& along, double first, double last, double room) const {
+        return std::any_of(all_.begin(), all_.end(), [&](const Triangle& triangle) {
+            const auto& [a, b, c] = triangle.corners;
+            const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
+            const double towards = glm::dot(normal, along);
+            if (towards == 0 || (towards > 0 && !triangle.both)) return false;
+            const double t = glm::dot(normal, a - from) / towards;
+            if (t < first || t > last) return false;
+            const glm::dvec3 point = from + t * along;
+            for (int i = 0; i < 3; ++i) {
+                const glm::dvec3 edge = triangle.corners[(i + 1) % 3] - triangle.corners[i];
+                if (glm::dot(glm::cross(normal, edge), point - triangle.corners[i]) < -room * glm::length(edge))
+                    return false;
+            }
+            return true;
+        });
+    }
+
+private:
+    struct Triangle {
+        glm::dvec3 corners[3];
+        bool both = false;
+    };
+    std::vector<Triangle> all_;
+};
+
+double insideBy(const CellSpace& space, uint32_t cell, const glm::dvec3& point) {
+    double least = cell == space.outside ? -kFar : kFar;
+    for (const glm::dvec4& plane : space.planesOf(space.regions[cell]))
+        least = std::min(least, glm::dot(glm::dvec3(plane), point) + plane.w);
+    return least;
+}
+
+bool holds(const CellGraph& graph, const CellPortal& portal, const glm::dvec3& point, double room) {
+    const auto outline = graph.outline(portal);
+    const glm::dvec3 normal(portal.plane);
+    if (std::abs(glm::dot(normal, point) + portal.plane.w) > room) return false;
+    for (size_t i = 0; i < outline.size(); ++i) {
+        const glm::dvec3 edge = outline[(i + 1) % outline.size()] - outline[i];
+        if (glm::dot(glm::cross(normal, edge), point - outline[i]) < -1e-9 * glm::length(edge)) return false;
+    }
+    return true;
+}
+
+struct Counts {
+    uint64_t rays = 0, walls = 0, ways = 0;
+};
+
+/// Whether a ray meets an opaque front between two distances, or before.
+using Meets = std::function<bool(const glm::dvec3& from, const glm::dvec3& along, double first, double last)>;
+
+/// One ray out of a cell. Empty, or what is wrong.
+std::string follow(const SceneCells& cells, const Meets& meets, uint32_t cell, const glm::dvec3& from,
+                   const glm::dvec3& along, Counts& counts) {
+    const CellSpace& space = cells.space;
+    const double bend = std::max(cells.report.slit, cells.report.bend);
+    double exit = kFar, grazing = 0;
+    for (const glm::dvec4& plane : space.planesOf(space.regions[cell])) {
+        const double height = glm::dot(glm::dvec3(plane), from) + plane.w, falls = glm::dot(glm::dvec3(plane), along);
+        if (falls < 0 && -height / falls < exit) exit = -height / falls, grazing = -falls;
+    }
+    if (grazing < 0.05) return "";  // passes along a wall: within its thickness nothing is said
+    ++counts.rays;
+    const glm::dvec3 point = from + exit * along;
+    const double reach = 2 * bend / grazing;
+    std::vector<uint32_t> through;
+    for (const CellPortal& portal : space.graph.portals) {
+        const int side = portal.cells[0] == cell ? 0 : 1;
+        if (portal.cells[side] == cell && holds(space.graph, portal, point, 2 * bend))
+            through.push_back(portal.cells[1 - side]);
+    }
+    const bool blocked = meets(from, along, exit - reach, exit + reach);
+    counts.walls += blocked;
+    counts.ways += !through.empty();
+    if (blocked) return "";
+    if (through.empty()) return "leaves by no portal and meets no wall";
+    const glm::dvec3 beyond = point + 4 * reach * along;
+    bool somewhere = false;
+    for (uint32_t other = 0; other < space.graph.cells; ++other) {
+        if (other == space.outside) continue;
+        // Near an edge it may have entered a cell and left it through a side.
+        const bool entered = std::find(through.begin(), through.end(), other) != through.end();
+        if (insideBy(space, other, beyond) < (entered ? -4 * reach : 0)) continue;
+        somewhere = true;
+        if (other == cell || insideBy(space, other, beyond) < 8 * reach) continue;  // it may have left that already
+        if (!entered) return "no portal leads into '" + space.names[other] + "'";
+    }
+    if (!somewhere && std::find(through.begin(), through.end(), space.outside) == through.end())
+        return "no portal leads outside";
+    return "";
+}
+
+FlatRect randomRect(Random& random, const FlatRect& within) {
+    const double size = std::pow(10, random.uniform(-3, 0));
+    const glm::dvec2 room = within.max - within.min,
+                     low = within.min + glm::dvec2(random.uniform(0.05, 0.5), random.uniform(0.05, 0.5)) * room;
+    return {low, glm::min(low + size * glm::dvec2(random.uniform(0.5, 1), random.uniform(0.5, 1)),
+                          within.max - 0.02 * room)};
+}
+
+/// A row of rooms with walls of some thickness between them, with doors, some of them marked, holes, things in the
+/// walls' planes, and cells drawn carelessly.
+MadeRooms randomRooms(Random& random, int round) {
+    MadeRooms made;
+    made.place = round % 3 == 0 ? glm::dmat4(1.0) : randomPlace(random, round % 3 == 1 ? 0 : 1000);
+    const double care = round % 2 ? 0 : 0.1;
+    double x = 0;
+    struct Way {
+        double from, to;
+        FlatRect rect;
+        bool marked;
+    };
+    std::vector<Way> ways;
+    const FlatRect section{{0, 0}, {3, 4}};
+    for (int i = 0; i < 4; ++i) {
+        const double end = x + 0.25 * double(8 + random.below(16));
+        const bool first = i == 0, last = i == 3;
+        const double thick = random.below(3) == 0 ? 0 : 0.25;
+        made.room({{x, 0, 0}, {end, 3, 4}}, 3 | (random.below(4) == 0 ? 12 : 0));
+        if (first) made.wall(0, x, section, 1);
+        else made.wall(0, x, section, 1, {ways.back().rect});
+        if (last) {
+            made.wall(0, end, section, -1, {randomRect(random, section)});
+        } else {
+            ways.push_back({end, end + thick, randomRect(random, section), random.below(3) != 0});
+            made.wall(0, end, section, -1, {ways.back().rect});
+            const FlatRect& rect = ways.back().rect;
+            if (thick > 0 && random.below(4) != 0)
+                made.room({{end, rect.min.x, rect.min.y}, {end + thick, rect.max.x, rect.max.y}}, 3);
+        }
+        // Shelves, and boards on the walls.
+        for (int k = 0; k < 3; ++k)
+            made.wall(0, x + random.uniform(0, 0.1), randomRect(random, section), random.below(2) ? 1 : -1);
+        Box3d drawn{{x, 0, 0}, {end, 3, 4}};
+        for (int axis = 0; axis < 3; ++axis) {
+            drawn.min[axis] += random.uniform(-care, care);
+            drawn.max[axis] += random.uniform(-care, care);
+        }
+        made.cell("room " + std::to_string(i), drawn);
+        x = end + thick;
+    }
+    for (uint32_t i = 0; i < ways.size(); ++i)
+        if (ways[i].marked)
+            made.portal(i, i + 1, 0, random.uniform(ways[i].from - care / 2, ways[i].to + care / 2), ways[i].rect);
+    return made;
+}
+
+/// Rays out of all cells, half of them aimed: at the edges of portals and a little beside them.
+/// @param surely  is asked where something seems wrong; empty: `meets` is sure
+void shoot(const SceneCells& cells, const Meets& meets, const Meets& surely, int rays, Random& random, Counts& counts) {
+    const CellSpace& space = cells.space;
+    for (uint32_t cell = 0; cell < space.graph.cells; ++cell) {
+        if (cell == space.outside) continue;
+        const Box3d& bounds = space.regions[cell].bounds;
+        for (int ray = 0; ray < rays; ++ray) {
+            glm::dvec3 from, target;
+            for (int axis = 0; axis < 3; ++axis) {
+                from[axis] = random.uniform(bounds.min[axis], bounds.max[axis]);
+                target[axis] = random.uniform(bounds.min[axis], bounds.max[axis]);
+            }
+            if (insideBy(space, cell, from) < 4 * cells.report.bend) continue;
+            if (ray % 2 && !space.graph.portals.empty()) {
+                const CellPortal& portal = space.graph.portals[random.below(space.graph.portals.size())];
+                const auto outline = space.graph.outline(portal);
+                const size_t i = random.below(outline.size());
+                const double off = std::pow(10, random.uniform(-7, 0)) * (random.below(2) ? 1 : -1);
+                target = glm::mix(outline[i], outline[(i + 1) % outline.size()], random.uniform()) +
+                         off * (outline[(i + 2) % outline.size()] - outline[i]);
+            }
+            const glm::dvec3 along = target - from;
+            if (!(glm::length(along) > 1e-6)) continue;
+            std::string wrong = follow(cells, meets, cell, from, glm::normalize(along), counts);
+            if (!wrong.empty() && surely) wrong = follow(cells, surely, cell, from, glm::normalize(along), counts);
+            ASSERT_EQ(wrong, "") << "out of '" << space.names[cell] << "' from (" << from.x << ", " << from.y << ", "
+                                 << from.z << ") to (" << target.x << ", " << target.y << ", " << target.z << ")";
+        }
+    }
+}
+
+TEST(SceneCellRays, LeaveByPortalsOrMeetWalls) {
+    Random random(1);
+    Counts counts;
+    uint64_t holes = 0, passages = 0, outside = 0, moved = 0;
+    for (int round = 0; round < 60; ++round) {
+        SCOPED_TRACE("round " + std::to_string(round));
+        const MadeRooms made = randomRooms(random, round);
+        const SceneCells cells = cellsOfScene(made.scene);
+        const Triangles truth(made.scene);
+        const auto meets = [&](const glm::dvec3& from, const glm::dvec3& along, double first, double last) {
+            // What closes a slit narrower than the declared one counts as a wall.
+            return truth.meets(from, along, first, last, cells.report.slit);
+        };
+        holes += cells.report.holes;
+        passages += cells.report.passages;
+        outside += cells.report.outside;
+        moved += cells.report.moved_faces;
+        shoot(cells, meets, {}, 1500, random, counts);
+        if (HasFatalFailure()) return;
+    }
+    // None of it is there for nothing.
+    EXPECT_GT(counts.rays, 100000u);
+    EXPECT_GT(counts.walls, 30000u);
+    EXPECT_GT(counts.ways, 5000u);
+    EXPECT_GT(holes, 60u);
+    EXPECT_GT(passages, 10u);
+    EXPECT_GT(outside, 10u);
+    EXPECT_GT(moved, 60u);
+}
+
+/// Whole scenes, held against rays by Embree; where these meet no wall, against each triangle in double. No slit is
+/// allowed for.
+void judgeScene(const Scene& scene, int rays, uint64_t seed, SceneCellSettings settings = {}) {
+    settings.slit = settings.bend = 0;
+    const SceneCells cells = cellsOfScene(scene, settings);
+    Scene without = scene;  // doors open
+    std::vector<bool> leaf(scene.objects.size(), false);
+    for (const ScenePortal& portal : scene.portals)
+        if (portal.door < leaf.size()) leaf[portal.door] = true;
+    std::erase_if(without.objects, [&](const SceneObject& object) {
+        return leaf[static_cast<size_t>(std::find_if(scene.objects.begin(), scene.objects.end(),
+                                                     [&](const SceneObject& o) { return o.key == object.key; }) -
+                                        scene.objects.begin())];
+    });
+    const SceneFacts facts(without);
+    const RayScene truth(facts);
+    const Triangles triangles(without);
+    const double rounding = 4 * truth.rounding();
+    const auto meets = [&](const glm::dvec3& from, const glm::dvec3& along, double, double last) {
+        RaySighting sighting;
+        truth.look({glm::dvec3(0), along, 0, last + rounding}, from, sighting);
+        return sighting.object != RaySighting::kNone && sighting.t <= last + rounding;
+    };
+    const auto surely = [&](const glm::dvec3& from, const glm::dvec3& along, double first, double last) {
+        return triangles.meets(from, along, first, last, 1e-9);
+    };
+    Random random(seed);
+    Counts counts;
+    shoot(cells, meets, surely, rays, random, counts);
+    EXPECT_GT(counts.rays, uint64_t(rays));
+    EXPECT_GT(counts.walls, counts.rays / 4);
+    EXPECT_GT(counts.ways, counts.rays / 20);
+}
+
+TEST(SceneCellRays, OutOfABuilding) {
+    const Result<Scene> scene = makeProcedural("building:3:2");
+    ASSERT_TRUE(scene.ok());
+    judgeScene(*scene, 400, 1);
+}
+
+Result<Scene> smallHouse() {
+    Result<Scene> house = loadSceneFile(SIGHTLINE_SHARED_DIR "/scenes/aws-small-house.glb");
+    Result<Scene> cells = loadSceneFile(SIGHTLINE_EXAMPLES_DIR "/small-house-cells.gltf");
+    if (!house || !cells) return house ? cells : house;
+    std::vector<Scene> both;
+    both.push_back(std::move(*house));
+    both.push_back(std::move(*cells));
+    return joinScenes(std::move(both));
+}
+
+TEST(SceneCellRays, OutOfAHouseMarkedByHand) {
+    if (!std::filesystem::exists(SIGHTLINE_SHARED_DIR "/scenes"))
+        GTEST_SKIP() << "the shared scenes are not there: " SIGHTLINE_SHARED_DIR "/scenes";
+    const Result<Scene> scene = smallHouse();
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    judgeScene(*scene, 10000, 2);
+}
+
+// Its walls have no holes but windows, it has no ceilings, and its entrance leads out.
+TEST(SceneCells, AHouseMarkedByHandIsDividedByItsWalls) {
+    if (!std::filesystem::exists(SIGHTLINE_SHARED_DIR "/scenes"))
+        GTEST_SKIP() << "the shared scenes are not there: " SIGHTLINE_SHARED_DIR "/scenes";
+    const Result<Scene> scene = smallHouse();
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    const SceneCells cells = cellsOfScene(*scene);
+    EXPECT_EQ(cells.report.passages, 2u);
+    EXPECT_EQ(cells.report.holes, cells.report.findings.size());
+    EXPECT_EQ(cells.report.holes, 11u);
+    for (const CellFinding& finding : cells.report.findings) {
+        EXPECT_EQ(finding.cells[1], CellGraph::kNoCell) << finding.text;
+        EXPECT_GT(finding.size, 1) << finding.text;
+    }
+    ASSERT_EQ(cells.space.doors.size(), 1u);
+    EXPECT_EQ(cells.space.doors[0].key, 54u);
+}
+
+}  // namespace
+}  // namespace sightline

@@ -1,0 +1,149 @@
+// Draws meshes straight into depth tiles and holds the result to rays through every covered pixel.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "sightline/base/random.h"
+#include "sightline/cull/occlusion.h"
+#include "sightline/prepare/occluder/occluder.h"
+#include "tests/support/meshes.h"
+#include "tests/support/views.h"
+
+namespace sightline::test {
+
+struct Solid : TestMesh {
+    std::vector<uint8_t> double_sided;
+    glm::dmat4 transform{1.0};
+};
+
+/// A frame drawn by the code under test; owns what the tiles point to.
+struct Drawing {
+    View view;
+    Screen screen;
+    DepthTiles tiles;
+    std::vector<Solid> solids;
+    std::vector<Occluder> occluders;
+
+    explicit Drawing(const View& v) : view(v), screen(makeScreen(v, 4096)) { tiles.clear(screen.width, screen.height); }
+
+    void draw(std::vector<Solid> what) {
+        solids = std::move(what);
+        for (const Solid& solid : solids) occluders.push_back(prepareOccluder(solid.view(), {}, solid.double_sided));
+        for (size_t i = 0; i < solids.size(); ++i) {
+            const OccluderInstance instance = makeOccluderInstance(screen, occluders[i], solids[i].transform);
+            for (uint32_t c = 0; c < occluders[i].clusters.size(); ++c)
+                drawOccluder(tiles, instance, c, projectBox(instance.screen, occluders[i].clusters[c].bounds));
+        }
+    }
+
+    void resolve(uint32_t x, uint32_t y) {
+        resolveSeam(tiles, y / 8 * tiles.stride + x / 8, static_cast<int>(y % 8 * 8 + x % 8),
+                    std::numeric_limits<float>::infinity());
+    }
+
+    void resolveAll() {
+        for (uint32_t t = 0; t < tiles.base.size(); ++t) pairSeams(tiles, t);
+        for (uint32_t y = 0; y < tiles.height; ++y)
+            for (uint32_t x = 0; x < tiles.width; ++x) resolve(x, y);
+    }
+
+    bool covered(uint32_t x, uint32_t y) const { return depth(x, y) > DepthTiles::kOpen; }
+    float depth(uint32_t x, uint32_t y) const {
+        float claims[64];
+        readClaims(tiles, y / 8 * tiles.stride + x / 8, claims);
+        return claims[y % 8 * 8 + x % 8];
+    }
+    uint64_t coveredPixels() const {
+        uint64_t n = 0;
+        for (uint32_t y = 0; y < tiles.height; ++y)
+            for (uint32_t x = 0; x < tiles.width; ++x) n += covered(x, y);
+        return n;
+    }
+};
+
+/// The nearness of the nearest drawn front face along the ray through a buffer point; -infinity if there is none.
+/// Plain ray casting from the eye: nothing of the rasterizer's arithmetic. Edges are widened by 1e-9.
+inline double castRay(const Drawing& drawing, double px, double py) {
+    const glm::dmat4 inverse = glm::inverse(drawing.view.projection);
+    const double wide_x = 1.0 + 2.0 * drawing.view.jitter / drawing.view.width;
+    const double wide_y = 1.0 + 2.0 * drawing.view.jitter / drawing.view.height;
+    const double nx = (2.0 * px / drawing.screen.width - 1.0) * wide_x;
+    const double ny = (2.0 * py / drawing.screen.height - 1.0) * wide_y;
+    const auto unproject = [&](double z) {
+        const glm::dvec4 p = inverse * glm::dvec4(nx, ny, z, 1.0);
+        return glm::dvec3(p) / p.w;
+    };
+    const bool parallel = !drawing.screen.perspective;
+    const glm::dvec3 near = unproject(-1.0);
+    const glm::dvec3 origin = parallel ? near : glm::dvec3(0.0);
+    const glm::dvec3 direction = parallel ? glm::dvec3(0, 0, -1) : near;
+    const double t_near = parallel ? 0.0 : 1.0;
+    double best = -std::numeric_limits<double>::infinity();
+    for (const Solid& solid : drawing.solids) {
+        const glm::dmat4 to_eye = drawing.view.view * solid.transform;
+        const bool flips = glm::determinant(glm::dmat3(solid.transform)) < 0;
+        for (size_t t = 0; t + 2 < solid.indices.size(); t += 3) {
+            glm::dvec3 v[3];
+            for (int k = 0; k < 3; ++k)
+                v[k] = glm::dvec3(to_eye * glm::dvec4(glm::dvec3(solid.positions[solid.indices[t + k]]), 1.0));
+            if (flips) std::swap(v[1], v[2]);
+            const glm::dvec3 n = glm::cross(v[1] - v[0], v[2] - v[0]);
+            const double slope = glm::dot(n, direction);
+            const bool both = !solid.double_sided.empty() && solid.double_sided[t / 3];
+            if (slope == 0.0 || (slope > 0.0 && !both)) continue;  // a back face is not drawn
+            const double hit = glm::dot(n, v[0] - origin) / slope;
+            if (!(hit >= t_near * (1.0 - 1e-7))) continue;
+            const glm::dvec3 p = origin + hit * direction;
+            bool inside = true;
+            for (int k = 0; k < 3; ++k) {
+                const glm::dvec3 edge = v[(k + 1) % 3] - v[k];
+                const double side = glm::dot(glm::cross(edge, p - v[k]), n);
+                inside &= side >= -1e-9 * glm::length(edge) * glm::length(n) * std::max(1.0, glm::length(p));
+            }
+            if (inside) best = std::max(best, parallel ? p.z : 1.0 / -p.z);
+        }
+    }
+    return best;
+}
+
+/// Sends rays through each covered pixel, corners and border included; returns a line on the first that gets past.
+inline std::string findLeak(const Drawing& drawing, uint64_t seed, int rays_per_pixel) {
+    Random random(seed);
+    for (uint32_t y = 0; y < drawing.tiles.height; ++y)
+        for (uint32_t x = 0; x < drawing.tiles.width; ++x) {
+            if (!drawing.covered(x, y)) continue;
+            for (int i = 0; i < rays_per_pixel; ++i) {
+                const double u = i < 4 ? i & 1 : random.uniform(), v = i < 4 ? i >> 1 : random.uniform();
+                const double truth = castRay(drawing, x + u, y + v);
+                if (truth >= drawing.depth(x, y)) continue;
+                return "seed " + std::to_string(seed) + ": the ray through (" + std::to_string(x + u) + ", " +
+                       std::to_string(y + v) + ") meets nothing nearer than " + std::to_string(truth) +
+                       ", but the pixel claims " + std::to_string(drawing.depth(x, y));
+            }
+        }
+    return {};
+}
+
+inline View smallView(uint32_t width = 96, uint32_t height = 64) {
+    return viewBy(perspective(1.0, double(width) / height, 0.1), width, height);
+}
+
+/// A rectangle of quads in the plane z, its vertices moved at random: a joined surface with folds and slivers.
+inline Solid makeSheet(Random& random, int columns, int rows, glm::vec3 low, glm::vec3 high, float noise) {
+    Solid sheet;
+    for (int j = 0; j <= rows; ++j)
+        for (int i = 0; i <= columns; ++i) {
+            const float u = static_cast<float>(i) / columns, v = static_cast<float>(j) / rows;
+            const auto jump = [&] { return noise * static_cast<float>(random.uniform(-1, 1)); };
+            const glm::vec3 p(low.x + u * (high.x - low.x), low.y + v * (high.y - low.y), low.z + u * (high.z - low.z));
+            sheet.positions.push_back(p + glm::vec3(jump(), jump(), jump()));
+        }
+    sheet.addGrid(static_cast<uint32_t>(columns) + 1, static_cast<uint32_t>(rows) + 1);
+    return sheet;
+}
+
+}  // namespace sightline::test

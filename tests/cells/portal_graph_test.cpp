@@ -1,0 +1,195 @@
+// Where bodies stand among cells: beside points of the bodies, each looked up by itself.
+// SPDX-License-Identifier: MIT
+#include "sightline/cells/portal_graph.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/bsp/cell_space_fixture.h"
+
+namespace sightline::test {
+namespace {
+
+/// The cell that a point is in by more than a margin, or kNoCell; `solid` if it is as deep in what is no cell.
+uint32_t cellAt(const CellSpace& space, const glm::dvec3& point, double margin, bool& solid) {
+    solid = false;
+    if (space.ofTree()) {
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(point[axis] > space.tree.bounds.min[axis] + margin &&
+                  point[axis] < space.tree.bounds.max[axis] - margin))
+                return CellGraph::kNoCell;
+        uint32_t child = space.tree.nodes.empty() ? LeafTreeNode::kLeaf : 0;
+        while ((child & LeafTreeNode::kLeaf) == 0) {
+            const LeafTreeNode& node = space.tree.nodes[child];
+            const double height = glm::dot(glm::dvec3(node.plane), point) + node.plane.w;
+            if (std::abs(height) <= margin) return CellGraph::kNoCell;
+            child = node.child[height > 0];
+        }
+        const uint32_t cell = space.graph.cell_of_leaf[child & ~LeafTreeNode::kLeaf];
+        solid = cell == CellGraph::kNoCell;
+        return cell;
+    }
+    solid = true;
+    for (uint32_t i = 0; i < space.regions.size(); ++i) {
+        if (i == space.outside) continue;
+        double least = INFINITY;
+        for (const glm::dvec4& plane : space.planesOf(space.regions[i]))
+            least = std::min(least, glm::dot(glm::dvec3(plane), point) + plane.w);
+        if (least > margin) {
+            solid = false;
+            return i;
+        }
+        if (least > -margin) solid = false;
+    }
+    return solid && space.outside != CellGraph::kNoCell ? space.outside : CellGraph::kNoCell;
+}
+
+bool has(const Array<uint32_t>& cells, uint32_t cell) { return std::binary_search(cells.begin(), cells.end(), cell); }
+
+glm::dvec3 mixed(Random& random, std::span<const glm::dvec3> points) {
+    glm::dvec3 sum(0.0);
+    double weights = 0;
+    for (const glm::dvec3& point : points) {
+        const double weight = std::pow(random.uniform(), 3.0);
+        sum += weight * point;
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+struct Tally {
+    uint64_t known = 0, refused = 0, points = 0, cells = 0;
+};
+
+void checkBodies(const CellSpace& space, uint64_t seed, double size, Tally& tally) {
+    const PortalGraph graph(space);
+    const double margin = 4 * graph.tolerance();
+    Box3d box = space.tree.bounds;
+    for (const CellRegion& region : space.regions) box.grow(region.bounds);
+    Random random(seed);
+    Array<uint32_t> cells;
+    for (int i = 0; i < 400; ++i) {
+        // A point, a line, a triangle, a pyramid, small or as large as a room; some of them on a lattice.
+        const glm::dvec3 at = randomIn(random, box);
+        glm::dvec3 points[5];
+        const size_t count = 1 + random.below(5);
+        const double extent = size * std::pow(10.0, random.uniform(-4, 0));
+        for (size_t k = 0; k < count; ++k) {
+            points[k] = at + extent * glm::dvec3(random.uniform(), random.uniform(), random.uniform());
+            if (i % 4 == 0) points[k] = box.min + size / 4 * glm::round((points[k] - box.min) / (size / 4));
+        }
+        const double radius = i % 3 == 0 ? extent * 0.1 : 0;
+        const bool known = graph.cellsAround({points, count}, radius, cells);
+        EXPECT_TRUE(std::is_sorted(cells.begin(), cells.end()));
+        EXPECT_TRUE(std::adjacent_find(cells.begin(), cells.end()) == cells.end());
+        (known ? tally.known : tally.refused) += 1;
+        bool in_solid = false;
+        for (int k = 0; k < 200; ++k) {
+            bool solid = false;
+            const glm::dvec3 point =
+                mixed(random, {points, count}) +
+                0.99 * radius * random.uniform() *
+                    glm::normalize(glm::dvec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+            const uint32_t cell = cellAt(space, point, margin, solid);
+            in_solid |= solid && cell == CellGraph::kNoCell;
+            if (cell == CellGraph::kNoCell || !known) continue;
+            ASSERT_TRUE(has(cells, cell)) << "seed " << seed << ", body " << i;
+            ++tally.points;
+        }
+        ASSERT_FALSE(known && in_solid) << "seed " << seed << ", body " << i;
+        if (known) tally.cells += cells.size();
+
+        Box3d bounds;
+        for (size_t k = 0; k < count; ++k) bounds.grow(points[k]);
+        const bool somewhere = graph.cellsOf(bounds, cells);
+        EXPECT_EQ(somewhere, !cells.empty());
+        for (int k = 0; k < 100; ++k) {
+            bool solid = false;
+            const uint32_t cell = cellAt(space, randomIn(random, bounds), margin, solid);
+            if (cell == CellGraph::kNoCell) continue;
+            ASSERT_TRUE(has(cells, cell)) << "seed " << seed << ", box " << i;
+        }
+    }
+}
+
+TEST(PortalGraph, FindsTheCellsOfBodiesInGrids) {
+    Tally tally;
+    for (uint64_t seed = 1; seed <= 12; ++seed) {
+        RoomSettings settings{.rooms = {4, 4, 2}};
+        if (seed % 3 == 1) settings.origin = {1e5, -3e4, 7e3};
+        if (seed % 3 == 2) settings.size = 1e-3;
+        CellSpace space = gridSpace(seed, settings);
+        if (seed % 4 == 0) {
+            space.outside = space.graph.cells++;
+            space.regions.push_back({});
+        }
+        checkBodies(space, seed, settings.size, tally);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(tally.known, 2 * tally.refused);  // what reaches out of the grid is refused, and only that
+    EXPECT_GT(tally.refused, 100u);
+    EXPECT_GT(tally.points, 100000u);
+    EXPECT_LT(tally.cells, 4 * tally.known);
+}
+
+TEST(PortalGraph, FindsTheCellsOfBodiesInTrees) {
+    Tally tally;
+    for (uint64_t seed = 1; seed <= 24; ++seed) {
+        const glm::dvec3 center = seed % 3 == 0 ? glm::dvec3(1e4, -3e4, 2e4) : glm::dvec3(0.0);
+        checkBodies(treeSpace(randomLeafTree(seed, 9, center, seed % 2 == 0)), seed, 1, tally);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(tally.known, 1000u);
+    EXPECT_GT(tally.refused, 1000u);
+    EXPECT_GT(tally.points, 100000u);
+}
+
+TEST(PortalGraph, TakesWhatTouchesAsIn) {
+    const CellSpace space = gridSpace(1, {.rooms = {2, 2, 1}});
+    const PortalGraph graph(space);
+    Array<uint32_t> cells;
+    const auto around = [&](const glm::dvec3& point) {
+        EXPECT_TRUE(graph.cellsAround({&point, 1}, 0, cells));
+        return std::vector<uint32_t>(cells.begin(), cells.end());
+    };
+    EXPECT_EQ(around({0.5, 0.5, 0.5}), (std::vector<uint32_t>{0}));
+    EXPECT_EQ(around({1, 0.5, 0.5}), (std::vector<uint32_t>{0, 1}));
+    EXPECT_EQ(around({1, 1, 1}), (std::vector<uint32_t>{0, 1, 2, 3}));
+    EXPECT_EQ(around({2, 2, 1}), (std::vector<uint32_t>{3}));
+    const glm::dvec3 beyond(2 + 1e-6, 1.5, 0.5), nowhere(NAN, 0, 0);
+    EXPECT_FALSE(graph.cellsAround({&beyond, 1}, 0, cells));
+    EXPECT_FALSE(graph.cellsAround({&nowhere, 1}, 0, cells));
+    EXPECT_FALSE(graph.cellsAround({}, 0, cells));
+    EXPECT_TRUE(graph.cellsOf({{0.5, 0.5, 0.5}, {9, 0.6, 0.6}}, cells));
+    EXPECT_EQ(std::vector<uint32_t>(cells.begin(), cells.end()), (std::vector<uint32_t>{0, 1}));
+    EXPECT_FALSE(graph.cellsOf({{3, 3, 3}, {4, 4, 4}}, cells));
+    EXPECT_FALSE(graph.cellsOf({}, cells));
+}
+
+TEST(PortalGraph, LaysPortalsSideBySide) {
+    const CellSpace space = gridSpace(2, {.rooms = {3, 3, 2}});
+    const PortalGraph graph(space);
+    uint32_t portals = 0;
+    for (uint32_t cell = 0; cell < graph.cells(); ++cell)
+        for (const DirectedPortal& portal : graph.portalsFrom(cell)) {
+            const CellPortal& from = space.graph.portals[portal.portal];
+            const uint32_t side = from.cells[0] == cell ? 0 : 1;
+            EXPECT_EQ(from.cells[side], cell);
+            EXPECT_EQ(from.cells[1 - side], portal.to);
+            // The normal points into the cell that is left.
+            EXPECT_GT(glm::dot(glm::dvec3(portal.plane), space.regions[cell].bounds.center()) + portal.plane.w, 0);
+            ASSERT_EQ(portal.count, from.count);
+            for (uint32_t i = 0; i < (portal.count + 3) / 4 * 4; ++i) {
+                const glm::dvec3 corner(graph.corners().x[portal.first + i], graph.corners().y[portal.first + i],
+                                        graph.corners().z[portal.first + i]);
+                EXPECT_EQ(corner, space.graph.points[from.first + std::min(i, portal.count - 1)]);
+            }
+            ++portals;
+        }
+    EXPECT_EQ(portals, 2 * graph.portals());
+}
+
+}  // namespace
+}  // namespace sightline::test

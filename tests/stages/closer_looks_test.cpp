@@ -1,0 +1,200 @@
+// The closer looks: they only ever cull more, what is seen stays, and every set of instructions gives the same answer.
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/explain_laws.h"
+#include "tests/support/made_world.h"
+#include "tests/support/targets.h"
+
+namespace sightline::test {
+using namespace studies;
+namespace {
+
+/// Objects whose boxes say little about them: thin bars across their boxes, under any transform, and walls.
+struct BarWorld {
+    TestMesh cube_mesh = boxMesh(), bar_mesh = cube_mesh;
+    std::vector<glm::dmat4> transforms;
+    std::vector<uint8_t> is_bar, hides;
+    World world;
+    OccluderId bar, cube;
+
+    BarWorld() {
+        // A beam from corner to corner of the unit box.
+        for (glm::vec3& p : bar_mesh.positions)
+            p = p.z < 0.5f ? 0.1f * p : glm::vec3(1) - 0.1f * (glm::vec3(1, 1, 2) - p);
+        cube = world.addOccluder(prepareOccluder(cube_mesh.view()));
+        bar = world.addOccluder(prepareOccluder(bar_mesh.view()));
+    }
+
+    void add(const glm::dmat4& transform, bool as_bar, bool hiding) {
+        ObjectDef def;
+        def.bounds = {glm::dvec3(0), glm::dvec3(1)};
+        def.transform = transform;
+        def.key = transforms.size();
+        def.occluder = hiding ? (as_bar ? bar : cube) : OccluderId();
+        def.shape = as_bar ? bar : cube;
+        world.add(def);
+        transforms.push_back(transform);
+        is_bar.push_back(as_bar);
+        hides.push_back(hiding);
+    }
+
+    void fill(uint64_t seed) {
+        Random random(seed);
+        for (int i = 0; i < 300; ++i) {
+            glm::dmat4 t(1.0);
+            const bool wall = i % 5 == 0;
+            for (int axis = 0; axis < 3; ++axis) t[axis][axis] = wall ? random.uniform(0.2, 9) : random.uniform(0.3, 5);
+            if (wall) t[i % 2 ? 0 : 2] *= 0.05;
+            if (!wall) {
+                for (int k = 0; k < 3; ++k) t[k][(k + 1) % 3] = random.uniform(-1, 1);
+                if (i % 3 == 0) t[0] = -t[0];
+            }
+            t[3] = glm::dvec4(random.uniform(-15, 15), random.uniform(-5, 5), random.uniform(-15, 15), 1);
+            add(t, !wall, i % 4 != 1);
+        }
+    }
+
+    std::vector<uint8_t> seen(const View& view) const {
+        std::vector<DrawItem> items;
+        const std::vector<uint8_t> no(cube_mesh.indices.size() / 3, 0);
+        for (size_t i = 0; i < transforms.size(); ++i) {
+            DrawItem item;
+            item.mesh = (is_bar[i] ? bar_mesh : cube_mesh).view();
+            if (!hides[i]) item.writes_depth = no;
+            item.transform = transforms[i];
+            item.id = static_cast<uint32_t>(i);
+            items.push_back(item);
+        }
+        ZBufferSettings settings;
+        settings.samples = 3;
+        std::vector<uint8_t> seen = renderZBuffer(items, view, settings).seen;
+        seen.resize(transforms.size(), 0);
+        return seen;
+    }
+};
+
+View randomView(Random& random, int kind) {
+    View view = test::randomView(random, {kind % 2 ? 100.0 : 50.0, 320, 180}, {12, 4, 12});
+    if (kind % 3 == 2) view.projection = orthographic(12, 16.0 / 9.0, 0.1, 100);
+    return view;
+}
+
+std::vector<uint64_t> sortedKeys(const Snapshot& now, const View& view, const QuerySettings& settings = {},
+                                 QueryStats* stats = nullptr) {
+    Query query;
+    const VisibleSet set = query.visible(now, view, settings);
+    if (stats) *stats = set.stats;
+    std::vector<uint64_t> keys = keysOf(set);
+    std::sort(keys.begin(), keys.end());
+    return keys;
+}
+
+TEST(SecondLook, OnlyCullsMoreAndKeepsWhatIsSeen) {
+    uint64_t by_faces = 0, by_triangles = 0, kept = 0, rough_kept = 0;
+    for (uint64_t seed = 1; seed <= 10; ++seed) {
+        BarWorld made;
+        made.fill(seed);
+        const Snapshot now = made.world.commit();
+        Random random(seed);
+        for (int frame = 0; frame < 6; ++frame) {
+            const std::string what = "seed " + std::to_string(seed) + " frame " + std::to_string(frame);
+            View view = randomView(random, frame);
+            QuerySettings settings;
+            QueryStats stats;
+            const std::vector<uint64_t> both = sortedKeys(now, view, settings, &stats);
+            settings.second_look = false;
+            const std::vector<uint64_t> faces = sortedKeys(now, view, settings);
+            settings.faces = false;
+            const std::vector<uint64_t> rough = sortedKeys(now, view, settings);
+            EXPECT_TRUE(std::includes(faces.begin(), faces.end(), both.begin(), both.end())) << what;
+            EXPECT_TRUE(std::includes(rough.begin(), rough.end(), faces.begin(), faces.end())) << what;
+            const std::vector<uint8_t> seen = made.seen(view);
+            for (uint64_t key = 0; key < seen.size(); ++key)
+                EXPECT_TRUE(!seen[key] || std::binary_search(both.begin(), both.end(), key))
+                    << what << " object " << key;
+            EXPECT_EQ(stats.visible, both.size());
+            by_faces += stats.faces_culled;
+            by_triangles += stats.second_look_culled;
+            kept += both.size();
+            rough_kept += rough.size();
+        }
+    }
+    EXPECT_GT(by_faces, 100u);
+    EXPECT_GT(by_triangles, 300u);
+    EXPECT_LT(10 * kept, 8 * rough_kept);
+}
+
+TEST(SecondLook, IsTheSameOnEveryInstructionSet) {
+    BarWorld made;
+    made.fill(3);
+    const Snapshot now = made.world.commit();
+    std::vector<std::vector<uint64_t>> all;
+    forEachTarget([&](const std::string&) {
+        std::vector<uint64_t> keys;
+        Random random(7);
+        for (int frame = 0; frame < 6; ++frame)
+            for (const uint64_t key : sortedKeys(now, randomView(random, frame))) keys.push_back(key);
+        all.push_back(keys);
+    });
+    for (const auto& keys : all) EXPECT_EQ(keys, all[0]);
+}
+
+TEST(SecondLook, ASpentBudgetKeepsMoreAndSaysSo) {
+    BarWorld made;
+    made.fill(5);
+    const Snapshot now = made.world.commit();
+    Random random(5);
+    View view = randomView(random, 0);
+    QuerySettings settings;
+    QueryStats stats;
+    const std::vector<uint64_t> all = sortedKeys(now, view, settings, &stats);
+    EXPECT_FALSE(stats.second_look_spent);
+    settings.second_look_polygons = static_cast<uint32_t>(stats.second_look_polygons / 2);
+    const std::vector<uint64_t> some = sortedKeys(now, view, settings, &stats);
+    EXPECT_TRUE(stats.second_look_spent);
+    EXPECT_LE(stats.second_look_polygons, settings.second_look_polygons);
+    EXPECT_TRUE(std::includes(some.begin(), some.end(), all.begin(), all.end()));
+    EXPECT_GT(some.size(), all.size());
+}
+
+TEST(SecondLook, WithoutTheFrustumStageKeepsWhatIsOutside) {
+    BarWorld made;
+    made.fill(6);
+    const Snapshot now = made.world.commit();
+    Random random(6);
+    for (int frame = 0; frame < 6; ++frame) {
+        View view = randomView(random, frame);
+        QuerySettings settings;
+        const std::vector<uint64_t> both = sortedKeys(now, view, settings);
+        settings.stages = stageBit(Stage::kOcclusion);
+        const std::vector<uint64_t> occlusion = sortedKeys(now, view, settings);
+        EXPECT_TRUE(std::includes(occlusion.begin(), occlusion.end(), both.begin(), both.end()));
+    }
+}
+
+TEST(SecondLook, IsExplainedRightly) {
+    LawCount sum;
+    for (uint64_t seed = 1; seed <= 6; ++seed) {
+        BarWorld made;
+        made.fill(seed);
+        const Snapshot now = made.world.commit();
+        Random random(seed);
+        for (int frame = 0; frame < 3; ++frame) {
+            Laws laws(now, randomView(random, frame), {},
+                      "seed " + std::to_string(seed) + " frame " + std::to_string(frame));
+            laws.expectTrueOfSome(random, 12);
+            sum.add(laws.count);
+            if (HasFailure()) return;
+        }
+    }
+    EXPECT_GT(sum.by_look, 30u);
+    EXPECT_GT(sum.occluded, 60u);
+    EXPECT_GT(sum.open_pixels, 60u);
+    sum.record();
+}
+
+}  // namespace
+}  // namespace sightline::test

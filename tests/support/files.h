@@ -1,0 +1,64 @@
+// Files of a test: read whole, written, and in a folder that is gone afterwards.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
+
+#include <unistd.h>
+
+namespace sightline::test {
+
+inline std::string readBytes(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+/// Says on standard error if it cannot; the folder is made.
+inline bool writeBytes(const std::filesystem::path& file, std::string_view bytes) {
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream out(file, std::ios::binary);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush();
+    if (!out) std::fprintf(stderr, "%s: cannot be written\n", file.c_str());
+    return bool(out);
+}
+
+/// The main function of a program that is called with a folder: write(folder) says whether it could write there.
+template <class Write>
+int writeInto(int argc, char** argv, Write write) {
+    if (argc == 2) return write(std::filesystem::path(argv[1])) ? 0 : 4;
+    std::fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
+    return 2;
+}
+
+class TemporaryFolder {
+public:
+    TemporaryFolder() {
+        static int made = 0;
+        path_ = std::filesystem::temp_directory_path() /
+                ("sightline-test-" + std::to_string(::getpid()) + "-" + std::to_string(++made));
+        std::filesystem::create_directories(path_);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+
+    const std::filesystem::path& path() const { return path_; }
+    std::string path(const std::string& name) const { return (path_ / name).string(); }
+    std::string write(const std::string& name, std::string_view bytes) const {
+        writeBytes(path_ / name, bytes);
+        return path(name);
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+}  // namespace sightline::test

@@ -1,0 +1,42 @@
+// Random places and directions, and how many random cases a test makes.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdlib>
+
+#include <glm/glm.hpp>
+
+#include "sightline/base/random.h"
+#include "sightline/math/box.h"
+
+namespace sightline::test {
+
+/// What takes a few seconds, or with SIGHTLINE_LONG_TESTS=1 as many as the promise says.
+inline size_t casesToMake(size_t shorter, size_t longer = 10000000) {
+    const char* wish = std::getenv("SIGHTLINE_LONG_TESTS");
+    return wish && *wish && *wish != '0' ? longer : shorter;
+}
+
+/// Each coordinate is between -size and size of its axis.
+inline glm::dvec3 randomVector(Random& random, const glm::dvec3& size) {
+    const double x = random.uniform(-size.x, size.x), y = random.uniform(-size.y, size.y);
+    return {x, y, random.uniform(-size.z, size.z)};
+}
+
+inline glm::dvec3 randomVector(Random& random, double size) { return randomVector(random, glm::dvec3(size)); }
+
+inline glm::dvec3 randomIn(Random& random, const Box3d& box) {
+    const double x = random.uniform(box.min.x, box.max.x), y = random.uniform(box.min.y, box.max.y);
+    return {x, y, random.uniform(box.min.z, box.max.z)};
+}
+
+/// Of length one, every direction alike.
+inline glm::dvec3 randomUnit(Random& random) {
+    for (;;) {
+        const glm::dvec3 v = randomVector(random, 1.0);
+        if (const double length = glm::length(v); length > 0.1 && length <= 1.0) return v / length;
+    }
+}
+
+}  // namespace sightline::test

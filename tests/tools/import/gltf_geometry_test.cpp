@@ -1,0 +1,159 @@
+// Each kind of geometry that a glTF may hold arrives as the triangles that it means.
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include "gltf_reading.h"
+
+namespace sightline::test {
+using namespace tools;
+namespace {
+
+const Corners kSquare = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+
+TEST(GltfGeometry, ReadsIndicesOfEachWidth) {
+    for (const char* name : {"indices_8.glb", "indices_16.glb", "indices_32.glb"}) {
+        const Scene scene = loadSample(name);
+        ASSERT_EQ(scene.objects.size(), 1u);
+        EXPECT_EQ(scene.objects[0].name, "square");
+        EXPECT_EQ(scene.meshes[0].positions.size(), 4u);
+        expectCorners(cornersOf(scene, 0), kSquare);
+        EXPECT_EQ(scene.meshes[0].bounds.min, glm::dvec3(0));
+        EXPECT_EQ(scene.meshes[0].bounds.max, glm::dvec3(1, 1, 0));
+        EXPECT_FALSE(scene.meshes[0].deforms);
+    }
+}
+
+// The zigzag's vertices 0 to 5.
+const Corners kZ = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 2, 0}, {1, 2, 0}};
+
+TEST(GltfGeometry, ReadsListsWithoutIndices) { expectCorners(cornersOf(loadSample("list.glb"), 0), kZ); }
+
+TEST(GltfGeometry, TurnsEverySecondTriangleOfAStrip) {
+    const Corners expected = {kZ[0], kZ[1], kZ[2], kZ[1], kZ[3], kZ[2], kZ[2], kZ[3], kZ[4], kZ[3], kZ[5], kZ[4]};
+    expectCorners(cornersOf(loadSample("strip.glb"), 0), expected);
+    expectCorners(cornersOf(loadSample("strip_indexed.glb"), 0), expected);
+    for (size_t i = 0; i < expected.size(); i += 3)
+        EXPECT_GT(glm::cross(expected[i + 1] - expected[i], expected[i + 2] - expected[i]).z, 0);
+}
+
+TEST(GltfGeometry, OpensFans) {
+    expectCorners(cornersOf(loadSample("fan.glb"), 0), {kZ[1], kZ[2], kZ[0], kZ[2], kZ[3], kZ[0],  //
+                                                        kZ[3], kZ[4], kZ[0], kZ[4], kZ[5], kZ[0]});
+}
+
+TEST(GltfGeometry, LeavesOutPointsAndLines) {
+    const Scene scene = loadSample("points_and_lines.glb");
+    ASSERT_EQ(scene.objects.size(), 1u) << "the node of lines draws nothing";
+    expectCorners(cornersOf(scene, 0), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}});
+    EXPECT_EQ(scene.meshes[0].positions.size(), 3u) << "only what a triangle uses";
+}
+
+TEST(GltfGeometry, LeavesOutIncompleteTriangles) {
+    GltfBuilder b;
+    const uint32_t positions = b.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0, 9, 9, 9, 8, 8, 8});
+    b.node({{"mesh", b.mesh(positions)}});
+    b.node({{"mesh", b.mesh(positions, int(b.accessor<uint8_t>("SCALAR", {0, 1})), {{"mode", 5}})}});
+    const Scene scene = load(b.glb());
+    ASSERT_EQ(scene.objects.size(), 1u);
+    expectCorners(cornersOf(scene, 0), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+}
+
+TEST(GltfGeometry, ReplacesSparseElements) {
+    expectCorners(cornersOf(loadSample("sparse.glb"), 0), {{0, 0, 0}, {2, 0, 0}, {2, 3, 4}});
+    expectCorners(cornersOf(loadSample("sparse_alone.glb"), 0), {{0, 0, 0}, {2, 0, 0}, {2, 3, 4}});
+}
+
+// The node's scale of 2 is in the expected numbers.
+TEST(GltfGeometry, ReadsQuantizedPositions) {
+    expectCorners(cornersOf(loadSample("bytes.glb"), 0), {{0, 0, 0}, {6, 0, 0}, {0, -4, 0}});
+    expectCorners(cornersOf(loadSample("shorts.glb"), 0), {{0, 0, 0}, {600, 0, 0}, {0, -400, 0}});
+}
+
+TEST(GltfGeometry, ReadsNormalizedPositions) {
+    for (const char* name : {"bytes_normalized.glb", "shorts_normalized.glb"})
+        expectCorners(cornersOf(loadSample(name), 0), {{0, 0, 0}, {2, 0, 0}, {0, -2, 0}});
+    for (const char* name : {"unsigned_bytes_normalized.glb", "unsigned_shorts_normalized.glb"})
+        expectCorners(cornersOf(loadSample(name), 0), {{0, 0, 0}, {2, 0, 0}, {0, 0.4, 0}});
+}
+
+TEST(GltfGeometry, ReadsInterleavedAttributes) {
+    expectCorners(cornersOf(loadSample("interleaved.glb"), 0), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+}
+
+TEST(GltfGeometry, ReadsDataUris) {
+    for (const char* name : {"data_base64.gltf", "data_percent.gltf"})
+        expectCorners(cornersOf(loadSample(name), 0), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+}
+
+TEST(GltfGeometry, UnpacksMeshoptStreams) {
+    for (const char* name : {"meshopt_indices_16.glb", "meshopt_indices_32.glb"})
+        expectCorners(cornersOf(loadSample(name), 0), kSquare);
+    // The triangle codec may turn the corners of a triangle about.
+    for (const char* name : {"meshopt_triangles_16.glb", "meshopt_triangles_32.glb"}) {
+        const Corners corners = cornersOf(loadSample(name), 0);
+        ASSERT_EQ(corners.size(), 6u);
+        for (size_t triangle = 0; triangle < 2; ++triangle) {
+            size_t turn = 0;
+            while (turn < 2 && corners[triangle * 3 + turn] != kSquare[triangle * 3]) ++turn;
+            for (size_t k = 0; k < 3; ++k)
+                EXPECT_EQ(corners[triangle * 3 + (turn + k) % 3], kSquare[triangle * 3 + k]) << name;
+        }
+    }
+}
+
+TEST(GltfGeometry, UnpacksMeshoptFilters) {
+    const Scene scene = loadSample("meshopt_instances.glb");
+    ASSERT_EQ(scene.objects.size(), 2u);
+    const glm::dmat4 &first = scene.objects[0].transform, &second = scene.objects[1].transform;
+    EXPECT_LT(glm::length(glm::dvec3(first[3]) - glm::dvec3(0, 0, 1)), 0.02);
+    EXPECT_LT(glm::length(glm::dvec3(second[3]) - glm::dvec3(0.6, -0.8, 0)), 0.02);
+    EXPECT_LT(glm::length(glm::dvec3(first[0]) - glm::dvec3(1, 0, 0)), 1e-3);
+    EXPECT_LT(glm::length(glm::dvec3(second[0]) - glm::dvec3(0, 1, 0)), 1e-3);
+}
+
+// KHR_meshopt_compression has the layout of EXT_meshopt_compression, and reads the same data.
+TEST(GltfGeometry, UnpacksMeshoptUnderItsSecondName) {
+    for (const char* name : {"meshopt_indices_32.glb", "meshopt_triangles_16.glb", "meshopt_instances.glb"}) {
+        std::string bytes = gltfSample(name);
+        const Scene expected = load(bytes);
+        for (size_t at = 0; (at = bytes.find("EXT_meshopt", at)) != std::string::npos; ++at)
+            bytes.replace(at, 3, "KHR");
+        const Scene scene = load(bytes);
+        ASSERT_EQ(scene.objects.size(), expected.objects.size());
+        EXPECT_EQ(scene.meshes[0].positions, expected.meshes[0].positions) << name;
+        EXPECT_EQ(scene.meshes[0].indices, expected.meshes[0].indices) << name;
+    }
+}
+
+TEST(GltfGeometry, ReadsMaterialsAndPrimitivesInOrder) {
+    const Scene scene = loadSample("materials.glb");
+    ASSERT_EQ(scene.materials.size(), 6u) << "the default comes first";
+    ASSERT_EQ(scene.meshes[0].primitives.size(), 6u);
+    for (uint32_t i = 0; i < 6; ++i) {
+        EXPECT_EQ(scene.meshes[0].primitives[i].first_triangle, i);
+        EXPECT_EQ(scene.meshes[0].primitives[i].triangle_count, 1u);
+        EXPECT_EQ(scene.meshes[0].primitives[i].material, i);
+    }
+    EXPECT_EQ(scene.meshes[0].positions.size(), 3u) << "primitives share their vertices";
+    EXPECT_TRUE(scene.materials[0].hides());
+    EXPECT_FALSE(scene.materials[0].double_sided);
+    EXPECT_EQ(scene.materials[1].name, "plain");
+    EXPECT_EQ(scene.materials[1].base_color, glm::vec4(0.5f, 0.25f, 0.125f, 1.0f));
+    EXPECT_TRUE(scene.materials[1].hides());
+    EXPECT_EQ(scene.materials[2].alpha_mode, AlphaMode::kMask);
+    EXPECT_EQ(scene.materials[2].alpha_cutoff, 0.25f);
+    EXPECT_TRUE(scene.materials[2].double_sided);
+    EXPECT_EQ(scene.materials[3].alpha_mode, AlphaMode::kBlend);
+    for (size_t i = 2; i < 6; ++i) EXPECT_FALSE(scene.materials[i].hides()) << i;
+    EXPECT_TRUE(scene.materials[4].transmissive);
+    EXPECT_TRUE(scene.materials[5].transmissive);
+}
+
+TEST(GltfGeometry, GivesAMaterialToASceneWithoutAny) {
+    const Scene scene = loadSample("list.glb");
+    ASSERT_EQ(scene.materials.size(), 1u);
+    EXPECT_TRUE(scene.materials[0].hides());
+}
+
+}  // namespace
+}  // namespace sightline::test

@@ -1,0 +1,95 @@
+// The page of a map's visibility holds its pictures, whatever the map is.
+// SPDX-License-Identifier: MIT
+#include "sightline/tools/report/page/vis_page.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "tests/tools/report/page/page_data.h"
+
+namespace sightline {
+using namespace tools;
+namespace {
+
+class VisPageFiles : public testing::Test {
+protected:
+    void SetUp() override {
+        directory_ = std::filesystem::temp_directory_path() / ("sightline-vis-page-" + std::to_string(::getpid()));
+        std::filesystem::create_directories(directory_);
+    }
+    void TearDown() override { std::filesystem::remove_all(directory_); }
+
+    std::string read(const std::string& name) const {
+        std::stringstream text;
+        text << std::ifstream(directory_ / name, std::ios::binary).rdbuf();
+        return text.str();
+    }
+
+    /// Every picture that the page holds lies beside it, and how many there are.
+    size_t pictures() const {
+        const nlohmann::json data = dataOf(read("index.html"));
+        for (const auto& picture : data["pictures"])
+            EXPECT_EQ(read(picture["name"].get<std::string>() + ".png").substr(1, 3), "PNG") << picture["name"];
+        return data["pictures"].size();
+    }
+
+    std::filesystem::path directory_;
+};
+
+/// Rooms in a row, each of which sees all others.
+struct Row {
+    CellGraph graph;
+    BitMatrix visible;
+
+    explicit Row(uint32_t rooms) : visible(rooms, rooms) {
+        graph.cells = rooms;
+        for (uint32_t i = 0; i < rooms; ++i) {
+            for (uint32_t k = 0; k < rooms; ++k) visible.set(i, k);
+            if (i == 0) continue;
+            const double x = 10.0 * i;
+            const glm::dvec3 outline[] = {{x, 0, 0}, {x, 0, 9}, {x, 3, 9}, {x, 3, 0}};
+            graph.addPortal(i - 1, i, outline);
+        }
+    }
+};
+
+TEST_F(VisPageFiles, HoldsMatrixPlanCellsAndALine) {
+    const Row row(5);
+    VisSummary summary;
+    summary.map = "row<5>.prt";
+    summary.leafs = summary.clusters = 5;
+    summary.visible_leaf_pairs = 25;
+    ASSERT_TRUE(writeVisPage(row.graph, row.visible, row.visible, summary, directory_.string()).ok());
+    EXPECT_EQ(pictures(), 6u);
+    EXPECT_EQ(read("index.html").find("row<5>"), std::string::npos);  // a name is no markup
+    const nlohmann::json data = dataOf(read("index.html"));
+    EXPECT_EQ(data["page"], "vis");
+    EXPECT_EQ(data["run"]["map"], "row<5>.prt");
+    const std::string text = data["pictures"].back()["text"];
+    EXPECT_EQ(text.find("A sight line through 4 cells"), 0u) << text;  // it begins in a portal
+    EXPECT_EQ(nlohmann::json::parse(read("vis.json"))["visible_leaf_pairs"], 25);
+}
+
+TEST_F(VisPageFiles, TakesGraphsWithoutPortalsOrCells) {
+    for (const uint32_t rooms : {1u, 0u}) {
+        const Row row(rooms);
+        const Status status = writeVisPage(row.graph, row.visible, row.visible, VisSummary(), directory_.string());
+        ASSERT_TRUE(status.ok()) << status.error().message;
+        EXPECT_EQ(pictures(), rooms == 1 ? 2u : 0u);
+    }
+}
+
+TEST_F(VisPageFiles, SaysWhatCannotBeWritten) {
+    const Row row(3);
+    const Status status =
+        writeVisPage(row.graph, row.visible, row.visible, VisSummary(), (directory_ / "missing").string());
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.error().kind, Error::Kind::kOutput);
+}
+
+}  // namespace
+}  // namespace sightline

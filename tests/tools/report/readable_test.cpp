@@ -1,0 +1,24 @@
+// Numbers as a reader takes them.
+// SPDX-License-Identifier: MIT
+#include "sightline/tools/report/readable.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace sightline {
+using namespace tools;
+namespace {
+
+TEST(Readable, GroupsLongNumbers) {
+    EXPECT_EQ(readable(0), "0");
+    EXPECT_EQ(readable(999), "999");
+    EXPECT_EQ(readable(1000), "1,000");
+    EXPECT_EQ(readable(1234567), "1,234,567");
+    EXPECT_EQ(readable(0.25), "0.25");
+    EXPECT_EQ(readable(-1234), "-1,234");
+    EXPECT_EQ(readable(std::numeric_limits<double>::infinity()), "–");
+}
+
+}  // namespace
+}  // namespace sightline
