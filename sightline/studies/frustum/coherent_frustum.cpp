@@ -16,8 +16,6 @@ namespace sightline::studies {
 using detail::WalkPlane;
 using detail::WalkPlanes;
 
-namespace {
-
 /// Two planes that face each other: normal[second] + turn * normal[first] = along * normal[base], and for the
 /// distances the same but for `apart`. So the first and the base tell how far inside the second a box is at least.
 struct OppositePair {
@@ -25,6 +23,8 @@ struct OppositePair {
     uint8_t base = 255;  ///< none is needed: they are parallel
     double turn = 0, along = 0, apart = 0;
 };
+
+namespace {
 
 /// True if the pair is one, with or without the base's help.
 bool solvePair(const glm::dvec4* planes, uint8_t first, uint8_t second, uint8_t base, OppositePair& pair) {

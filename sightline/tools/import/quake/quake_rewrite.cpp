@@ -14,7 +14,7 @@ using namespace quake;
 
 uint64_t roundedUp(uint64_t place) { return (place + 3) / 4 * 4; }
 
-uint32_t numberAt(const std::vector<unsigned char>& bytes, uint64_t at) {
+uint32_t wordAt(const std::vector<unsigned char>& bytes, uint64_t at) {
     return ByteCursor({reinterpret_cast<const char*>(bytes.data()) + at, 4}).take<uint32_t>();
 }
 
@@ -65,10 +65,10 @@ Cut cutOf(Bytes bytes, const Directory& directory, size_t number) {
 void moveExtensions(std::vector<unsigned char>& bytes, uint64_t list, uint64_t from, uint64_t by) {
     constexpr size_t kEntry = 32, kPlace = 24;
     if (list + 8 > bytes.size() || std::memcmp(bytes.data() + list, "BSPX", 4) != 0) return;
-    const uint64_t count = numberAt(bytes, list + 4);
+    const uint64_t count = wordAt(bytes, list + 4);
     if (count > (bytes.size() - list - 8) / kEntry) return;
     for (uint64_t i = 0; i < count; ++i) {
-        const uint64_t at = list + 8 + i * kEntry + kPlace, place = numberAt(bytes, at);
+        const uint64_t at = list + 8 + i * kEntry + kPlace, place = wordAt(bytes, at);
         if (place >= from) putNumber(bytes, at, place + by);
     }
 }
