@@ -17,12 +17,9 @@ Verdict verdictOf(Stage stage) {
             return Verdict::kTooFar;
         case Stage::kContribution:
             return Verdict::kTooSmall;
-        case Stage::kVolumes:
-        case Stage::kOcclusion:
-        case Stage::kClusters:
-            break;
+        default:
+            return Verdict::kOccluded;
     }
-    return Verdict::kOccluded;
 }
 
 }  // namespace
