@@ -1,4 +1,4 @@
-// Files of a test: read whole, written, and in a folder that is gone afterwards.
+// Files of a test: read whole, and written.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -8,8 +8,6 @@
 #include <iterator>
 #include <string>
 #include <string_view>
-
-#include <unistd.h>
 
 namespace sightline::test {
 
@@ -34,31 +32,5 @@ int writeInto(int argc, char** argv, Write write) {
     std::fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
     return 2;
 }
-
-class TemporaryFolder {
-public:
-    TemporaryFolder() {
-        static int made = 0;
-        path_ = std::filesystem::temp_directory_path() /
-                ("sightline-test-" + std::to_string(::getpid()) + "-" + std::to_string(++made));
-        std::filesystem::create_directories(path_);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-
-    const std::filesystem::path& path() const { return path_; }
-    std::string path(const std::string& name) const { return (path_ / name).string(); }
-    std::string write(const std::string& name, std::string_view bytes) const {
-        writeBytes(path_ / name, bytes);
-        return path(name);
-    }
-
-private:
-    std::filesystem::path path_;
-};
 
 }  // namespace sightline::test

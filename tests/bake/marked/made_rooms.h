@@ -22,11 +22,11 @@ struct FlatRect {
 };
 
 /// The middle of an axis, in 0, 1, 2, and which way a wall on it looks.
-struct MadeRooms {
+struct MarkedRooms {
     Scene scene;
     glm::dmat4 place{1.0};
 
-    MadeRooms() { scene.materials.emplace_back(); }
+    MarkedRooms() { scene.materials.emplace_back(); }
 
     static glm::dvec3 at(int axis, double height, double u, double v) {
         glm::dvec3 point;

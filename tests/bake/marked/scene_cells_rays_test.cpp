@@ -147,8 +147,8 @@ FlatRect randomRect(Random& random, const FlatRect& within) {
 
 /// A row of rooms with walls of some thickness between them, with doors, some of them marked, holes, things in the
 /// walls' planes, and cells drawn carelessly.
-MadeRooms randomRooms(Random& random, int round) {
-    MadeRooms made;
+MarkedRooms randomRooms(Random& random, int round) {
+    MarkedRooms made;
     made.place = round % 3 == 0 ? glm::dmat4(1.0) : randomPlace(random, round % 3 == 1 ? 0 : 1000);
     const double care = round % 2 ? 0 : 0.1;
     double x = 0;
@@ -230,7 +230,7 @@ TEST(SceneCellRays, LeaveByPortalsOrMeetWalls) {
     uint64_t holes = 0, passages = 0, outside = 0, moved = 0;
     for (int round = 0; round < 60; ++round) {
         SCOPED_TRACE("round " + std::to_string(round));
-        const MadeRooms made = randomRooms(random, round);
+        const MarkedRooms made = randomRooms(random, round);
         const SceneCells cells = cellsOfScene(made.scene);
         const Triangles truth(made.scene);
         const auto meets = [&](const glm::dvec3& from, const glm::dvec3& along, double first, double last) {

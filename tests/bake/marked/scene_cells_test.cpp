@@ -55,7 +55,7 @@ glm::dmat4 placeOf(Random& random, int round) {
 TEST(SceneCells, AClosedRoomHasNoHole) {
     Random random(1);
     for (int round = 0; round < 50; ++round) {
-        MadeRooms made;
+        MarkedRooms made;
         made.place = placeOf(random, round);
         made.room(kHall);
         made.cell("hall", kHall);
@@ -75,7 +75,7 @@ TEST(SceneCells, FindsHolesOf10And1AndATenthOfAMillimetre) {
     for (const double size : {1e-2, 1e-3, 1e-4})
         for (int round = 0; round < 20; ++round) {
             SCOPED_TRACE("hole of " + std::to_string(size) + ", round " + std::to_string(round));
-            MadeRooms made;
+            MarkedRooms made;
             made.place = placeOf(random, round);
             // Within the float grid of the mesh, so that it is as large as it says.
             const glm::dvec2 low(0x1p-9 * std::floor(random.uniform(100, 1400)),
@@ -91,14 +91,14 @@ TEST(SceneCells, FindsHolesOf10And1AndATenthOfAMillimetre) {
             const CellFinding& finding = cells.report.findings[0];
             EXPECT_EQ(finding.cells[0], 0u);
             EXPECT_EQ(finding.cells[1], kNoCell);
-            const glm::dvec3 middle = made.placed(MadeRooms::at(0, 6, low.x + side / 2, low.y + side / 2));
+            const glm::dvec3 middle = made.placed(MarkedRooms::at(0, 6, low.x + side / 2, low.y + side / 2));
             EXPECT_LE(glm::length(finding.place - middle), 2 * cells.report.slit);
             EXPECT_NEAR(std::sqrt(finding.size), side, 2 * cells.report.slit);
             ASSERT_EQ(cells.space.graph.portals.size(), 1u);
             EXPECT_EQ(cells.space.graph.portals[0].cells[1], cells.space.outside);
             for (const glm::dvec2& corner : {hole.min, hole.max})
                 EXPECT_GE(insideBy(cells.space.graph, cells.space.graph.portals[0],
-                                   made.placed(MadeRooms::at(0, 6, corner.x, corner.y))),
+                                   made.placed(MarkedRooms::at(0, 6, corner.x, corner.y))),
                           cells.report.slit / 2)
                     << "the portal holds the hole";
             for (const glm::dvec3& corner : cells.space.graph.points)
@@ -108,7 +108,7 @@ TEST(SceneCells, FindsHolesOf10And1AndATenthOfAMillimetre) {
 
 // A hair between a wall and the next, all along the room.
 TEST(SceneCells, FindsAHairBetweenWalls) {
-    MadeRooms made;
+    MarkedRooms made;
     made.room(kHall, 2);
     made.wall(0, 6, {{0, 0}, {3, 4 - 0x1p-13}}, -1);
     made.cell("hall", kHall);
@@ -121,7 +121,7 @@ TEST(SceneCells, FindsAHairBetweenWalls) {
 TEST(SceneCells, FindsWhatIsMissingOfManyTriangles) {
     Random random(3);
     for (int round = 0; round < 4; ++round) {
-        MadeRooms made;
+        MarkedRooms made;
         made.place = placeOf(random, round);
         made.room(kHall, 2);
         const uint64_t missing = random.below(24 * 32);
@@ -136,14 +136,14 @@ TEST(SceneCells, FindsWhatIsMissingOfManyTriangles) {
         EXPECT_NEAR(cells.report.hole_area, 1.0 / 64, 1e-4);
         const glm::dvec2 low(0.125 * double(missing % 24), 0.125 * double(missing / 24));
         EXPECT_LE(glm::length(cells.report.findings[0].place -
-                              made.placed(MadeRooms::at(0, 6, low.x + 0.0625, low.y + 0.0625))),
+                              made.placed(MarkedRooms::at(0, 6, low.x + 0.0625, low.y + 0.0625))),
                   1e-3);
     }
 }
 
 TEST(SceneCells, WhatDoesNotHideIsAHole) {
     const auto holesWith = [](auto&& change, uint32_t material) {
-        MadeRooms made;
+        MarkedRooms made;
         made.scene.materials.resize(4);
         made.scene.materials[1].alpha_mode = AlphaMode::kBlend;
         made.scene.materials[2].alpha_mode = AlphaMode::kMask;
@@ -155,29 +155,29 @@ TEST(SceneCells, WhatDoesNotHideIsAHole) {
         change(made, settings);
         return cellsOfScene(made.scene, settings).report.hole_area;
     };
-    const auto nothing = [](MadeRooms&, SceneCellSettings&) {};
+    const auto nothing = [](MarkedRooms&, SceneCellSettings&) {};
     EXPECT_EQ(holesWith(nothing, 0), 0);
     for (uint32_t material = 1; material < 4; ++material) EXPECT_NEAR(holesWith(nothing, material), 12, 3e-3);
-    EXPECT_NEAR(holesWith([](MadeRooms& made, auto&) { made.scene.meshes.back().deforms = true; }, 0), 12, 3e-3);
-    EXPECT_NEAR(holesWith([](MadeRooms&, SceneCellSettings& settings) { settings.movable = {5}; }, 0), 12, 3e-3);
-    const auto turned = [](MadeRooms& made, auto&) {
+    EXPECT_NEAR(holesWith([](MarkedRooms& made, auto&) { made.scene.meshes.back().deforms = true; }, 0), 12, 3e-3);
+    EXPECT_NEAR(holesWith([](MarkedRooms&, SceneCellSettings& settings) { settings.movable = {5}; }, 0), 12, 3e-3);
+    const auto turned = [](MarkedRooms& made, auto&) {
         std::vector<uint32_t>& indices = made.scene.meshes.back().indices;
         std::reverse(indices.begin(), indices.end());
     };
     EXPECT_NEAR(holesWith(turned, 0), 12, 3e-3) << "a back is not drawn";
     EXPECT_EQ(holesWith(
-                  [&](MadeRooms& made, SceneCellSettings& settings) {
+                  [&](MarkedRooms& made, SceneCellSettings& settings) {
                       turned(made, settings);
                       made.scene.materials[0].double_sided = true;
                   },
                   0),
               0);
-    const auto mirrored = [](MadeRooms& made, auto&) {
+    const auto mirrored = [](MarkedRooms& made, auto&) {
         made.scene.objects.back().transform[0][0] = -1;
         made.scene.objects.back().transform[3][0] = 12;
     };
     EXPECT_NEAR(holesWith(mirrored, 0), 12, 3e-3) << "a mirror turns it round";
-    const auto door = [](MadeRooms& made, auto&) {
+    const auto door = [](MarkedRooms& made, auto&) {
         made.cell("kitchen", {{6, 0, 0}, {8, 3, 4}});
         made.portal(0, 1, 0, 6, kDoor);
         made.scene.portals[0].door = 5;
@@ -186,8 +186,8 @@ TEST(SceneCells, WhatDoesNotHideIsAHole) {
 }
 
 /// Two rooms with a wall between them, 0.25 thick, and a door's hole through it.
-MadeRooms twoRooms(const glm::dmat4& place, bool jambs = true) {
-    MadeRooms made;
+MarkedRooms twoRooms(const glm::dmat4& place, bool jambs = true) {
+    MarkedRooms made;
     made.place = place;
     const Box3d kitchen{{6.25, 0, 0}, {10, 3, 4}};
     made.room(kHall, 2);
@@ -203,7 +203,7 @@ TEST(SceneCells, WallsGetTheirThickness) {
     for (int round = 0; round < 20; ++round)
         for (const double at : {6.0, 6.125, 6.25}) {
             SCOPED_TRACE("round " + std::to_string(round) + ", portal at " + std::to_string(at));
-            MadeRooms made = twoRooms(placeOf(random, round));
+            MarkedRooms made = twoRooms(placeOf(random, round));
             made.cell("hall", kHall);
             made.cell("kitchen", {{6.25, 0, 0}, {10, 3, 4}});
             made.portal(0, 1, 0, at, kDoor);
@@ -218,7 +218,7 @@ TEST(SceneCells, WallsGetTheirThickness) {
 
 // A leaf in the midst of a wall is seen from both sides when it is shut.
 TEST(SceneCells, ADoorInsideAWallHasAPassageOnEitherSide) {
-    MadeRooms made = twoRooms(glm::dmat4(1.0));
+    MarkedRooms made = twoRooms(glm::dmat4(1.0));
     made.cell("hall", kHall);
     made.cell("kitchen", {{6.25, 0, 0}, {10, 3, 4}});
     const uint32_t portal = made.portal(0, 1, 0, 6.125, kDoor);
@@ -243,7 +243,7 @@ TEST(SceneCells, ADoorInsideAWallHasAPassageOnEitherSide) {
 
 // Without jambs one sees between the sheets of the wall.
 TEST(SceneCells, WallsWithoutJambsAreHollow) {
-    MadeRooms made = twoRooms(glm::dmat4(1.0), false);
+    MarkedRooms made = twoRooms(glm::dmat4(1.0), false);
     made.cell("hall", kHall);
     made.cell("kitchen", {{6.25, 0, 0}, {10, 3, 4}});
     made.portal(0, 1, 0, 6, kDoor);
@@ -256,7 +256,7 @@ TEST(SceneCells, WallsWithoutJambsAreHollow) {
 TEST(SceneCells, FacesFollowTheWallsThatAreMeant) {
     Random random(5);
     for (int round = 0; round < 20; ++round) {
-        MadeRooms made = twoRooms(placeOf(random, round));
+        MarkedRooms made = twoRooms(placeOf(random, round));
         const auto drawn = [&](Box3d box) {
             for (int axis = 0; axis < 3; ++axis) {
                 box.min[axis] += random.uniform(-0.1, 0.1);
@@ -277,7 +277,7 @@ TEST(SceneCells, FacesFollowTheWallsThatAreMeant) {
 TEST(SceneCells, CellsThatTouchWithoutAWallAreJoined) {
     Random random(6);
     for (int round = 0; round < 20; ++round) {
-        MadeRooms made;
+        MarkedRooms made;
         made.place = placeOf(random, round);
         made.room({{0, 0, 0}, {10, 3, 4}});
         made.cell("west", {{0, 0, 0}, {6, 3, 4}});
@@ -294,7 +294,7 @@ TEST(SceneCells, CellsThatTouchWithoutAWallAreJoined) {
 
 // A hole that is partly before another cell, and partly before none.
 TEST(SceneCells, HolesLeadWhereTheyLead) {
-    MadeRooms made;
+    MarkedRooms made;
     made.room(kHall, 2);
     made.wall(0, 6, {{0, 0}, {3, 4}}, -1, {{{1, 1}, {2, 3}}});
     made.room({{6, 0, 0}, {10, 3, 2}}, 1);
@@ -311,7 +311,7 @@ TEST(SceneCells, HolesLeadWhereTheyLead) {
 }
 
 TEST(SceneCells, WhatIsNoConvexSolidIsOutside) {
-    MadeRooms made;
+    MarkedRooms made;
     made.room(kHall, 2);
     made.room({{6, 0, 0}, {10, 3, 4}}, 1);
     made.cell("hall", kHall);
@@ -330,7 +330,7 @@ TEST(SceneCells, WhatIsNoConvexSolidIsOutside) {
 }
 
 TEST(SceneCells, TellsOfCellsThatOverlap) {
-    MadeRooms made;
+    MarkedRooms made;
     made.room({{0, 0, 0}, {10, 3, 4}});
     made.cell("west", {{0, 0, 0}, {6, 3, 4}});
     made.cell("east", {{5, 0, 0}, {10, 3, 4}});
@@ -343,25 +343,25 @@ TEST(SceneCells, TellsOfCellsThatOverlap) {
 
 TEST(SceneCells, StrayPortalsAreLeftOutAndTheirHolesFound) {
     const auto make = [](double at, const FlatRect& rect) {
-        MadeRooms made = twoRooms(glm::dmat4(1.0));
+        MarkedRooms made = twoRooms(glm::dmat4(1.0));
         made.cell("hall", kHall);
         made.cell("kitchen", {{6.25, 0, 0}, {10, 3, 4}});
         made.portal(0, 1, 0, at, rect);
         return made;
     };
     for (const auto& [at, rect] : {std::pair{3.0, kDoor}, {6.0, FlatRect{{0, 11}, {2, 12}}}}) {
-        MadeRooms made = make(at, rect);
+        MarkedRooms made = make(at, rect);
         const SceneCells cells = cellsOfScene(made.scene);
         EXPECT_EQ(cells.report.stray_portals, 1u) << textsOf(cells);
         EXPECT_EQ(cells.report.holes, 2u) << textsOf(cells);
         EXPECT_NEAR(cells.report.hole_area, 4, 1e-3);
     }
-    MadeRooms unknown = make(6, kDoor);
+    MarkedRooms unknown = make(6, kDoor);
     unknown.scene.portals[0].cells[1] = ScenePortal::kNone;
     EXPECT_EQ(cellsOfScene(unknown.scene).report.stray_portals, 1u);
-    MadeRooms line = make(6, {{1, 1}, {1, 2}});
+    MarkedRooms line = make(6, {{1, 1}, {1, 2}});
     EXPECT_EQ(cellsOfScene(line.scene).report.stray_portals, 1u);
-    MadeRooms bent = make(6, kDoor);
+    MarkedRooms bent = make(6, kDoor);
     bent.scene.portals[0].polygon[2].x += 0.05;
     const SceneCells cells = cellsOfScene(bent.scene);
     EXPECT_EQ(cells.report.bent_portals, 1u) << textsOf(cells);
@@ -370,7 +370,7 @@ TEST(SceneCells, StrayPortalsAreLeftOutAndTheirHolesFound) {
 
 // A portal smaller than the door's hole leaves a hole around it.
 TEST(SceneCells, PortalsCoverNoMoreThanTheyAre) {
-    MadeRooms made;
+    MarkedRooms made;
     made.room(kHall, 2);
     made.room({{6, 0, 0}, {10, 3, 4}}, 1);
     made.wall(0, 6, {{0, 0}, {3, 4}}, -1, {kDoor});
@@ -384,7 +384,7 @@ TEST(SceneCells, PortalsCoverNoMoreThanTheyAre) {
 }
 
 TEST(SceneCells, DoorsThatStandElsewhereDoNotShut) {
-    MadeRooms made = twoRooms(glm::dmat4(1.0));
+    MarkedRooms made = twoRooms(glm::dmat4(1.0));
     made.cell("hall", kHall);
     made.cell("kitchen", {{6.25, 0, 0}, {10, 3, 4}});
     const uint32_t portal = made.portal(0, 1, 0, 6, kDoor);
@@ -399,7 +399,7 @@ TEST(SceneCells, DoorsThatStandElsewhereDoNotShut) {
 }
 
 TEST(SceneCells, ManyHolesBecomeTheirHull) {
-    MadeRooms made;
+    MarkedRooms made;
     std::vector<FlatRect> holes;
     for (int i = 0; i < 10; ++i)
         for (int k = 0; k < 10; ++k) {
@@ -423,12 +423,12 @@ TEST(SceneCells, ManyHolesBecomeTheirHull) {
     ASSERT_EQ(one.space.graph.portals.size(), 1u);
     for (const FlatRect& hole : holes)
         EXPECT_GT(insideBy(one.space.graph, one.space.graph.portals[0],
-                           made.placed(MadeRooms::at(0, 6, hole.min.x, hole.max.y))),
+                           made.placed(MarkedRooms::at(0, 6, hole.min.x, hole.max.y))),
                   0);
 }
 
 TEST(SceneCells, TrustedCellsAreAsTheyAreMarked) {
-    MadeRooms made;  // without any wall
+    MarkedRooms made;  // without any wall
     made.cell("hall", kHall);
     made.cell("kitchen", {{6, 0, 0}, {10, 3, 4}});
     made.cell("odd", {{10, 0, 0}, {12, 3, 4}});
@@ -445,7 +445,7 @@ TEST(SceneCells, TrustedCellsAreAsTheyAreMarked) {
 }
 
 TEST(SceneCells, ASceneWithoutCellsHasNone) {
-    MadeRooms made;
+    MarkedRooms made;
     made.room(kHall);
     const SceneCells cells = cellsOfScene(made.scene);
     EXPECT_EQ(cells.space.graph.cells, 0u);
