@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "../import/map_check.h"
+#include "tests/tools/import/map_check.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const std::string fault = sightline::test::prtFault({reinterpret_cast<const char*>(data), size});

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <span>
 
-#include "../import/gltf_check.h"
+#include "tests/tools/import/gltf_check.h"
 #include "sightline/tools/import/foreign/scene_stream.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
