@@ -31,6 +31,11 @@ function(sightline_settings target)
   endif()
 endfunction()
 
+# A target in which nothing is hot is optimised little, and so built sooner.
+function(sightline_cold target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 # Adds the files of the current folder to sightline_TARGET.
 function(sightline_sources target)
   list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE files)
@@ -73,11 +78,15 @@ function(sightline_group target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# The headers that nearly every file of what a game links reads, precompiled.
+# Without this option ccache does not keep what is compiled with precompiled headers.
+function(sightline_keep_precompiled target)
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+endfunction()
+
+# The headers that nearly every file reads, precompiled.
 function(sightline_precompile target)
   target_precompile_headers(${target} PRIVATE
     <algorithm> <array> <bit> <cmath> <cstdint> <cstring> <functional> <limits> <memory> <numeric> <optional> <span>
     <string> <utility> <vector> <glm/glm.hpp> ${ARGN})
-  # Without this option ccache does not keep what is compiled with precompiled headers.
-  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  sightline_keep_precompiled(${target})
 endfunction()

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/cli/verbs/visibility_options.h"
 
+#include "apps/cli/shell/fault.h"
 #include "apps/cli/shell/quoted.h"
 
 #include <cmath>
