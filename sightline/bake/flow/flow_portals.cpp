@@ -119,22 +119,15 @@ private:
     std::unordered_multimap<uint64_t, uint32_t> known_;
 };
 
-/// The plane of an outline by its area vector, through the mean of its points.
-bool findPlane(std::span<const glm::dvec3> outline, FlowPortal& portal) {
-    glm::dvec3 area(0), sum(0);
-    for (size_t i = 1; i + 1 < outline.size(); ++i)
-        area += glm::cross(outline[i] - outline[0], outline[i + 1] - outline[0]);
-    const double length = glm::length(area);
-    if (!(length > 0)) return false;
+/// The middle of an outline, and how far its points are from it.
+void findMiddle(std::span<const glm::dvec3> outline, FlowPortal& portal) {
+    glm::dvec3 sum(0);
     for (const glm::dvec3& point : outline) sum += point;
     portal.center = sum / static_cast<double>(outline.size());
-    portal.normal = area / length;
-    portal.offset = -glm::dot(portal.normal, portal.center);
     double squared = 0;
     for (const glm::dvec3& point : outline)
         squared = std::max(squared, glm::dot(point - portal.center, point - portal.center));
     portal.radius = std::sqrt(squared) * (1 + 0x1p-40);
-    return true;
 }
 
 /// How far a corner lies beyond the line of an edge, at most.
@@ -151,17 +144,17 @@ double bulgeOf(std::span<const glm::dvec3> outline, const glm::dvec3& normal) {
 }
 
 /// The place of a portal, and its convex outline. The graph's normal points into cells[0]: this is the way from cells[1].
-FlowPortal wayThrough(const CellPortal& portal, std::span<const glm::dvec3> given, std::vector<glm::dvec3>& hull) {
+/// The plane is the graph's: that of a thin outline, found from points that are known to the precision only, may be
+/// turned by as much as the precision is of its width.
+/// @param center  FlowPortals::center
+FlowPortal wayThrough(const CellPortal& portal, const glm::dvec3& center, std::span<const glm::dvec3> given,
+                      std::vector<glm::dvec3>& hull) {
     hull = outlineHull(given, glm::dvec3(portal.plane));
     if (hull.size() < 3) hull.assign(given.begin(), given.end());
     FlowPortal way;
-    if (findPlane(hull, way)) return way;
-    // No area is left: the graph's plane is taken.
-    hull.assign(given.begin(), given.end());
+    findMiddle(hull, way);
     way.normal = glm::dvec3(portal.plane);
-    way.center = hull[0];
-    way.offset = -glm::dot(way.normal, way.center);
-    for (const glm::dvec3& point : hull) way.radius = std::max(way.radius, glm::length(point - way.center));
+    way.offset = glm::dot(way.normal, center) + portal.plane.w;
     return way;
 }
 
@@ -198,7 +191,7 @@ FlowPortals flowPortalsOf(const CellGraph& graph) {
         const CellPortal& portal = graph.portals[i];
         const std::span<const glm::dvec3> given{points.data() + portal.first, portal.count};
         std::vector<glm::dvec3> hull;
-        FlowPortal way = wayThrough(portal, given, hull);
+        FlowPortal way = wayThrough(portal, directed.center, given, hull);
         way.portal = i;
         for (const glm::dvec3& point : hull) way.bend = std::max(way.bend, std::abs(way.height(point)));
         way.straight = bulgeOf(hull, way.normal) <= directed.rounding;

@@ -58,7 +58,10 @@ protected:
         ASSERT_TRUE(read.ok()) << read.error().message;
         map = *read;
     }
-    std::string bspFile() const { return fileOf(GetParam(), ".vis.bsp"); }
+    std::string bspFile() const {
+        const std::string visited = fileOf(GetParam(), ".vis.bsp");
+        return std::filesystem::exists(visited) ? visited : fileOf(GetParam(), ".bsp");
+    }
 
     CellGraph graph_;
 };
@@ -110,7 +113,7 @@ TEST_P(SmallMaps, SeeByTheirTreesPortalsWhatTheirTreesSee) {
     EXPECT_LE(100 * (answer.visible.count() - answer.witnessed.count()), 3 * pairsOf(answer.visible));
 }
 
-INSTANTIATE_TEST_SUITE_P(Real, SmallMaps, ::testing::Values("lq_e2m2"),
+INSTANTIATE_TEST_SUITE_P(Real, SmallMaps, ::testing::Values("lq_e2m2", "e3m5"),
                          [](const auto& map) { return std::string(map.param); });
 
 }  // namespace

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "sightline/bsp/tree_portals.h"
@@ -133,6 +135,35 @@ TEST(OddGraphs, SeeThroughCellsOfAnyThickness) {
             ASSERT_TRUE(graph.addPortal(cell + 1, cell, outline));
         }
         EXPECT_EQ(bakeCellVisibility(graph).visible.count(), 16u) << gap;
+    }
+}
+
+/// A slit between two cells, as wide as told, whose corners lie off its plane by less than points are known to; and a
+/// low door far behind it, which lies above the slit's plane, but below that of its corners.
+CellGraph slitAndDoor(double width, bool turned, Random& random) {
+    constexpr double kOff = 0x1p-36 * 4096;
+    CellGraph graph;
+    graph.cells = 4;
+    const auto off = [&] { return random.uniform(-kOff, kOff); };
+    std::vector<glm::dvec3> slit = {{0, off(), 0}, {0, off(), width}, {10, off(), width}, {10, off(), 0}};
+    glm::dvec4 plane(0, 1, 0, 0);
+    if (turned) std::reverse(slit.begin(), slit.end()), plane = -plane;
+    graph.addPortal(!turned, turned, slit, plane);
+    const double low = 0.01, high = 0.02;
+    const std::vector<glm::dvec3> door = {{0, low, 100}, {10, low, 100}, {10, high, 100}, {0, high, 100}};
+    graph.addPortal(1, 2, door, {0, 0, -1, 100});
+    // What makes the world large.
+    const std::vector<glm::dvec3> away = {{4000, 0, 4090}, {4090, 0, 4090}, {4090, 90, 4090}, {4000, 90, 4090}};
+    graph.addPortal(2, 3, away, {0, 0, -1, 4090});
+    return graph;
+}
+
+TEST(OddGraphs, SeeThroughSlitsBesideWhosePlaneTheirCornersLie) {
+    for (uint64_t seed = 1; seed <= 200; ++seed) {
+        Random random(seed);
+        const double width = std::exp2(random.uniform(-16, -8));
+        const CellGraph graph = slitAndDoor(width, seed % 2, random);
+        EXPECT_TRUE(bakeCellVisibility(graph).visible.at(0, 2)) << "seed " << seed << ", width " << width;
     }
 }
 
