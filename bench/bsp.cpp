@@ -7,9 +7,8 @@
 #include "bench/cases.h"
 #include "bench/stopwatch.h"
 #include "sightline/base/random.h"
-#include "sightline/studies/hidden/bsp/bsp_back_to_front.h"
 #include "sightline/studies/hidden/bsp/bsp_frame.h"
-#include "sightline/studies/hidden/bsp/bsp_front_to_back.h"
+#include "sightline/studies/hidden/bsp/bsp_render.h"
 #include "sightline/studies/hidden/methods/dynamic_screen.h"
 #include "sightline/studies/hidden/methods/fill.h"
 #include "sightline/tools/load/seeded_cameras.h"
@@ -266,9 +265,7 @@ void addScreens(const Stage& stage, int repeat, Table& table) {
                          [&] { takeAll(BitScreen(width, height), spans, count); }},
                         repeat);
     const double per_span = 1e3 / double(std::max<size_t>(spans.size(), 1));
-    const auto row = [&](const char* what, double time, const char* baseline, double base) {
-        table.rows.push_back({stage.name, what, time * per_span, "ns/span", baseline, base * per_span});
-    };
+    const Rows row{table, stage.name, "ns/span", per_span};
     row("spans alone, a look a sample", times[1] - times[2], "spans alone, painted", times[0]);
     row("spans alone, segments", times[3], "spans alone, painted", times[0]);
     row("spans alone, bits", times[4], "spans alone, painted", times[0]);

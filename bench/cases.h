@@ -4,6 +4,8 @@
 
 #include "bench/options.h"
 #include "bench/table.h"
+#include "sightline/tools/scene/camera_path.h"
+#include "sightline/tree/world_bvh.h"
 
 namespace sightline::bench {
 
@@ -74,5 +76,34 @@ Table benchVis(const Options& options);
 /// City from its streets and from above, building and terrain: what 1 to 64 occluder volumes cull beside the tiles, alone
 /// and before them, and what the query then costs.
 Table benchVolumes(const Options& options);
+
+// Parts of these cases that have a file of their own.
+
+/// Two eyes, four cascades, the six faces of a cube, from the middle of a world, in one walk of its tree and in a walk for each.
+/// @param world  half side of the world  [world units]
+void measureManyFrusta(Table& table, const PlacedBvh& tree, const std::string& where, double world, int repeat);
+
+/// Queries of a scene's own hierarchy from its seeded cameras; then a part of the scene moves as one.
+void addSceneTree(Table& table, const std::string& where, const Scene& scene, int repeat);
+
+/// What a world's commits cost while its objects come, move and go, and what queries of it cost then.
+void addWorld(Table& table, const std::string& world, uint32_t count, int repeat);
+
+/// All of occlusionSceneNames() at 1280x720 and 1920x1080 on one thread: the thread's own times, each the median of
+/// Options::repeat in a view (24 if it is 0), and counts, both as means over the views.
+void measureOcclusionCore(const Options& options, Table& table);
+
+/// Objects kept along a path, beside what the same box test keeps on an exact z-buffer and what a 4x4 id-buffer shows.
+void measureTightness(const Scene& scene, const CameraPath& path, uint32_t occlusion_size, const std::string& where,
+                      Table& table);
+
+/// Adds rows: nanoseconds per polygon of projected clusters, of the thread's own time, the median of Options::repeat
+/// (24 if it is 0), for each size of triangles at 1280x720.
+void measureSmallPolygons(const Options& options, Table& table);
+
+/// The views of a path in one bin and in two, by one worker and by two; times of the clock on the wall, so that the
+/// ratios mean something on idle cores only. Adds its rows to the table.
+void measureQueryThreads(const Scene& scene, const CameraPath& path, const std::string& where, int repeat,
+                         Table& table);
 
 }  // namespace sightline::bench

@@ -125,9 +125,7 @@ struct Drawn {
 
 /// Projects and scans a frame's items, without writing anywhere.
 void drawFrame(const View& view, const std::vector<DrawItem>& items, Clipping clipping, bool scans, Drawn& drawn) {
-    ProjectorSettings settings;
-    settings.clipping = clipping;
-    Projector projector(view, {view.width, view.height, 0, 1, {}}, settings);
+    Projector projector(view, {view.width, view.height, 0, 1, {}}, {.clipping = clipping});
     const int32_t width = static_cast<int32_t>(view.width), height = static_cast<int32_t>(view.height);
     const auto count = [&](int32_t, int32_t begin, int32_t end) { drawn.samples += uint64_t(end - begin); };
     for (const DrawItem& item : items) {
@@ -185,17 +183,13 @@ Table benchClipping(const Options& options) {
     Table table{"clipping", {}};
     const std::string where = options.scene ? scene.name : "city:1:10000, a walk";
     const double each = 1e3 / static_cast<double>(std::max<size_t>(walk.triangles, 1));
-    const auto row = [&](const char* what, double time, const char* baseline, double base) {
-        table.rows.push_back({where, what, time * each, "ns/triangle", baseline, base * each});
-    };
+    const Rows row{table, where, "ns/triangle", each};
     row("outcodes and six planes", times[1], "six planes for every triangle", times[0]);
     row("outcodes and guard band", times[2], "six planes for every triangle", times[0]);
     row("projector with guard band", times[4], "projector with six planes", times[3]);
     row("drawn without clipping", times[6], "drawn with guard band", times[5]);
-    table.rows.push_back({where, "outside in part, not clipped", static_cast<double>(sum.spared), "triangles",
-                          "outside in part", static_cast<double>(sum.spared + sum.clipped)});
-    table.rows.push_back({where, "covered without clipping", static_cast<double>(drawn[2].samples), "samples",
-                          "covered with guard band", static_cast<double>(drawn[0].samples)});
+    row("outside in part, not clipped", sum.spared, "triangles", "outside in part", sum.spared + sum.clipped);
+    row("covered without clipping", drawn[2].samples, "samples", "covered with guard band", drawn[0].samples);
     addPlaneRow(table, repeat);
     return table;
 }

@@ -129,15 +129,14 @@ void addWalls(int repeat, Table& table) {
     with.zbuffer_memory = without.zbuffer_memory = &kept;
     const HiddenCounters a = render(list, walls.view, with).counters, b = render(list, walls.view, without).counters;
     const char* where = "8 walls, near to far";
-    table.rows.push_back({where, "fragments tested", static_cast<double>(a.tested), "fragments", "without hierarchy",
-                          static_cast<double>(b.tested)});
+    const Rows row{table, where};
+    row("fragments tested", a.tested, "fragments", "without hierarchy", b.tested);
     const std::vector<double> times =
         timeInterleaved({[&] { render(list, walls.view, with); }, [&] { render(list, walls.view, without); },
                          [&] { renderZBuffer(items, walls.view, {.want_generated = false}); }},
                         repeat);
-    table.rows.push_back({where, "z-buffer, 1 thread", 1e-3 * times[0], "ms", "without hierarchy", 1e-3 * times[1]});
-    table.rows.push_back(
-        {where, "without hierarchy", 1e-3 * times[1], "ms", "plain z-buffer in double", 1e-3 * times[2]});
+    row("z-buffer, 1 thread", 1e-3 * times[0], "ms", "without hierarchy", 1e-3 * times[1]);
+    row("without hierarchy", 1e-3 * times[1], "ms", "plain z-buffer in double", 1e-3 * times[2]);
     const Walls reversed(1, 32);
     DrawItem one;
     one.mesh = {reversed.positions, reversed.indices};

@@ -1,47 +1,45 @@
 // The same box test on an exact z-buffer: what an occlusion buffer without rounding or gaps would keep.
 // SPDX-License-Identifier: MIT
-#include "bench/exact_boxes.h"
-
+#include "bench/cases.h"
 #include "bench/flat_boxes.h"
+#include "bench/occlusion_truth.h"
 #include "sightline/cull/occlusion.h"
+#include "sightline/query/query.h"
+#include "sightline/tools/load/load_world.h"
+#include "sightline/tools/truth/scene_facts.h"
 
 namespace sightline::bench {
 using namespace studies;
 using namespace tools;
+namespace {
 
-ExactBoxes::ExactBoxes(const Scene& scene) : scene_(scene), boxes_(objectBoxes(scene)) {
-    for (const Mesh& mesh : scene.meshes) {
-        std::vector<uint8_t>& both = double_sided_.emplace_back(mesh.triangles(), 0);
-        std::vector<uint8_t>& writes = writes_depth_.emplace_back(mesh.triangles(), 0);
-        for (const Primitive& primitive : mesh.primitives)
-            for (uint32_t t = primitive.first_triangle; t < primitive.first_triangle + primitive.triangle_count; ++t) {
-                both[t] = scene.materials[primitive.material].double_sided;
-                writes[t] = scene.materials[primitive.material].hides() && !mesh.deforms;
-            }
-    }
-}
+/// Per object.
+struct Answer {
+    std::vector<uint8_t> kept;  ///< not hidden by the z-buffer, whether inside the frustum or not
+    std::vector<uint8_t> seen;  ///< has one of 4x4 samples a pixel
+};
 
-ExactBoxes::Answer ExactBoxes::test(const View& view, uint32_t occlusion_size, uint32_t supersampling) const {
+/// Draws all of a scene's triangles into a z-buffer of the size of the query's occlusion buffer, and tests its objects' boxes, as
+/// rectangles with their nearest depth.
+Answer testExactly(const SceneFacts& facts, const std::vector<Box3d>& boxes, const View& view,
+                   uint32_t occlusion_size) {
     const Screen screen = makeScreen(view, occlusion_size);
-    const Frustum frustum = makeFrustum(view);
     std::vector<DrawItem> items;
-    FlatBoxes flat(boxes_);
-    const size_t in_frustum = cullFrustum(frustum, flat.arrays, flat.kept);
+    FlatBoxes flat(boxes);
+    const size_t in_frustum = cullFrustum(makeFrustum(view), flat.arrays, flat.kept);
     for (size_t i = 0; i < in_frustum; ++i) {
-        const SceneObject& object = scene_.objects[flat.kept[i]];
+        const uint32_t object = flat.kept[i];
         DrawItem item;
-        item.mesh = {scene_.meshes[object.mesh].positions, scene_.meshes[object.mesh].indices};
-        item.double_sided = double_sided_[object.mesh];
-        item.writes_depth = writes_depth_[object.mesh];
-        item.transform = object.transform;
-        item.id = flat.kept[i];
+        item.mesh = {facts.mesh(object).positions, facts.mesh(object).indices};
+        item.double_sided = facts.facts(object).double_sided;
+        item.writes_depth = facts.facts(object).hides;
+        item.transform = facts.scene().objects[object].transform;
+        item.id = object;
         items.push_back(item);
     }
     Answer answer;
-    ZBufferSettings settings;
-    settings.samples = supersampling;
-    if (supersampling > 0) answer.seen = renderZBuffer(items, view, settings).seen;
-    answer.seen.resize(boxes_.size(), 0);
+    answer.seen = renderZBuffer(items, view, {.samples = 4}).seen;
+    answer.seen.resize(boxes.size(), 0);
 
     View widened = view;  // the occlusion buffer's pixels: the viewport and its margin for jitter
     widened.width = screen.width;
@@ -52,19 +50,40 @@ ExactBoxes::Answer ExactBoxes::test(const View& view, uint32_t occlusion_size, u
         widened.projection[column][1] /= wide_y;
     }
     const ZBufferImage image = renderZBuffer(items, widened, {});
-    answer.kept.assign(boxes_.size(), 0);
-    for (size_t i = 0; i < boxes_.size(); ++i) {
-        glm::dmat4 to_world(1.0);
-        to_world[3] = glm::dvec4(screen.eye, 1.0);
-        const BoxAnswer box = projectBox(objectScreen(screen, to_world), roundOutward(boxes_[i], screen.eye));
-        answer.kept[i] = box.doubt;
-        if (box.doubt || box.outside) continue;
-        for (int32_t y = box.rect.y0; y <= box.rect.y1 && !answer.kept[i]; ++y)
-            for (int32_t x = box.rect.x0; x <= box.rect.x1 && !answer.kept[i]; ++x)
-                answer.kept[i] =
-                    image.depth[static_cast<size_t>(y) * image.width + static_cast<size_t>(x)] <= box.rect.nearness;
+    answer.kept.assign(boxes.size(), 0);
+    glm::dmat4 to_world(1.0);
+    to_world[3] = glm::dvec4(screen.eye, 1.0);
+    for (size_t i = 0; i < boxes.size(); ++i) {
+        const BoxAnswer box = projectBox(objectScreen(screen, to_world), roundOutward(boxes[i], screen.eye));
+        answer.kept[i] = box.doubt || (!box.outside && !isBehind(image, box.rect));
     }
     return answer;
+}
+
+}  // namespace
+
+void measureTightness(const Scene& scene, const CameraPath& path, uint32_t occlusion_size, const std::string& where,
+                      Table& table) {
+    LoadedWorld loaded = loadWorld(scene);
+    const Snapshot now = loaded.world.commit();
+    const SceneFacts facts(scene);
+    const std::vector<Box3d> boxes = objectBoxes(scene);
+    Query query;
+    std::vector<uint8_t> reasons(scene.objects.size());
+    double kept = 0, exactly_kept = 0, seen = 0;
+    for (const CameraFrame& frame : path.frames) {
+        const View view = makeView(frame, 1280, 720);
+        kept += static_cast<double>(query.visible(now, view, {.occlusion_size = occlusion_size}).objects.size());
+        query.reasons(reasons);
+        const Answer answer = testExactly(facts, boxes, view, occlusion_size);
+        for (size_t i = 0; i < reasons.size(); ++i) {
+            exactly_kept += answer.kept[i] && reasons[i] != 1 + static_cast<int>(Stage::kFrustum);
+            seen += answer.seen[i];
+        }
+    }
+    const Rows row{table, where, "objects", 1.0 / static_cast<double>(path.frames.size())};
+    row("objects kept", kept, "same boxes, exact z-buffer", exactly_kept);
+    row("objects kept (over-estimate)", kept, "seen by a 4x4 id-buffer", seen);
 }
 
 }  // namespace sightline::bench

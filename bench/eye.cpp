@@ -81,10 +81,7 @@ void measure(const EyeWorld& world, int repeat, Table& table) {
             kept[4 + kind] += static_cast<double>(cellsOf(floods[kind])) / eyes;
         }
     }
-    const auto row = [&](const std::string& what, double value, const char* unit, const char* baseline, double base,
-                         const std::string& note = {}) {
-        table.rows.push_back({world.name, what, value, unit, baseline, base, note});
-    };
+    const Rows row{table, world.name};
     for (int way = 0; way < 7; ++way) {
         const std::string name = way < 4 ? std::string("eye-to-cell, ") + kEyeLevelNames[way]
                                          : std::string("portals, ") + kWindowNames[way - 4];

@@ -3,7 +3,6 @@
 #include "bench/eye_worlds.h"
 
 #include <cmath>
-#include <filesystem>
 #include <map>
 
 #include "sightline/bake/flow/cell_visibility.h"
@@ -12,9 +11,8 @@
 #include "sightline/bsp/merge_cells.h"
 #include "sightline/bsp/tree_portals.h"
 #include "sightline/studies/cells/eye_cells.h"
-#include "sightline/tools/import/quake/quake_bsp.h"
+#include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/scene/building/building.h"
-#include "sightline/tools/scene/text_file.h"
 
 namespace sightline::bench {
 using namespace bake;
@@ -62,11 +60,7 @@ EyeWorld mapWorld(const std::string& name) {
     EyeWorld world;
     world.name = name;
     const std::string file = "../shared/maps/" + name + ".vis.bsp";
-    if (!std::filesystem::exists(file)) return world;
-    const Result<std::string> text = readTextFile(file);
-    if (!text) return world;
-    Result<QuakeMapFile> map =
-        parseQuakeBsp({reinterpret_cast<const unsigned char*>(text->data()), text->size()}, file);
+    Result<QuakeMapFile> map = readQuakeMap(file);
     if (!map) return world;
     TreePortalCounts counts;
     world.space.graph = cellsOfTree(map->tree, {}, &counts);

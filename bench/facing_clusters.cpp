@@ -31,9 +31,7 @@ Found findOn(const ClusteredMesh& clustered, const Box3d& eyes_box) {
     const MeshView mesh = clustered.mesh.view();
     std::vector<uint32_t> order(mesh.triangles());
     std::iota(order.begin(), order.end(), 0u);
-    FacingSettings settings;
-    settings.mask_steps = 2;
-    const FacingClusters clusters = describeClusters(mesh, order, clustered.sizes, settings);
+    const FacingClusters clusters = describeClusters(mesh, order, clustered.sizes, {.mask_steps = 2});
     FacingSettings finer{.turned = false, .cones = false, .mask_steps = 4};
     const FacingClusters fine = describeClusters(mesh, order, clustered.sizes, finer);
     const TrianglePlanes planes = makeTrianglePlanes(mesh);
@@ -77,9 +75,7 @@ void addRecallRows(const FacingMesh& mesh, Table& table) {
         const ClusteredMesh clustered = meshoptClusters(mesh, size, 0.5f);
         const Found found = findOn(clustered, eyes);
         const std::string where = fmt::format("{}, meshoptimizer's clusters of {}", mesh.name, size);
-        const auto row = [&](const char* what, double value, const char* baseline, double base) {
-            table.rows.push_back({where, what, value / found.backs, "of back faces", baseline, base / found.backs});
-        };
+        const Rows row{table, where, "of back faces", 1.0 / found.backs};
         row("any cluster test", found.oracle, "all", found.backs);
         row("volumes", found.volumes, "any cluster test", found.oracle);
         row("turned volumes", found.turned, "volumes", found.volumes);
@@ -161,17 +157,17 @@ void addClusterTimes(const FacingMesh& mesh, int repeat, Table& table) {
     asked = clusters.count() * eyes.size();
     const double each = 1e3 / static_cast<double>(asked);
     const std::string where = fmt::format("{}, {} clusters", mesh.name, clusters.count());
-    table.rows.push_back({where, "volumes", times[0] * each, "ns/cluster", "", 0});
-    table.rows.push_back({where, "turned volumes", times[1] * each, "ns/cluster", "volumes", times[0] * each});
-    table.rows.push_back({where, "cones", times[2] * each, "ns/cluster", "volumes", times[0] * each});
-    table.rows.push_back({where, "all three", times[3] * each, "ns/cluster", "volumes", times[0] * each});
-    table.rows.push_back({where, "tree of volumes", times[4] * each, "ns/cluster", "volumes", times[0] * each,
-                          fmt::format("{} nodes", tree.nodes.size())});
-    table.rows.push_back({where, "volumes asked by the tree", static_cast<double>(tree_asked) / kEyes, "volumes",
-                          "clusters", static_cast<double>(clusters.count())});
+    const Rows row{table, where};
+    row("volumes", times[0] * each, "ns/cluster", "", 0);
+    row("turned volumes", times[1] * each, "ns/cluster", "volumes", times[0] * each);
+    row("cones", times[2] * each, "ns/cluster", "volumes", times[0] * each);
+    row("all three", times[3] * each, "ns/cluster", "volumes", times[0] * each);
+    row("tree of volumes", times[4] * each, "ns/cluster", "volumes", times[0] * each,
+        fmt::format("{} nodes", tree.nodes.size()));
+    row("volumes asked by the tree", static_cast<double>(tree_asked) / kEyes, "volumes", "clusters", clusters.count());
     const double all = static_cast<double>(mesh.view().triangles());
-    table.rows.push_back({where, "triangles drawn", static_cast<double>(drawn) / kEyes, "triangles", "all", all});
-    table.rows.push_back({where, "runs of triangles", static_cast<double>(runs) / kEyes, "runs", "", 0});
+    row("triangles drawn", static_cast<double>(drawn) / kEyes, "triangles", "all", all);
+    row("runs of triangles", static_cast<double>(runs) / kEyes, "runs", "", 0);
 }
 
 }  // namespace

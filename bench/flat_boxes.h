@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "sightline/cull/frustum.h"
 #include "sightline/tools/scene/scene.h"
+#include "sightline/tree/world_bvh.h"
 
 namespace sightline::bench {
 using namespace tools;
@@ -40,6 +42,15 @@ struct FlatBoxes {
     }
     FlatBoxes(const FlatBoxes&) = delete;  // the arrays point into this object
 };
+
+/// A world's tree over boxes, by their places in the list.
+inline WorldBvh treeOver(const std::vector<Box3d>& boxes) {
+    std::vector<uint32_t> items(boxes.size());
+    std::iota(items.begin(), items.end(), 0u);
+    WorldBvh tree;
+    tree.build(boxes, items);
+    return tree;
+}
 
 inline std::vector<Box3d> objectBoxes(const Scene& scene) {
     std::vector<Box3d> boxes;

@@ -98,31 +98,26 @@ Table benchFrustum(const Options& options) {
     View view;
     view.view = lookAt(all.center(), all.center() + glm::dvec3(1, 0.1, 0.3), {0, 1, 0});
     view.projection = perspective(glm::radians(60.0), 16.0 / 9.0, 0.1);
-    QuerySettings settings;
-    settings.stages = stageBit(Stage::kFrustum);
     const Frustum frustum = makeFrustum(view);
     const std::vector<PlainPlane> planes = plainPlanes(frustum);
     std::vector<uint32_t> kept(boxes.size() + 16);
     Query query;
     size_t by_query = 0, by_flat = 0;
-    const std::vector<double> times =
-        threadTimes({[&] { cullByCorners(planes, plain, kept); }, [&] { cullByPVertex(planes, plain, kept); },
-                     [&] { by_flat = cullFrustum(frustum, flat.arrays, flat.kept); },
-                     [&] { by_query = query.visible(now, view, settings).objects.size(); }},
-                    options.repeat ? options.repeat : 15);
+    const std::vector<double> times = threadTimes(
+        {[&] { cullByCorners(planes, plain, kept); }, [&] { cullByPVertex(planes, plain, kept); },
+         [&] { by_flat = cullFrustum(frustum, flat.arrays, flat.kept); },
+         [&] { by_query = query.visible(now, view, {.stages = stageBit(Stage::kFrustum)}).objects.size(); }},
+        options.repeat ? options.repeat : 15);
     const std::string where = options.scene ? options.scene->name : "1,000,000 boxes";
     const double per_box = 1e3 / static_cast<double>(std::max<size_t>(boxes.size(), 1));
     Table table{"frustum", {}};
-    const auto row = [&](const char* what, double time, const char* baseline, double base) {
-        table.rows.push_back({where, what, time * per_box, "ns/box", baseline, base * per_box});
-    };
+    const Rows row{table, where, "ns/box", per_box};
     row("p-vertex, one by one", times[1], "eight corners, one by one", times[0]);
     row("flat, SIMD", times[2], "eight corners, one by one", times[0]);
     row("flat, SIMD", times[2], "p-vertex, one by one", times[1]);
     row("hierarchy, plane masks, whole query", times[3], "eight corners, one by one", times[0]);
     row("hierarchy, plane masks, whole query", times[3], "flat, SIMD", times[2]);
-    table.rows.push_back({where, "kept by the hierarchy", static_cast<double>(by_query), "boxes",
-                          "kept by the flat list", static_cast<double>(by_flat)});
+    row("kept by the hierarchy", by_query, "boxes", "kept by the flat list", by_flat);
     const FrustumWorld measured{where, boxes, flat, view, options.repeat ? options.repeat : 15};
     addHierarchyRows(measured, table);
     addCoherencyRows(measured, table);

@@ -93,12 +93,11 @@ void addRefinementRows(const FrustumWorld& world, Table& table) {
     const auto percent = [&](size_t kept) {
         return 100.0 * static_cast<double>(by_planes - kept) / std::max(excess, 1.0);
     };
-    table.rows.push_back({where, "kept by the planes", static_cast<double>(by_planes), "boxes",
-                          "kept by separating axes", static_cast<double>(by_axes)});
-    table.rows.push_back(
-        {where, "of the excess, removed by corners", percent(by_corners), "%", "by separating axes", 100.0});
-    table.rows.push_back({where, "planes and corners", times[1], "us", "planes alone", times[0]});
-    table.rows.push_back({where, "planes and separating axes", times[2], "us", "planes alone", times[0]});
+    const Rows row{table, where};
+    row("kept by the planes", by_planes, "boxes", "kept by separating axes", by_axes);
+    row("of the excess, removed by corners", percent(by_corners), "%", "by separating axes", 100.0);
+    row("planes and corners", times[1], "us", "planes alone", times[0]);
+    row("planes and separating axes", times[2], "us", "planes alone", times[0]);
     table.rows.push_back({world.where, "planes, axes for large ones", times[4], "us", "planes alone", times[3]});
     table.rows.push_back(
         {"a frustum", "setting up its separating axes", times[5], "us", "planes alone, all boxes", times[0]});

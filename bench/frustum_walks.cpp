@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "bench/frustum_walks.h"
 
-#include <numeric>
-
 #include <fmt/format.h>
 
 #include "sightline/studies/frustum/coherent_frustum.h"
@@ -16,14 +14,6 @@ RefinedVolume plainVolume(const View& view) {
     RefinedVolume refined;
     refined.volume = volumeOf(makeFrustum(view));
     return refined;
-}
-
-WorldBvh treeOver(const std::vector<Box3d>& boxes) {
-    std::vector<uint32_t> items(boxes.size());
-    std::iota(items.begin(), items.end(), 0u);
-    WorldBvh tree;
-    tree.build(boxes, items);
-    return tree;
 }
 
 /// Everything from outside.
@@ -61,18 +51,15 @@ void addHierarchyRows(const FrustumWorld& world, Table& table) {
         const double tests = static_cast<double>(culler.stats().plane_tests);
         const std::string where =
             fmt::format("{}, {:.3g} % in view", world.where, 100.0 * static_cast<double>(found) / count);
-        const auto row = [&](const char* what, double time, const char* baseline, double base) {
-            table.rows.push_back({where, what, time, "us", baseline, base});
-        };
+        const Rows row{table, where, "us"};
         row("walk, eight at once, masks", times[1], "flat, SIMD", times[0]);
         row("walk, eight at once, masks", times[1], "the same without masks", times[2]);
         row("walk, eight at once, masks", times[1], "nor a word for what is inside", times[3]);
         walk(volume, no_masks);
         const double unmasked = static_cast<double>(culler.stats().plane_tests);
         walk(volume, two_states);
-        table.rows.push_back({where, "plane tests with masks", tests, "tests", "without masks", unmasked});
-        table.rows.push_back({where, "plane tests with masks", tests, "tests", "nor a word for what is inside",
-                              static_cast<double>(culler.stats().plane_tests)});
+        row("plane tests with masks", tests, "tests", "without masks", unmasked);
+        row("plane tests with masks", tests, "tests", "nor a word for what is inside", culler.stats().plane_tests);
     }
 }
 

@@ -9,8 +9,7 @@
 #include <optional>
 #include <thread>
 
-#include "apps/gl/flat_renderer.h"
-#include "apps/gl/id_renderer.h"
+#include "apps/gl/renderers.h"
 #include "bench/cases.h"
 #include "bench/stopwatch.h"
 #include "sightline/studies/hidden/render.h"

@@ -2,19 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include <bit>
 #include <cmath>
-#include <numeric>
 
 #include "bench/cases.h"
 #include "bench/flat_boxes.h"
-#include "bench/hierarchy_frusta.h"
-#include "bench/hierarchy_scene.h"
-#include "bench/hierarchy_world.h"
 #include "bench/stopwatch.h"
 #include "bench/swarm.h"
 #include "sightline/base/random.h"
 #include "sightline/cull/box_query.h"
 #include "sightline/cull/hierarchy.h"
-#include "sightline/studies/frustum/grid_walk.h"
+#include "sightline/studies/frustum/grid.h"
 #include "sightline/tools/scene/building/building.h"
 #include "sightline/tools/scene/city/city.h"
 
@@ -28,14 +24,6 @@ constexpr int kFrames = 10;
 Frustum frustumFrom(double z_far) { return makeFrustum(viewFrom(z_far)); }
 
 Frustum frustumOfAll() { return makeFrustum(viewOfAll()); }
-
-WorldBvh treeOver(const std::vector<Box3d>& boxes) {
-    std::vector<uint32_t> items(boxes.size());
-    std::iota(items.begin(), items.end(), 0u);
-    WorldBvh tree;
-    tree.build(boxes, items);
-    return tree;
-}
 
 /// A world's tree after every tenth box has moved for some frames, one that is built anew, and the flat list.
 void measureFrusta(Table& table, int repeat) {
@@ -65,12 +53,10 @@ void measureFrusta(Table& table, int repeat) {
                          [&] { by_flat = cullFrustum(frustum, flat.arrays, flat.kept); }},
                         repeat ? repeat : 15);
         const double per_box = 1e3 / static_cast<double>(swarm.boxes.size());
-        table.rows.push_back({view, "query after the frames", times[0] * per_box, "ns/box", "query of a fresh tree",
-                              times[1] * per_box});
-        table.rows.push_back(
-            {view, "query of a fresh tree", times[1] * per_box, "ns/box", "flat, SIMD", times[2] * per_box});
-        table.rows.push_back({view, "kept by the tree", static_cast<double>(by_tree), "boxes", "kept by the flat list",
-                              static_cast<double>(by_flat)});
+        const Rows row{table, view};
+        row("query after the frames", times[0] * per_box, "ns/box", "query of a fresh tree", times[1] * per_box);
+        row("query of a fresh tree", times[1] * per_box, "ns/box", "flat, SIMD", times[2] * per_box);
+        row("kept by the tree", by_tree, "boxes", "kept by the flat list", by_flat);
     };
     queries(frustumFrom(std::numeric_limits<double>::infinity()), where + "; far view");
     queries(frustumFrom(0.2 * kWorld), where + "; short view");
@@ -119,9 +105,10 @@ void measureGrid(Table& table, uint32_t count, int repeat) {
         }));
     }
     const double each = 1e6 / count;
-    table.rows.push_back({where, "insert, at random", medianOf(inserts) * each, "ns", "", 0});
-    table.rows.push_back({where, "move, next to none to another cell", medianOf(small_moves) * each, "ns", "", 0});
-    table.rows.push_back({where, "move, some to another cell", medianOf(moves) * each, "ns", "", 0});
+    const Rows row{table, where};
+    row("insert, at random", medianOf(inserts) * each, "ns", "", 0);
+    row("move, next to none to another cell", medianOf(small_moves) * each, "ns", "", 0);
+    row("move, some to another cell", medianOf(moves) * each, "ns", "", 0);
     const WorldBvh tree = treeOver(swarm.boxes);
     FlatBoxes flat(swarm.boxes);
     HierarchyScratch scratch;

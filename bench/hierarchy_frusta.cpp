@@ -1,6 +1,6 @@
 // Several frusta in one walk of a world's hierarchy, beside a walk for each.
 // SPDX-License-Identifier: MIT
-#include "bench/hierarchy_frusta.h"
+#include "bench/cases.h"
 
 #include "bench/stopwatch.h"
 #include "sightline/cull/hierarchy.h"

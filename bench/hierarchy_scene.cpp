@@ -1,11 +1,11 @@
 // A scene's own hierarchy beside a world's, over the same objects.
 // SPDX-License-Identifier: MIT
-#include "bench/hierarchy_scene.h"
+#include "bench/cases.h"
 
 #include "bench/flat_boxes.h"
 #include "bench/stopwatch.h"
 #include "sightline/cull/hierarchy.h"
-#include "sightline/studies/frustum/node_tree_walk.h"
+#include "sightline/studies/frustum/node_tree.h"
 #include "sightline/tools/load/scene_tree.h"
 #include "sightline/tools/load/seeded_cameras.h"
 
@@ -59,7 +59,8 @@ void addSceneTree(Table& table, const std::string& where, const Scene& scene, in
     }
     const double build_own = millisecondsOf([&] { own.build(from.nodes, from.items); });
     const double build_world = millisecondsOf([&] { world.build(boxes, items); });
-    table.rows.push_back({where, "build its own hierarchy", build_own, "ms", "a world's tree", build_world});
+    const Rows row{table, where};
+    row("build its own hierarchy", build_own, "ms", "a world's tree", build_world);
     std::vector<Frustum> frusta;
     for (const CameraFrame& camera : seededCameras(scene, kViews, 1).frames)
         frusta.push_back(makeFrustum(makeView(camera, 1280, 720)));
@@ -91,12 +92,12 @@ void addSceneTree(Table& table, const std::string& where, const Scene& scene, in
                         repeat ? repeat : 15);
         const double each = 1.0 / kViews;
         const std::string what = "query of its own hierarchy" + when;
-        table.rows.push_back({where, what, times[0] * each, "us", "a world's tree", times[1] * each});
-        if (when.empty()) table.rows.push_back({where, what, times[0] * each, "us", "flat, SIMD", times[2] * each});
-        table.rows.push_back({where, "nodes visited" + when, static_cast<double>(own_nodes) * each, "nodes",
-                              "a world's tree", static_cast<double>(world_nodes) * each});
-        table.rows.push_back({where, "kept" + when, static_cast<double>(by_own) * each, "objects", "a world's tree",
-                              static_cast<double>(by_world) * each});
+        row(what, times[0] * each, "us", "a world's tree", times[1] * each);
+        if (when.empty()) row(what, times[0] * each, "us", "flat, SIMD", times[2] * each);
+        row("nodes visited" + when, static_cast<double>(own_nodes) * each, "nodes", "a world's tree",
+            static_cast<double>(world_nodes) * each);
+        row("kept" + when, static_cast<double>(by_own) * each, "objects", "a world's tree",
+            static_cast<double>(by_world) * each);
     };
     queries("");
     const Part part = partOf(scene, std::max<size_t>(scene.objects.size() / 10, 1));

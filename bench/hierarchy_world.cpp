@@ -1,6 +1,6 @@
 // What a world's commits cost while its objects come, move and go, and what queries of it cost then.
 // SPDX-License-Identifier: MIT
-#include "bench/hierarchy_world.h"
+#include "bench/cases.h"
 
 #include "bench/stopwatch.h"
 #include "bench/swarm.h"
@@ -49,8 +49,7 @@ void addQueries(Table& table, const Living& living, const std::string& where, in
     Query query;
     for (const bool near : {false, true}) {
         const View view = viewFrom(near ? 0.2 * kWorld : std::numeric_limits<double>::infinity());
-        QuerySettings settings;
-        settings.stages = stageBit(Stage::kFrustum);
+        QuerySettings settings{.stages = stageBit(Stage::kFrustum)};
         size_t kept = 0;
         const std::vector<double> times =
             threadTimes({[&] { kept = query.visible(living.held, view, settings).objects.size(); },

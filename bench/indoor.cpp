@@ -103,10 +103,8 @@ private:
         if (way.stages == kSightLines) {
             asked = threadTimes({[&] { askSightLines(eye, kept); }}, repeat)[0];
         } else if (way.stages != 0) {
-            QuerySettings settings;
-            settings.stages = way.stages;
             VisibleSet set;
-            asked = threadTimes({[&] { set = query_.visible(now_, eye, settings); }}, repeat)[0];
+            asked = threadTimes({[&] { set = query_.visible(now_, eye, {.stages = way.stages}); }}, repeat)[0];
             for (const Visible& object : set.objects) kept[object.id.index - 1] = 1;  // objects enter in their order
         }
         way.query += asked * share;
@@ -175,10 +173,7 @@ Table benchIndoor(const Options& options) {
     };
     indoor.measure(ways, options.repeat > 0 ? options.repeat : 3);
     const Way &all = ways[0], &in_view = ways[1];
-    const auto row = [&](const std::string& what, double value, const char* unit, const char* baseline, double base,
-                         const std::string& note = {}) {
-        table.rows.push_back({world.name, what, value, unit, baseline, base, note});
-    };
+    const Rows row{table, world.name};
     for (const Way& way : ways) {
         const std::string name = way.name;
         row(name + ": triangles", way.triangles, "triangles", "all", all.triangles,

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <map>
 
 #include <fmt/format.h>
 
 #include "bench/cases.h"
-#include "bench/stopwatch.h"
-#include "sightline/query/query.h"
+#include "bench/path_costs.h"
 #include "sightline/tools/load/load_world.h"
 #include "sightline/tools/load/seeded_cameras.h"
 
@@ -71,38 +69,6 @@ Scene field() {
     return scene;
 }
 
-/// Means over the frames, of medians over the rounds. Times are the thread's own.
-struct Answer {
-    double time = 0;  ///< [microseconds]
-    double triangles = 0, kept = 0;
-};
-
-std::vector<Answer> measure(const Snapshot& now, const CameraPath& path, const std::vector<double>& errors,
-                            int repeat) {
-    std::vector<Answer> answers(errors.size());
-    Query query;
-    for (const CameraFrame& frame : path.frames) {
-        std::vector<QueryStats> stats(errors.size());
-        std::vector<std::function<void()>> jobs;
-        for (size_t i = 0; i < errors.size(); ++i)
-            jobs.push_back([&, i] {
-                const View view = makeView(frame, 1280, 720);
-                QuerySettings settings;
-                settings.occluder_error = errors[i];
-                stats[i] = query.visible(now, view, settings).stats;
-            });
-        const std::vector<double> times = threadTimes(jobs, repeat);
-        for (size_t i = 0; i < errors.size(); ++i) {
-            answers[i].time += times[i];
-            answers[i].triangles += static_cast<double>(stats[i].occluder_triangles);
-            answers[i].kept += static_cast<double>(stats[i].visible);
-        }
-    }
-    for (Answer& a : answers)
-        for (double* value : {&a.time, &a.triangles, &a.kept}) *value /= static_cast<double>(path.frames.size());
-    return answers;
-}
-
 }  // namespace
 
 Table benchInner(const Options& options) {
@@ -117,17 +83,17 @@ Table benchInner(const Options& options) {
     table.rows.push_back({scene.name, "preparing, with simpler occluders", (with - without) * 1e-3, "ms",
                           "prepareOccluder() alone", (without - start) * 1e-3});
     const CameraPath path = seededCameras(scene, kFrames, 1);
-    std::vector<double> errors{0.0};
-    errors.insert(errors.end(), std::begin(kErrors), std::end(kErrors));
-    const std::vector<Answer> answers = measure(loaded.world.commit(), path, errors, repeat);
-    for (size_t i = 1; i < errors.size(); ++i) {
+    std::vector<QuerySettings> choices{{.occluder_error = 0.0}};
+    for (const double error : kErrors) choices.push_back({.occluder_error = error});
+    const std::vector<SettingsCost> costs = costsAlong(path, loaded.world.commit(), choices, repeat);
+    for (size_t i = 1; i < costs.size(); ++i) {
         const auto row = [&](const char* what, double value, const char* unit, double base) {
-            table.rows.push_back({scene.name, fmt::format("{}, error {} pixels", what, errors[i]), value, unit,
-                                  "the mesh's own polygons", base});
+            table.rows.push_back({scene.name, fmt::format("{}, error {} pixels", what, choices[i].occluder_error),
+                                  value, unit, "the mesh's own polygons", base});
         };
-        row("query", answers[i].time, "us", answers[0].time);
-        row("triangles drawn", answers[i].triangles, "triangles", answers[0].triangles);
-        row("kept", answers[i].kept, "objects", answers[0].kept);
+        row("query", costs[i].time, "us", costs[0].time);
+        row("triangles drawn", costs[i].occluder_triangles, "triangles", costs[0].occluder_triangles);
+        row("kept", costs[i].kept, "objects", costs[0].kept);
     }
     return table;
 }

@@ -6,7 +6,7 @@
 
 #include "sightline/bsp/tree_portals.h"
 #include "sightline/geom/convex_region.h"
-#include "sightline/tools/scene/text_file.h"
+#include "sightline/tools/import/quake/map_source.h"
 
 namespace sightline::bench {
 using namespace tools;
@@ -40,16 +40,11 @@ void boundLeaves(const LeafTree& tree, MapCells& cells) {
 }  // namespace
 
 bool readMapCells(const std::string& path, MapCells& cells) {
-    const Result<std::string> text = readTextFile(path);
-    if (!text) return false;
-    Result<QuakeMapFile> map =
-        parseQuakeBsp({reinterpret_cast<const unsigned char*>(text->data()), text->size()}, path);
+    Result<QuakeMapFile> map = readQuakeMap(path);
     if (!map) return false;
     cells.map = std::move(*map);
-    TreePortalSettings settings;
-    settings.contents_stop = true;
     TreePortalCounts counts;
-    cells.space.graph = cellsOfTree(cells.map.tree, settings, &counts);
+    cells.space.graph = cellsOfTree(cells.map.tree, {.contents_stop = true}, &counts);
     cells.space.tree = cells.map.tree;
     cells.space.tolerance = counts.tolerance;
     cells.bounds.assign(cells.space.graph.cells, {});

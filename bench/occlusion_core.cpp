@@ -1,6 +1,6 @@
 // The occlusion buffer by itself on scenes made for it: drawing, asking boxes, how tight and sound the answers are.
 // SPDX-License-Identifier: MIT
-#include "bench/occlusion_core.h"
+#include "bench/cases.h"
 
 #include <algorithm>
 #include <bit>
@@ -137,9 +137,7 @@ private:
 };
 
 void addRows(const std::string& where, const Figures& sum, double views, Table& table) {
-    const auto add = [&](const char* what, double value, const char* unit, const char* baseline, double other) {
-        table.rows.push_back({where, what, value, unit, baseline, other});
-    };
+    const Rows add{table, where};
     const double per_box = 1e3 / std::max(sum.boxes, 1.0);
     add("rasterize", sum.draw / views * 1e-3, "ms", "scalar z-buffer in double", sum.draw_plain / views * 1e-3);
     add("rasterize", sum.draw / views * 1e-3, "ms", "without self-test", sum.draw_all / views * 1e-3);

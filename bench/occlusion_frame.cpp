@@ -90,8 +90,7 @@ OcclusionFrame::OcclusionFrame(const OcclusionScene& scene)
       flat_boxes_(inOrder(scene, morton_)) {
     std::vector<OccluderSource> sources;
     for (const OccluderBatch& batch : scene.batches) sources.push_back({batch.mesh(), {}, {}});
-    OccluderSettings settings;
-    settings.rings = scene.batches_are != BatchesAre::kApart;
+    OccluderSettings settings{.rings = scene.batches_are != BatchesAre::kApart};
     if (scene.batches_are == BatchesAre::kPanels) occluders_.push_back(prepareJoined(sources, settings));
     else if (scene.batches_are == BatchesAre::kOneSurface) occluders_ = prepareOccluders(sources, settings);
     else

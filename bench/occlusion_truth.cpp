@@ -153,9 +153,7 @@ std::vector<BoxSighting> sightBoxes(const OcclusionScene& scene, std::span<const
         fault.guard([&] {
             std::vector<First>& mine = found[thread];
             for (size_t part; (part = next++) < parts && !fault.any();) {
-                ZBufferSettings pass;
-                pass.samples = settings.supersampling;
-                pass.want_generated = false;
+                ZBufferSettings pass{.samples = settings.supersampling, .want_generated = false};
                 pass.offset = shifts[part / bands];
                 pass.first_row = static_cast<uint32_t>(part % bands * band);
                 pass.row_count = static_cast<uint32_t>(band);
@@ -195,9 +193,7 @@ std::vector<uint8_t> boxesInSight(const OcclusionScene& scene, std::span<const u
 }
 
 ZBufferImage drawBatches(const OcclusionScene& scene, std::span<const uint32_t> batches, const View& view) {
-    ZBufferSettings settings;
-    settings.want_generated = false;
-    return renderZBuffer(batchItems(scene, batches), view, settings);
+    return renderZBuffer(batchItems(scene, batches), view, {.want_generated = false});
 }
 
 bool isBehind(const ZBufferImage& image, const PixelRect& rect) {

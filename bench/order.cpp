@@ -90,8 +90,7 @@ void addMethods(const std::string& where, const std::vector<DrawItem>& items, co
                 Table& table) {
     const DrawList list(items);
     HiddenImage newell, warnock, rays;
-    ZBufferSettings plain;
-    plain.want_generated = false;
+    ZBufferSettings plain{.want_generated = false};
     // Without what can be kept from frame to frame: trees and hierarchies.
     uint64_t tree_time = ~0ull, ray_time = ~0ull, embree_time = ~0ull;
     const auto keepLeast = [](uint64_t& least, const HiddenImage& image) {
@@ -107,9 +106,7 @@ void addMethods(const std::string& where, const std::vector<DrawItem>& items, co
          },
          [&] { keepLeast(embree_time, draw(list, view, HiddenMethod::kRaycast, RayTracer::kEmbree)); }},
         repeat);
-    const auto row = [&](const char* what, double value, const char* unit, const char* baseline, double base) {
-        table.rows.push_back({where, what, value, unit, baseline, base});
-    };
+    const Rows row{table, where};
     row("newell", times[0] * 1e-3, "ms", "painter", times[1] * 1e-3);
     row("newell", times[0] * 1e-3, "ms", "plain z-buffer", times[3] * 1e-3);
     row("newell", times[0] * 1e-3, "ms", "BSP tree, back to front", double(tree_time) * 1e-6);

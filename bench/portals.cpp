@@ -76,13 +76,8 @@ Ways timeViews(const std::vector<View>& views, int repeat, Run run) {
 
 void measureMap(const std::string& name, const MapCells& cells, int repeat, Table& table) {
     const CellGraph& graph = cells.space.graph;
-    const auto row = [&](const std::string& what, double value, const char* unit, const std::string& baseline,
-                         double base, const std::string& note = {}) {
-        table.rows.push_back({name, what, value, unit, baseline, base, note});
-    };
-    TreeRaySettings through;
-    through.contents_stop = true;
-    const TreeRays rays(cells.map.tree, through);
+    const Rows row{table, name};
+    const TreeRays rays(cells.map.tree, {.contents_stop = true});
     const PortalGraph portals(cells.space);
     std::vector<View> views = playerViews(cells, rays, kViews, 1);
     PortalFlood flood;

@@ -1,6 +1,6 @@
 // One query shared by several threads, beside the same on one.
 // SPDX-License-Identifier: MIT
-#include "bench/query_threads.h"
+#include "bench/cases.h"
 
 #include "bench/stopwatch.h"
 #include "sightline/base/thread_pool.h"
@@ -29,8 +29,7 @@ void measureQueryThreads(const Scene& scene, const CameraPath& path, const std::
     Cost sum;
     for (const CameraFrame& frame : path.frames) {
         const View view = makeView(frame, kWidth, kHeight);
-        QuerySettings halves;
-        halves.bins = 2;
+        QuerySettings halves{.bins = 2};
         const std::vector<double> times =
             timeInterleaved({[&] { whole.visible(now, view); }, [&] { one.visible(now, view, halves); },
                              [&] { two.visible(now, view, halves); }},
@@ -40,9 +39,7 @@ void measureQueryThreads(const Scene& scene, const CameraPath& path, const std::
         sum.two += times[2];
     }
     const double n = static_cast<double>(path.frames.size());
-    const auto add = [&](const char* what, double value, const char* baseline, double other) {
-        table.rows.push_back({where, what, value / n, "us", baseline, other / n});
-    };
+    const Rows add{table, where, "us", 1.0 / n};
     add("query in 2 bins, 1 worker", sum.one, "in 1 bin", sum.whole);
     add("query in 2 bins, 2 workers", sum.two, "in 1 bin, 1 worker", sum.whole);
     add("query in 2 bins, 2 workers", sum.two, "in 2 bins, 1 worker", sum.one);

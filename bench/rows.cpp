@@ -9,9 +9,9 @@
 #include "bench/cases.h"
 #include "bench/stopwatch.h"
 #include "sightline/base/random.h"
+#include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/import/quake/prt.h"
 #include "sightline/tools/import/quake/quake_visibility.h"
-#include "sightline/tools/scene/text_file.h"
 #include "sightline/visfile/visibility_file.h"
 
 namespace sightline::bench {
@@ -63,10 +63,7 @@ struct Question {
 };
 
 void measurePvs(const Pvs& pvs, int repeat, Table& table) {
-    const auto row = [&](const char* what, double value, const char* unit, const char* baseline, double base,
-                         const std::string& note = {}) {
-        table.rows.push_back({pvs.name, what, value, unit, baseline, base, note});
-    };
+    const Rows row{table, pvs.name};
     const uint32_t cells = static_cast<uint32_t>(pvs.visible.rows());
     const auto leaves = static_cast<uint32_t>(pvs.cell_of_leaf.size() - 1);
     const QuakeVisibilityLump lump = packQuakeVisibility(QuakeFormat::kQuake, leafRows(pvs));
@@ -131,12 +128,9 @@ void measurePvs(const Pvs& pvs, int repeat, Table& table) {
 /// @returns false if a file is not there
 bool takeMap(const std::string& folder, const std::string& name, Pvs& pvs) {
     const std::string bsp = folder + name + ".vis.bsp", prt = folder + name + ".prt";
-    const Result<std::string> text = readTextFile(bsp);
     const Result<CellGraph> graph = readPrt(prt);
-    if (!text || !graph) return false;
-    const auto* bytes = reinterpret_cast<const unsigned char*>(text->data());
-    const Result<QuakeMapFile> map = parseQuakeBsp({bytes, text->size()}, bsp);
-    if (!map) return false;
+    const Result<QuakeMapFile> map = readQuakeMap(bsp);
+    if (!graph || !map) return false;
     const Result<QuakeVisibility> visibility = readQuakeVisibility(*map, bsp);
     if (!visibility) return false;
     pvs.name = name;

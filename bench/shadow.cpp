@@ -86,8 +86,7 @@ Sums measure(const Scene& scene, const Snapshot& now, const CameraPath& path, do
     for (size_t frame = 0; frame < path.frames.size(); ++frame) {
         const View view = makeView(path.frames[frame], kWidth, kHeight);
         const glm::dvec3 sun = sunAt(elevation, 30.0 + 45.0 * static_cast<double>(frame));
-        Light light;
-        light.direction = -sun;
+        Light light{.direction = -sun};
         CasterSettings settings;
         const double texel = coarsestTexel(scene, view, sun);
         settings.filter = 2.0 * texel;
@@ -125,15 +124,14 @@ Table benchShadow(const Options& options) {
         const Sums sums = measure(scene, now, path, elevation, options.repeat ? options.repeat : 5);
         const std::string where = fmt::format("{}, sun {:.0f} degrees high", scene.name, elevation);
         const char* const light = "in the light's frustum";
-        table.rows.push_back({where, "casters kept", sums.kept / n, "objects", light, sums.in_light / n});
-        table.rows.push_back(
-            {where, "casters kept by the mask alone", sums.by_mask / n, "objects", light, sums.in_light / n});
-        table.rows.push_back({where, "beside all receivers", sums.beside / n, "objects", light, sums.in_light / n});
-        table.rows.push_back({where, "behind all receivers", sums.behind / n, "objects", light, sums.in_light / n});
-        table.rows.push_back(
-            {where, "in the shadow of others", sums.in_shadow / n, "objects", light, sums.in_light / n});
-        table.rows.push_back({where, "time", sums.time / n, "us", "", 0});
-        table.rows.push_back({where, "pixels lit otherwise", sums.changed, "pixels", "in shadow", sums.darkened});
+        const Rows row{table, where};
+        row("casters kept", sums.kept / n, "objects", light, sums.in_light / n);
+        row("casters kept by the mask alone", sums.by_mask / n, "objects", light, sums.in_light / n);
+        row("beside all receivers", sums.beside / n, "objects", light, sums.in_light / n);
+        row("behind all receivers", sums.behind / n, "objects", light, sums.in_light / n);
+        row("in the shadow of others", sums.in_shadow / n, "objects", light, sums.in_light / n);
+        row("time", sums.time / n, "us", "", 0);
+        row("pixels lit otherwise", sums.changed, "pixels", "in shadow", sums.darkened);
         if (sums.changed > 0)
             table.faults.push_back(fmt::format("bench shadow: {}: {:.0f} of {:.0f} pixels are lit otherwise", where,
                                                sums.changed, sums.points));

@@ -1,6 +1,6 @@
 // Classifying many small polygons at once, by itself, on the clusters of a soup of triangles.
 // SPDX-License-Identifier: MIT
-#include "bench/small_polygons.h"
+#include "bench/cases.h"
 
 #include <algorithm>
 #include <limits>
@@ -119,10 +119,11 @@ void measureSoup(SoupSize size, int repeat, Table& table) {
         both.back() -= snap.back();
     }
     const std::string where = scene.name + " 1280x720";
-    table.rows.push_back({where, "small polygons, ns each", medianOf(inner), "ns", "with outer masks", medianOf(both)});
-    table.rows.push_back({where, "small polygons, snapping", medianOf(snap), "ns", "classifying", medianOf(inner)});
-    table.rows.push_back({where, "small polygons, tiles each", records / (polygons - large), "tiles",
-                          "left to be drawn one by one, %", 100 * large / polygons});
+    const Rows row{table, where};
+    row("small polygons, ns each", medianOf(inner), "ns", "with outer masks", medianOf(both));
+    row("small polygons, snapping", medianOf(snap), "ns", "classifying", medianOf(inner));
+    row("small polygons, tiles each", records / (polygons - large), "tiles", "left to be drawn one by one, %",
+        100 * large / polygons);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "sightline/tools/profile/machine.h"
+#include "sightline/tools/profile/facing_costs.h"
 
 namespace sightline::bench {
 using namespace tools;

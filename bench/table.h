@@ -27,6 +27,23 @@ struct Table {
     std::vector<std::string> faults = {};  ///< of a proof that was asked for, a line each; none: it holds
 };
 
+/// Adds the rows of one case.
+struct Rows {
+    Table& table;
+    std::string where;
+    std::string unit = {};  ///< of values that come without one
+    double scale = 1;       ///< of these
+
+    void operator()(const std::string& what, double value, const std::string& of, const std::string& baseline,
+                    double base, const std::string& note = {}) const {
+        table.rows.push_back({where, what, value, of, baseline, base, note});
+    }
+    void operator()(const std::string& what, double value, const std::string& baseline, double base,
+                    const std::string& note = {}) const {
+        (*this)(what, value * scale, unit, baseline, base * scale, note);
+    }
+};
+
 /// Aligned columns for a reader.
 std::string toText(const Table& table);
 

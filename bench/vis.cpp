@@ -48,10 +48,7 @@ CellGraph gridOfRooms(uint32_t side, uint32_t floors) {
 }
 
 void measure(const std::string& name, const CellGraph& graph, int repeat, Table& table) {
-    const auto row = [&](const char* what, double value, const char* unit, const char* baseline, double base,
-                         const std::string& note = {}) {
-        table.rows.push_back({name, what, value, unit, baseline, base, note});
-    };
+    const Rows row{table, name};
     const auto pairsOf = [&](const BitMatrix& rows) { return static_cast<double>(rows.count() - graph.cells); };
     CellVisibility answer;
     std::vector<double> times;
@@ -65,8 +62,7 @@ void measure(const std::string& name, const CellGraph& graph, int repeat, Table&
                                        graph.cells, graph.portals.size(),
                                        100.0 * classic.flowed / (2.0 * static_cast<double>(graph.portals.size())));
     row("bake, one thread", medianOf(times), "ms", "classic flow", classic.milliseconds, note);
-    row("steps", static_cast<double>(answer.steps), "portals clipped", "classic flow",
-        static_cast<double>(classic.steps));
+    row("steps", answer.steps, "portals clipped", "classic flow", classic.steps);
     if (classic.finished)
         row("visible pairs", pairsOf(answer.visible), "pairs", "classic flow", pairsOf(classic.visible));
     const double visible = pairsOf(answer.visible), witnessed = pairsOf(answer.witnessed);
@@ -88,7 +84,7 @@ void measure(const std::string& name, const CellGraph& graph, int repeat, Table&
     uint64_t lacks = 0;
     for (size_t r = 0; r < graph.cells; ++r)
         for (size_t c = 0; c < graph.cells; ++c) lacks += answer.witnessed.at(r, c) && !classic.visible.at(r, c);
-    row("witnessed pairs that classic flow lacks", static_cast<double>(lacks), "pairs", "witnessed", witnessed);
+    row("witnessed pairs that classic flow lacks", lacks, "pairs", "witnessed", witnessed);
 }
 
 }  // namespace

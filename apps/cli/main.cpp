@@ -9,7 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "apps/cli/shell/fault.h"
+#include "apps/cli/shell/session.h"
 #include "apps/cli/shell/tool.h"
 
 namespace sightline::cli {

@@ -1,25 +1,72 @@
 // sightline-import: reads a file with Assimp, under limits, and writes the scene to standard output as a stream.
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <fcntl.h>
 #include <new>
 #include <string>
 #include <string_view>
-
-#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/types.h>
 #include <unistd.h>
 
 #include "apps/import/fault.h"
-#include "apps/import/limits.h"
 #include "apps/import/send_scene.h"
 #include "sightline/tools/import/foreign/scene_stream.h"
 
 namespace sightline::import {
 using namespace tools;
 namespace {
+
+// What the reader of foreign formats may take: memory, time, and no longer than who asked for it.
+
+struct Limits {
+    uint64_t memory = 0;   ///< address space [bytes]; 0: no limit
+    uint64_t seconds = 0;  ///< of the processor; 0: no limit
+    pid_t parent = 0;      ///< the process ends with this one; 0: with none
+};
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+#else
+constexpr bool kSanitized = false;
+#endif
+
+void limit(decltype(RLIMIT_AS) what, rlim_t most) {
+    rlimit now{};
+    if (getrlimit(what, &now) != 0) return;
+    if (now.rlim_max != RLIM_INFINITY) most = std::min(most, now.rlim_max);
+    now.rlim_cur = most;
+    now.rlim_max = most;
+    setrlimit(what, &now);
+}
+
+/// Sets them for this process, for good. Also: no core files, no files written, and an allocation that fails ends the
+/// process with kImportOutOfMemory. Memory is not limited in builds with address or thread sanitizers, which reserve all of it.
+void setLimits(const Limits& limits) {
+    if (limits.parent != 0) {
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (getppid() != limits.parent) _exit(1);  // it ended before we could ask
+    }
+    limit(RLIMIT_CORE, 0);
+    limit(RLIMIT_FSIZE, 0);
+    if (limits.memory != 0 && !kSanitized) limit(RLIMIT_AS, limits.memory);
+    if (limits.seconds != 0) limit(RLIMIT_CPU, limits.seconds + 1);
+    std::set_new_handler([] { _exit(kImportOutOfMemory); });
+}
 
 constexpr const char* kUsage =
     "usage: sightline-import [--memory BYTES] [--time SECONDS] [--parent PID] --format SUFFIX -- FILE\n"

@@ -3,32 +3,175 @@
 #include "apps/import/send_scene.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/ProgressHandler.hpp>
 #include <assimp/config.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include "apps/import/fault.h"
-#include "apps/import/file_access.h"
 #include "apps/import/ifc_rewrite.h"
 #include "apps/import/materials.h"
 #include "apps/import/placement.h"
 #include "apps/import/poses.h"
 #include "apps/import/triangles.h"
-#include "apps/import/warnings.h"
+#include "sightline/tools/import/foreign/scene_stream.h"
 #include "sightline/tools/import/scene_kind.h"
 
 namespace sightline::import {
 using namespace tools;
 namespace {
+
+// What Assimp says of a file that it nevertheless reads: what is missing or was left out.
+
+/// Listens from its construction on; one at a time.
+class Warnings {
+public:
+    Warnings();
+    ~Warnings();
+    Warnings(const Warnings&) = delete;
+    Warnings& operator=(const Warnings&) = delete;
+
+    /// Takes down one line, if it tells of geometry or materials that are not there.
+    void hear(std::string line);
+    /// A note for each kind of thing that is missing, up to eight, with how often.
+    void send(SceneStreamWriter& out) const;
+
+private:
+    std::map<std::string, uint64_t> heard_;
+};
+
+constexpr size_t kMostKinds = 1000, kMostNotes = 8;
+
+class Ear : public Assimp::LogStream {
+public:
+    explicit Ear(Warnings& warnings) : warnings_(warnings) {}
+    void write(const char* message) override { warnings_.hear(message); }
+
+private:
+    Warnings& warnings_;
+};
+
+/// "Warn,  T0: text\n" without what stands around the text, and without numbers that differ from line to line.
+std::string plain(std::string line) {
+    if (const size_t colon = line.find(": "); colon != std::string::npos && colon < 16) line.erase(0, colon + 2);
+    if (const size_t id = line.find(" id is "); id != std::string::npos) line.resize(id);
+    while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) line.pop_back();
+    return line;
+}
+
+bool tellsOfLoss(std::string_view line) {
+    // Of things that are not taken anyway, and of versions that are read nevertheless.
+    for (const char* word :
+         {"LayerElement", "newer format version", "CONTENT_TYPES", "texture", "Texture", "animation"})
+        if (line.find(word) != std::string_view::npos) return false;
+    for (const char* word : {"skipping", "Skipping", "skipped", "Unable to locate material", "failed to", "Failed to",
+                             "could not", "unsupported", "Unsupported", "not supported", "ignoring", "too many"})
+        if (line.find(word) != std::string_view::npos) return true;
+    return false;
+}
+
+Warnings::Warnings() {
+    Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
+    Assimp::DefaultLogger::get()->attachStream(new Ear(*this), Assimp::Logger::Warn | Assimp::Logger::Err);
+}
+
+Warnings::~Warnings() { Assimp::DefaultLogger::kill(); }
+
+void Warnings::hear(std::string line) {
+    line = plain(std::move(line));
+    if (tellsOfLoss(line) && (heard_.size() < kMostKinds || heard_.count(line))) ++heard_[line];
+}
+
+void Warnings::send(SceneStreamWriter& out) const {
+    size_t sent = 0;
+    for (const auto& [line, times] : heard_) {
+        if (sent++ == kMostNotes) {
+            out.note(fmt::format("and {} more of this kind", heard_.size() - kMostNotes));
+            return;
+        }
+        out.note(times == 1 ? line : fmt::format("{} ({} times)", line, times));
+    }
+}
+
+// Assimp's view of the disk: regular files alone, read-only, the scene's file under the suffix of its format.
+
+class FileAccess : public Assimp::DefaultIOSystem {
+public:
+    /// @param suffix  by which Assimp knows the format: "obj"
+    FileAccess(std::string file, const std::string& suffix);
+
+    /// The name to give to Assimp: the file's own, with another suffix where its own is not the format's.
+    const std::string& alias() const { return alias_; }
+
+    /// All of the file. Throws a Fault if it cannot be read.
+    std::string text() const;
+    /// From now on the file holds this.
+    void replace(std::string text) { text_ = std::move(text); }
+
+    bool Exists(const char* name) const override;
+    Assimp::IOStream* Open(const char* name, const char* mode) override;
+
+private:
+    std::string realName(const char* name) const;
+
+    std::string file_, alias_;
+    std::string text_;  ///< instead of the file's own, unless empty
+};
+
+namespace fs = std::filesystem;
+
+FileAccess::FileAccess(std::string file, const std::string& suffix) : file_(std::move(file)) {
+    fs::path alias = file_;
+    if (!alias.has_parent_path()) alias = fs::path(".") / alias;
+    std::string own = alias.extension().string();
+    std::transform(own.begin(), own.end(), own.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (own != "." + suffix) alias.replace_extension(suffix);
+    alias_ = alias.string();
+}
+
+std::string FileAccess::text() const {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file_.c_str(), "rb"), &std::fclose);
+    if (!stream) throw Fault{"cannot be opened"};
+    std::error_code ignored;
+    std::string out(fs::file_size(file_, ignored), '\0');
+    if (ignored) throw Fault{"cannot be read"};
+    out.resize(std::fread(out.data(), 1, out.size(), stream.get()));
+    return out;
+}
+
+std::string FileAccess::realName(const char* name) const { return name == alias_ ? file_ : name; }
+
+bool FileAccess::Exists(const char* name) const {
+    std::error_code ignored;
+    return fs::is_regular_file(realName(name), ignored);
+}
+
+Assimp::IOStream* FileAccess::Open(const char* name, const char* mode) {
+    if (std::strpbrk(mode, "wa+") || !Exists(name)) return nullptr;
+    if (!text_.empty() && name == alias_)
+        return new Assimp::MemoryIOStream(reinterpret_cast<const uint8_t*>(text_.data()), text_.size());
+    return DefaultIOSystem::Open(realName(name).c_str(), mode);
+}
 
 constexpr uint64_t kSteps = 100, kReadSteps = 60;  ///< of progress; reading is most of it
 

@@ -35,10 +35,8 @@ TEST(BoxTruth, DoesNotDependOnBands) {
     OcclusionFrame frame(scene);
     const View view = occlusionView(scene, 1, 160, 90);
     frame.begin(view);
-    BoxTruthSettings bands;
-    bands.band_samples = 160 * 4 * 50;
     EXPECT_EQ(boxesInSight(scene, frame.batches(), frame.boxes(), view, {}),
-              boxesInSight(scene, frame.batches(), frame.boxes(), view, bands));
+              boxesInSight(scene, frame.batches(), frame.boxes(), view, {.band_samples = 160 * 4 * 50}));
 }
 
 // Most boxes are passed over by the farthest depths of the picture's parts. The plain way is to draw each of them.
@@ -65,10 +63,8 @@ TEST(BoxTruth, SeesWhatAPlainZBufferShowsAndSaysWhere) {
         item.writes_depth = kNeverWrites;
         item.id = static_cast<uint32_t>(i) + 1;
     }
-    BoxTruthSettings settings;
-    settings.supersampling = 2;
-    ZBufferSettings plain;
-    plain.samples = 2;
+    BoxTruthSettings settings{.supersampling = 2};
+    ZBufferSettings plain{.samples = 2};
     Random random(settings.seed);
     plain.offset.x = random.uniform(-0.5, 0.5) / 2;
     plain.offset.y = random.uniform(-0.5, 0.5) / 2;
@@ -102,9 +98,7 @@ TEST(BoxTruth, IsTheSameForAnyNumberOfThreads) {
     OcclusionFrame frame(scene);
     const View view = occlusionView(scene, 1, 160, 90);
     frame.begin(view);
-    BoxTruthSettings settings;
-    settings.jitters = 5;
-    settings.band_samples = 640 * 100;
+    BoxTruthSettings settings{.jitters = 5, .band_samples = 640 * 100};
     const std::vector<BoxSighting> one = sightBoxes(scene, frame.batches(), frame.boxes(), view, settings);
     settings.threads = 3;
     const std::vector<BoxSighting> three = sightBoxes(scene, frame.batches(), frame.boxes(), view, settings);
@@ -121,10 +115,8 @@ TEST(BoxTruth, SeesMoreThroughSlitsWithMoreSamplesAndJitters) {
     const View view = occlusionView(scene, 0, 320, 180);
     frame.begin(view);
     const auto count = [&](uint32_t samples, uint32_t jitters) {
-        BoxTruthSettings settings;
-        settings.supersampling = samples;
-        settings.jitters = jitters;
-        const std::vector<uint8_t> seen = boxesInSight(scene, frame.batches(), frame.boxes(), view, settings);
+        const std::vector<uint8_t> seen =
+            boxesInSight(scene, frame.batches(), frame.boxes(), view, {.supersampling = samples, .jitters = jitters});
         return std::accumulate(seen.begin(), seen.end(), 0);
     };
     EXPECT_LT(count(1, 1), count(4, 1));

@@ -54,10 +54,7 @@ uint64_t expectOrders(const Walked& tree, const BspTree& arrays, const BspOverla
 TEST(Bsp, KeepsEveryPolygonsAreaInSoundNodes) {
     for (uint64_t seed = 1; seed <= 6; ++seed) {
         const BspPolygons polygons = randomTriangles(seed, 300, seed % 2 ? 0.1 : 0.6);
-        BspSettings settings;
-        settings.axis_planes = seed % 3 != 0;
-        settings.seed = seed;
-        const BspTree tree = buildBsp(polygons, settings);
+        const BspTree tree = buildBsp(polygons, {.axis_planes = seed % 3 != 0, .seed = seed});
         expectSound(tree, polygons);
         const BspStatistics statistics = statisticsOf(tree);
         EXPECT_EQ(statistics.polygons, 300u);
@@ -228,9 +225,7 @@ TEST(Bsp, ChoosesSplittersThatSplitLess) {
 
 TEST(Bsp, AListForATreeOverflowsNothing) {
     const BspPolygons polygons = convexFaces(45);
-    BspSettings settings;
-    settings.axis_planes = false;
-    const BspTree list = buildBsp(polygons, settings);
+    const BspTree list = buildBsp(polygons, {.axis_planes = false});
     const BspStatistics of_list = statisticsOf(list);
     EXPECT_EQ(of_list.depth, of_list.nodes);
     EXPECT_EQ(of_list.splits, 0u);
@@ -250,8 +245,7 @@ TEST(Bsp, AListForATreeOverflowsNothing) {
 TEST(Bsp, StandsAnyInput) {
     for (uint64_t seed = 1; seed <= 40; ++seed) {
         const BspPolygons polygons = degenerateMix(seed, 120);
-        BspSettings settings;
-        settings.axis_planes = seed % 2;
+        BspSettings settings{.axis_planes = seed % 2 != 0};
         settings.candidates = 1 + static_cast<uint32_t>(seed % 5);
         BspTree tree = buildBsp(polygons, settings);
         SCOPED_TRACE("seed " + std::to_string(seed));

@@ -12,10 +12,7 @@ namespace sightline::test {
 using namespace tools;
 
 inline void addRegion(CellSpace& space, const Box3d& box) {
-    CellRegion region;
-    region.first_plane = static_cast<uint32_t>(space.planes.size());
-    region.plane_count = 6;
-    region.bounds = box;
+    CellRegion region{.first_plane = static_cast<uint32_t>(space.planes.size()), .plane_count = 6, .bounds = box};
     for (int axis = 0; axis < 3; ++axis) {
         glm::dvec4 plane(0.0);
         plane[axis] = 1;

@@ -36,12 +36,10 @@ uint32_t groupOfLeaf(const CellGraph& graph, const OpenGroups& groups, uint32_t 
 }
 
 TEST(OpenGroups, JoinOverALowWallAndNotOverAHighOne) {
-    OpenGroupSettings settings;
-    settings.largest = 2;
     for (const double wall : {0.5, 3.5}) {
         const LeafTree tree = dividedRoom(wall);
         const CellGraph graph = cellsOfTree(tree);
-        const OpenGroups groups = groupOpenCells(tree, graph, settings);
+        const OpenGroups groups = groupOpenCells(tree, graph, {.largest = 2});
         EXPECT_EQ(groupOfLeaf(graph, groups, 1), groupOfLeaf(graph, groups, 2));
         EXPECT_EQ(groupOfLeaf(graph, groups, 3) == groupOfLeaf(graph, groups, 1), wall < 2) << wall;
     }
@@ -50,9 +48,7 @@ TEST(OpenGroups, JoinOverALowWallAndNotOverAHighOne) {
 TEST(OpenGroups, AreNoLargerThanAsked) {
     const LeafTree tree = dividedRoom(0.5);
     const CellGraph graph = cellsOfTree(tree);
-    OpenGroupSettings settings;
-    settings.largest = 0.01;
-    EXPECT_EQ(groupOpenCells(tree, graph, settings).groups, graph.cells);
+    EXPECT_EQ(groupOpenCells(tree, graph, {.largest = 0.01}).groups, graph.cells);
 }
 
 TEST(OpenGroups, GiveEachCellOneOfTheGroups) {
@@ -60,9 +56,7 @@ TEST(OpenGroups, GiveEachCellOneOfTheGroups) {
         const LeafTree tree = randomLeafTree(seed, 8);
         const CellGraph graph = cellsOfTree(tree);
         for (const double openness : {0.0, 0.5, 1.0}) {
-            OpenGroupSettings settings;
-            settings.openness = openness;
-            const OpenGroups groups = groupOpenCells(tree, graph, settings);
+            const OpenGroups groups = groupOpenCells(tree, graph, {.openness = openness});
             ASSERT_EQ(groups.group_of_cell.size(), graph.cells);
             const std::set<uint32_t> used(groups.group_of_cell.begin(), groups.group_of_cell.end());
             EXPECT_EQ(used.size(), groups.groups) << seed;
@@ -86,10 +80,7 @@ TEST(JoinPortals, HoldAllThatTheyAreMadeOf) {
     for (uint64_t seed = 1; seed <= 60; ++seed) {
         const LeafTree tree = randomLeafTree(seed, 8, glm::dvec3(0.0), false);
         const CellGraph cells = cellsOfTree(tree);
-        OpenGroupSettings settings;
-        settings.openness = 0.1;
-        settings.largest = 1;
-        const OpenGroups groups = groupOpenCells(tree, cells, settings);
+        const OpenGroups groups = groupOpenCells(tree, cells, {.openness = 0.1, .largest = 1});
         const CellGraph merged = mergeCells(cells, groups.group_of_cell, groups.groups);
         const CellGraph joined = joinPortals(merged);
         EXPECT_EQ(joined.cells, merged.cells);

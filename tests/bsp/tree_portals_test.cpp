@@ -95,8 +95,7 @@ TEST(TreePortals, HoldEveryCrossing) {
     for (uint64_t seed = 1; seed <= 40; ++seed) {
         const glm::dvec3 center = seed % 4 == 0 ? glm::dvec3(10000, -3000, 777) : glm::dvec3(0.0);
         const LeafTree tree = randomLeafTree(seed, 5 + static_cast<int>(seed % 7), center);
-        const TreePortalSettings settings{.sky_is_open = seed % 3 == 0};
-        const CellGraph graph = cellsOfTree(tree, settings);
+        const CellGraph graph = cellsOfTree(tree, {.sky_is_open = seed % 3 == 0});
         const Crossings crossings = followSegments(tree, graph, seed, 10000);
         EXPECT_EQ(crossings.missing, 0u) << "seed " << seed;
         EXPECT_EQ(crossings.outside, 0u) << "seed " << seed << " of " << crossings.tried;

@@ -29,6 +29,8 @@ struct Drawing {
     std::vector<Occluder> occluders;
 
     explicit Drawing(const View& v) : view(v), screen(makeScreen(v, 4096)) { tiles.clear(screen.width, screen.height); }
+    /// With all seams resolved.
+    Drawing(const View& v, std::vector<Solid> what) : Drawing(v) { drawAndResolve(std::move(what)); }
 
     void draw(std::vector<Solid> what) {
         solids = std::move(what);
@@ -38,6 +40,11 @@ struct Drawing {
             for (uint32_t c = 0; c < occluders[i].clusters.size(); ++c)
                 drawOccluder(tiles, instance, c, projectBox(instance.screen, occluders[i].clusters[c].bounds));
         }
+    }
+
+    void drawAndResolve(std::vector<Solid> what) {
+        draw(std::move(what));
+        resolveAll();
     }
 
     void resolve(uint32_t x, uint32_t y) {
@@ -63,6 +70,7 @@ struct Drawing {
             for (uint32_t x = 0; x < tiles.width; ++x) n += covered(x, y);
         return n;
     }
+    uint64_t openPixels() const { return uint64_t{tiles.width} * tiles.height - coveredPixels(); }
 };
 
 /// The nearness of the nearest drawn front face along the ray through a buffer point; -infinity if there is none.

@@ -48,6 +48,14 @@ Box3d boxOf(const CellSpace& space) {
     return box;
 }
 
+std::vector<uint32_t> cellsOf(const PortalFlood& flood) {
+    std::vector<uint32_t> cells;
+    for (const SeenCell& cell : flood.cells()) cells.push_back(cell.cell);
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    return cells;
+}
+
 constexpr int kRays = 1000;  // of a view
 
 /// Views of a world, each kind of window of each judged by rays.
@@ -70,10 +78,7 @@ struct Sweep {
                     continue;
                 }
                 ++answers;
-                std::vector<uint32_t> seen;
-                for (const SeenCell& cell : flood.cells()) seen.push_back(cell.cell);
-                std::sort(seen.begin(), seen.end());
-                cells[kind] += static_cast<uint64_t>(std::unique(seen.begin(), seen.end()) - seen.begin());
+                cells[kind] += cellsOf(flood).size();
                 judge.judge(known, flood, random, rays_each, tally);
                 ASSERT_EQ(tally.missed, 0u)
                     << "seed " << seed << ", view " << i << ", " << kWindowNames[kind] << ": " << tally.example;
@@ -117,12 +122,11 @@ TEST(Portals, HoldEachSightLineOfTrees) {
     EXPECT_LE(sweep.cells[2], sweep.cells[1]);
 }
 
-std::vector<uint32_t> cellsOf(const PortalFlood& flood) {
-    std::vector<uint32_t> cells;
-    for (const SeenCell& cell : flood.cells()) cells.push_back(cell.cell);
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    return cells;
+/// The cells that a view sees, which it knows.
+std::vector<uint32_t> seen(const PortalGraph& graph, const KnownView& known, const PortalSettings& settings) {
+    PortalFlood flood;
+    EXPECT_TRUE(flood.run(graph, known.view, settings));
+    return cellsOf(flood);
 }
 
 bool holds(const std::vector<uint32_t>& cells, const std::vector<uint32_t>& part) {
@@ -170,9 +174,8 @@ TEST(Portals, EnterACellAgainForItsOtherWindow) {
     const PortalGraph graph(world.space);
     const KnownView known = makeView({-3, 0.5, 1.5}, {1, 0, 0}, smallNear(1.2));
     for (const PortalWindows windows : kKinds) {
-        PortalFlood flood;
-        ASSERT_TRUE(flood.run(graph, known.view, {.windows = windows}));
-        EXPECT_EQ(cellsOf(flood), (std::vector<uint32_t>{0, 1, 2, 3, 4, 5})) << kWindowNames[static_cast<int>(windows)];
+        EXPECT_EQ(seen(graph, known, {.windows = windows}), (std::vector<uint32_t>{0, 1, 2, 3, 4, 5}))
+            << kWindowNames[static_cast<int>(windows)];
     }
 }
 
@@ -182,13 +185,10 @@ TEST(Portals, TakeTheWholeWindowWhereTheEyeIsInThePortal) {
     const PortalGraph graph(world.space);
     for (const double off : {0.0, 1e-13, -1e-13, 1e-6, -1e-6, 1e-3, -1e-3})
         for (const PortalWindows windows : kKinds) {
-            PortalFlood flood;
-            const KnownView east = makeView({1 + off, 0.5, 2.5}, {1, 0, 0}, smallNear(1.2));
-            ASSERT_TRUE(flood.run(graph, east.view, {.windows = windows}));
-            EXPECT_TRUE(holds(cellsOf(flood), {2, 3, 5})) << off;
-            const KnownView west = makeView({1 + off, 0.5, 2.5}, {-1, 0, 0}, smallNear(1.2));
-            ASSERT_TRUE(flood.run(graph, west.view, {.windows = windows}));
-            EXPECT_TRUE(holds(cellsOf(flood), {0})) << off;
+            const KnownView east = makeView({1 + off, 0.5, 2.5}, {1, 0, 0}, smallNear(1.2)),
+                            west = makeView({1 + off, 0.5, 2.5}, {-1, 0, 0}, smallNear(1.2));
+            EXPECT_TRUE(holds(seen(graph, east, {.windows = windows}), {2, 3, 5})) << off;
+            EXPECT_TRUE(holds(seen(graph, west, {.windows = windows}), {0})) << off;
         }
 }
 
@@ -198,9 +198,8 @@ TEST(Portals, SeeACellThroughAnyOfItsPortals) {
     const PortalGraph graph(world.space);
     const KnownView known = makeView({0, 0.5, 2.5}, {1, 0, 0}, smallNear(0.2));
     for (const PortalWindows windows : kKinds) {
-        PortalFlood flood;
-        ASSERT_TRUE(flood.run(graph, known.view, {.windows = windows}));
-        EXPECT_EQ(cellsOf(flood), (std::vector<uint32_t>{0, 2, 3, 5})) << kWindowNames[static_cast<int>(windows)];
+        EXPECT_EQ(seen(graph, known, {.windows = windows}), (std::vector<uint32_t>{0, 2, 3, 5}))
+            << kWindowNames[static_cast<int>(windows)];
     }
 }
 
@@ -228,12 +227,12 @@ TEST(Portals, EnterCellsAgainThatAreReachedAfterTheirTurn) {
     ASSERT_GT(space.graph.portals[1].plane.z, 0);
     const PortalGraph graph(space);
     for (const PortalWindows windows : kKinds) {
-        PortalFlood flood;
-        ASSERT_TRUE(flood.run(graph, makeView({0.1, 0.5, -0.005}, {1, 0, 0}, smallNear(1)).view, {.windows = windows}));
-        EXPECT_EQ(cellsOf(flood), (std::vector<uint32_t>{0, 1, 2, 3, 4})) << kWindowNames[static_cast<int>(windows)];
+        const KnownView close = makeView({0.1, 0.5, -0.005}, {1, 0, 0}, smallNear(1));
+        EXPECT_EQ(seen(graph, close, {.windows = windows}), (std::vector<uint32_t>{0, 1, 2, 3, 4}))
+            << kWindowNames[static_cast<int>(windows)];
         // Not so an eye that is certainly below, or above.
-        ASSERT_TRUE(flood.run(graph, makeView({0.1, 0.5, -0.1}, {1, 0, 0}, smallNear(1)).view, {.windows = windows}));
-        EXPECT_EQ(cellsOf(flood), (std::vector<uint32_t>{0}));
+        const KnownView below = makeView({0.1, 0.5, -0.1}, {1, 0, 0}, smallNear(1));
+        EXPECT_EQ(seen(graph, below, {.windows = windows}), (std::vector<uint32_t>{0}));
     }
 }
 

@@ -4,7 +4,6 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "sightline/base/random.h"
 #include "sightline/bsp/tree_portals.h"
@@ -19,7 +18,6 @@ namespace sightline {
 using namespace tools;
 namespace {
 
-using nlohmann::json;
 using namespace test;
 
 bool isIn(const PlacedObjects& objects, size_t object, uint32_t cell) {
@@ -31,16 +29,8 @@ bool isIn(const PlacedObjects& objects, size_t object, uint32_t cell) {
 
 class Bake : public Tool {
 protected:
-    json bake(const std::string& arguments) const {
-        const Outcome outcome = run("bake " + arguments + " --json -");
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-        return outcome.exit_code == 0 ? json::parse(outcome.out) : json();
-    }
-    json info(const std::string& file) const {
-        const Outcome outcome = run("info " + file + " --json -");
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-        return outcome.exit_code == 0 ? json::parse(outcome.out) : json();
-    }
+    json bake(const std::string& arguments) const { return answer("bake " + arguments); }
+    json info(const std::string& file) const { return answer("info " + file); }
 };
 
 TEST_F(Bake, ABuildingBecomesAFileThatHoldsItsCells) {

@@ -1,28 +1,22 @@
 // The verb calibrate, and what reads its file.
 // SPDX-License-Identifier: MIT
-#include <nlohmann/json.hpp>
-
 #include "tests/cli/tool.h"
 
 namespace sightline {
 namespace {
 
-using nlohmann::json;
-
 using Calibrate = Tool;
 
 TEST_F(Calibrate, WritesWhatCullReads) {
     const std::string file = "calibration.json";
-    const Outcome outcome = run("calibrate --json " + file);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const Outcome outcome = succeed("calibrate --json " + file);
     EXPECT_NE(outcome.out.find("a cluster's test"), std::string::npos) << outcome.out;
     const json written = json::parse(read(path(file)));
     EXPECT_EQ(written["schema"], "sightline.calibration/1");
     const std::string cull =
         "cull building:1:1 --frames 1 --seed 1 --size 160x90 --repeat 1 --json - --use frustum,clusters";
     for (const bool dear : {false, true}) {
-        const Outcome answer = run(cull + " --calibration " + file + (dear ? " --dear-shading" : ""));
-        EXPECT_EQ(answer.exit_code, 0) << answer.err;
+        const Outcome answer = succeed(cull + " --calibration " + file + (dear ? " --dear-shading" : ""));
         const double expected = written["cluster_test_ns"].get<double>() /
                                 written[dear ? "triangle_drawn_ns" : "triangle_dropped_ns"].get<double>();
         EXPECT_EQ(json::parse(answer.out)["cluster_test"].get<double>(), expected);

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include <iterator>
 
-#include <nlohmann/json.hpp>
-
 #include "tests/cli/process.h"
 
 namespace sightline {

@@ -75,8 +75,7 @@ TEST_F(Completions, BashReplacesThePartAtTheCursor) {
 
 TEST_F(Completions, EachShellReadsItsOwn) {
     for (const char* shell : {"bash", "zsh", "fish"}) {
-        const Outcome outcome = run(std::string("completions ") + shell);
-        ASSERT_EQ(outcome.exit_code, 0);
+        const Outcome outcome = succeed(std::string("completions ") + shell);
         if (!has(shell)) {
             std::printf("%s is not here: its syntax was not checked\n", shell);
             continue;

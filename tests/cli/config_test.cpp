@@ -1,7 +1,5 @@
 // Configuration files: what is read, what comes before what, and what a file that was only found may not say.
 // SPDX-License-Identifier: MIT
-#include <nlohmann/json.hpp>
-
 #include "tests/cli/tool.h"
 
 namespace sightline {
@@ -15,8 +13,7 @@ protected:
         std::filesystem::create_directories(path("home/sightline"));
     }
     size_t frames(const std::string& arguments) const {
-        const Outcome outcome = run("cull city:1:50 --size 64x36 --quiet --json - " + arguments);
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        const Outcome outcome = succeed("cull city:1:50 --size 64x36 --quiet --json - " + arguments);
         return outcome.exit_code == 0 ? nlohmann::json::parse(outcome.out)["frames"].size() : 0;
     }
 };
@@ -116,8 +113,7 @@ TEST_F(Config, AFileThatWasOnlyFoundHereWritesNothing) {
 
 TEST_F(Config, WhatIsPrintedCanBeReadAgain) {
     write("c.toml", "size = \"64x36\"\nuse = [\"frustum\", 'occlusion']  # both\nrepeat = 2\n[cull]\nverify = true\n");
-    const Outcome first = run("config cull --config c.toml");
-    ASSERT_EQ(first.exit_code, 0) << first.err;
+    const Outcome first = succeed("config cull --config c.toml");
     for (const char* line : {"size = \"64x36\"", "use = [ \"frustum\", \"occlusion\" ]", "repeat = 2", "verify = true"})
         EXPECT_NE(first.out.find(line), std::string::npos) << line << " in\n" << first.out;
     write("d.toml", first.out);

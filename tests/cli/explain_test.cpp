@@ -1,20 +1,14 @@
 // The verb explain as a user sees it: sentences, lists, pictures, the schema, and what it refuses.
 // SPDX-License-Identifier: MIT
-#include <nlohmann/json.hpp>
-
 #include "tests/cli/tool.h"
 
 namespace sightline {
 namespace {
 
-using nlohmann::json;
-
 class ExplainVerb : public Tool {
 protected:
     json answersOf(const std::string& arguments) const {
-        const Outcome outcome = run("explain " + arguments + " --json -");
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-        const json all = json::parse(outcome.out);
+        const json all = answer("explain " + arguments + "");
         EXPECT_EQ(all["schema"], "sightline.explain/1");
         return all["answers"];
     }
@@ -26,8 +20,7 @@ protected:
 };
 
 TEST_F(ExplainVerb, TellsWhatStandsBeforeWhat) {
-    const Outcome hidden = run("explain made:walls --object 'red wall'");
-    EXPECT_EQ(hidden.exit_code, 0) << hidden.err;
+    const Outcome hidden = succeed("explain made:walls --object 'red wall'");
     EXPECT_NE(hidden.out.find("culled by occlusion: object 0 'red wall' lies behind 'grey wall'"), std::string::npos)
         << hidden.out;
     expectNarrow(hidden.out);
@@ -107,8 +100,7 @@ TEST_F(ExplainVerb, LooksThroughAPixel) {
 }
 
 TEST_F(ExplainVerb, TellsOfAWholePath) {
-    const Outcome outcome = run("explain city:1:1000 --frames 4 --top 3 --json path.json");
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const Outcome outcome = succeed("explain city:1:1000 --frames 4 --top 3 --json path.json");
     expectNarrow(outcome.out);
     for (const char* part : {"Who hides most", "Which pay best", "hid nothing", "Never kept", "together"})
         EXPECT_NE(outcome.out.find(part), std::string::npos) << part;
@@ -127,8 +119,7 @@ TEST_F(ExplainVerb, TellsOfAWholePath) {
 }
 
 TEST_F(ExplainVerb, DrawsTheFrame) {
-    const Outcome outcome = run("explain made:walls --object 'blue wall' --size 320x180 -o why.png");
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const Outcome outcome = succeed("explain made:walls --object 'blue wall' --size 320x180 -o why.png");
     EXPECT_EQ(read(path("why.png")).substr(1, 3), "PNG");
     expectError("explain made:walls --object 1 -o /nowhere/why.png", 4, "/nowhere/why.png");
 }
@@ -158,8 +149,7 @@ TEST_F(ExplainVerb, NamesDoubts) {
 }
 
 TEST_F(ExplainVerb, ReportsTellOfTheirSlowestAndLoosestFrames) {
-    const Outcome outcome = run("cull city:1:2000 --frames 3 --verify --rays 20000 --size 320x180 --report out");
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const Outcome outcome = succeed("cull city:1:2000 --frames 3 --verify --rays 20000 --size 320x180 --report out");
     const std::string page = read(path("out/index.html"));
     EXPECT_NE(page.find("Slowest: "), std::string::npos);
     EXPECT_NE(page.find("Loosest: "), std::string::npos);

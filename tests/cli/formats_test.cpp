@@ -3,15 +3,12 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "tests/cli/tool.h"
 #include "tests/tools/import/foreign_files.h"
 
 namespace sightline {
 namespace {
 
-using nlohmann::json;
 using namespace test;
 
 class Formats : public Tool {
@@ -21,11 +18,7 @@ protected:
         write("arch.glb", glbBytes(twoBoxes()));
         write("mep.glb", glbBytes({twoBoxes()[1]}));
     }
-    json info(const std::string& arguments) const {
-        const Outcome outcome = run("info " + arguments + " --json -");
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-        return json::parse(outcome.out);
-    }
+    json info(const std::string& arguments) const { return answer("info " + arguments); }
 };
 
 TEST_F(Formats, SeveralFilesAreOneScene) {
@@ -40,9 +33,7 @@ TEST_F(Formats, SeveralFilesAreOneScene) {
     EXPECT_EQ(facts["files"][2]["format"], "procedural");
     const Outcome objects = run("info arch.glb mep.glb --objects");
     EXPECT_EQ(objects.out, "0\t12\tarch/Large\n1\t12\tarch/Small\n2\t12\tmep/Small\n");
-    const Outcome cull = run("cull arch.glb mep.glb --frames 2 --size 64x64 --verify --rays 10000 --json -");
-    EXPECT_EQ(cull.exit_code, 0) << cull.err;
-    EXPECT_EQ(json::parse(cull.out)["scene"]["objects"], 3);
+    EXPECT_EQ(answer("cull arch.glb mep.glb --frames 2 --size 64x64 --verify --rays 10000")["scene"]["objects"], 3);
     expectError("info arch.glb missing.glb", 3, "missing.glb");
 }
 
@@ -78,8 +69,7 @@ TEST_F(Formats, UnitsAndAxesHold) {
 }
 
 TEST_F(Formats, ListsWhatCanBeRead) {
-    const Outcome words = run("info --formats");
-    EXPECT_EQ(words.exit_code, 0) << words.err;
+    const Outcome words = succeed("info --formats");
     for (const char* word : {"glb gltf", "obj", "Industry Foundation Classes"})
         EXPECT_NE(words.out.find(word), std::string::npos) << word;
     const json list = json::parse(run("info --formats --json -").out);
@@ -106,11 +96,8 @@ TEST_F(Formats, ForeignFilesAreSeenAsGltfIs) {
         {"eye": [-20, 3, 20], "target": [0, 2, 0]}, {"eye": [30, 3, 20], "target": [-6.75, 0.75, -2]},
         {"eye": [0, 40, 3], "target": [0, 0, 3], "up": [1, 0, 0]}]})");
     const auto visible = [&](const std::string& file) {
-        const Outcome outcome =
-            run("cull " + file + " --cameras path.json --size 160x120 --verify --rays 10000 --json -");
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
         std::vector<json> out;
-        const json result = json::parse(outcome.out);
+        const json result = answer("cull " + file + " --cameras path.json --size 160x120 --verify --rays 10000");
         for (const json& frame : result["frames"]) out.push_back(frame["visible"]);
         return out;
     };
@@ -122,8 +109,7 @@ TEST_F(Formats, ForeignFilesAreSeenAsGltfIs) {
         EXPECT_EQ(seen, expected) << file.name;
     }
     write("wall.ifc", ifcText("IFC2X3"));
-    const Outcome together = run("cull wall.ifc boxes.obj arch.glb --frames 3 --size 64x64 --verify --rays 10000");
-    EXPECT_EQ(together.exit_code, 0) << together.err;
+    const Outcome together = succeed("cull wall.ifc boxes.obj arch.glb --frames 3 --size 64x64 --verify --rays 10000");
 }
 
 TEST_F(Formats, LimitsOfReadersAreOneLine) {

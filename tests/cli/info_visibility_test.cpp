@@ -1,7 +1,5 @@
 // The verb info tells what a visibility file holds.
 // SPDX-License-Identifier: MIT
-#include <nlohmann/json.hpp>
-
 #include "sightline/visfile/visibility_file.h"
 #include "tests/cli/tool.h"
 
@@ -24,12 +22,9 @@ TEST_F(InfoVisibility, CountsCellsLeavesAndPairs) {
     for (const VisibilityForm form : {VisibilityForm::kInPlace, VisibilityForm::kPacked}) {
         const std::string bytes = rowOfFour(form);
         write("row.see", bytes);
-        const Outcome text = run("info row.see");
-        EXPECT_EQ(text.exit_code, 0) << text.err;
+        const Outcome text = succeed("info row.see");
         EXPECT_NE(text.out.find("row.bsp (hash 0000000000000abc)"), std::string::npos) << text.out;
-        const Outcome outcome = run("info row.see --json -");
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-        const auto json = nlohmann::json::parse(outcome.out);
+        const auto json = answer("info row.see");
         EXPECT_EQ(json["schema"], "sightline.visibility/1");
         EXPECT_EQ(json["form"], form == VisibilityForm::kPacked ? "packed" : "in place");
         EXPECT_EQ(json["cells"], 4);

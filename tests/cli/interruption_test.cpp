@@ -1,13 +1,9 @@
 // Ctrl-C leaves what is finished: real signals to the real tool.
 // SPDX-License-Identifier: MIT
-#include <nlohmann/json.hpp>
-
 #include "tests/cli/process.h"
 
 namespace sightline {
 namespace {
-
-using nlohmann::json;
 
 class Interruption : public Tool {
 protected:

@@ -1,20 +1,14 @@
 // Made scenes on the command line: what each is there to show, shows.
 // SPDX-License-Identifier: MIT
-#include <nlohmann/json.hpp>
-
 #include "tests/cli/tool.h"
 
 namespace sightline {
 namespace {
 
-using nlohmann::json;
-
 class MadeScenes : public Tool {
 protected:
     json drawn(const std::string& name, const std::string& options) const {
-        const Outcome outcome = run("render made:" + name + " --size 320x180 " + options + " --json -");
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-        return outcome.exit_code == 0 ? json::parse(outcome.out) : json();
+        return answer("render made:" + name + " --size 320x180 " + options);
     }
     /// Samples that the painter shows wrongly; of any other method there may be none.
     uint64_t wrongByThePainter(const std::string& name, const std::string& key) const {
@@ -55,12 +49,8 @@ TEST_F(MadeScenes, CoplanarFacesTie) {
 }
 
 TEST_F(MadeScenes, AreScenesLikeAnyOther) {
-    const Outcome info = run("info made:eye --json -");
-    ASSERT_EQ(info.exit_code, 0) << info.err;
-    EXPECT_EQ(json::parse(info.out)["objects"], 5u);
-    const Outcome cull = run("cull made:walls --verify --size 160x90 --json -");
-    ASSERT_EQ(cull.exit_code, 0) << cull.err;
-    EXPECT_EQ(json::parse(cull.out)["frames"][0]["visible"], json::array({7}));
+    EXPECT_EQ(answer("info made:eye")["objects"], 5u);
+    EXPECT_EQ(answer("cull made:walls --verify --size 160x90")["frames"][0]["visible"], json::array({7}));
 }
 
 TEST_F(MadeScenes, NamesThatDoNotExistAreListedAgainstThoseThatDo) {

@@ -3,8 +3,6 @@
 #include <filesystem>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 #include "tests/cli/tool.h"
 #include "tests/tools/import/archive_files.h"
 #include "tests/tools/import/map_files.h"
@@ -13,16 +11,11 @@ namespace sightline {
 using namespace tools;
 namespace {
 
-using nlohmann::json;
 using namespace test;
 
 class Maps : public Tool {
 protected:
-    json info(const std::string& arguments) const {
-        const Outcome outcome = run("info " + arguments + " --json -");
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-        return outcome.exit_code == 0 ? json::parse(outcome.out) : json();
-    }
+    json info(const std::string& arguments) const { return answer("info " + arguments); }
 };
 
 TEST_F(Maps, EachFormatIsCulledWithoutFault) {
@@ -30,8 +23,7 @@ TEST_F(Maps, EachFormatIsCulledWithoutFault) {
         MadeMap made;
         madeVisibility(format, false, made);
         write("m.bsp", mapBytes(format, made));
-        const Outcome cull = run("cull m.bsp --frames 3 --size 64x64 --verify --rays 10000 --json -");
-        ASSERT_EQ(cull.exit_code, 0) << cull.err;
+        const Outcome cull = succeed("cull m.bsp --frames 3 --size 64x64 --verify --rays 10000 --json -");
         EXPECT_EQ(json::parse(cull.out)["scene"]["objects"], 8);
         EXPECT_EQ(json::parse(cull.out)["verification"]["false_culls"], 0);
         const json facts = info("m.bsp");

@@ -2,27 +2,16 @@
 // SPDX-License-Identifier: MIT
 #include <set>
 
-#include <nlohmann/json.hpp>
-
 #include "sightline/studies/hidden/render.h"
 #include "sightline/tools/report/pictures/png.h"
 #include "sightline/tools/report/run/render_run.h"
 #include "tests/cli/tool.h"
-
-#define STBI_ONLY_PNG
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#include <stb/stb_image.h>
-#pragma GCC diagnostic pop
+#include "tests/support/png.h"
 
 namespace sightline {
 using namespace studies;
 using namespace tools;
 namespace {
-
-using nlohmann::json;
 
 class Render : public Tool {
 protected:
@@ -31,22 +20,15 @@ protected:
         std::vector<uint32_t> colours;  // 24 bits, the top row first
     };
     Pixels decode(const std::string& name) const {
-        const std::string bytes = read(path(name));
-        Pixels out;
-        int channels = 0;
-        stbi_uc* data = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()),
-                                              static_cast<int>(bytes.size()), &out.width, &out.height, &channels, 3);
-        EXPECT_NE(data, nullptr) << name;
-        for (int i = 0; data && i < out.width * out.height; ++i)
-            out.colours.push_back(uint32_t{data[3 * i]} << 16 | uint32_t{data[3 * i + 1]} << 8 | data[3 * i + 2]);
-        stbi_image_free(data);
+        const test::Decoded decoded = test::decodePng(read(path(name)), 3);
+        EXPECT_GT(decoded.width, 0) << name;
+        Pixels out{decoded.width, decoded.height, {}};
+        for (size_t i = 0; i < decoded.bytes.size(); i += 3)
+            out.colours.push_back(uint32_t{decoded.bytes[i]} << 16 | uint32_t{decoded.bytes[i + 1]} << 8 |
+                                  decoded.bytes[i + 2]);
         return out;
     }
-    json render(const std::string& arguments) const {
-        const Outcome outcome = run("render " + arguments + " --json -");
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-        return json::parse(outcome.out);
-    }
+    json render(const std::string& arguments) const { return answer("render " + arguments); }
 };
 
 const std::string kCity = "city:1:300 --frames 6 --frame 4 --size 160x90 ";
@@ -63,9 +45,8 @@ TEST_F(Render, WritesPicturesOfTheSizeAskedFor) {
 
 TEST_F(Render, IdsAreKeysThatCullingKeeps) {
     ASSERT_EQ(run("render " + kCity + "--ids ids.png").exit_code, 0);
-    const Outcome culled = run("cull city:1:300 --frames 6 --size 160x90 --json -");
-    ASSERT_EQ(culled.exit_code, 0);
-    const auto visible = json::parse(culled.out)["frames"][4]["visible"].get<std::set<uint64_t>>();
+    const auto visible =
+        answer("cull city:1:300 --frames 6 --size 160x90")["frames"][4]["visible"].get<std::set<uint64_t>>();
     std::set<uint64_t> shown;
     for (const uint32_t colour : decode("ids.png").colours)
         if (colour != 0) shown.insert(colour - 1);
@@ -134,8 +115,7 @@ TEST_F(Render, ThreadsDoNotChangeThePicture) {
 }
 
 TEST_F(Render, AllMethodsFillTheReport) {
-    const Outcome outcome = run("render " + kCity + "--method all --report deep/out -o all.png");
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const Outcome outcome = succeed("render " + kCity + "--method all --report deep/out -o all.png");
     const std::string page = read(path("deep/out/index.html"));
     const json out = json::parse(read(path("deep/out/render.json")));
     EXPECT_EQ(out["schema"], "sightline.render/1");
@@ -262,9 +242,8 @@ TEST_F(Render, CliplessDrawsTheSameWithAnyDepthOptions) {
 }
 
 TEST_F(Render, SaysThatAFormatIsTooCoarse) {
-    const Outcome outcome =
-        run("render city:1:2000 --frames 6 --frame 4 --size 320x180 --method all --depth-format unorm16 --report out");
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const Outcome outcome = succeed(
+        "render city:1:2000 --frames 6 --frame 4 --size 320x180 --method all --depth-format unorm16 --report out");
     EXPECT_NE(outcome.out.find("wrong: unorm16 is too coarse for them"), std::string::npos) << outcome.out;
     EXPECT_NE(outcome.out.find("ms to prepare"), std::string::npos) << outcome.out;
     const std::string page = read(path("out/index.html"));

@@ -1,7 +1,5 @@
 // Recordings of a frame's occlusion calls: written by cull, replayed by replay; and the pictures of the buffer.
 // SPDX-License-Identifier: MIT
-#include <nlohmann/json.hpp>
-
 #include "sightline/query/record/occlusion_recording.h"
 #include "tests/cli/tool.h"
 
@@ -12,9 +10,9 @@ class Replay : public Tool {
 protected:
     /// Records the second frame of a small city.
     std::string record(const std::string& name, const std::string& options = "") const {
-        const Outcome made = run("cull city:1:300 --frames 2 --repeat 1 --size 320x180 --frame 1 --record-occlusion " +
-                                 name + " " + options);
-        EXPECT_EQ(made.exit_code, 0) << made.err;
+        const Outcome made =
+            succeed("cull city:1:300 --frames 2 --repeat 1 --size 320x180 --frame 1 --record-occlusion " + name + " " +
+                    options);
         return read(path(name));
     }
 };
@@ -23,8 +21,7 @@ TEST_F(Replay, GivesTheSameAnswersAndTheirNumbers) {
     const std::string bytes = record("a.rec");
     EXPECT_GT(bytes.size(), 2000u);
     EXPECT_EQ(record("b.rec", "--threads 1"), bytes);
-    const Outcome replayed = run("replay a.rec --repeat 3 --json a.json --image a.png");
-    EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
+    const Outcome replayed = succeed("replay a.rec --repeat 3 --json a.json --image a.png");
     EXPECT_NE(replayed.out.find("a.rec"), std::string::npos);
     const auto json = nlohmann::json::parse(read(path("a.json")));
     EXPECT_EQ(json["schema"], "sightline.replay/1");
@@ -37,8 +34,7 @@ TEST_F(Replay, GivesTheSameAnswersAndTheirNumbers) {
         const auto once = nlohmann::json::parse(run("replay a.rec --repeat 1 --json -").out);
         EXPECT_GE(once["test_microseconds"], 0);
     }
-    const Outcome scalar = run("replay a.rec --repeat 1 --target " + json["instruction_set"].get<std::string>());
-    EXPECT_EQ(scalar.exit_code, 0) << scalar.err;
+    const Outcome scalar = succeed("replay a.rec --repeat 1 --target " + json["instruction_set"].get<std::string>());
 }
 
 TEST_F(Replay, SaysWhichAnswerIsNotTheSame) {
@@ -74,8 +70,7 @@ TEST_F(Replay, ErrorsAreOneLineAndAnExitCode) {
 
 TEST_F(Replay, CullDrawsTheBufferOfEachFrame) {
     const Outcome drawn =
-        run("cull city:1:300 --frames 3 --repeat 1 --size 320x180 --depth-images buffers --report out");
-    EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+        succeed("cull city:1:300 --frames 3 --repeat 1 --size 320x180 --depth-images buffers --report out");
     for (const char* name : {"buffers/occlusion-0000.png", "buffers/occlusion-0002.png", "out/frames/buffer-0001.png"})
         EXPECT_EQ(read(path(name)).substr(1, 3), "PNG") << name;
     // The buffer's own pixels there; here what of it is the viewport, as large as the page's other pictures.
@@ -98,8 +93,7 @@ TEST_F(Replay, TwoEyesSeeWhatEachSeesAlone) {
     write("right.json", at(ipd / 2));
     const auto visible = [&](const std::string& camera, const std::string& options) {
         const Outcome culled =
-            run("cull city:1:400 --repeat 1 --size 320x180 --json out.json --cameras " + camera + options);
-        EXPECT_EQ(culled.exit_code, 0) << culled.err;
+            succeed("cull city:1:400 --repeat 1 --size 320x180 --json out.json --cameras " + camera + options);
         return nlohmann::json::parse(read(path("out.json")));
     };
     const auto pair = visible("pair.json", " --stereo 2 --verify --rays 20000");

@@ -10,10 +10,12 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <sys/wait.h>
 #include <unistd.h>
 
 namespace sightline {
+using nlohmann::json;
 
 struct Outcome {
     int exit_code = -1;
@@ -56,6 +58,20 @@ protected:
         return outcome;
     }
 
+    /// As run(), and it succeeds.
+    Outcome succeed(const std::string& arguments) const {
+        Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exit_code, 0) << arguments << "\n" << outcome.err;
+        return outcome;
+    }
+
+    /// What it writes to standard output, which is JSON and nothing else.
+    json answer(const std::string& arguments) const {
+        const json parsed = json::parse(succeed(arguments + " --json -").out, nullptr, false);
+        EXPECT_FALSE(parsed.is_discarded()) << arguments;
+        return parsed;
+    }
+
     /// The exit code is as given, nothing is on standard output, and one line of standard error holds the word.
     void expectError(const std::string& arguments, int exit_code, const std::string& word) const {
         const Outcome outcome = run(arguments);
@@ -66,6 +82,20 @@ protected:
     }
 
     std::filesystem::path directory_;
+};
+
+/// Runs of the verb cull on small images.
+class CullTool : public Tool {
+protected:
+    json cull(const std::string& arguments) const { return answer("cull " + arguments + " --size 320x180 --repeat 1"); }
+
+    static uint64_t culledBy(const json& run, const std::string& stage) {
+        uint64_t sum = 0;
+        for (const json& frame : run["frames"])
+            for (const json& row : frame["stages"])
+                if (row["name"] == stage) sum += row["culled"].get<uint64_t>();
+        return sum;
+    }
 };
 
 }  // namespace sightline

@@ -4,7 +4,6 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "tests/cli/tool.h"
 #include "tests/tools/import/archive_files.h"
@@ -14,7 +13,6 @@ namespace sightline {
 using namespace tools;
 namespace {
 
-using nlohmann::json;
 using namespace test;
 
 /// A corridor along y, in the file's axes, with two rooms on one side that do not see one another, and one on the
@@ -27,11 +25,7 @@ const char* const kRooms =
 
 class Vis : public Tool {
 protected:
-    json vis(const std::string& arguments) const {
-        const Outcome outcome = run("vis " + arguments + " --json -");
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-        return outcome.exit_code == 0 ? json::parse(outcome.out) : json();
-    }
+    json vis(const std::string& arguments) const { return answer("vis " + arguments); }
     std::string shared(const std::string& name) const { return fmt::format("{}/maps/{}", SIGHTLINE_SHARED_DIR, name); }
 };
 
@@ -130,8 +124,7 @@ TEST_F(Vis, AStateOfAnotherBakeIsPassedOver) {
     expectError("vis rooms.prt --state other.txt", 4, "other.txt: holds something else");
     EXPECT_EQ(read(path("other.txt")), "my notes");
     write("cut.state", "slsbake1 and cut off");
-    const Outcome outcome = run("vis rooms.prt --state cut.state --json -");
-    EXPECT_EQ(outcome.exit_code, 0);
+    const Outcome outcome = succeed("vis rooms.prt --state cut.state --json -");
     EXPECT_NE(outcome.err.find("cut.state: no state of a bake: the bake begins anew"), std::string::npos)
         << outcome.err;
     EXPECT_EQ(json::parse(outcome.out)["visible_leaf_pairs"], 14);
@@ -151,8 +144,7 @@ TEST_F(Vis, AnInterruptedBakeGoesOnToTheSameBytes) {
         EXPECT_EQ(outcome.exit_code, 130);
         EXPECT_FALSE(std::filesystem::exists(path("x.see")));
         left = true;
-        const Outcome rest = run("vis " + shared("lq_e1m5.prt") + " -o x.see");
-        EXPECT_EQ(rest.exit_code, 0);
+        const Outcome rest = succeed("vis " + shared("lq_e1m5.prt") + " -o x.see");
         EXPECT_NE(rest.err.find("goes on from x.see.state"), std::string::npos) << rest.err;
         EXPECT_EQ(read(path("x.see")), read(path("whole.see")));
         EXPECT_FALSE(std::filesystem::exists(path("x.see.state")));

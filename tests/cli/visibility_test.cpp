@@ -1,36 +1,19 @@
 // Baked visibility on the command line: bakes are used, proved and explained, and wrong ones refused.
 // SPDX-License-Identifier: MIT
-#include <nlohmann/json.hpp>
-
 #include "tests/cli/tool.h"
 
 namespace sightline {
 namespace {
 
-using nlohmann::json;
-
-class Visibility : public Tool {
+class Visibility : public CullTool {
 protected:
     void bake(const std::string& scene, const std::string& file) const {
-        const Outcome outcome = run("bake " + scene + " -o " + file);
-        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-    }
-    json cull(const std::string& arguments) const {
-        const Outcome outcome = run("cull " + arguments + " --size 320x180 --repeat 1 --json -");
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-        return json::parse(outcome.out);
+        const Outcome outcome = succeed("bake " + scene + " -o " + file);
     }
     static uint64_t keptOf(const json& run) {
         uint64_t kept = 0;
         for (const json& frame : run["frames"]) kept += frame["visible"].size();
         return kept;
-    }
-    static uint64_t culledBy(const json& run, const std::string& name) {
-        uint64_t culled = 0;
-        for (const json& frame : run["frames"])
-            for (const json& stage : frame["stages"])
-                if (stage["name"] == name) culled += stage["culled"].get<uint64_t>();
-        return culled;
     }
 };
 
@@ -78,20 +61,17 @@ TEST_F(Visibility, ALimitedDepthIsNotHeldToBeProved) {
 TEST_F(Visibility, ReportsShowTheWindows) {
     bake("building:2:1", "house.vis");
     const Outcome outcome =
-        run("cull building:2:1 --frames 2 --seed 3 --size 320x180 --repeat 1 --visibility house.vis --report out");
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+        succeed("cull building:2:1 --frames 2 --seed 3 --size 320x180 --repeat 1 --visibility house.vis --report out");
     EXPECT_TRUE(std::filesystem::exists(path("out/frames/windows-0000.png")));
     EXPECT_NE(read(path("out/index.html")).find("\"windows\":\"data:image/"), std::string::npos);
-    const Outcome again = run("report out/cull.json -o again");
-    EXPECT_EQ(again.exit_code, 0) << again.err;
+    const Outcome again = succeed("report out/cull.json -o again");
 }
 
 TEST_F(Visibility, ExplainNamesTheStage) {
     bake("building:2:2", "house.vis");
     const json run_of = cull("building:2:2 --frames 1 --seed 3 --visibility house.vis --skip occlusion");
     const Outcome outcome =
-        run("explain building:2:2 --frames 1 --seed 3 --visibility house.vis --object 0 --json - --rays 2000");
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+        succeed("explain building:2:2 --frames 1 --seed 3 --visibility house.vis --object 0 --json - --rays 2000");
     const json answer = json::parse(outcome.out)["answers"][0];
     if (answer["stage"] == "pvs" || answer["stage"] == "portals") {
         EXPECT_FALSE(answer["cells"]["eye"].empty());

@@ -177,8 +177,7 @@ TEST(FacingTree, SettlesWhatItsClustersSayAndNothingElse) {
                 mesh.add(at(i, j), at(i, j + 1), at(i + 1, j));
                 mesh.add(at(i + 1, j), at(i, j + 1), at(i + 1, j + 1));
             }
-        FacingCost cost;
-        cost.test = 1.0;
+        FacingCost cost{.test = 1.0};
         const FacingPartition part = mergeFacing(mesh.view(), cost, {8, 4});
         const FacingClusters made = describeClusters(mesh.view(), part.triangles, part.sizes);
         const FacingTree tree = makeFacingTree(made, mesh.view());
@@ -227,9 +226,9 @@ TEST(TriangleMasks, ABitIsABackFaceForEveryEyeOfTheSector) {
             for (glm::vec3& p : world.mesh.positions)
                 p = glm::vec3(middle + glm::dvec3(1.0, 0.01, 0.2) * (glm::dvec3(p) - middle));
         }
-        FacingSettings settings;
-        settings.mask_steps = 1 + static_cast<uint32_t>(w % TriangleMasks::kMaxSteps);
-        const FacingClusters made = describeClusters(world.mesh.view(), world.triangles, world.sizes, settings);
+        const FacingClusters made =
+            describeClusters(world.mesh.view(), world.triangles, world.sizes,
+                             {.mask_steps = 1 + static_cast<uint32_t>(w % TriangleMasks::kMaxSteps)});
         for (size_t e = 0; e < eyes; ++e) {
             FacingEye eye = randomEye(random, middle);
             if (e % 4 == 0 && eye.w > 0) {  // on a border between sectors of some cluster

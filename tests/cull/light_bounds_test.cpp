@@ -18,9 +18,8 @@ namespace {
 constexpr double kPi = glm::pi<double>();
 
 Light someLight(Random& random) {
-    Light light;
-    light.kind = random.below(4) ? LightKind::kSpot : LightKind::kPoint;
-    light.position = std::pow(10.0, random.uniform(-2, 4)) * test::randomUnit(random);
+    Light light{.kind = random.below(4) ? LightKind::kSpot : LightKind::kPoint,
+                .position = std::pow(10.0, random.uniform(-2, 4)) * test::randomUnit(random)};
     light.direction = std::pow(10.0, random.uniform(-3, 3)) * test::randomUnit(random);
     if (random.below(4) == 0) {  // along an axis, or nearly so
         light.direction = glm::dvec3(0.0);
@@ -144,9 +143,7 @@ TEST(LightBounds, NoSmallerSphereHoldsWhatIsLit) {
 }
 
 TEST(LightBounds, OfASpotAlongAnAxisAreKnown) {
-    Light spot;
-    spot.kind = LightKind::kSpot;
-    spot.position = {1, 2, 3};
+    Light spot{.kind = LightKind::kSpot, .position = {1, 2, 3}};
     spot.direction = {0, -5, 0};
     spot.half_angle = kPi / 6;
     spot.range = 10;
@@ -174,8 +171,7 @@ TEST(LightBounds, OfSunsAndOfWhatIsNoNumberAreInfinite) {
                lightSphere(light).radius == kInfinity;
     };
     EXPECT_TRUE(isUnbounded(Light{}));
-    Light good;
-    good.kind = LightKind::kSpot;
+    Light good{.kind = LightKind::kSpot};
     EXPECT_FALSE(isUnbounded(good));
     good.direction = {1e-300, 2e-300, 0};
     EXPECT_FALSE(isUnbounded(good));

@@ -272,6 +272,12 @@ struct Placed {
           shared(makeVolumeView(view, screen, origin - screen.eye)),
           place(placeParts(shared, parts, occluder.bounds, transform)) {}
     explicit Placed(const Case& test) : Placed(test.mesh, test.view, test.transform, test.origin) {}
+
+    OccluderVolume volume;  ///< of the part that was made last
+    VolumeOutline outline;
+
+    bool make(uint32_t part) { return makeVolume(shared, place, part, volume, outline); }
+    VolumeAnswer ask(const EyeBoxes& boxes) const { return testVolume(volume, boxes, volume.allPlanes()); }
 };
 
 TEST(OccluderVolumes, HideNothingThatAPointSeesPastTheOccluder) {
@@ -279,7 +285,7 @@ TEST(OccluderVolumes, HideNothingThatAPointSeesPastTheOccluder) {
     uint64_t asked = 0, hidden = 0, volumes = 0, reaching = 0;
     for (uint32_t round = 0; asked < 1000000; ++round) {
         const Case test(random);
-        const Placed placed(test);
+        Placed placed(test);
         ASSERT_TRUE(placed.shared.usable);
         const EyeBoxes boxes = eyeBoxes(test.node, test.origin - placed.screen.eye);
         const Oracle oracle(test.view, test.mesh, test.transform);
@@ -288,11 +294,9 @@ TEST(OccluderVolumes, HideNothingThatAPointSeesPastTheOccluder) {
         if (placed.parts.parts.empty()) asked += 8;
         for (uint32_t part = 0; part < placed.parts.parts.size(); ++part) {
             asked += 8;
-            OccluderVolume volume;
-            VolumeOutline outline;
-            if (!makeVolume(placed.shared, placed.place, part, volume, outline)) continue;
+            if (!placed.make(part)) continue;
             ++volumes;
-            const VolumeAnswer answer = testVolume(volume, boxes, volume.allPlanes());
+            const VolumeAnswer answer = placed.ask(boxes);
             EXPECT_EQ(answer.hidden & answer.outside, 0u);
             for (int slot = 0; slot < 8; ++slot) {
                 if (!(answer.hidden >> slot & 1)) continue;
@@ -320,18 +324,16 @@ TEST(OccluderVolumes, AreAsTightAsFloatAllows) {
         view.projection = perspective(1.5, 1.0, 0.1);
         glm::dmat4 transform(1.0);
         transform[3][0] = far;
-        const Placed placed(mesh, view, transform, glm::dvec3(far, 0, 0));
-        OccluderVolume volume;
-        VolumeOutline outline;
-        ASSERT_TRUE(makeVolume(placed.shared, placed.place, 0, volume, outline));
-        EXPECT_EQ(volume.planes, 5u);
+        Placed placed(mesh, view, transform, glm::dvec3(far, 0, 0));
+        ASSERT_TRUE(placed.make(0));
+        EXPECT_EQ(placed.volume.planes, 5u);
         // At z = -2 the shadow reaches to 2; the wall itself stands at 0.
         const auto hides = [&](double x, double z) {
             EyeBoxes boxes;
             for (int i = 0; i < 8; ++i)
                 for (int axis = 0; axis < 3; ++axis)
                     boxes.min[axis][i] = boxes.max[axis][i] = axis == 0 ? float(x) : axis == 1 ? 0.5f : float(z - 2);
-            return testVolume(volume, boxes, volume.allPlanes()).hidden == 0xff;
+            return placed.ask(boxes).hidden == 0xff;
         };
         EXPECT_TRUE(hides(1.9999, -2) && hides(-1.9999, -2));
         EXPECT_FALSE(hides(2, -2) || hides(-2, -2)) << "equality is visible";
@@ -345,23 +347,22 @@ TEST(OccluderVolumes, InheritPlanesWithoutLoss) {
     int compared = 0;
     for (int round = 0; round < 3000; ++round) {
         const Case test(random);
-        const Placed placed(test);
+        Placed placed(test);
         const EyeBoxes boxes = eyeBoxes(test.node, test.origin - placed.screen.eye);
-        OccluderVolume volume;
-        VolumeOutline outline;
-        if (placed.parts.parts.empty() || !makeVolume(placed.shared, placed.place, 0, volume, outline)) continue;
+        if (placed.parts.parts.empty() || !placed.make(0)) continue;
         EyeBoxes whole;  // slot 0 holds all eight
         for (int axis = 0; axis < 3; ++axis)
             for (int i = 0; i < 8; ++i) {
                 whole.min[axis][i] = *std::min_element(boxes.min[axis], boxes.min[axis] + 8);
                 whole.max[axis][i] = *std::max_element(boxes.max[axis], boxes.max[axis] + 8);
             }
-        const VolumeAnswer parent = testVolume(volume, whole, volume.allPlanes());
-        const VolumeAnswer all = testVolume(volume, boxes, volume.allPlanes());
+        const VolumeAnswer parent = placed.ask(whole);
+        const VolumeAnswer all = placed.ask(boxes);
         if (parent.hidden) { EXPECT_EQ(all.hidden, 0xffu); }
         if (parent.outside) { EXPECT_EQ(all.outside, 0xffu); }
         const bool known = !((parent.hidden | parent.outside) & 1);
-        const VolumeAnswer some = testVolume(volume, boxes, known ? parent.planes[0] : volume.allPlanes());
+        const VolumeAnswer some =
+            testVolume(placed.volume, boxes, known ? parent.planes[0] : placed.volume.allPlanes());
         if (!parent.outside) { EXPECT_EQ(some.hidden, all.hidden); }
         ++compared;
     }
@@ -375,12 +376,9 @@ TEST(OccluderVolumes, AreTheSameOnEveryInstructionSet) {
         std::vector<VolumeAnswer> answers;
         for (int round = 0; round < 500; ++round) {
             const Case test(random);
-            const Placed placed(test);
-            OccluderVolume volume;
-            VolumeOutline outline;
-            if (placed.parts.parts.empty() || !makeVolume(placed.shared, placed.place, 0, volume, outline)) continue;
-            answers.push_back(
-                testVolume(volume, eyeBoxes(test.node, test.origin - placed.screen.eye), volume.allPlanes()));
+            Placed placed(test);
+            if (placed.parts.parts.empty() || !placed.make(0)) continue;
+            answers.push_back(placed.ask(eyeBoxes(test.node, test.origin - placed.screen.eye)));
         }
         if (expected.empty()) expected = answers;
         ASSERT_EQ(answers.size(), expected.size());
@@ -399,21 +397,19 @@ TEST(OccluderVolumes, AreTheSameOnEveryInstructionSet) {
 
 TEST(OccluderVolumes, KeepWhatIsNotANumber) {
     const View view = viewAt({0, 0, 2}, {0, 0, 0}, 0.1);
-    const Placed placed(wall(1, 1, 2, 2), view);
-    OccluderVolume volume;
-    VolumeOutline outline;
-    ASSERT_TRUE(makeVolume(placed.shared, placed.place, 0, volume, outline));
+    Placed placed(wall(1, 1, 2, 2), view);
+    ASSERT_TRUE(placed.make(0));
     EyeBoxes boxes;
     for (int i = 0; i < 8; ++i)
         for (int axis = 0; axis < 3; ++axis) boxes.min[axis][i] = boxes.max[axis][i] = axis == 2 ? -5.0f : 0.0f;
-    ASSERT_EQ(testVolume(volume, boxes, volume.allPlanes()).hidden, 0xffu);
+    ASSERT_EQ(placed.ask(boxes).hidden, 0xffu);
     const float infinite = std::numeric_limits<float>::infinity(), none = std::numeric_limits<float>::quiet_NaN();
     boxes.min[0][0] = none;
     boxes.max[1][1] = none;
     boxes.max[0][2] = infinite;
     boxes.min[2][3] = -infinite;
     boxes.min[0][4] = -infinite, boxes.max[0][4] = infinite;
-    EXPECT_EQ(testVolume(volume, boxes, volume.allPlanes()).hidden, 0xe0u);
+    EXPECT_EQ(placed.ask(boxes).hidden, 0xe0u);
     glm::dmat4 flat(1.0);
     flat[2] = glm::dvec4(0.0);
     EXPECT_FALSE(placeParts(placed.shared, placed.parts, placed.occluder.bounds, flat).usable)
@@ -425,7 +421,7 @@ TEST(OccluderVolumes, KeepWhatIsNotANumber) {
 /// How many volumes of the mesh hide a box.
 int hiddenBehind(const MeshData& mesh, const View& view, const glm::dvec3& low, const glm::dvec3& high,
                  const glm::dmat4& transform = glm::dmat4(1.0)) {
-    const Placed placed(mesh, view, transform);
+    Placed placed(mesh, view, transform);
     EyeBoxes boxes;
     for (int i = 0; i < 8; ++i)
         for (int axis = 0; axis < 3; ++axis) {
@@ -434,10 +430,8 @@ int hiddenBehind(const MeshData& mesh, const View& view, const glm::dvec3& low, 
         }
     int hiding = 0;
     for (uint32_t part = 0; part < placed.parts.parts.size(); ++part) {
-        OccluderVolume volume;
-        VolumeOutline outline;
-        if (!placed.shared.usable || !makeVolume(placed.shared, placed.place, part, volume, outline)) continue;
-        hiding += testVolume(volume, boxes, volume.allPlanes()).hidden == 0xff;
+        if (!placed.shared.usable || !placed.make(part)) continue;
+        hiding += placed.ask(boxes).hidden == 0xff;
     }
     return hiding;
 }
@@ -518,13 +512,11 @@ TEST(VolumeParts, JoinAWallAndABox) {
 
 TEST(VolumeParts, MakeOneVolumeOfABoxWithTheSilhouetteOfThreeFaces) {
     const View view = viewAt({4, 3, 5}, {0, 0, 0}, 0.1);
-    const Placed placed(box(2, 2, 2), view);
-    OccluderVolume volume;
-    VolumeOutline outline;
-    ASSERT_TRUE(makeVolume(placed.shared, placed.place, 0, volume, outline));
-    EXPECT_EQ(outline.count, 6u);
-    EXPECT_EQ(volume.planes, 9u);
-    EXPECT_GT(visiblePixels(placed.shared, outline), 1000);
+    Placed placed(box(2, 2, 2), view);
+    ASSERT_TRUE(placed.make(0));
+    EXPECT_EQ(placed.outline.count, 6u);
+    EXPECT_EQ(placed.volume.planes, 9u);
+    EXPECT_GT(visiblePixels(placed.shared, placed.outline), 1000);
     // More than any face hides by itself.
     EXPECT_EQ(hiddenBehind(box(2, 2, 2), view, {-3.6, -3.1, -4.5}, {-2.4, -1.4, -3}), 1);
     glm::dmat4 mirror(1.0);
@@ -534,14 +526,13 @@ TEST(VolumeParts, MakeOneVolumeOfABoxWithTheSilhouetteOfThreeFaces) {
 
 TEST(VolumeParts, CutTheCornersOfAnOutlineWithTooMany) {
     const View view = viewAt({0, 20, 0.1}, {0, 0, 0}, 0.1);
-    const Placed placed(prism(40, 2, 3), view);
+    Placed placed(prism(40, 2, 3), view);
     double most = 0;
     for (uint32_t part = 0; part < placed.parts.parts.size(); ++part) {
-        OccluderVolume volume;
-        VolumeOutline outline;
-        if (!makeVolume(placed.shared, placed.place, part, volume, outline)) continue;
-        if (outline.count > OccluderVolume::kMaxSides) most = std::max(most, visiblePixels(placed.shared, outline));
-        EXPECT_LE(volume.planes, OccluderVolume::kMaxPlanes);
+        if (!placed.make(part)) continue;
+        if (placed.outline.count > OccluderVolume::kMaxSides)
+            most = std::max(most, visiblePixels(placed.shared, placed.outline));
+        EXPECT_LE(placed.volume.planes, OccluderVolume::kMaxPlanes);
     }
     EXPECT_GT(most, 0);
     EXPECT_GE(hiddenBehind(prism(40, 2, 3), view, {-1.5, -5, -1.5}, {1.5, -4, 1.5}), 1);

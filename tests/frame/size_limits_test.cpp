@@ -33,10 +33,7 @@ double pixelsOf(const MadeWorld& made, size_t object, const View& view) {
     DrawItem item;
     item.mesh = made.mesh.view();
     item.transform = made.transforms[object];
-    ZBufferSettings settings;
-    settings.samples = kSamples;
-    settings.want_generated = false;
-    const ZBufferImage image = renderZBuffer({&item, 1}, view, settings);
+    const ZBufferImage image = renderZBuffer({&item, 1}, view, {.samples = kSamples, .want_generated = false});
     const auto covered =
         image.id.size() - static_cast<size_t>(std::count(image.id.begin(), image.id.end(), ZBufferImage::kNone));
     return static_cast<double>(covered) / (kSamples * kSamples);
@@ -51,8 +48,7 @@ View someView(Random& random, int kind) {
 }
 
 TEST(SizeLimits, DoNothingUnlessAsked) {
-    MadeWorld made;
-    made.fill(1, 300, {0, 0, 0});
+    MadeWorld made(1, 300);
     const Snapshot now = made.world.commit();
     Query query;
     View view = viewFrom({0, 0, 0}, {1, 0, 0}, kCamera);
@@ -74,16 +70,12 @@ TEST(SizeLimits, WhatContributionCullsCoversNoMoreThanItsDisk) {
     Random random(5);
     int culled = 0;
     for (uint64_t seed = 1; seed <= 2; ++seed) {
-        MadeWorld made;
-        made.fill(seed, 300, {0, 0, 0});
+        MadeWorld made(seed, 300);
         const Snapshot now = made.world.commit();
         Query query;
         for (int kind = 0; kind < 8; ++kind) {
             View view = someView(random, kind);
-            QuerySettings settings;
-            settings.contribution = 6;
-            settings.hysteresis = 0;
-            const auto reasons = reasonsOf(query, now, view, settings);
+            const auto reasons = reasonsOf(query, now, view, {.contribution = 6, .hysteresis = 0});
             for (size_t i = 0; i < reasons.size(); ++i) {
                 if (reasons[i] != kByContribution) continue;
                 ++culled;
@@ -97,14 +89,11 @@ TEST(SizeLimits, WhatContributionCullsCoversNoMoreThanItsDisk) {
 TEST(SizeLimits, EachObjectsFateHangsOnItselfNotOnItsNode) {
     Random random(6);
     for (uint64_t seed = 1; seed <= 6; ++seed) {
-        MadeWorld made;
-        made.fill(seed, 400, {0, 0, 0});
+        MadeWorld made(seed, 400);
         const Snapshot now = made.world.commit();
         for (int kind = 0; kind < 8; ++kind) {
             View view = someView(random, kind);
-            QuerySettings settings;
-            settings.max_distance = kind % 3 ? 18 : 0;
-            settings.contribution = kind % 3 == 1 ? 0 : 5;
+            QuerySettings settings{.max_distance = kind % 3 ? 18.0 : 0.0, .contribution = kind % 3 == 1 ? 0.0 : 5.0};
             detail::SizeLimits sizes;
             sizes.begin(now.state(), view, settings, stagesInUse(view, settings), eyePosition(view), {});
             for (const uint32_t stages : {kAllStages, stageBit(Stage::kFrustum) | kLossyStages, kLossyStages}) {
@@ -129,8 +118,7 @@ TEST(SizeLimits, TheOthersCullOnlyWhatTheAnswerItselfHides) {
     Random random(7);
     uint64_t by_occlusion = 0, left_out = 0;
     for (uint64_t seed = 1; seed <= 8; ++seed) {
-        MadeWorld made;
-        made.fill(seed, 400, {0, 0, 0});
+        MadeWorld made(seed, 400);
         const Snapshot now = made.world.commit();
         Query query;
         glm::dvec3 eye(random.uniform(-20, 20), 0, random.uniform(-20, 20));
@@ -162,24 +150,18 @@ TEST(SizeLimits, TheOthersCullOnlyWhatTheAnswerItselfHides) {
 }
 
 TEST(SizeLimits, CountsAddUpAndAreTheSameForAnyBins) {
-    MadeWorld made;
-    made.fill(3, 500, {0, 0, 0});
+    MadeWorld made(3, 500);
     const Snapshot now = made.world.commit();
     Random random(8);
     for (int kind = 0; kind < 12; ++kind) {
         View view = someView(random, kind);
-        QuerySettings settings;
-        settings.max_distance = 20;
-        settings.contribution = 4;
-        settings.hysteresis = 0;
+        QuerySettings settings{.max_distance = 20, .contribution = 4, .hysteresis = 0};
         uint64_t far = 0, small = 0;
         for (const uint32_t bins : {1u, 5u}) {
             Query query;
             settings.bins = bins;
             const QueryStats stats = query.visible(now, view, settings).stats;
-            uint64_t sum = stats.visible;
-            for (const StageStats& stage : stats.stages) sum += stage.culled;
-            EXPECT_EQ(sum, stats.objects);
+            EXPECT_EQ(accountedFor(stats), stats.objects);
             if (bins > 1) {
                 EXPECT_EQ(culledBy(stats, Stage::kDistance), far);
                 EXPECT_EQ(culledBy(stats, Stage::kContribution), small);
@@ -200,8 +182,7 @@ TEST(SizeLimits, WholeNodesAreCulledAtOnce) {
     const Snapshot now = made.world.commit();
     Query query;
     View view = viewFrom({0, 0, 0}, {0, 0, -1}, kCamera);
-    QuerySettings settings;
-    settings.max_distance = 1000;
+    QuerySettings settings{.max_distance = 1000};
     const QueryStats stats = query.visible(now, view, settings).stats;
     EXPECT_EQ(culledBy(stats, Stage::kDistance), 4000u);
     EXPECT_LE(stats.nodes_visited, 1u);
@@ -266,8 +247,7 @@ TEST(SizeLimits, ManyObjectsWithLimitsAreTreatedEachByItsOwn) {
         }
         const Snapshot now = world.commit();
         View view = viewFrom({0, 0, 0}, {0, 0, -1}, {40, 320, 180});
-        QuerySettings settings;
-        settings.max_distance = 90;
+        QuerySettings settings{.max_distance = 90};
         settings.stages = stageBit(Stage::kDistance);
         Query query;
         const auto reasons = reasonsOf(query, now, view, settings);
@@ -293,9 +273,7 @@ TEST(SizeLimits, WhatWasShownStaysUntilItIsClearlySmaller) {
     const auto shows = [&](double radius) {  // how large it is to look
         const double away = std::sqrt(r * r + r * r * scale * scale / (radius * radius));
         View view = viewFrom({0, 0, away}, {0, 0, -1}, kCamera);
-        QuerySettings settings;
-        settings.contribution = 2;
-        return !query.visible(now, view, settings).objects.empty();
+        return !query.visible(now, view, {.contribution = 2}).objects.empty();
     };
     EXPECT_FALSE(shows(1.95)) << "nothing was shown before";
     EXPECT_TRUE(shows(2.05));
@@ -307,9 +285,7 @@ TEST(SizeLimits, WhatWasShownStaysUntilItIsClearlySmaller) {
     EXPECT_TRUE(shows(2.05));
     const auto away = [&](double distance) {
         const View view = viewFrom({0, 0, distance + 1}, {0, 0, -1}, kCamera);
-        QuerySettings settings;
-        settings.max_distance = 10;
-        return !query.visible(now, view, settings).objects.empty();
+        return !query.visible(now, view, {.max_distance = 10}).objects.empty();
     };
     EXPECT_TRUE(away(10.5));
     EXPECT_FALSE(away(11.5));
@@ -325,8 +301,7 @@ TEST(SizeLimits, AnotherObjectWithTheIndexOfOneThatWasShownWasNot) {
     const ObjectId first = world.add(def);
     Query query;
     View view = viewFrom({0, 0, 11.5}, {0, 0, -1}, kCamera);
-    QuerySettings settings;
-    settings.max_distance = 11;
+    QuerySettings settings{.max_distance = 11};
     EXPECT_EQ(query.visible(world.commit(), view, settings).objects.size(), 1u);
     world.remove(first);
     const ObjectId second = world.add(def);
@@ -336,18 +311,14 @@ TEST(SizeLimits, AnotherObjectWithTheIndexOfOneThatWasShownWasNot) {
 }
 
 TEST(SizeLimits, TheAnswerIsExplained) {
-    MadeWorld made;
-    made.fill(4, 400, {0, 0, 0});
+    MadeWorld made(4, 400);
     const Snapshot now = made.world.commit();
     Query query;
     Random random(11);
     int far = 0, small = 0;
     for (int frame = 0; frame < 6; ++frame) {
         View view = someView(random, 1);
-        QuerySettings settings;
-        settings.max_distance = 16;
-        settings.contribution = 16;
-        settings.bins = frame % 2 ? 3 : 1;
+        QuerySettings settings{.max_distance = 16, .contribution = 16, .bins = frame % 2 ? 3u : 1u};
         const auto reasons = reasonsOf(query, now, view, settings);
         for (size_t i = 0; i < reasons.size(); ++i) {
             if (reasons[i] != kByDistance && reasons[i] != kByContribution && i % 16) continue;

@@ -1,6 +1,6 @@
 // The picture that is timed shows the same surfaces as the id-buffer that is checked, in their colours.
 // SPDX-License-Identifier: MIT
-#include "apps/gl/flat_renderer.h"
+#include "apps/gl/renderers.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "apps/gl/id_renderer.h"
 #include "tests/studies/hidden/made_lists.h"
 
 namespace sightline::test {

@@ -1,6 +1,6 @@
 // An independent renderer bears the reference out: Mesa's software GL sees the same surfaces, but for samples at edges.
 // SPDX-License-Identifier: MIT
-#include "apps/gl/id_renderer.h"
+#include "apps/gl/renderers.h"
 
 #include <gtest/gtest.h>
 
@@ -106,9 +106,8 @@ TEST_F(GlIdRendererTest, SeesWhatTheReferenceSeesInMadeLists) {
         lists.push_back(throughTheEye(seed));
     }
     for (const MadeList& made : lists) {
-        const std::vector<DrawItem> items = made.items();
         for (const double z_near : {0.1, 0.001}) {
-            const Agreement result = compare(DrawList(items), madeView(320, 240, z_near),
+            const Agreement result = compare(made.list(), madeView(320, 240, z_near),
                                              made.name + ", near plane at " + std::to_string(z_near));
             EXPECT_LE(result.differing, 60u) << made.name;
         }
@@ -215,8 +214,7 @@ TEST_F(GlIdRendererTest, SeesWhatTheReferenceSeesInRealScenes) {
 
 TEST(GlContext, TwoLiveAtOnceAndDrawTheSameWithAnyNumberOfThreads) {
     const MadeList made = clutter(7, 3000);
-    const std::vector<DrawItem> items = made.items();
-    const DrawList list(items);
+    const DrawList list = made.list();
     Result<GlContext> one = GlContext::create(0), two = GlContext::create(3);
     if (!one) GTEST_SKIP() << one.error().message;
     ASSERT_TRUE(two.ok()) << two.error().message;

@@ -16,13 +16,7 @@ namespace {
 struct Mesh : test::TestMesh {
     std::vector<uint8_t> double_sided, writes_depth;
 
-    DrawItem item() const {
-        DrawItem made;
-        made.mesh = view();
-        made.double_sided = double_sided;
-        made.writes_depth = writes_depth;
-        return made;
-    }
+    DrawItem item() const { return {.mesh = view(), .double_sided = double_sided, .writes_depth = writes_depth}; }
 };
 
 Mesh randomMesh(uint64_t seed) {

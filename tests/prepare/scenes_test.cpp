@@ -43,10 +43,7 @@ TEST(PreparedScenes, KeepTheLaws) {
             const MeshView mesh{scene->meshes[m].positions, scene->meshes[m].indices};
             const Occluder plain = prepareOccluder(mesh, {}, {}, {.rings = false, .merge = false});
             const Occluder full = prepareOccluder(mesh, {}, {}, {.own_polygons = 64, .rings = true, .merge = true});
-            for (const Occluder* o : {&plain, &full}) {
-                expectWithinLimits(*o);
-                expectRightEdges(*o);
-            }
+            for (const Occluder* o : {&plain, &full}) { expectOccluderLaws(*o); }
             const Surface p = surfaceOf(plain), f = surfaceOf(full);
             EXPECT_NEAR(f.area, p.area, 1e-9 * p.area);
             EXPECT_LE(glm::distance(f.facing, p.facing), 1e-9 * p.area);

@@ -3,9 +3,7 @@
 #include "sightline/query/answer.h"
 
 #include <algorithm>
-#include <atomic>
 #include <limits>
-#include <memory_resource>
 #include <numeric>
 #include <set>
 #include <vector>
@@ -15,6 +13,7 @@
 #include "sightline/base/thread_pool.h"
 #include "sightline/query/explain/explain.h"
 #include "tests/support/made_world.h"
+#include "tests/support/memory.h"
 
 namespace sightline::test {
 namespace {
@@ -34,26 +33,13 @@ private:
     Random random_;
 };
 
-View viewFrom(const glm::dvec3& eye, const glm::dvec3& target) {
-    View view;
-    view.width = 320;
-    view.height = 180;
-    view.view = lookAt(eye, target, {0, 1, 0});
-    view.projection = perspective(glm::radians(70.0), 16.0 / 9.0, 0.1);
-    return view;
-}
-
 /// A view into the middle of a made world.
 View randomView(Random& random) {
     const glm::dvec3 eye(random.uniform(-20, 20), random.uniform(-4, 4), random.uniform(-20, 20));
-    return viewFrom(eye, {random.uniform(-9, 9), 0, random.uniform(-9, 9)});
+    return viewAt(eye, {random.uniform(-9, 9), 0, random.uniform(-9, 9)}, {70, 320, 180});
 }
 
-QuerySettings inBins(uint32_t bins) {
-    QuerySettings settings;
-    settings.bins = bins;
-    return settings;
-}
+QuerySettings inBins(uint32_t bins) { return {.bins = bins}; }
 
 /// All that a query tells of its last answer, but the time.
 struct Told {
@@ -65,8 +51,7 @@ struct Told {
     Told(Query& query, const Snapshot& now, const View& view, const QuerySettings& settings) {
         const VisibleSet set = query.visible(now, view, settings);
         for (const Visible& v : set.objects) objects.emplace_back(v.key, v.id.index);
-        reasons.resize(now.objectCount());
-        query.reasons(reasons);
+        reasons = reasonsOf(query, now);
         const Query::DepthImage image = query.depthImage();
         depths.assign(image.nearness.begin(), image.nearness.end());
         covered.assign(image.covered.begin(), image.covered.end());
@@ -115,13 +100,11 @@ TEST(Bins, AreSoundAndAsTightAsTheWhole) {
         const Snapshot now = made.world.commit();
         Query query, whole;
         Random random(100 + seed);
-        std::vector<uint8_t> reasons(now.objectCount()), whole_reasons(now.objectCount());
         for (int frame = 0; frame < 6; ++frame) {
             const View view = randomView(random);
             const VisibleSet set = query.visible(now, view, inBins(static_cast<uint32_t>(2 + frame)));
-            query.reasons(reasons);
             whole_kept += whole.visible(now, view).objects.size();
-            whole.reasons(whole_reasons);
+            const std::vector<uint8_t> reasons = reasonsOf(query, now), whole_reasons = reasonsOf(whole, now);
             kept += set.objects.size();
             const std::vector<uint8_t> seen = made.seen(view, 2);
             for (size_t i = 0; i < seen.size(); ++i) {
@@ -144,22 +127,18 @@ TEST(Bins, CountEveryObjectOnce) {
         const Snapshot now = made.world.commit();
         Query query;
         Random random(seed);
-        std::vector<uint8_t> reasons(now.objectCount());
         for (uint32_t bins = 1; bins <= 16; bins += 3) {
             View view = randomView(random);
             QuerySettings settings = inBins(bins);
             if (bins % 2) settings.stages = kAllStages;
             view.layers = 1;
             const QueryStats stats = query.visible(now, view, settings).stats;
-            query.reasons(reasons);
             uint64_t by[1 + kStageCount] = {};
-            for (const uint8_t reason : reasons)
+            for (const uint8_t reason : reasonsOf(query, now))
                 if (reason != 255) ++by[reason];
             EXPECT_EQ(stats.objects, now.objectCount() - 1);
             EXPECT_EQ(stats.visible, by[0]);
-            uint64_t culled = 0;
-            for (const StageStats& stage : stats.stages) culled += stage.culled;
-            EXPECT_EQ(stats.visible + culled, stats.objects);
+            EXPECT_EQ(accountedFor(stats), stats.objects);
         }
     }
 }
@@ -195,8 +174,7 @@ TEST(Bins, AreExplainedAsTheyAnswer) {
         const QuerySettings settings = inBins(3);
         Query query;
         query.visible(now, view, settings);
-        std::vector<uint8_t> reasons(now.objectCount());
-        query.reasons(reasons);
+        const std::vector<uint8_t> reasons = reasonsOf(query, now);
         Explainer explainer(now, view, settings);
         for (size_t i = 0; i < reasons.size(); ++i) {
             const Explanation why = explainer.explain(made.ids[i], {.hiders = false, .without = false});
@@ -219,7 +197,7 @@ TEST(Bins, TakeWhatOthersCannot) {
     const Snapshot now = made.world.commit();
     ThreadPool pool(2);
     Query query(defaultMemory(), &pool);
-    View view = viewFrom({0, 0, 12}, {0, 0, 0});
+    View view = viewAt({0, 0, 12}, {0, 0, 0}, {70, 320, 180});
     QuerySettings settings = inBins(4);
     const auto keeps = [&](const VisibleSet& set) {
         return std::count_if(set.objects.begin(), set.objects.end(), [&](const Visible& v) { return v.id == always; });
@@ -237,26 +215,10 @@ TEST(Bins, TakeWhatOthersCannot) {
     EXPECT_EQ(query.changes().disappeared.size(), now.objectCount());
 }
 
-/// Counts what is asked of it, from any thread.
-class Counting final : public std::pmr::memory_resource {
-public:
-    std::atomic<uint64_t> calls{0};
-
-private:
-    void* do_allocate(size_t bytes, size_t alignment) override {
-        ++calls;
-        return std::pmr::new_delete_resource()->allocate(bytes, alignment);
-    }
-    void do_deallocate(void* at, size_t bytes, size_t alignment) override {
-        std::pmr::new_delete_resource()->deallocate(at, bytes, alignment);
-    }
-    bool do_is_equal(const memory_resource& other) const noexcept override { return this == &other; }
-};
-
 TEST(Bins, AllocateNothingOnceWarm) {
     MadeWorld made = madeWorld(4);
     const Snapshot now = made.world.commit();
-    Counting memory;
+    CountingMemory memory;
     ThreadPool pool(2);
     Query query(&memory, &pool);
     Random random(4);
@@ -264,10 +226,10 @@ TEST(Bins, AllocateNothingOnceWarm) {
     for (int i = 0; i < 6; ++i) views.push_back(randomView(random));
     for (int round = 0; round < 3; ++round)
         for (const View& view : views) query.visible(now, view, inBins(4));
-    const uint64_t before = memory.calls;
+    const uint64_t before = memory.allocations;
     EXPECT_GT(before, 0u);
     for (const View& view : views) query.visible(now, view, inBins(4));
-    EXPECT_EQ(memory.calls, before);
+    EXPECT_EQ(memory.allocations, before);
 }
 
 }  // namespace

@@ -38,8 +38,7 @@ TEST(Credits, GoToTheWallThatHidesTheThings) {
 TEST(Credits, AddUpToWhatTheOcclusionStageCulled) {
     uint64_t culled = 0;
     for (uint64_t seed = 1; seed <= 30; ++seed) {
-        MadeWorld made;
-        made.fill(seed, 400, {0, 0, 0});
+        MadeWorld made(seed, 400);
         if (seed % 3 == 0)
             for (int i = 0; i < 40; ++i) made.add({i * 0.5 - 10, -3, 5}, {i * 0.5 - 9.7, -2, 6}, true, 2);
         const Snapshot now = made.world.commit();
@@ -88,9 +87,7 @@ TEST(Credits, AreNoneWithoutOccluders) {
     CreditBook book(made.world.commit());
     View view = viewFrom({0, 0, 0}, {0, 0, -1}, kCamera);
     EXPECT_EQ(book.credits(view).size(), 0u) << "with nothing left to hide, nothing is drawn";
-    QuerySettings settings;
-    settings.stages = stageBit(Stage::kFrustum);
-    EXPECT_TRUE(book.credits(view, settings).empty());
+    EXPECT_TRUE(book.credits(view, {.stages = stageBit(Stage::kFrustum)}).empty());
     view.projection[0][0] = std::numeric_limits<double>::quiet_NaN();
     EXPECT_TRUE(book.credits(view).empty());
     EXPECT_TRUE(CreditBook(Snapshot()).credits(View()).empty());

@@ -137,8 +137,7 @@ TEST(Explain, IsTrueOfBoxesThatAlmostTouchAPlane) {
 
 TEST(Explain, SaysOfEveryObjectWhatTheQuerySays) {
     for (uint64_t seed = 1; seed <= 6; ++seed) {
-        MadeWorld made;
-        made.fill(seed, 150, {0, 0, 0});
+        MadeWorld made(seed, 150);
         ObjectDef odd;
         odd.bounds = {glm::dvec3(0.0), glm::dvec3(std::numeric_limits<double>::quiet_NaN())};
         made.world.add(odd);
@@ -260,8 +259,7 @@ TEST(Explain, KnowsWhatIsNotThere) {
 }
 
 TEST(Explain, LeavesTheLastAnswerAsItIs) {
-    MadeWorld made;
-    made.fill(4, 200, {0, 0, 0});
+    MadeWorld made(4, 200);
     const Snapshot now = made.world.commit();
     Query query;
     const std::vector<uint64_t> before = keysOf(query.visible(now, plainView()));

@@ -28,9 +28,8 @@ double firstHit(const std::vector<glm::dmat4>& inverse, const glm::dvec3& from, 
 }
 
 Light someLight(Random& random) {
-    Light light;
-    light.kind = random.below(2) ? LightKind::kSpot : LightKind::kPoint;
-    light.position = {random.uniform(-25, 25), random.uniform(-4, 6), random.uniform(-25, 25)};
+    Light light{.kind = random.below(2) ? LightKind::kSpot : LightKind::kPoint,
+                .position = {random.uniform(-25, 25), random.uniform(-4, 6), random.uniform(-25, 25)}};
     light.direction = {random.uniform(-1, 1), random.uniform(-1, 0), random.uniform(-1, 1)};
     light.half_angle = random.uniform(0.2, 1.2);
     light.range = random.uniform(0.5, 6);

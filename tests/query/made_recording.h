@@ -43,8 +43,7 @@ inline OccluderId addSheet(World& world, uint32_t side) {
 /// @param boxes   of walls, floors and clutter
 /// @param sheets  bent ones, of side * side quads
 inline MadeWorld someWorld(uint64_t seed, int boxes = 300, int sheets = 20, uint32_t side = 20) {
-    MadeWorld made;
-    made.fill(seed, boxes, {0, 0, 0});
+    MadeWorld made(seed, boxes);
     const OccluderId sheet = addSheet(made.world, side);
     Random random(seed + 1);
     for (int i = 0; i < sheets; ++i) {

@@ -119,9 +119,7 @@ TEST(OcclusionRecording, OfNothingIsOne) {
     const Result<OcclusionRecording> recording = recordOcclusion(world.commit(), View());
     ASSERT_TRUE(recording.ok());
     EXPECT_TRUE(readAndReplay(recordingBytes(*recording)));
-    QuerySettings settings;
-    settings.stages = stageBit(Stage::kFrustum);
-    EXPECT_FALSE(recordOcclusion(world.commit(), View(), settings).ok());
+    EXPECT_FALSE(recordOcclusion(world.commit(), View(), {.stages = stageBit(Stage::kFrustum)}).ok());
     View view;
     view.projection[0][0] = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(recordOcclusion(world.commit(), view).ok());

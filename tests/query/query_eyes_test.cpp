@@ -66,8 +66,7 @@ void expectBothEyes(const MadeWorld& made, Query& query, const Snapshot& now, co
 TEST(Stereo, IsWhatEachEyeSeesBitForBit) {
     size_t one_eye = 0;
     for (uint64_t seed = 1; seed <= 6; ++seed) {
-        MadeWorld made;
-        made.fill(seed, 400, {0, 0, 0});
+        MadeWorld made(seed, 400);
         const Snapshot now = made.world.commit();
         Query query;
         Random random(seed);
@@ -85,8 +84,7 @@ TEST(Stereo, IsWhatEachEyeSeesBitForBit) {
 }
 
 TEST(Stereo, ChangesAreThoseOfBothEyes) {
-    MadeWorld made;
-    made.fill(3, 400, {0, 0, 0});
+    MadeWorld made(3, 400);
     const Snapshot now = made.world.commit();
     Query query;
     std::set<Key> before;

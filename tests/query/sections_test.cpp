@@ -101,9 +101,7 @@ TEST(Sections, CullWhatLiesBeyondAndCountItAsFrustum) {
     const VisibleSet set = query.visible(now, view, settings);
     EXPECT_EQ(keptOf(set, 4), (std::vector<uint8_t>{1, 0, 1, 1}));
     EXPECT_EQ(set.stats.stages[kFrustumStage].culled, 1u);
-    std::vector<uint8_t> reasons(4);
-    query.reasons(reasons);
-    EXPECT_EQ(reasons[1], 1 + static_cast<uint8_t>(Stage::kFrustum));
+    EXPECT_EQ(reasonsOf(query, now)[1], 1 + static_cast<uint8_t>(Stage::kFrustum));
     settings.stages &= ~stageBit(Stage::kFrustum);
     EXPECT_EQ(query.visible(now, view, settings).objects.size(), 4u) << "without the stage nothing is culled by planes";
     settings.stages = kAllStages;
@@ -202,8 +200,7 @@ TEST(Sections, WhatIsLeftWholeHidesAsEver) {
     const Snapshot now = made.world.commit();
     Query query;
     View view = viewFrom({0, 0, 0}, {0, 0, -1}, {90});
-    QuerySettings settings;
-    settings.occlusion_size = 160;
+    QuerySettings settings{.occlusion_size = 160};
     EXPECT_EQ(query.visible(now, view, settings).objects.size(), 1u);
     view.sections.add({1, 0, 0, 2});  // x >= -2
     const std::vector<uint8_t> kept = keptOf(query.visible(now, view, settings), 11);
@@ -225,8 +222,7 @@ TEST(Sections, WhatIsLeftWholeHidesAsEver) {
 }
 
 TEST(Sections, GiveOneAnswerOnEveryTarget) {
-    MadeWorld made;
-    made.fill(5, 300, {0, 0, 0});
+    MadeWorld made(5, 300);
     const Snapshot now = made.world.commit();
     Random random(5);
     for (int frame = 0; frame < 6; ++frame) {
@@ -279,9 +275,7 @@ std::vector<uint8_t> seenInWindow(const MadeWorld& made, const View& view, const
         item.id = static_cast<uint32_t>(i);
         items.push_back(item);
     }
-    ZBufferSettings settings;
-    settings.samples = samples;
-    const ZBufferImage image = renderZBuffer(items, view, settings);
+    const ZBufferImage image = renderZBuffer(items, view, {.samples = samples});
     const glm::dmat4 to_eye = glm::inverse(view.projection), to_world = glm::inverse(view.view);
     std::vector<uint8_t> seen(made.transforms.size(), 0);
     for (size_t at = 0; at < image.id.size(); ++at) {

@@ -111,13 +111,23 @@ Light someLight(Random& random, LightKind kind) {
     return light;
 }
 
+/// Things on the ground.
+struct GroundedWorld : MadeWorld {
+    explicit GroundedWorld(uint64_t seed) {
+        add({-40, -7, -40}, {40, -6, 40});
+        fill(seed, 350, {0, 0, 0});
+    }
+};
+
+bool casts(const CasterSet& set, ObjectId id) {
+    return std::any_of(set.casters.begin(), set.casters.end(), [&](const Visible& v) { return v.id == id; });
+}
+
 void judge(LightKind kind, bool occlusion, double least_dropped) {
     Random random(17 + static_cast<uint64_t>(kind));
     Judged judged;
     for (uint64_t seed = 1; seed <= 6; ++seed) {
-        MadeWorld made;
-        made.add({-40, -7, -40}, {40, -6, 40});
-        made.fill(seed, 350, {0, 0, 0});
+        GroundedWorld made(seed);
         const Rays rays(made);
         const Snapshot now = made.world.commit();
         Query query;
@@ -162,18 +172,14 @@ TEST(ShadowQuery, KeepsACasterOutsideTheViewAndDropsOneThatIsInItAndDarkensNothi
     const View view = viewFrom({0, 0, 0}, {0, 0, -1});
     Query query;
     ShadowQuery shadows;
-    Light sun;
-    sun.direction = {0.1, -1, 0.05};
+    Light sun{.direction = {0.1, -1, 0.05}};
     for (const bool occlusion : {true, false}) {
         CasterSettings settings;
         settings.occlusion = occlusion;
         const CasterSet set = shadows.casters(now, view, query.visible(now, view).objects, sun, settings);
-        const auto has = [&](ObjectId id) {
-            return std::any_of(set.casters.begin(), set.casters.end(), [&](const Visible& v) { return v.id == id; });
-        };
-        EXPECT_TRUE(has(outside));
-        EXPECT_FALSE(has(behind));
-        EXPECT_FALSE(has(below));
+        EXPECT_TRUE(casts(set, outside));
+        EXPECT_FALSE(casts(set, behind));
+        EXPECT_FALSE(casts(set, below));
     }
 }
 
@@ -187,21 +193,16 @@ TEST(ShadowQuery, WhatASectionCutsShadowsNoCaster) {
     Query query;
     ShadowQuery shadows;
     Light sun;
-    const auto casts = [&] {
-        const CasterSet set = shadows.casters(now, view, query.visible(now, view).objects, sun);
-        return std::any_of(set.casters.begin(), set.casters.end(), [&](const Visible& v) { return v.id == under; });
-    };
-    EXPECT_FALSE(casts());
+    const auto castersNow = [&] { return shadows.casters(now, view, query.visible(now, view).objects, sun); };
+    EXPECT_FALSE(casts(castersNow(), under));
     view.sections.add({0, -1, 0, 15});
-    EXPECT_TRUE(casts());
+    EXPECT_TRUE(casts(castersNow(), under));
 }
 
 TEST(ShadowQuery, CascadesTogetherKeepWhatOneMapKeeps) {
     Random random(23);
     for (uint64_t seed = 1; seed <= 4; ++seed) {
-        MadeWorld made;
-        made.add({-40, -7, -40}, {40, -6, 40});
-        made.fill(seed, 350, {0, 0, 0});
+        GroundedWorld made(seed);
         const Rays rays(made);
         const Snapshot now = made.world.commit();
         Query query;
@@ -210,10 +211,8 @@ TEST(ShadowQuery, CascadesTogetherKeepWhatOneMapKeeps) {
         const View view = viewFrom({random.uniform(-20, 20), 1, random.uniform(-20, 20)}, someDirection(random));
         const Light light = someLight(random, LightKind::kDirectional);
         const double ends[] = {4, 12, 200};
-        CasterSettings settings;
-        settings.cascades = ends;
         const auto receivers = query.visible(now, view).objects;
-        const CasterSet set = shadows.casters(now, view, receivers, light, settings);
+        const CasterSet set = shadows.casters(now, view, receivers, light, {.cascades = ends});
         expectShadows(made, rays, view, light, set, false, random, "seed " + std::to_string(seed), judged);
         uint32_t any = 0;
         for (const uint32_t bits : set.cascades) {
@@ -225,8 +224,7 @@ TEST(ShadowQuery, CascadesTogetherKeepWhatOneMapKeeps) {
 }
 
 TEST(ShadowQuery, InDoubtEverythingCasts) {
-    MadeWorld made;
-    made.fill(1, 50, {0, 0, 0});
+    MadeWorld made(1, 50);
     ObjectDef odd;
     odd.bounds = {glm::dvec3(0.0), glm::dvec3(std::numeric_limits<double>::quiet_NaN())};
     odd.key = 1000;

@@ -13,35 +13,13 @@ using namespace studies;
 namespace {
 
 /// Objects whose boxes say little about them: thin bars across their boxes, under any transform, and walls.
-struct BarWorld {
-    TestMesh cube_mesh = boxMesh(), bar_mesh = cube_mesh;
-    std::vector<glm::dmat4> transforms;
-    std::vector<uint8_t> is_bar, hides;
-    World world;
-    OccluderId bar, cube;
-
-    BarWorld() {
+struct BarWorld : MadeWorld {
+    explicit BarWorld(uint64_t seed) {
+        shapes = true;
         // A beam from corner to corner of the unit box.
-        for (glm::vec3& p : bar_mesh.positions)
-            p = p.z < 0.5f ? 0.1f * p : glm::vec3(1) - 0.1f * (glm::vec3(1, 1, 2) - p);
-        cube = world.addOccluder(prepareOccluder(cube_mesh.view()));
-        bar = world.addOccluder(prepareOccluder(bar_mesh.view()));
-    }
-
-    void add(const glm::dmat4& transform, bool as_bar, bool hiding) {
-        ObjectDef def;
-        def.bounds = {glm::dvec3(0), glm::dvec3(1)};
-        def.transform = transform;
-        def.key = transforms.size();
-        def.occluder = hiding ? (as_bar ? bar : cube) : OccluderId();
-        def.shape = as_bar ? bar : cube;
-        world.add(def);
-        transforms.push_back(transform);
-        is_bar.push_back(as_bar);
-        hides.push_back(hiding);
-    }
-
-    void fill(uint64_t seed) {
+        other = mesh;
+        for (glm::vec3& p : other.positions) p = p.z < 0.5f ? 0.1f * p : glm::vec3(1) - 0.1f * (glm::vec3(1, 1, 2) - p);
+        const OccluderId bar = world.addOccluder(prepareOccluder(other.view()));
         Random random(seed);
         for (int i = 0; i < 300; ++i) {
             glm::dmat4 t(1.0);
@@ -53,26 +31,8 @@ struct BarWorld {
                 if (i % 3 == 0) t[0] = -t[0];
             }
             t[3] = glm::dvec4(random.uniform(-15, 15), random.uniform(-5, 5), random.uniform(-15, 15), 1);
-            add(t, !wall, i % 4 != 1);
+            add(t, i % 4 != 1, 1, wall ? OccluderId() : bar);
         }
-    }
-
-    std::vector<uint8_t> seen(const View& view) const {
-        std::vector<DrawItem> items;
-        const std::vector<uint8_t> no(cube_mesh.indices.size() / 3, 0);
-        for (size_t i = 0; i < transforms.size(); ++i) {
-            DrawItem item;
-            item.mesh = (is_bar[i] ? bar_mesh : cube_mesh).view();
-            if (!hides[i]) item.writes_depth = no;
-            item.transform = transforms[i];
-            item.id = static_cast<uint32_t>(i);
-            items.push_back(item);
-        }
-        ZBufferSettings settings;
-        settings.samples = 3;
-        std::vector<uint8_t> seen = renderZBuffer(items, view, settings).seen;
-        seen.resize(transforms.size(), 0);
-        return seen;
     }
 };
 
@@ -95,8 +55,7 @@ std::vector<uint64_t> sortedKeys(const Snapshot& now, const View& view, const Qu
 TEST(SecondLook, OnlyCullsMoreAndKeepsWhatIsSeen) {
     uint64_t by_faces = 0, by_triangles = 0, kept = 0, rough_kept = 0;
     for (uint64_t seed = 1; seed <= 10; ++seed) {
-        BarWorld made;
-        made.fill(seed);
+        BarWorld made(seed);
         const Snapshot now = made.world.commit();
         Random random(seed);
         for (int frame = 0; frame < 6; ++frame) {
@@ -111,7 +70,7 @@ TEST(SecondLook, OnlyCullsMoreAndKeepsWhatIsSeen) {
             const std::vector<uint64_t> rough = sortedKeys(now, view, settings);
             EXPECT_TRUE(std::includes(faces.begin(), faces.end(), both.begin(), both.end())) << what;
             EXPECT_TRUE(std::includes(rough.begin(), rough.end(), faces.begin(), faces.end())) << what;
-            const std::vector<uint8_t> seen = made.seen(view);
+            const std::vector<uint8_t> seen = made.seen(view, 3);
             for (uint64_t key = 0; key < seen.size(); ++key)
                 EXPECT_TRUE(!seen[key] || std::binary_search(both.begin(), both.end(), key))
                     << what << " object " << key;
@@ -128,8 +87,7 @@ TEST(SecondLook, OnlyCullsMoreAndKeepsWhatIsSeen) {
 }
 
 TEST(SecondLook, IsTheSameOnEveryInstructionSet) {
-    BarWorld made;
-    made.fill(3);
+    BarWorld made(3);
     const Snapshot now = made.world.commit();
     std::vector<std::vector<uint64_t>> all;
     forEachTarget([&](const std::string&) {
@@ -143,8 +101,7 @@ TEST(SecondLook, IsTheSameOnEveryInstructionSet) {
 }
 
 TEST(SecondLook, ASpentBudgetKeepsMoreAndSaysSo) {
-    BarWorld made;
-    made.fill(5);
+    BarWorld made(5);
     const Snapshot now = made.world.commit();
     Random random(5);
     View view = randomView(random, 0);
@@ -161,8 +118,7 @@ TEST(SecondLook, ASpentBudgetKeepsMoreAndSaysSo) {
 }
 
 TEST(SecondLook, WithoutTheFrustumStageKeepsWhatIsOutside) {
-    BarWorld made;
-    made.fill(6);
+    BarWorld made(6);
     const Snapshot now = made.world.commit();
     Random random(6);
     for (int frame = 0; frame < 6; ++frame) {
@@ -178,8 +134,7 @@ TEST(SecondLook, WithoutTheFrustumStageKeepsWhatIsOutside) {
 TEST(SecondLook, IsExplainedRightly) {
     LawCount sum;
     for (uint64_t seed = 1; seed <= 6; ++seed) {
-        BarWorld made;
-        made.fill(seed);
+        BarWorld made(seed);
         const Snapshot now = made.world.commit();
         Random random(seed);
         for (int frame = 0; frame < 3; ++frame) {

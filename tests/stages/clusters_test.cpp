@@ -182,11 +182,7 @@ ZBufferImage imageOf(const MadeScene& scene, const std::map<size_t, std::vector<
         }
         items.push_back(item);
     }
-    ZBufferSettings settings;
-    settings.samples = 2;
-    settings.offset = offset;
-    settings.want_generated = false;
-    return renderZBuffer(items, view, settings);
+    return renderZBuffer(items, view, {.samples = 2, .offset = offset, .want_generated = false});
 }
 
 TEST(ClusterStage, WhatIsLeftDrawsTheWholeImage) {
@@ -200,8 +196,7 @@ TEST(ClusterStage, WhatIsLeftDrawsTheWholeImage) {
         for (int frame = 0; frame < 12; ++frame) {
             SCOPED_TRACE("seed " + std::to_string(seed) + " frame " + std::to_string(frame));
             View view = someView(random);
-            QuerySettings settings;
-            settings.bins = frame % 6 == 5 ? 3 : 1;
+            QuerySettings settings{.bins = frame % 6 == 5 ? 3u : 1u};
             settings.cluster_gap = frame % 3 == 2 ? 40 : 0;
             if (frame % 5 == 4) settings.stages &= ~stageBit(Stage::kOcclusion);
             const VisibleSet set = query.visible(now, view, settings);
@@ -212,9 +207,7 @@ TEST(ClusterStage, WhatIsLeftDrawsTheWholeImage) {
                 ASSERT_EQ(all.id, part.id);
                 ASSERT_EQ(all.depth, part.depth);
             }
-            uint64_t left = set.stats.visible;
-            for (const StageStats& stage : set.stats.stages) left += stage.culled;
-            EXPECT_EQ(left, now.objectCount());
+            EXPECT_EQ(accountedFor(set.stats), now.objectCount());
             EXPECT_EQ(set.stats.visible, set.objects.size());
             const std::vector<uint8_t> reasons = reasonsOf(query, now);
             EXPECT_EQ(static_cast<uint64_t>(std::count(reasons.begin(), reasons.end(), 0)), set.objects.size());

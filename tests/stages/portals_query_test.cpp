@@ -51,8 +51,7 @@ TEST(CellStages, GoTogetherWithAllOthers) {
         RoomsWithRows made(seed);
         MadeRooms& rooms = made.rooms;
         Random random(seed);
-        WorldDef def;
-        def.volumes = true;
+        WorldDef def{.volumes = true};
         rooms.world = World::create(def);
         furnish(rooms, random, 250, rooms.world.addOccluder(prepareOccluder(boxMesh().view())));
         ASSERT_TRUE(rooms.world.attach(rooms.space, &made.rows));
@@ -62,9 +61,7 @@ TEST(CellStages, GoTogetherWithAllOthers) {
         for (int frame = 0; frame < 24; ++frame) {
             const glm::dvec3 eye = randomEye(rooms, random), target = rooms.pointInside(random);
             View view = viewAt(eye, target, kRoomCamera);
-            QuerySettings settings;
-            settings.stages = frame % 2 ? kAllStages : kDefaultStages;
-            settings.bins = frame % 3 == 0 ? 1 : 4;
+            QuerySettings settings{.stages = frame % 2 ? kAllStages : kDefaultStages, .bins = frame % 3 == 0 ? 1u : 4u};
             settings.windows = static_cast<PortalWindows>(frame % 3);
             const Told told(query, now, view, settings), other(threaded, now, view, settings);
             EXPECT_EQ(told, other) << "seed " << seed << " frame " << frame;
@@ -181,8 +178,7 @@ TEST(CellStages, AreExplained) {
         Query query;
         for (int frame = 0; frame < 24; ++frame) {
             View view = viewAt(randomEye(rooms, random), rooms.pointInside(random), kRoomCamera);
-            QuerySettings settings;
-            settings.bins = frame % 4 == 3 ? 2 : 1;
+            QuerySettings settings{.bins = frame % 4 == 3 ? 2u : 1u};
             query.visible(now, view, settings);
             const std::vector<uint8_t> reasons = reasonsOf(query, now);
             Explainer explainer(now, view, settings);
@@ -245,9 +241,7 @@ TEST(CellStages, AllocateNothingOnceWarm) {
         views.push_back(viewAt(randomEye(made.rooms, random), made.rooms.pointInside(random), kRoomCamera));
     const auto ask = [&] {
         for (size_t frame = 0; frame < views.size(); ++frame) {
-            QuerySettings settings;
-            settings.windows = static_cast<PortalWindows>(frame % 3);
-            query.visible(now, views[frame], settings);
+            query.visible(now, views[frame], {.windows = static_cast<PortalWindows>(frame % 3)});
         }
     };
     ask();

@@ -21,10 +21,10 @@ TEST(CellStages, KeepWhatASightLineReaches) {
         for (int frame = 0; frame < 40; ++frame) {
             const glm::dvec3 eye = randomEye(rooms, random);
             View view = viewAt(eye, rooms.pointInside(random), kRoomCamera);
-            QuerySettings settings;
-            settings.stages = frame % 4 == 0 ? stageBit(Stage::kPortals) : kCells | kFrustum;
-            settings.windows = static_cast<PortalWindows>(frame % 3);
-            const VisibleSet set = query.visible(now, view, settings);
+            const VisibleSet set =
+                query.visible(now, view,
+                              {.stages = frame % 4 == 0 ? stageBit(Stage::kPortals) : kCells | kFrustum,
+                               .windows = static_cast<PortalWindows>(frame % 3)});
             by_portals += culledBy(set.stats, Stage::kPortals);
             EXPECT_EQ(set.stats.stages[static_cast<int>(Stage::kPortals)].doubt, 0u) << "seed " << seed << " " << frame;
             const std::set<uint64_t> kept = keySetOf(set);
@@ -48,9 +48,8 @@ TEST(CellStages, OfThePvsCullWhatNoRowShows) {
     for (int frame = 0; frame < 60; ++frame) {
         const glm::dvec3 eye = randomEye(made.rooms, random);
         View view = viewAt(eye, made.rooms.pointInside(random), kRoomCamera);
-        QuerySettings settings;
-        settings.stages = stageBit(Stage::kPvs) | (frame % 2 ? kCells | kFrustum : 0);
-        const VisibleSet set = query.visible(now, view, settings);
+        const VisibleSet set =
+            query.visible(now, view, {.stages = stageBit(Stage::kPvs) | (frame % 2 ? kCells | kFrustum : 0)});
         const std::vector<uint8_t> reasons = reasonsOf(query, now);
         std::set<uint32_t> start;
         for (uint32_t room : made.roomsOf(MadeRooms::boxAround(eye, 1e-9))) start.insert(made.parts[room]);
@@ -116,8 +115,7 @@ TEST(CellStages, GoByDoorsAsTheSnapshotHasThem) {
         const Snapshot now = rooms.world.commit();
         const glm::dvec3 eye = rooms.pointInside(random);
         View view = viewAt(eye, rooms.pointInside(random), kRoomCamera);
-        QuerySettings settings;
-        settings.stages = kCells | kFrustum;
+        QuerySettings settings{.stages = kCells | kFrustum};
         const std::set<uint64_t> all = keySetOf(query.visible(open, view, settings)),
                                  kept = keySetOf(query.visible(now, view, settings));
         EXPECT_TRUE(std::includes(all.begin(), all.end(), kept.begin(), kept.end()));
@@ -141,8 +139,7 @@ TEST(CellStages, KeepWhatStandsInNoCellAndWhatHasNoBounds) {
     const Snapshot now = rooms.world.commit();
     Query query;
     View view = viewAt({2, 1.5, 2}, {2, 1.5, -10}, kRoomCamera);
-    QuerySettings settings;
-    settings.stages = kCells;
+    QuerySettings settings{.stages = kCells};
     EXPECT_EQ(keySetOf(query.visible(now, view, settings)), (std::set<uint64_t>{0, 1}));
     EXPECT_EQ(reasonsOf(query, now), (std::vector<uint8_t>{0, 0, kByPortals}));
     // Once it moves out of the house it is kept, and no longer when it is back.
@@ -165,8 +162,7 @@ TEST(CellStages, KeepAllWhereTheirLimitsOrTheViewForbidTheirWord) {
     const Snapshot now = rooms.world.commit();
     Query query;
     View view = viewAt({2, 1.5, 2}, {18, 1.5, 17}, kRoomCamera);
-    QuerySettings settings;
-    settings.stages = kCells;
+    QuerySettings settings{.stages = kCells};
     const size_t some = query.visible(now, view, settings).objects.size();
     EXPECT_LT(some, 100u);
     settings.portal_work = 1;
@@ -203,9 +199,7 @@ TEST(CellStages, OfEyesWithinARadiusHoldForEachOfThem) {
             glm::dvec3 way(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
             const glm::dvec3 near = eye + view.eye_radius * random.uniform(0, 1) * glm::normalize(way);
             const View one = viewAt(near, made.rooms.pointInside(random), kRoomCamera);
-            QuerySettings rows_alone;
-            rows_alone.stages = stageBit(Stage::kPvs);
-            const VisibleSet set = query.visible(now, one, rows_alone);
+            const VisibleSet set = query.visible(now, one, {.stages = stageBit(Stage::kPvs)});
             if (set.stats.stages[0].doubt > 0) continue;  // it left the house
             const std::set<uint64_t> seen = keySetOf(set);
             EXPECT_TRUE(std::includes(all.begin(), all.end(), seen.begin(), seen.end()));
@@ -225,10 +219,9 @@ TEST(CellStages, CountObjectsOfTheLayersAlone) {
     Query query;
     for (int frame = 0; frame < 30; ++frame) {
         View view = viewAt(randomEye(made.rooms, random), made.rooms.pointInside(random), kRoomCamera);
-        QuerySettings settings;
-        settings.stages = frame % 2 ? kCells | kFrustum : stageBit(Stage::kPvs);
         view.layers = 1 + random.below(7);
-        const VisibleSet set = query.visible(now, view, settings);
+        const VisibleSet set =
+            query.visible(now, view, {.stages = frame % 2 ? kCells | kFrustum : stageBit(Stage::kPvs)});
         const std::vector<uint8_t> reasons = reasonsOf(query, now);
         uint64_t by[256] = {};
         for (size_t i = 0; i < reasons.size(); ++i) {

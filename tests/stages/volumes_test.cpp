@@ -17,35 +17,24 @@ namespace {
 constexpr uint32_t kFrustum = stageBit(Stage::kFrustum), kVolumes = stageBit(Stage::kVolumes);
 constexpr uint8_t kByVolumes = 1 + static_cast<uint8_t>(Stage::kVolumes);
 
-QuerySettings withStages(uint32_t stages) {
-    QuerySettings settings;
-    settings.stages = stages;
-    return settings;
-}
+QuerySettings withStages(uint32_t stages) { return {.stages = stages}; }
 
-/// Holds an answer to the z-buffer and to its own arithmetic.
-void expectSound(MadeWorld& made, Query& query, const Snapshot& now, const View& view, const QuerySettings& settings,
-                 const std::string& what) {
-    const VisibleSet set = query.visible(now, view, settings);
-    const std::vector<uint8_t> kept = keptOf(set, made.transforms.size()), reasons = reasonsOf(query, now);
-    const std::vector<uint8_t> seen = made.seen(view, 3);
-    for (size_t i = 0; i < kept.size(); ++i)
-        EXPECT_TRUE(kept[i] || !seen[i]) << what << ": object " << i << " is seen, but was culled by stage "
-                                         << int(reasons[i]);
+/// Also that each stage is asked of what the ones before it left.
+void expectInTurn(MadeWorld& made, Query& query, const Snapshot& now, const View& view, const QuerySettings& settings,
+                  const std::string& what) {
+    const VisibleSet set = expectSound(made, query, now, view, settings, what);
     uint64_t left = set.stats.objects;
     for (int stage = 0; stage < kStageCount; ++stage) {
         EXPECT_EQ(set.stats.stages[stage].tested, (stagesInUse(view, settings) & ~kCellStages) >> stage & 1 ? left : 0)
             << what;
         left -= set.stats.stages[stage].culled;
     }
-    EXPECT_EQ(left, set.stats.visible) << what;
 }
 
 TEST(Volumes, KeepWhatIsSeenAloneAndBeforeTheTiles) {
     uint64_t culled = 0;
     for (uint64_t seed = 1; seed <= 16; ++seed) {
-        MadeWorld made;
-        made.fill(seed, 400, {0, 0, 0});
+        MadeWorld made(seed, 400);
         const Snapshot now = made.world.commit();
         Query query;
         Random random(seed);
@@ -56,8 +45,8 @@ TEST(Volumes, KeepWhatIsSeenAloneAndBeforeTheTiles) {
                                                                  : kAllStages);
             if (frame == 6) view.projection = orthographic(15, 16.0 / 9.0, 0.1, 100);
             settings.occluder_volumes = 1 + static_cast<uint32_t>(random.below(64));
-            expectSound(made, query, now, view, settings,
-                        "seed " + std::to_string(seed) + " frame " + std::to_string(frame));
+            expectInTurn(made, query, now, view, settings,
+                         "seed " + std::to_string(seed) + " frame " + std::to_string(frame));
             culled += culledBy(query.visible(now, view, settings).stats, Stage::kVolumes);
         }
     }
@@ -111,8 +100,7 @@ TEST(Volumes, OfObjectsOutsideTheLayersHideNothing) {
 }
 
 TEST(Volumes, AreTheSameOnEveryInstructionSet) {
-    MadeWorld made;
-    made.fill(3, 600, {0, 0, 0});
+    MadeWorld made(3, 600);
     const Snapshot now = made.world.commit();
     std::vector<std::vector<uint64_t>> expected;
     forEachTarget([&](const std::string& target) {
@@ -148,8 +136,7 @@ TEST(Volumes, AreExplainedByTheirOneObject) {
 TEST(Volumes, NameAHiderThatSuffices) {
     uint64_t named = 0;
     for (uint64_t seed = 1; seed <= 6; ++seed) {
-        MadeWorld made;
-        made.fill(seed, 300, {0, 0, 0});
+        MadeWorld made(seed, 300);
         const Snapshot now = made.world.commit();
         Random random(seed);
         for (int frame = 0; frame < 4; ++frame) {

@@ -36,4 +36,11 @@ inline std::vector<uint8_t> reasonsOf(const Query& query, const Snapshot& now) {
 
 inline uint64_t culledBy(const QueryStats& stats, Stage stage) { return stats.stages[static_cast<int>(stage)].culled; }
 
+/// Those that are visible and those that a stage culled: each object once.
+inline uint64_t accountedFor(const QueryStats& stats) {
+    uint64_t sum = stats.visible;
+    for (const StageStats& stage : stats.stages) sum += stage.culled;
+    return sum;
+}
+
 }  // namespace sightline::test

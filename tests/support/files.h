@@ -25,12 +25,18 @@ inline bool writeBytes(const std::filesystem::path& file, std::string_view bytes
     return bool(out);
 }
 
-/// The main function of a program that is called with a folder: write(folder) says whether it could write there.
-template <class Write>
-int writeInto(int argc, char** argv, Write write) {
-    if (argc == 2) return write(std::filesystem::path(argv[1])) ? 0 : 4;
-    std::fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
-    return 2;
+/// The main function of a program that is called with a folder: make(seed) calls seed(name, bytes) for each file.
+template <class Make>
+int writeSeeds(int argc, char** argv, Make make) {
+    if (argc != 2) {
+        std::fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
+        return 2;
+    }
+    bool written = true;
+    make([&](const std::string& name, const auto& bytes) {
+        written &= writeBytes(std::filesystem::path(argv[1]) / name, {bytes.data(), bytes.size()});
+    });
+    return written ? 0 : 4;
 }
 
 }  // namespace sightline::test

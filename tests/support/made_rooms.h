@@ -49,8 +49,7 @@ struct MadeRooms {
                                     Box3d{{kSize * c, 0, kSize * r}, {kSize * (c + 1), kHeight, kSize * (r + 1)}});
         const auto addHole = [&](uint32_t c, uint32_t r, int axis) {
             if (random.below(5) == 0) return;
-            Hole hole;
-            hole.a = r * columns + c;
+            Hole hole{.a = r * columns + c};
             hole.b = axis == 0 ? hole.a + 1 : hole.a + columns;
             hole.axis = axis;
             hole.at = kSize * ((axis == 0 ? c : r) + 1);

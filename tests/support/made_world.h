@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "sightline/base/random.h"
 #include "sightline/prepare/occluder/occluder.h"
@@ -18,7 +21,8 @@ using namespace studies;
 
 /// Boxes of one shared unit cube, some of which hide.
 struct MadeWorld {
-    TestMesh mesh = boxMesh();
+    TestMesh mesh = boxMesh(), other;  ///< the other is drawn of objects whose shape is not the cube
+    std::vector<uint8_t> is_other;
     std::vector<glm::dmat4> transforms;
     std::vector<uint8_t> hides;
     std::vector<ObjectId> ids;
@@ -26,13 +30,10 @@ struct MadeWorld {
     OccluderId cube;
     bool shapes = false;  ///< objects are also asked by their triangles
 
-    static WorldDef worldDef() {
-        WorldDef def;
-        def.volumes = true;
-        return def;
-    }
+    static WorldDef worldDef() { return {.volumes = true}; }
 
     MadeWorld() { cube = world.addOccluder(prepareOccluder(mesh.view())); }
+    MadeWorld(uint64_t seed, int count) : MadeWorld() { fill(seed, count, {0, 0, 0}); }
 
     ObjectId add(const glm::dvec3& low, const glm::dvec3& high, bool hiding = true, uint32_t layers = 1) {
         glm::dmat4 t(1.0);
@@ -41,13 +42,16 @@ struct MadeWorld {
         return add(t, hiding, layers);
     }
 
-    ObjectId add(const glm::dmat4& transform, bool hiding, uint32_t layers = 1) {
+    /// @param of  a mesh of its own, which is also its shape
+    ObjectId add(const glm::dmat4& transform, bool hiding, uint32_t layers = 1, OccluderId of = {}) {
+        is_other.push_back(of != OccluderId());
+        if (of == OccluderId()) of = cube;
         ObjectDef def;
         def.bounds = {glm::dvec3(0.0), glm::dvec3(1.0)};
         def.transform = transform;
         def.key = transforms.size();
-        def.occluder = hiding ? cube : OccluderId();
-        def.shape = shapes ? cube : OccluderId();
+        def.occluder = hiding ? of : OccluderId();
+        def.shape = shapes ? of : OccluderId();
         def.layers = layers;
         transforms.push_back(transform);
         hides.push_back(hiding);
@@ -89,22 +93,35 @@ struct MadeWorld {
     /// Which objects an exact z-buffer at `samples` per pixel and axis shows.
     std::vector<uint8_t> seen(const View& view, uint32_t samples, const glm::dvec2& offset = {0, 0}) const {
         std::vector<DrawItem> items;
-        const std::vector<uint8_t> no(mesh.indices.size() / 3, 0);
+        const std::vector<uint8_t> no(std::max(mesh.indices.size(), other.indices.size()) / 3, 0);
         for (size_t i = 0; i < transforms.size(); ++i) {
             DrawItem item;
-            item.mesh = mesh.view();
+            item.mesh = (is_other[i] ? other : mesh).view();
             if (!hides[i]) item.writes_depth = no;
             item.transform = transforms[i];
             item.id = static_cast<uint32_t>(i);
             items.push_back(item);
         }
-        ZBufferSettings settings;
-        settings.samples = samples;
-        settings.offset = offset;
-        std::vector<uint8_t> seen = renderZBuffer(items, view, settings).seen;
+        std::vector<uint8_t> seen = renderZBuffer(items, view, {.samples = samples, .offset = offset}).seen;
         seen.resize(transforms.size(), 0);
         return seen;
     }
 };
+
+/// Holds an answer to the z-buffer and to its own arithmetic.
+inline VisibleSet expectSound(const MadeWorld& made, Query& query, const Snapshot& now, const View& view,
+                              const QuerySettings& settings, const std::string& what, uint32_t samples = 3) {
+    VisibleSet set = query.visible(now, view, settings);
+    const std::vector<uint8_t> kept = keptOf(set, made.transforms.size()), reasons = reasonsOf(query, now);
+    const std::vector<uint8_t> seen = made.seen(view, samples);
+    for (size_t i = 0; i < kept.size(); ++i) {
+        EXPECT_TRUE(kept[i] || !seen[i]) << what << ": object " << i << " is seen, but was culled by stage "
+                                         << int(reasons[i]);
+        EXPECT_EQ(kept[i] == 1, reasons[i] == 0) << what << ": object " << i;
+    }
+    EXPECT_EQ(accountedFor(set.stats), set.stats.objects) << what;
+    EXPECT_EQ(set.stats.visible, set.objects.size()) << what;
+    return set;
+}
 
 }  // namespace sightline::test

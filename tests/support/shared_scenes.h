@@ -47,6 +47,16 @@ inline std::optional<Scene> sharedScene(const std::string& name) {
     return scene ? std::optional(std::move(*scene)) : std::nullopt;
 }
 
+/// A test of each of some real scenes; skipped where they are not there.
+class SceneTest : public testing::TestWithParam<const char*> {
+protected:
+    void SetUp() override {
+        scene = sharedScene(GetParam());
+        if (!scene) GTEST_SKIP() << "no scenes beside the repository";
+    }
+    std::optional<Scene> scene;
+};
+
 /// As sharedScene(), of a compiled map.
 inline std::optional<QuakeMapFile> sharedMap(const std::string& name) {
     const std::string file = SIGHTLINE_SHARED_DIR "/maps/" + name + ".vis.bsp";

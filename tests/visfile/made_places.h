@@ -48,9 +48,8 @@ inline MadePlaces boxesInARow(uint64_t seed, uint32_t cells, size_t rows, size_t
     space.tolerance = 0.001;
     space.outside = cells - 1;
     for (uint32_t i = 0; i < cells; ++i) {
-        CellRegion region;
-        region.first_plane = static_cast<uint32_t>(space.planes.size());
-        region.bounds = {glm::dvec3(i, 0, 0), glm::dvec3(i + 1, 1, 2)};
+        CellRegion region{.first_plane = static_cast<uint32_t>(space.planes.size()),
+                          .bounds = {glm::dvec3(i, 0, 0), glm::dvec3(i + 1, 1, 2)}};
         if (i != space.outside) {
             for (int axis = 0; axis < 3; ++axis)
                 for (const double sign : {1.0, -1.0}) {

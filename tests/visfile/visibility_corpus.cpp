@@ -15,7 +15,8 @@ Array<char> withPlaces(const MadePlaces& places) {
                            VisibilityForm::kInPlace);
 }
 
-bool writeAll(const std::filesystem::path& folder) {
+template <class Seed>
+void makeAll(Seed seed) {
     const Array<char> plain = MadeFile(1, 40).bytes(VisibilityForm::kInPlace),
                       packed = MadeFile(2, 60).bytes(VisibilityForm::kPacked),
                       one = MadeFile(3, 1).bytes(VisibilityForm::kInPlace),
@@ -36,16 +37,22 @@ bool writeAll(const std::filesystem::path& folder) {
     const SectionFile tree_sections = *SectionFile::open(tree, "");
     loose_child[tree_sections.placeOf(tree_sections.find(visibility_file::kTree)) + 56 + 32] = 0;
     seal(loose_child);
-    const auto write = [&](const char* name, const Array<char>& bytes) {
-        return writeBytes(folder / name, {bytes.data(), bytes.size()});
-    };
-    return write("boxes.see", boxes) && write("tree.see", tree) && write("loose_child.see", loose_child) &&
-           write("in_place.see", plain) && write("packed.see", packed) && write("one_cell.see", one) &&
-           write("many.see", many) && write("cut.see", cut) && write("damaged.see", damaged) &&
-           write("no_tiles.see", no_tiles) && write("many_cells.see", many_cells);
+    seed("boxes.see", boxes);
+    seed("tree.see", tree);
+    seed("loose_child.see", loose_child);
+    seed("in_place.see", plain);
+    seed("packed.see", packed);
+    seed("one_cell.see", one);
+    seed("many.see", many);
+    seed("cut.see", cut);
+    seed("damaged.see", damaged);
+    seed("no_tiles.see", no_tiles);
+    seed("many_cells.see", many_cells);
 }
 
 }  // namespace
 }  // namespace sightline::test
 
-int main(int argc, char** argv) { return sightline::test::writeInto(argc, argv, sightline::test::writeAll); }
+int main(int argc, char** argv) {
+    return sightline::test::writeSeeds(argc, argv, [](auto seed) { sightline::test::makeAll(seed); });
+}

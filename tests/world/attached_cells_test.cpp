@@ -49,8 +49,7 @@ TEST(CellStages, OfAWorldThatHasLivedAreThoseOfANewOne) {
             }
             const Snapshot fresh = other.commit();
             View view = viewAt(randomEye(rooms, random), rooms.pointInside(random), kRoomCamera);
-            QuerySettings settings;
-            settings.stages = kCells | kFrustum;
+            QuerySettings settings{.stages = kCells | kFrustum};
             const VisibleSet set = query.visible(now, view, settings);
             Query anew;
             const VisibleSet wanted = anew.visible(fresh, view, settings);
@@ -99,8 +98,7 @@ TEST(CellStages, TakeTheCellsOfWhatWasBakedFromTheFile) {
     const Result<VisibilityFile> file = VisibilityFile::open(*bytes, "rooms.vis");
     ASSERT_TRUE(file.ok()) << file.error().message;
     ASSERT_TRUE(rooms.world.attach(*file));
-    QuerySettings settings;
-    settings.stages = kCells;
+    QuerySettings settings{.stages = kCells};
     const auto cellsOf = [&](const Snapshot& now, uint32_t key) {
         View view = viewAt({2, 1.5, 2}, {3, 1.5, 3}, kRoomCamera);
         const Explanation why = Explainer(now, view, settings).explain(rooms.ids[key]);
@@ -160,11 +158,9 @@ TEST(CellStages, SayNothingOnceAWallIsGone) {
     ASSERT_TRUE(file.ok()) << file.error().message;
     ASSERT_TRUE(rooms.world.attach(*file));
     View view = viewAt(randomEye(rooms, random), rooms.pointInside(random), kRoomCamera);
-    QuerySettings settings;
-    settings.stages = kCells;
     Query query;
     const auto culled = [&] {
-        const VisibleSet set = query.visible(rooms.world.commit(), view, settings);
+        const VisibleSet set = query.visible(rooms.world.commit(), view, {.stages = kCells});
         const uint64_t doubt = set.stats.stages[static_cast<int>(Stage::kPvs)].doubt;
         EXPECT_TRUE(doubt == 0 || set.objects.size() == set.stats.objects);
         return set.stats.objects - set.objects.size();
@@ -206,9 +202,7 @@ TEST(CellStages, RefuseSpacesThatAreNone) {
     // Nothing has changed.
     Query query;
     View view = viewAt({2, 1.5, 2}, {10, 1.5, 10}, kRoomCamera);
-    QuerySettings settings;
-    settings.stages = kCells;
-    EXPECT_EQ(query.visible(rooms.world.commit(), view, settings).objects.size(), 10u);
+    EXPECT_EQ(query.visible(rooms.world.commit(), view, {.stages = kCells}).objects.size(), 10u);
 }
 
 }  // namespace

@@ -184,8 +184,7 @@ TEST(World, ThatHasLivedAnswersAsOneThatIsMadeAnew) {
 
 TEST(World, ACommitCopiesNoMoreThanWhatChanged) {
     CountingMemory memory;
-    WorldDef def;
-    def.memory = &memory;
+    WorldDef def{.memory = &memory};
     World world = World::create(def);
     Random random(12);
     std::vector<ObjectId> ids;
@@ -216,9 +215,7 @@ TEST(World, AllMemoryComesThroughTheHookAndGoesBack) {
         const Occluder shape = prepareOccluder(boxMesh().view());
         Random random(7);
         const uint64_t before = global_allocations;
-        WorldDef def;
-        def.objects = 2000;
-        def.memory = &memory;
+        WorldDef def{.objects = 2000, .memory = &memory};
         World world = World::create(def);
         const OccluderId occluder = world.addOccluder(shape);
         ObjectId last;

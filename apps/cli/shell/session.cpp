@@ -1,21 +1,23 @@
-// What holds for a whole run of the tool: how much it says, in which colours, and whether it is to stop.
+// What holds for a whole run of the tool: how much it says, in which colours, how it fails, and whether it is to stop.
 // SPDX-License-Identifier: MIT
 #include "apps/cli/shell/session.h"
 
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
-
-#include <CLI/CLI.hpp>
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <malloc.h>
 #include <poll.h>
+#include <string>
 #include <sys/resource.h>
 #include <unistd.h>
+#include <utility>
 
-#include "apps/cli/shell/fault.h"
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
 #include "sightline/tools/scene/one_line.h"
 
 namespace sightline::cli {
@@ -60,6 +62,22 @@ bool readerHasLeft() {
 }
 
 }  // namespace
+
+int report(const Error& error) {
+    const std::string line = "sightline: " + oneLine(error.message) + "\n";
+    (void)std::fwrite(line.data(), 1, line.size(), stderr);
+    switch (error.kind) {
+        case Error::Kind::kUsage:
+            return kWrongArguments;
+        case Error::Kind::kOutput:
+            return kOutputUnwritable;
+        case Error::Kind::kInput:
+            break;
+    }
+    return kInputUnreadable;
+}
+
+Error usageError(std::string message) { return {Error::Kind::kUsage, std::move(message)}; }
 
 void addSessionOptions(CLI::App& app, SessionOptions& options) {
     app.add_flag("-q,--quiet", options.quiet,

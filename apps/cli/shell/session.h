@@ -1,4 +1,4 @@
-// What holds for a whole run of the tool: how much it says, in which colours, and whether it is to stop.
+// What holds for a whole run of the tool: how much it says, in which colours, how it fails, and whether it is to stop.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -7,11 +7,30 @@
 #include <string>
 #include <string_view>
 
+#include "sightline/base/result.h"
+
 namespace CLI {
 class App;
 }
 
 namespace sightline::cli {
+
+/// Exit codes; others rely on them.
+enum ExitCode : int {
+    kDone = 0,
+    kAnswerIsNo = 1,  ///< verification failed
+    kWrongArguments = 2,
+    kInputUnreadable = 3,
+    kOutputUnwritable = 4,
+    kInterrupted = 130,  ///< by Ctrl-C, or by a request to end; as a shell reports it
+};
+
+/// Prints one line on standard error.
+/// @return the exit code of the error's kind
+int report(const Error& error);
+
+/// What is wrong with the arguments.
+Error usageError(std::string message);
 
 /// What every verb takes, and the tool itself before the verb.
 struct SessionOptions {

@@ -10,7 +10,6 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/cli/shell/apart.h"
-#include "apps/cli/verbs/bake_options.h"
 #include "apps/cli/verbs/bake_run.h"
 #include "apps/cli/verbs/bake_source.h"
 #include "apps/cli/verbs/bake_summary.h"

@@ -1,4 +1,4 @@
-// A bake as the tool runs it: on threads, with progress, and with a state on disk that it goes on from.
+// A bake as the tool runs it: its options, on threads, with progress, and with a state on disk that it goes on from.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -7,13 +7,34 @@
 #include <optional>
 #include <string>
 
+#include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/progress.h"
-#include "apps/cli/verbs/bake_options.h"
+#include "apps/cli/verbs/vis_map.h"
 #include "sightline/bake/bake.h"
+#include "sightline/base/result.h"
 #include "sightline/base/thread_pool.h"
 
 namespace sightline::cli {
 using namespace bake;
+
+struct BakeOptions {
+    std::string output, json, report;  ///< empty: not written
+    std::string cells;                 ///< empty: not given
+    std::string state;                 ///< file; empty: finish() names it after the output, if there is one
+    uint32_t threads = 0;              ///< 0: all cores
+    uint64_t budget = 0;               ///< BakeSettings
+    double time_limit = 0;             ///< BakeSettings  [s]
+    bool in_place = false, objects = false;
+
+    VisCells visCells() const;
+};
+
+/// @param output  what `-o` writes
+void addBakeOptions(CLI::App& verb, BakeOptions& options, const std::string& output);
+
+/// Names the state, and checks that what is written is apart from what is read and can be written.
+/// @param files  what is read, and what else the verb writes. Errors: kUsage, kOutput.
+Status finishBakeOptions(BakeOptions& options, ApartFiles& files);
 
 /// From here on Ctrl-C stops the bake gently, and the state is there for the next time.
 class BakeRun {

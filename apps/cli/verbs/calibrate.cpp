@@ -10,7 +10,7 @@
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/verbs.h"
-#include "sightline/tools/profile/machine.h"
+#include "sightline/tools/profile/facing_costs.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/run/calibration_json.h"
 

@@ -14,12 +14,8 @@
 #include <fmt/format.h>
 
 #include "apps/cli/shell/session.h"
-#include "apps/cli/verbs/cluster_options.h"
-#include "apps/cli/verbs/section_options.h"
 #include "apps/cli/verbs/setting_options.h"
-#include "apps/cli/verbs/size_options.h"
 #include "apps/cli/verbs/verbs.h"
-#include "apps/cli/verbs/visibility_options.h"
 #include "sightline/geom/view.h"
 #include "sightline/tools/load/seeded_cameras.h"
 #include "sightline/tools/report/output_file.h"

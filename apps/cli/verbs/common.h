@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "apps/cli/shell/fault.h"
+#include "apps/cli/shell/session.h"
 #include "apps/cli/shell/quoted.h"
 #include "apps/cli/verbs/run_options.h"
 #include "sightline/base/result.h"

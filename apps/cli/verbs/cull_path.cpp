@@ -17,13 +17,10 @@
 
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
-#include "apps/cli/verbs/cluster_options.h"
 #include "apps/cli/verbs/cull_frame.h"
-#include "apps/cli/verbs/section_options.h"
 #include "apps/cli/verbs/setting_options.h"
 #include "apps/cli/verbs/verbs.h"
 #include "apps/cli/verbs/visibility_choice.h"
-#include "apps/cli/verbs/visibility_options.h"
 #include "sightline/base/thread_pool.h"
 #include "sightline/query/explain/credits.h"
 #include "sightline/query/query.h"

@@ -1,4 +1,4 @@
-// A query's settings on the command line: an option for each row of their table that has one, and the words again.
+// What a query may be asked for on the command line, group by group: its options, their checks, and the words again.
 // SPDX-License-Identifier: MIT
 #include "apps/cli/verbs/setting_options.h"
 
@@ -10,11 +10,46 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/shell/session.h"
+#include "apps/cli/shell/quoted.h"
+#include "sightline/tools/report/run/calibration_json.h"
 #include "sightline/tools/report/run/cull_run.h"
+#include "sightline/tools/scene/text_file.h"
 
 namespace sightline::cli {
 using namespace tools;
 namespace {
+
+/// Reads "NAME=0.5"; a name may hold a '='.
+DoorAsked readDoor(const std::string& text) {
+    const size_t equals = text.rfind('=');
+    DoorAsked door;
+    const bool good = equals != std::string::npos && equals > 0 &&
+                      CLI::detail::lexical_cast(text.substr(equals + 1), door.open) && door.open >= 0 && door.open <= 1;
+    if (!good) throw CLI::ValidationError("--door", "wants NAME=OPEN, from 0 (shut) to 1 (open), not '" + text + "'");
+    door.name = text.substr(0, equals);
+    return door;
+}
+
+bool names(const std::vector<std::string>& list, Stage stage) {
+    return std::find(list.begin(), list.end(), kStageNames[static_cast<int>(stage)]) != list.end();
+}
+
+CLI::ValidationError wrongPlane(const std::string& text) {
+    return CLI::ValidationError("--section",
+                                "wants four numbers A,B,C,D: Ax + By + Cz + D >= 0 is kept, not '" + text + "'");
+}
+
+glm::dvec4 readPlane(const std::string& text) {
+    const std::vector<std::string> parts = CLI::detail::split(text, ',');
+    glm::dvec4 plane(0.0);
+    if (parts.size() != 4) throw wrongPlane(text);
+    for (int i = 0; i < 4; ++i)
+        if (!CLI::detail::lexical_cast(parts[static_cast<size_t>(i)], plane[i]) || !std::isfinite(plane[i]))
+            throw wrongPlane(text);
+    if (glm::dvec3(plane) == glm::dvec3(0.0)) throw wrongPlane(text);
+    return plane;
+}
 
 constexpr double kGapIfNotSaid = 1.0 / 1024.0;  // --close-gaps alone  [pixels of the buffer]
 
@@ -101,6 +136,121 @@ std::string wordsOf(const SettingRow<Value>& row, Value value) {
 }
 
 }  // namespace
+
+void addVisibilityOptions(CLI::App& verb, RunOptions& options) {
+    VisibilityAsked& asked = options.visibility;
+    verb.add_option("--visibility", asked.file, "what `sightline bake` made of this scene: its cells, portals and rows")
+        ->type_name("FILE")
+        ->group("Culling");
+    addSettingOptions(verb, options.settings, {"windows", "portal_depth"});
+    verb.add_option_function<std::vector<std::string>>(
+            "--door",
+            [&asked](const std::vector<std::string>& doors) {
+                asked.doors.clear();
+                for (const std::string& door : doors) asked.doors.push_back(readDoor(door));
+            },
+            "how far a door is open: 0 is shut, 1 open [may be given many times; default: all are open]")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->type_name("NAME=OPEN")
+        ->group("Culling");
+}
+
+Status finishVisibilityOptions(RunOptions& options) {
+    const VisibilityAsked& asked = options.visibility;
+    if (!asked.file.empty()) return success();
+    if (options.settings.portal_depth > 0) return usageError("--portal-depth goes with --visibility");
+    if (!asked.doors.empty()) return usageError("--door goes with --visibility");
+    options.settings.stages &= ~kCellStages;
+    return success();
+}
+
+std::string visibilityOptionsOf(const VisibilityAsked& asked) {
+    std::string words;
+    if (asked.file.empty()) return words;
+    words += " --visibility " + quoted(asked.file);
+    for (const DoorAsked& door : asked.doors) words += " --door " + quoted(fmt::format("{}={}", door.name, door.open));
+    return words;
+}
+
+void addClusterOptions(CLI::App& verb, RunOptions& options) {
+    verb.add_option_function<double>(
+            "--cluster-test",
+            [&options](const double& test) {
+                if (!(test > 0.0) || std::isinf(test))
+                    throw CLI::ValidationError("--cluster-test", "wants a number above 0");
+                options.cluster_test = test;
+            },
+            fmt::format("what a cluster's test costs, in triangles: for the stage clusters [{}]",
+                        RunOptions().cluster_test))
+        ->type_name("T")
+        ->group("Culling");
+    verb.add_option("--calibration", options.calibration, "takes that from a file of calibrate")
+        ->type_name("FILE")
+        ->group("Culling");
+    verb.add_flag("--dear-shading", options.dear_shading, "of the calibration, what dear shading says")
+        ->group("Culling");
+}
+
+Status finishClusterOptions(RunOptions& options) {
+    if (options.calibration.empty()) {
+        if (!options.dear_shading) return success();
+        return Error{Error::Kind::kUsage, "--dear-shading: says which figure of --calibration is taken"};
+    }
+    const Result<std::string> text = readTextFile(options.calibration);
+    if (!text) return text.error();
+    const Result<FacingCosts> costs = parseCalibration(*text, options.calibration);
+    if (!costs) return costs.error();
+    options.cluster_test = costs->testInTriangles(options.dear_shading ? ShadingCost::kDear : ShadingCost::kCheap);
+    return success();
+}
+
+std::string clusterOptionsOf(double cluster_test) {
+    return cluster_test == 0 || cluster_test == RunOptions().cluster_test
+               ? ""
+               : fmt::format(" --cluster-test {}", cluster_test);
+}
+
+void addSizeOptions(CLI::App& verb, RunOptions& options) {
+    addSettingOptions(verb, options.settings, {"max_distance", "contribution"});
+}
+
+Status finishSizeOptions(RunOptions& options) {
+    const auto needs = [](const char* stage) {
+        return Error{Error::Kind::kUsage, fmt::format("--use {}: how much is told by --{}", stage, stage)};
+    };
+    QuerySettings& settings = options.settings;
+    if (names(options.use, Stage::kDistance) && !(settings.max_distance > 0)) return needs("distance");
+    if (names(options.use, Stage::kContribution) && !(settings.contribution > 0)) return needs("contribution");
+    // What was given asks for its stage, and --use lists the others.
+    for (const Stage stage : {Stage::kDistance, Stage::kContribution})
+        if (!options.use.empty() && !names(options.skip, stage)) settings.stages |= stageBit(stage);
+    settings.stages = stagesInUse(View(), settings);
+    return success();
+}
+
+void addSectionOptions(CLI::App& verb, RunOptions& options) {
+    verb.add_option_function<std::vector<std::string>>(
+            "--section",
+            [&options](const std::vector<std::string>& planes) {
+                options.sections = {};
+                for (const std::string& plane : planes)
+                    if (!options.sections.add(readPlane(plane)))
+                        throw CLI::ValidationError("--section", fmt::format("{} planes at most", ViewPlanes::kMost));
+            },
+            "cut the scene open: what is not on the side Ax + By + Cz + D >= 0 is not drawn [may be given 8 times]")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->type_name("A,B,C,D")
+        ->group("Culling");
+}
+
+std::string sectionOptionsOf(const ViewPlanes& sections) {
+    std::string words;
+    for (const glm::dvec4& plane : sections.all())
+        words += fmt::format(" --section={},{},{},{}", plane.x, plane.y, plane.z, plane.w);
+    return words;
+}
 
 void addSettingOptions(CLI::App& verb, QuerySettings& settings, std::initializer_list<std::string_view> names) {
     for (const std::string_view name : names)

@@ -1,4 +1,4 @@
-// A query's settings on the command line: an option for each row of their table that has one, and the words again.
+// What a query may be asked for on the command line, group by group: its options, their checks, and the words again.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -6,14 +6,44 @@
 #include <string>
 #include <string_view>
 
+#include "apps/cli/verbs/run_options.h"
 #include "sightline/base/result.h"
 #include "sightline/geom/query_settings.h"
+#include "sightline/tools/report/run/cull_run.h"
 
 namespace CLI {
 class App;
 }
 
 namespace sightline::cli {
+
+/// --visibility, --windows, --portal-depth and --door.
+void addVisibilityOptions(CLI::App& verb, RunOptions& options);
+/// Checks them, after the stages are known: without a file the stages of cells are out of use. Errors are kUsage.
+Status finishVisibilityOptions(RunOptions& options);
+
+/// The options again, as a shell takes them, each with a space before it; what is default is left out.
+std::string visibilityOptionsOf(const VisibilityAsked& asked);
+
+void addClusterOptions(CLI::App& verb, RunOptions& options);
+
+/// Reads the calibration, if one was given, into RunOptions::cluster_test.
+Status finishClusterOptions(RunOptions& options);
+
+/// With a blank before it; empty for the default.
+std::string clusterOptionsOf(double cluster_test);
+
+/// --distance and --contribution.
+void addSizeOptions(CLI::App& verb, RunOptions& options);
+
+/// Checks them against --use, and takes the stages out of RunOptions::settings that have nothing to do. Errors are kUsage.
+Status finishSizeOptions(RunOptions& options);
+
+/// --section, as often as there are planes.
+void addSectionOptions(CLI::App& verb, RunOptions& options);
+
+/// " --section=A,B,C,D" of each.
+std::string sectionOptionsOf(const ViewPlanes& sections);
 
 /// Adds the options of some rows, by their names there.
 void addSettingOptions(CLI::App& verb, QuerySettings& settings, std::initializer_list<std::string_view> names);

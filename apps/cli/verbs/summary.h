@@ -1,15 +1,22 @@
-// What a run says to a reader: totals of a path, verdicts of its frames.
+// What a run says to a reader: totals of a path, verdicts of its frames, why its slowest and its loosest are so.
 // SPDX-License-Identifier: MIT
 #pragma once
 
 #include <cstdio>
+#include <optional>
 #include <string>
 
 #include "apps/cli/verbs/common.h"
+#include "sightline/tools/load/load_world.h"
 #include "sightline/tools/report/run/cull_run.h"
 
 namespace sightline::cli {
 using namespace tools;
+
+/// Fills FrameResult::notes of the slowest frame, and of a verified run's frame with the largest over-estimate. Explains
+/// up to some hundreds of objects, each at the cost of a query.
+/// @param world  that gave the run; without one it is loaded again if something is to be asked of it
+void noteFrames(const Scene& scene, const RunOptions& options, std::optional<LoadedWorld> world, CullRun& run);
 
 /// Means over the frames: objects kept, culled by stage, triangles, microseconds; and the verdict if there is one.
 /// Nothing with --quiet. There must be frames.

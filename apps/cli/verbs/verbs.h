@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/cli/shell/fault.h"
+#include "apps/cli/shell/session.h"
 
 namespace CLI {
 class App;

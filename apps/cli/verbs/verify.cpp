@@ -8,7 +8,7 @@
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/cull_path.h"
-#include "apps/cli/verbs/size_options.h"
+#include "apps/cli/verbs/setting_options.h"
 #include "apps/cli/verbs/summary.h"
 #include "apps/cli/verbs/verbs.h"
 #include "apps/cli/verbs/visibility_choice.h"

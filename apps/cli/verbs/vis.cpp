@@ -1,6 +1,9 @@
 // The verb `vis`: which leaves of a Quake-family map see one another.
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -15,23 +18,61 @@
 
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/session.h"
-#include "apps/cli/verbs/bake_options.h"
 #include "apps/cli/verbs/bake_run.h"
 #include "apps/cli/verbs/bake_summary.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/verbs.h"
 #include "apps/cli/verbs/vis_map.h"
-#include "apps/cli/verbs/vis_verify.h"
 #include "sightline/bake/brushes/outside.h"
+#include "sightline/base/jobs.h"
 #include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/import/quake/quake_visibility.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/page/vis_page.h"
+#include "sightline/tools/report/run/vis_json.h"
+#include "sightline/tools/truth/graph_rays.h"
+#include "sightline/tools/truth/tree_rays.h"
 
 namespace sightline::cli {
 using namespace bake;
 using namespace tools;
 namespace {
+
+// Rows of a map held against rays.
+
+void addReport(const RowReport& report, VisSummary::Verification& out, const std::vector<uint32_t>& leaf_of_row) {
+    out.segments += report.segments;
+    out.false_negatives += report.misses;
+    out.doubtful += report.doubtful;
+    for (const RowMiss& miss : report.examples)
+        out.examples.push_back({leaf_of_row[miss.row], leaf_of_row[miss.column], miss.from, miss.to});
+}
+
+/// Half of the rays go through the map's own tree, if it has one: then the rows hold for the map, and not only for its
+/// portals. The others go through the portals.
+VisSummary::Verification verifyVis(const VisMap& map, const BitMatrix& visible, uint64_t rays, Jobs& jobs) {
+    const CellGraph& graph = map.graph;
+    VisSummary::Verification out;
+    std::vector<uint32_t> leaf_of_cell(graph.cells, 0);
+    for (size_t leaf = graph.cell_of_leaf.size(); leaf-- > 0;)
+        if (graph.cell_of_leaf[leaf] != CellGraph::kNoCell)
+            leaf_of_cell[graph.cell_of_leaf[leaf]] = static_cast<uint32_t>(leaf);
+    RowCheckSettings settings;
+    settings.jobs = &jobs;
+    settings.segments = map.tree ? std::max<uint64_t>(1, rays / 2) : rays;
+    double largest = 1;
+    for (const glm::dvec3& p : graph.points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    addReport(checkCellRows(GraphRays(graph, largest * 0x1p-36), visible, settings), out, leaf_of_cell);
+    if (map.tree) {
+        AimedHoles holes;
+        for (const CellPortal& portal : graph.portals) holes.add(graph.outline(portal));
+        TreeRaySettings through;
+        through.contents_stop = map.contents_stop;
+        addReport(checkLeafRows(TreeRays(*map.tree, through), visible, graph.cell_of_leaf, holes, settings), out,
+                  leaf_of_cell);
+    }
+    return out;
+}
 
 using Clock = std::chrono::steady_clock;
 

@@ -1,6 +1,6 @@
 // Keeps the items of a grid of loose cells that may touch a view frustum; cells out of its reach are not looked at.
 // SPDX-License-Identifier: MIT
-#include "sightline/studies/frustum/grid_walk.h"
+#include "sightline/studies/frustum/grid.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,6 +1,6 @@
 // Keeps the items of a scene's own hierarchy that may touch a view frustum.
 // SPDX-License-Identifier: MIT
-#include "sightline/studies/frustum/node_tree_walk.h"
+#include "sightline/studies/frustum/node_tree.h"
 
 #include <algorithm>
 #include <bit>

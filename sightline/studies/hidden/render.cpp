@@ -4,8 +4,7 @@
 
 #include <chrono>
 
-#include "sightline/studies/hidden/bsp/bsp_back_to_front.h"
-#include "sightline/studies/hidden/bsp/bsp_front_to_back.h"
+#include "sightline/studies/hidden/bsp/bsp_render.h"
 #include "sightline/studies/hidden/methods/newell.h"
 #include "sightline/studies/hidden/methods/painter.h"
 #include "sightline/studies/hidden/methods/warnock.h"

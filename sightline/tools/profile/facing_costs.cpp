@@ -5,10 +5,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <fstream>
 #include <functional>
+#include <thread>
 #include <vector>
 
+#include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
+#include <hwy/targets.h>
 
 #include "sightline/base/random.h"
 #include "sightline/cull/facing_clusters.h"
@@ -104,6 +109,19 @@ double timeTest(const Ball& ball, const View& view, uint32_t rounds) {
 }
 
 }  // namespace
+
+std::string machineName() {
+    std::string model = "unknown processor";
+    std::ifstream info("/proc/cpuinfo");
+    for (std::string line; std::getline(info, line);)
+        if (line.rfind("model name", 0) == 0 && line.find(": ") != std::string::npos) {
+            model = line.substr(line.find(": ") + 2);
+            break;
+        }
+    const int64_t targets = hwy::SupportedTargets();
+    return fmt::format("{}, {}, {} cores", model, hwy::TargetName(targets & -targets),
+                       std::thread::hardware_concurrency());
+}
 
 FacingCosts measureFacingCosts(const FacingCostSettings& settings) {
     const Ball ball = makeBall(std::max(settings.rings, 8u));

@@ -5,8 +5,12 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace sightline::tools {
+
+/// The processor, the best instruction set in use, and how many cores: "..., AVX2, 2 cores".
+std::string machineName();
 
 /// Whether shading is cheap beside what comes before it.
 enum class ShadingCost : uint8_t {

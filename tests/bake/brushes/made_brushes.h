@@ -23,10 +23,9 @@ public:
     BrushMaker() { entity({{"classname", "worldspawn"}}); }
 
     void entity(const std::vector<std::pair<std::string, std::string>>& pairs) {
-        QuakeMapEntity entity;
-        entity.first_pair = static_cast<uint32_t>(map.pairs.size());
-        entity.pair_count = static_cast<uint32_t>(pairs.size());
-        entity.first_brush = static_cast<uint32_t>(map.brushes.size());
+        QuakeMapEntity entity{.first_pair = static_cast<uint32_t>(map.pairs.size()),
+                              .pair_count = static_cast<uint32_t>(pairs.size()),
+                              .first_brush = static_cast<uint32_t>(map.brushes.size())};
         for (const auto& [key, value] : pairs) map.pairs.push_back({key, value});
         map.entities.push_back(entity);
     }
@@ -34,9 +33,8 @@ public:
     /// @param planes  facing out
     void brush(const std::vector<glm::dvec4>& planes, const std::string& texture = "brick") {
         map.textures.push_back(texture);
-        QuakeMapBrush brush;
-        brush.first_side = static_cast<uint32_t>(map.sides.size());
-        brush.side_count = static_cast<uint32_t>(planes.size());
+        QuakeMapBrush brush{.first_side = static_cast<uint32_t>(map.sides.size()),
+                            .side_count = static_cast<uint32_t>(planes.size())};
         for (const glm::dvec4& plane : planes) {
             const glm::dvec3 n(plane), at = -plane.w * n;
             const glm::dvec3 helper = std::abs(n.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);

@@ -120,8 +120,7 @@ TEST(Outside, StandsBrushesOfAnyPlanes) {
             return glm::dvec3(double(random.below(5)), double(random.below(5)), double(random.below(5))) * 16.0;
         };
         for (uint64_t b = 0; b < 30; ++b) {
-            QuakeMapBrush brush;
-            brush.first_side = static_cast<uint32_t>(maker.map.sides.size());
+            QuakeMapBrush brush{.first_side = static_cast<uint32_t>(maker.map.sides.size())};
             const uint32_t texture = random.below(3) == 0 ? static_cast<uint32_t>(random.below(3)) : 0;
             for (uint64_t k = 1 + random.below(9); k > 0; --k)
                 maker.map.sides.push_back({{point(), point(), point()}, texture, 0, 0});

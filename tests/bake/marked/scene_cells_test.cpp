@@ -185,8 +185,8 @@ TEST(SceneCells, WhatDoesNotHideIsAHole) {
     EXPECT_GT(holesWith(door, 0), 9.9) << "doors open";
 }
 
-/// Two rooms with a wall between them, 0.25 thick, and a door's hole through it.
-MarkedRooms twoRooms(const glm::dmat4& place, bool jambs = true) {
+/// Two rooms with a wall between them, 0.25 thick, and a door's hole through it; marked as they are.
+MarkedRooms twoRooms(const glm::dmat4& place, bool jambs = true, bool marked = true) {
     MarkedRooms made;
     made.place = place;
     const Box3d kitchen{{6.25, 0, 0}, {10, 3, 4}};
@@ -195,6 +195,9 @@ MarkedRooms twoRooms(const glm::dmat4& place, bool jambs = true) {
     made.wall(0, 6, {{0, 0}, {3, 4}}, -1, {kDoor});
     made.wall(0, 6.25, {{0, 0}, {3, 4}}, 1, {kDoor});
     if (jambs) made.room({{6, 0, 1}, {6.25, 2, 2}}, 3);
+    if (!marked) return made;
+    made.cell("hall", kHall);
+    made.cell("kitchen", kitchen);
     return made;
 }
 
@@ -204,8 +207,6 @@ TEST(SceneCells, WallsGetTheirThickness) {
         for (const double at : {6.0, 6.125, 6.25}) {
             SCOPED_TRACE("round " + std::to_string(round) + ", portal at " + std::to_string(at));
             MarkedRooms made = twoRooms(placeOf(random, round));
-            made.cell("hall", kHall);
-            made.cell("kitchen", {{6.25, 0, 0}, {10, 3, 4}});
             made.portal(0, 1, 0, at, kDoor);
             const SceneCells cells = cellsOfScene(made.scene);
             EXPECT_TRUE(cells.report.findings.empty()) << textsOf(cells);
@@ -219,8 +220,6 @@ TEST(SceneCells, WallsGetTheirThickness) {
 // A leaf in the midst of a wall is seen from both sides when it is shut.
 TEST(SceneCells, ADoorInsideAWallHasAPassageOnEitherSide) {
     MarkedRooms made = twoRooms(glm::dmat4(1.0));
-    made.cell("hall", kHall);
-    made.cell("kitchen", {{6.25, 0, 0}, {10, 3, 4}});
     const uint32_t portal = made.portal(0, 1, 0, 6.125, kDoor);
     made.wall(0, 6.125, kDoor, 1);
     made.scene.portals[portal].door = static_cast<uint32_t>(made.scene.objects.size() - 1);
@@ -244,8 +243,6 @@ TEST(SceneCells, ADoorInsideAWallHasAPassageOnEitherSide) {
 // Without jambs one sees between the sheets of the wall.
 TEST(SceneCells, WallsWithoutJambsAreHollow) {
     MarkedRooms made = twoRooms(glm::dmat4(1.0), false);
-    made.cell("hall", kHall);
-    made.cell("kitchen", {{6.25, 0, 0}, {10, 3, 4}});
     made.portal(0, 1, 0, 6, kDoor);
     const SceneCells cells = cellsOfScene(made.scene);
     EXPECT_EQ(cells.report.holes, 4u) << textsOf(cells);
@@ -256,7 +253,7 @@ TEST(SceneCells, WallsWithoutJambsAreHollow) {
 TEST(SceneCells, FacesFollowTheWallsThatAreMeant) {
     Random random(5);
     for (int round = 0; round < 20; ++round) {
-        MarkedRooms made = twoRooms(placeOf(random, round));
+        MarkedRooms made = twoRooms(placeOf(random, round), true, false);
         const auto drawn = [&](Box3d box) {
             for (int axis = 0; axis < 3; ++axis) {
                 box.min[axis] += random.uniform(-0.1, 0.1);
@@ -344,8 +341,6 @@ TEST(SceneCells, TellsOfCellsThatOverlap) {
 TEST(SceneCells, StrayPortalsAreLeftOutAndTheirHolesFound) {
     const auto make = [](double at, const FlatRect& rect) {
         MarkedRooms made = twoRooms(glm::dmat4(1.0));
-        made.cell("hall", kHall);
-        made.cell("kitchen", {{6.25, 0, 0}, {10, 3, 4}});
         made.portal(0, 1, 0, at, rect);
         return made;
     };
@@ -385,8 +380,6 @@ TEST(SceneCells, PortalsCoverNoMoreThanTheyAre) {
 
 TEST(SceneCells, DoorsThatStandElsewhereDoNotShut) {
     MarkedRooms made = twoRooms(glm::dmat4(1.0));
-    made.cell("hall", kHall);
-    made.cell("kitchen", {{6.25, 0, 0}, {10, 3, 4}});
     const uint32_t portal = made.portal(0, 1, 0, 6, kDoor);
     made.wall(2, 2, {{1, 1}, {2, 2}}, 1);
     made.scene.portals[portal].door = static_cast<uint32_t>(made.scene.objects.size() - 1);

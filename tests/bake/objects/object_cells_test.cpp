@@ -212,9 +212,7 @@ TEST(ObjectCells, OfRegionsAreThoseThatTheirPointsLieIn) {
         const std::vector<Box3d> boxes = {
             {{0, 0, 0}, {0.5, 1, 1}}, {{0.5, 0, 0}, {1, 1, 0.5}}, {{0.6, 0.2, 0.5}, {1, 1, 1}}};
         for (const Box3d& box : boxes) {
-            CellRegion region;
-            region.first_plane = static_cast<uint32_t>(space.planes.size());
-            region.bounds = box;
+            CellRegion region{.first_plane = static_cast<uint32_t>(space.planes.size()), .bounds = box};
             for (int axis = 0; axis < 3; ++axis)
                 for (const double sign : {1.0, -1.0}) {
                     glm::dvec4 plane(0.0);

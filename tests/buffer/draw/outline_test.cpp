@@ -66,8 +66,7 @@ TEST(Outlines, HoldNothingThatARayGetsPast) {
         if (seed % 3 == 0) drawing.tiles.clear(drawing.screen.width, drawing.screen.height, OcclusionDetail::kMasked);
         std::vector<Solid> bodies;
         for (int i = 0; i < 4; ++i) bodies.push_back(randomBody(random));
-        drawing.draw(bodies);
-        drawing.resolveAll();
+        drawing.drawAndResolve(bodies);
         covered += drawing.coveredPixels();
         ASSERT_EQ(findLeak(drawing, seed, 12), "");
     }

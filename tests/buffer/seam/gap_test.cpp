@@ -39,24 +39,18 @@ std::vector<Solid> brickWall(const Drawing& drawing, double gap, double turn) {
     return wall;
 }
 
-uint64_t openPixels(const Drawing& drawing) {
-    return uint64_t{drawing.tiles.width} * drawing.tiles.height - drawing.coveredPixels();
-}
-
 TEST(Gaps, NarrowerThanAskedForAreClosedAndCounted) {
     for (double turn : {0.0, 0.1875, 0.7})
         for (double width : {0.0, 0.1, 0.6}) {
             Drawing drawing(smallView()), without(smallView());
-            without.draw(brickWall(without, width * kGap, turn));
-            without.resolveAll();
+            without.drawAndResolve(brickWall(without, width * kGap, turn));
             drawing.tiles.gap = kGap;
-            drawing.draw(brickWall(drawing, width * kGap, turn));
-            drawing.resolveAll();
-            EXPECT_EQ(openPixels(drawing), 0u) << turn << " " << width;
+            drawing.drawAndResolve(brickWall(drawing, width * kGap, turn));
+            EXPECT_EQ(drawing.openPixels(), 0u) << turn << " " << width;
             EXPECT_EQ(without.tiles.closed_gaps, 0u);
             if (width > 0) {
-                EXPECT_GT(openPixels(without), 100u) << turn << " " << width;
-                EXPECT_GE(drawing.tiles.closed_gaps, openPixels(without)) << turn << " " << width;
+                EXPECT_GT(without.openPixels(), 100u) << turn << " " << width;
+                EXPECT_GE(drawing.tiles.closed_gaps, without.openPixels()) << turn << " " << width;
             }
         }
 }
@@ -65,12 +59,10 @@ TEST(Gaps, WiderThanAskedForStayOpen) {
     for (double turn : {0.0, 0.1875, 0.7})
         for (double width : {1.05, 3.0, 40.0}) {
             Drawing drawing(smallView()), without(smallView());
-            without.draw(brickWall(without, width * kGap, turn));
-            without.resolveAll();
+            without.drawAndResolve(brickWall(without, width * kGap, turn));
             drawing.tiles.gap = kGap;
-            drawing.draw(brickWall(drawing, width * kGap, turn));
-            drawing.resolveAll();
-            EXPECT_EQ(openPixels(drawing), openPixels(without)) << turn << " " << width;
+            drawing.drawAndResolve(brickWall(drawing, width * kGap, turn));
+            EXPECT_EQ(drawing.openPixels(), without.openPixels()) << turn << " " << width;
             EXPECT_EQ(drawing.tiles.closed_gaps, 0u) << turn << " " << width;
         }
 }
@@ -79,9 +71,8 @@ TEST(Gaps, TheFartherSideSaysHowFar) {
     Drawing drawing(smallView());
     drawing.tiles.gap = kGap;
     const double near = pixelAt(drawing, -4), far = pixelAt(drawing, -6), gap = 0.4 * kGap;
-    drawing.draw({panel(-6, -4, 10.3 * near, 4, -4, 0), panel((10.3 + gap) * far, -6, 9, 6, -6, 0)});
-    drawing.resolveAll();
-    EXPECT_EQ(openPixels(drawing), 0u);
+    drawing.drawAndResolve({panel(-6, -4, 10.3 * near, 4, -4, 0), panel((10.3 + gap) * far, -6, 9, 6, -6, 0)});
+    EXPECT_EQ(drawing.openPixels(), 0u);
     EXPECT_GE(drawing.tiles.closed_gaps, drawing.tiles.height);
     const uint32_t at = drawing.tiles.width / 2 + 10;
     for (uint32_t y = 0; y < drawing.tiles.height; ++y) {
@@ -127,8 +118,7 @@ TEST(Gaps, NothingElseIsClosed) {
             const double x = random.uniform(-2, 2), y = random.uniform(-1, 1);
             solids.push_back(panel(x, y, x + 0.6, y + 0.4, random.uniform(-5, -3.5), random.uniform(-3, 3)));
         }
-        drawing.draw(solids);
-        drawing.resolveAll();
+        drawing.drawAndResolve(solids);
         closed += drawing.tiles.closed_gaps;
         for (uint32_t y = 0; y < drawing.tiles.height; ++y)
             for (uint32_t x = 0; x < drawing.tiles.width; ++x) {

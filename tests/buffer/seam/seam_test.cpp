@@ -29,9 +29,8 @@ std::vector<Solid> mixedScene(Random& random) {
 }
 
 PixelRect randomRect(Random& random, const DepthTiles& tiles) {
-    PixelRect rect;
-    rect.x0 = static_cast<int32_t>(random.below(tiles.width));
-    rect.y0 = static_cast<int32_t>(random.below(tiles.height));
+    PixelRect rect{.x0 = static_cast<int32_t>(random.below(tiles.width)),
+                   .y0 = static_cast<int32_t>(random.below(tiles.height))};
     rect.x1 = std::min(rect.x0 + static_cast<int32_t>(random.below(12)), static_cast<int32_t>(tiles.width) - 1);
     rect.y1 = std::min(rect.y0 + static_cast<int32_t>(random.below(12)), static_cast<int32_t>(tiles.height) - 1);
     rect.nearness = static_cast<float>(1.0 / random.uniform(3, 9));
@@ -64,8 +63,7 @@ TEST(Seams, HideARectangleIfAndOnlyIfAllItsPixelsDo) {
         Random random(seed), same(seed);
         Drawing asked(smallView()), resolved(smallView());
         asked.draw(mixedScene(random));
-        resolved.draw(mixedScene(same));
-        resolved.resolveAll();
+        resolved.drawAndResolve(mixedScene(same));
         for (int i = 0; i < 3000; ++i) {
             const PixelRect rect = randomRect(random, asked.tiles);
             bool all = true;
@@ -83,8 +81,7 @@ TEST(Seams, WhatMasksRefuteStaysOpen) {
         Random random(seed), same(seed);
         Drawing asked(smallView()), resolved(smallView());
         asked.draw(mixedScene(random));
-        resolved.draw(mixedScene(same));
-        resolved.resolveAll();
+        resolved.drawAndResolve(mixedScene(same));
         for (uint32_t tile = 0; tile < asked.tiles.stride * asked.tiles.rows; ++tile) {
             if (asked.tiles.seams[tile] == DepthTiles::kNone) continue;
             float before[64], after[64];

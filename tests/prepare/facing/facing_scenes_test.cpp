@@ -31,11 +31,9 @@ bool facesEye(const MeshView& mesh, size_t triangle, const FacingEye& eye) {
     return test::trueFacing(mesh, triangle, eye.point, eye.w) > 0;
 }
 
-class FacingScenes : public ::testing::TestWithParam<const char*> {};
+using FacingScenes = test::SceneTest;
 
 TEST_P(FacingScenes, NoTechniqueLosesAFrontFace) {
-    const auto scene = test::sharedScene(GetParam());
-    if (!scene) GTEST_SKIP() << "no scenes beside the repository";
     Random random(131);
     size_t backs = 0, by_planes = 0, by_masks = 0, by_clusters = 0, by_bits = 0;
     for (const Mesh& source : scene->meshes) {

@@ -47,8 +47,7 @@ TEST(MergeFacing, HoldsEveryTriangleOnceAndCostsLessThanPlainRuns) {
     for (const double bumps : {0.0, 0.05, 0.3}) {
         const test::TestMesh mesh = ball(24, bumps);
         for (const double test : {1.0, 4.0, 16.0}) {
-            FacingCost cost;
-            cost.test = test;
+            FacingCost cost{.test = test};
             const FacingPartition part = mergeFacing(mesh.view(), cost);
             std::vector<uint32_t> sorted = part.triangles, all(mesh.view().triangles());
             std::sort(sorted.begin(), sorted.end());

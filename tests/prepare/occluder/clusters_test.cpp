@@ -19,8 +19,7 @@ TEST(Clusters, ABoxIsOneClusterOfSixQuadsAndTwelveEdges) {
     Soup soup;
     soup.addBox({0, 0, 0}, {1, 2, 3});
     const Occluder o = prepareOccluder(soup.view());
-    expectWithinLimits(o);
-    expectRightEdges(o);
+    expectOccluderLaws(o);
     ASSERT_EQ(o.clusters.size(), 1u);
     EXPECT_EQ(o.clusters[0].polygon_count, 6u);
     EXPECT_EQ(o.clusters[0].vertex_count, 8u);
@@ -34,8 +33,7 @@ TEST(Clusters, EachSideOfAClosedSurfaceIsInOneRecord) {
             SCOPED_TRACE(::testing::Message() << "seed " << seed << ", own " << own);
             const Soup soup = makeBall(seed, uint32_t(2 + 3 * seed));
             const Occluder o = prepareOccluder(soup.view(), {}, {}, {.own_polygons = own});
-            expectWithinLimits(o);
-            expectRightEdges(o);
+            expectOccluderLaws(o);
             EXPECT_EQ(o.triangleCount(), soup.indices.size() / 3);
             if (o.clusters.size() == 1) { EXPECT_EQ(openEdges(o), 0u); }
             for (const OccluderCluster& c : o.clusters) {
@@ -102,8 +100,7 @@ TEST(Clusters, EdgesOfMoreThanTwoPolygonsHaveSeveralRecords) {
         for (int i = 0; i < 12; ++i) soup.positions.push_back({random.uniform(), random.uniform(), random.uniform()});
         for (int i = 0; i < 3 * 60; ++i) soup.indices.push_back(uint32_t(random.below(12)));
         const Occluder o = prepareOccluder(soup.view());
-        expectWithinLimits(o);
-        expectRightEdges(o);
+        expectOccluderLaws(o);
     }
 }
 
@@ -113,8 +110,7 @@ TEST(Clusters, FacesBetweenBoxesDoNotBreakTheWall) {
     for (int i = 0; i < 5; ++i)
         for (int j = 0; j < 4; ++j) soup.addBox({i, j, 0}, {i + 1, j + 1, 1});
     const Occluder o = prepareOccluder(soup.view(), {}, {}, {.folded_polygons = OccluderCluster::kMaxOwn});
-    expectWithinLimits(o);
-    expectRightEdges(o);
+    expectOccluderLaws(o);
     uint32_t closed = 0;
     for (const OccluderCluster& c : o.clusters) {
         uint32_t front = 0;

@@ -64,8 +64,7 @@ TEST(Junctions, AreFoundWhereAVertexLiesOnASide) {
         EXPECT_FALSE(patchwork.chains.empty());
         expectChains(before, patchwork);
         const Occluder o = prepareOccluder(soup.view(), {}, {}, {.rings = true});
-        expectWithinLimits(o);
-        expectRightEdges(o);
+        expectOccluderLaws(o);
     }
 }
 
@@ -109,8 +108,7 @@ TEST(Junctions, ABrickBondHangsTogether) {
                                     {glm::vec3(0.7f, 0, 0), glm::vec3(0, 0, 0.3f)}}) {
         const std::vector<Soup> bricks = makeBricks(kCourses, kBricks, right, up);
         const Occluder joined = prepareJoined(sourcesOf(bricks), {.rings = true});
-        expectWithinLimits(joined);
-        expectRightEdges(joined);
+        expectOccluderLaws(joined);
         EXPECT_LE(joined.clusters.size(), 16u);  // of 800 panels
         uint32_t own = 0;
         for (const OccluderCluster& c : joined.clusters) own += c.polygon_count;
@@ -120,8 +118,7 @@ TEST(Junctions, ABrickBondHangsTogether) {
         const std::vector<Occluder> each = prepareOccluders(sourcesOf(bricks), {.rings = true});
         ASSERT_EQ(each.size(), bricks.size());
         for (const Occluder& o : each) {
-            expectWithinLimits(o);
-            expectRightEdges(o);
+            expectOccluderLaws(o);
             ASSERT_EQ(o.clusters.size(), 1u);
             EXPECT_EQ(o.clusters[0].polygon_count, 1u);
             EXPECT_EQ(openInside(o, kCourses, kBricks, right, up), 0u);
@@ -142,8 +139,7 @@ TEST(Junctions, BoxesInABondMakeOneWall) {
     for (int j = 0; j < 6; ++j)
         for (int i = 0; i < 6; ++i) soup.addBox({2 * i + j % 2, j, 0}, {2 * i + 2 + j % 2, j + 1, 1});
     const Occluder o = prepareOccluder(soup.view(), {}, {}, {.rings = true});
-    expectWithinLimits(o);
-    expectRightEdges(o);
+    expectOccluderLaws(o);
     uint32_t fronts = 0;
     for (const OccluderCluster& c : o.clusters) {
         const auto isFront = [&](uint8_t p) {

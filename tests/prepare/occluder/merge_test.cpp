@@ -89,8 +89,7 @@ TEST(Merge, CoversTheSamePointsAsOften) {
         const Soup soup = makeWall(random, xs, ys, 5, right, up);
         const Occluder before = prepareOccluder(soup.view(), {}, {}, {.rings = true});
         const Occluder after = prepareOccluder(soup.view(), {}, {}, {.rings = true, .merge = true});
-        expectWithinLimits(after);
-        expectRightEdges(after);
+        expectOccluderLaws(after);
         EXPECT_LT(2 * polygonsOf(after), polygonsOf(before));
         for (int i = 0; i < 2000; ++i) {
             const double x = random.uniform(0, xs.back()), y = random.uniform(0, ys.back());
@@ -124,8 +123,7 @@ TEST(Merge, KeepsPlaneFacingAndArea) {
         // Area by plane (axis, place), direction and kind.
         const auto areas = [&](bool merge) {
             const Occluder o = prepareOccluder(soup.view(), {}, double_sided, {.rings = true, .merge = merge});
-            expectWithinLimits(o);
-            expectRightEdges(o);
+            expectOccluderLaws(o);
             std::map<std::tuple<int, float, bool, bool>, double> found;
             for (const OccluderCluster& c : o.clusters)
                 for (uint32_t p = 0; p < c.polygon_count; ++p) {

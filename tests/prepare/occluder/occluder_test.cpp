@@ -116,8 +116,7 @@ TEST(Occluder, TakesPositionsOfAnySize) {
         std::vector<uint8_t> double_sided(400);
         for (uint8_t& both : double_sided) both = uint8_t(random.below(2));
         const Occluder o = prepareOccluder(soup.view(), {}, double_sided, {.rings = true, .merge = true});
-        expectWithinLimits(o);
-        expectRightEdges(o);
+        expectOccluderLaws(o);
     }
 }
 

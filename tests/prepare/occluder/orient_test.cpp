@@ -23,8 +23,7 @@ TEST(Orient, DoubleSidedSurfacesHangTogetherHoweverTheyWind) {
         const Soup soup = turnSome(makeBall(seed, uint32_t(3 * seed)), seed);
         const std::vector<uint8_t> both(soup.indices.size() / 3, 1);
         const Occluder o = prepareOccluder(soup.view(), {}, both, {.own_polygons = 64, .rings = true});
-        expectWithinLimits(o);
-        expectRightEdges(o);
+        expectOccluderLaws(o);
         EXPECT_EQ(ownOpenEdges(o), 0u);
         EXPECT_EQ(o.triangleCount(), both.size());
         // What hides on its front alone is left as it is.
@@ -69,8 +68,7 @@ TEST(Orient, AStripOfOneSideIsTakenAsFarAsItGoes) {
     }
     const std::vector<uint8_t> both(soup.indices.size() / 3, 1);
     const Occluder o = prepareOccluder(soup.view(), {}, both);
-    expectWithinLimits(o);
-    expectRightEdges(o);
+    expectOccluderLaws(o);
     EXPECT_EQ(o.triangleCount(), both.size());
     EXPECT_EQ(ownOpenEdges(o), size_t(2 * kPieces + 2));  // the rim, and one side that no turning closes: two records
 }

@@ -152,4 +152,9 @@ inline void expectRightEdges(const Occluder& o) {
     }
 }
 
+inline void expectOccluderLaws(const Occluder& o) {
+    expectWithinLimits(o);
+    expectRightEdges(o);
+}
+
 }  // namespace sightline

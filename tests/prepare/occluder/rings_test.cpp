@@ -49,8 +49,7 @@ TEST(Rings, HoldAllNeighboursAtAVertexAndNoOthers) {
             SCOPED_TRACE(::testing::Message() << "seed " << seed << ", own " << own);
             const Soup soup = makeBall(seed, uint32_t(4 + 3 * seed));
             const Occluder o = prepareOccluder(soup.view(), {}, {}, {.own_polygons = own, .rings = true});
-            expectWithinLimits(o);
-            expectRightEdges(o);
+            expectOccluderLaws(o);
             expectRings({&o, 1});
             EXPECT_EQ(ownOpenEdges(o), 0u);
             EXPECT_EQ(o.triangleCount(), soup.indices.size() / 3);
@@ -81,8 +80,7 @@ TEST(Rings, ReachAcrossMeshes) {
             prepareOccluders(sourcesOf(meshes), {.own_polygons = 32, .rings = true});
         ASSERT_EQ(occluders.size(), 3u);
         for (size_t m = 0; m < 3; ++m) {
-            expectWithinLimits(occluders[m]);
-            expectRightEdges(occluders[m]);
+            expectOccluderLaws(occluders[m]);
             EXPECT_EQ(ownOpenEdges(occluders[m]), 0u);
             EXPECT_EQ(occluders[m].triangleCount(), meshes[m].indices.size() / 3);
         }
@@ -97,8 +95,7 @@ TEST(Rings, ClustersAcrossMeshesAreThoseOfOneMesh) {
         slices[4 * t / soup.indices.size()].add({soup.positions[soup.indices[t]], soup.positions[soup.indices[t + 1]],
                                                  soup.positions[soup.indices[t + 2]]});
     const Occluder joined = prepareJoined(sourcesOf(slices), {.rings = true});
-    expectWithinLimits(joined);
-    expectRightEdges(joined);
+    expectOccluderLaws(joined);
     EXPECT_EQ(ownOpenEdges(joined), 0u);
     EXPECT_EQ(joined.triangleCount(), soup.indices.size() / 3);
     EXPECT_EQ(joined.clusters.size(), prepareOccluder(soup.view(), {}, {}, {.rings = true}).clusters.size());
@@ -118,8 +115,7 @@ TEST(Rings, LeaveOutWhatDoesNotFit) {
     }
     for (uint32_t own : {20u, 128u}) {
         const Occluder o = prepareOccluder(soup.view(), {}, {}, {.own_polygons = own, .rings = true});
-        expectWithinLimits(o);
-        expectRightEdges(o);
+        expectOccluderLaws(o);
         for (const OccluderCluster& c : o.clusters) EXPECT_GT(c.ring_count, 0u);
         if (own == 20) {
             EXPECT_EQ(ownOpenEdges(o), 0u);  // the neighbours across a side are found at its other end

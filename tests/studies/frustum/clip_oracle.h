@@ -88,8 +88,7 @@ inline Body bodyOf(const OrientedBox& box) {
 }
 
 inline Body bodyOf(const Box3d& box) {
-    OrientedBox oriented;
-    oriented.center = box.center();
+    OrientedBox oriented{.center = box.center()};
     for (int axis = 0; axis < 3; ++axis) oriented.half[axis][axis] = 0.5 * box.size()[axis];
     return bodyOf(oriented);
 }
@@ -214,8 +213,7 @@ inline double randomSize(Random& random) { return std::exp2(random.uniform(-5, 7
 
 inline OrientedBox randomOriented(Random& random, const TruthVolume& truth) {
     const double size = randomSize(random);
-    OrientedBox box;
-    box.center = randomPlace(random, truth, size);
+    OrientedBox box{.center = randomPlace(random, truth, size)};
     const glm::dmat3 turn(lookAt({0, 0, 0}, randomUnit(random), randomUnit(random)));
     for (int axis = 0; axis < 3; ++axis) box.half[axis] = size * random.uniform(0.1, 1.0) * turn[axis];
     return box;

@@ -66,15 +66,13 @@ std::vector<View> cameraPath(uint64_t seed, const glm::dvec3& around) {
 }
 
 HierarchyCulling oneByOne(int bits) {
-    HierarchyCulling how;
-    how.eight_at_once = false;
-    how.inside = bits & 1;
-    how.masking = bits & 2;
-    how.octant = bits & 4;
-    how.plane_coherency = bits & 8;
-    how.translation = bits & 16;
-    how.rotation = bits & 32;
-    return how;
+    return {.eight_at_once = false,
+            .inside = (bits & 1) != 0,
+            .masking = (bits & 2) != 0,
+            .octant = (bits & 4) != 0,
+            .plane_coherency = (bits & 8) != 0,
+            .translation = (bits & 16) != 0,
+            .rotation = (bits & 32) != 0};
 }
 
 TEST(HierarchyWalk, EveryCombinationKeepsOneSet) {
@@ -124,9 +122,7 @@ TEST(HierarchyWalk, KeepsWhatTheBoxesOneByOneKeepOnEveryInstructionSet) {
                 kept.resize(culler.cull(refined, tree.now(), {}, kept));
                 all.insert(all.end(), kept.begin(), kept.end());
                 std::sort(kept.begin(), kept.end());
-                HierarchyCulling how;
-                how.refinement = Refinement::kSeparatingAxes;
-                how.large = 2.0f;
+                HierarchyCulling how{.refinement = Refinement::kSeparatingAxes, .large = 2.0f};
                 const std::vector<uint32_t> finer = cull(culler, refined, tree, how);
                 how.eight_at_once = false;
                 ASSERT_EQ(finer, cull(culler, refined, tree, how)) << target;

@@ -8,7 +8,6 @@
 
 #include "sightline/geom/frustum_bounds.h"
 #include "sightline/math/round_outward.h"
-#include "sightline/studies/frustum/grid_walk.h"
 #include "tests/tree/living_fixture.h"
 
 namespace sightline::test {

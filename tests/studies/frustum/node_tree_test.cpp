@@ -9,7 +9,6 @@
 #include <string>
 
 #include "sightline/math/round_outward.h"
-#include "sightline/studies/frustum/node_tree_walk.h"
 #include "sightline/tree/bvh_node.h"
 #include "tests/support/targets.h"
 #include "tests/tree/living_fixture.h"

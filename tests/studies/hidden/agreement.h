@@ -4,9 +4,6 @@
 
 #include <cstdio>
 
-#include <gtest/gtest.h>
-
-#include "sightline/studies/hidden/compare.h"
 #include "tests/studies/hidden/made_lists.h"
 
 namespace sightline::test {
@@ -84,15 +81,11 @@ inline void expectAgreement(const char* what, const RenderSettings& settings, co
     std::vector<MadeList> lists = madeLists();
     for (uint64_t seed = 1; hard && seed <= 140; ++seed) lists.push_back(hardList(seed));
     for (const MadeList& made : lists) {
-        const std::vector<DrawItem> items = made.items();
-        const DrawList list(items);
+        const DrawList list = made.list();
         for (const NamedView& named : madeViews()) {
             const HiddenImage truth = nearestSurfaces(list, named.view), found = render(list, named.view, settings);
             const Agreement agreement = compareImages(list, named.view, truth, found, bands);
-            EXPECT_TRUE(agreement.agrees())
-                << what << ", " << made.name << ", " << named.name << ": " << agreement.wrong << " samples, first row "
-                << agreement.row << " sample " << agreement.sample << ": " << int32_t(agreement.found) << " for "
-                << int32_t(agreement.expected);
+            expectNoneWrong(agreement, what + (", " + made.name + ", " + named.name));
             all.samples += agreement.samples;
             all.differing += agreement.differing;
             all.at_edges += agreement.at_edges;

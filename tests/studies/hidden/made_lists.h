@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include "sightline/base/random.h"
+#include "sightline/studies/hidden/compare.h"
 #include "sightline/studies/hidden/project/scan.h"
 #include "sightline/studies/hidden/render.h"
 #include "tests/support/meshes.h"
@@ -36,7 +41,29 @@ struct MadeList : TestMesh {
         item.double_sided = double_sided;
         return {item};
     }
+    /// Refers to this object, which stays where it is as long as the list is in use.
+    DrawList list() const {
+        items_ = items();
+        return DrawList(items_);
+    }
+
+private:
+    mutable std::vector<DrawItem> items_;
 };
+
+inline HiddenImage emptyImage(const View& view) {
+    HiddenImage image;
+    image.width = view.width;
+    image.height = view.height;
+    image.surface.assign(size_t{view.width} * view.height, HiddenImage::kNone);
+    return image;
+}
+
+/// Samples that show something.
+inline uint64_t covered(const HiddenImage& image) {
+    return image.surface.size() -
+           static_cast<uint64_t>(std::count(image.surface.begin(), image.surface.end(), HiddenImage::kNone));
+}
 
 inline View madeView(uint32_t width = 160, uint32_t height = 120, double z_near = 0.1) {
     return viewBy(perspective(1.0, double(width) / height, z_near), width, height);
@@ -132,12 +159,8 @@ inline std::vector<MadeList> madeLists() {
 /// The nearest surface at each sample, found by trying all polygons in double: the truth that methods are held to. The
 /// first of equals is kept.
 inline HiddenImage nearestSurfaces(const DrawList& list, const View& view, const ProjectorSettings& settings = {}) {
-    HiddenImage image;
-    image.width = view.width;
-    image.height = view.height;
-    const size_t samples = size_t{view.width} * view.height;
-    image.surface.assign(samples, HiddenImage::kNone);
-    std::vector<double> nearest(samples, -std::numeric_limits<double>::infinity());
+    HiddenImage image = emptyImage(view);
+    std::vector<double> nearest(image.surface.size(), -std::numeric_limits<double>::infinity());
     Projector projector(view, {view.width, view.height, 0, 1, {}}, settings);
     for (const ScreenPolygon& polygon : projectAll(list, projector))
         scanPolygon(polygon.outline(), 0, int32_t(view.height), int32_t(view.width),
@@ -151,6 +174,21 @@ inline HiddenImage nearestSurfaces(const DrawList& list, const View& view, const
                         }
                     });
     image.counters.geometry = projector.counters();
+    return image;
+}
+
+/// Holds images to the truth, but for what the bands explain.
+inline void expectNoneWrong(const Agreement& agreement, const std::string& what) {
+    EXPECT_TRUE(agreement.agrees()) << what << ": " << agreement.wrong << " samples, first row " << agreement.row
+                                    << " sample " << agreement.sample << ": " << int32_t(agreement.found) << " for "
+                                    << int32_t(agreement.expected);
+}
+
+/// Draws, and holds the image to the slow truth.
+inline HiddenImage expectNearest(const DrawList& list, const View& view, const RenderSettings& settings,
+                                 const std::string& what, const AgreementBands& bands = {}) {
+    HiddenImage image = render(list, view, settings);
+    expectNoneWrong(compareImages(list, view, nearestSurfaces(list, view), image, bands), what);
     return image;
 }
 

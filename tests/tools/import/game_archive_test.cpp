@@ -11,7 +11,6 @@
 #include "mutated.h"
 #include "map_files.h"
 #include "sightline/base/random.h"
-#include "sightline/tools/import/quake/game_archive.h"
 #include "sightline/tools/import/quake/map_source.h"
 #include "tests/support/corpus.h"
 

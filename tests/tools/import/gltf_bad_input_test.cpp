@@ -21,8 +21,7 @@ void expectError(const Result<Scene>& result, const std::string& message, const 
 
 /// A triangle in the only node, spoilt.
 void expectSpoilt(const std::function<void(GltfBuilder&)>& spoil, const std::string& message) {
-    GltfBuilder b;
-    b.node({{"mesh", b.triangleMesh()}});
+    GltfBuilder b = GltfBuilder::triangle();
     spoil(b);
     expectError(parse(b.glb()), message);
 }
@@ -173,8 +172,7 @@ TEST(GltfBadInput, CompressedData) {
     const size_t json_length = *reinterpret_cast<const uint32_t*>(glb.data() + 12);
     glb[20 + json_length + 8] ^= 0x5a;
     expectError(parse(glb), "bufferViews[0]: meshopt data is damaged");
-    GltfBuilder b;
-    b.node({{"mesh", b.triangleMesh()}});
+    GltfBuilder b = GltfBuilder::triangle();
     const Json packed = {{"buffer", 0}, {"byteLength", 36}, {"byteStride", 12}, {"count", 3}, {"mode", "ATTRIBUTES"}};
     const auto spoil = [&](const char* key, Json value, const std::string& message) {
         GltfBuilder spoilt = b;
@@ -201,8 +199,7 @@ TEST(GltfBadInput, CompressedDataOfTheSecondExtension) {
     EXPECT_NE(scene.error().message.find("bufferViews[0]: is packed by version 3 of meshopt's vertex codec"),
               std::string::npos)
         << scene.error().message;
-    GltfBuilder b;
-    b.node({{"mesh", b.triangleMesh()}});
+    GltfBuilder b = GltfBuilder::triangle();
     const uint32_t colors = b.view(std::string(64, '\0'));
     b.json["bufferViews"][colors]["extensions"]["KHR_meshopt_compression"] = {
         {"buffer", 0}, {"byteLength", 64},     {"byteStride", 4},
@@ -235,8 +232,7 @@ TEST(GltfBadInput, WorldsOutOfProportion) {
 }
 
 TEST(GltfBadInput, SkinsAndMorphs) {
-    GltfBuilder b;
-    b.node({{"mesh", b.triangleMesh()}});
+    GltfBuilder b = GltfBuilder::triangle();
     b.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", b.accessor<float>("VEC3", {1, 1, 1})}}};
     expectError(parse(b.glb()), "meshes[0].primitives[0].targets[0]: moves 1 vertices of 3");
 
@@ -252,8 +248,7 @@ TEST(GltfBadInput, SkinsAndMorphs) {
 }
 
 TEST(GltfBadInput, MorphWeightsBeyondFloat) {
-    GltfBuilder b;
-    b.node({{"mesh", b.triangleMesh()}});
+    GltfBuilder b = GltfBuilder::triangle();
     const uint32_t target = b.accessor<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
     b.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", target}}};
     b.json["meshes"][0]["weights"] = {1e300};
@@ -298,8 +293,7 @@ TEST(GltfBadInput, Files) {
 
 TEST(GltfBadInput, BuffersBeside) {
     const Folder folder;
-    GltfBuilder b;
-    b.node({{"mesh", b.triangleMesh()}});
+    GltfBuilder b = GltfBuilder::triangle();
     const std::string scene = folder.file("scene.gltf", b.gltf("data/some%20geometry.bin"));
     expectError(loadGltf(scene), "buffers[0]: 'data/some%20geometry.bin': no such file", scene);
     std::filesystem::create_directories(folder.path / "data");

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <initializer_list>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -14,20 +15,10 @@ namespace sightline::test {
 
 using Json = nlohmann::json;
 
+/// Of bytes 5120, of shorts 5122, of whole words 5124, each one more if unsigned; of floats 5126.
 template <class T>
-constexpr int kComponentType = 0;
-template <>
-inline constexpr int kComponentType<int8_t> = 5120;
-template <>
-inline constexpr int kComponentType<uint8_t> = 5121;
-template <>
-inline constexpr int kComponentType<int16_t> = 5122;
-template <>
-inline constexpr int kComponentType<uint16_t> = 5123;
-template <>
-inline constexpr int kComponentType<uint32_t> = 5125;
-template <>
-inline constexpr int kComponentType<float> = 5126;
+constexpr int kComponentType = std::is_same_v<T, float> ? 5126
+                                                        : 5120 + int(sizeof(T) & ~size_t{1}) + std::is_unsigned_v<T>;
 
 /// Number of components of "SCALAR", "VEC3", "MAT4" and so on.
 inline size_t componentsOf(const std::string& type) {
@@ -77,6 +68,13 @@ struct GltfBuilder {
         if (indices >= 0) primitive["indices"] = indices;
         primitive.update(more);
         return add("meshes", {{"primitives", Json::array({primitive})}});
+    }
+
+    /// With a triangle in its only node.
+    static GltfBuilder triangle() {
+        GltfBuilder b;
+        b.node({{"mesh", b.triangleMesh()}});
+        return b;
     }
 
     uint32_t node(Json node) { return add("nodes", std::move(node)); }

@@ -86,8 +86,7 @@ TEST(GltfCells, LeavesOtherNamesAlone) {
 }
 
 TEST(GltfCells, MarksCountWhereNodesAreHidden) {
-    GltfBuilder b;
-    b.node({{"mesh", b.triangleMesh()}});
+    GltfBuilder b = GltfBuilder::triangle();
     Json hidden = box("cell", "a", {{0, 0, 0}, {1, 1, 1}});
     hidden["extensions"]["KHR_node_visibility"]["visible"] = false;
     b.node(hidden);

@@ -5,9 +5,7 @@
 
 int main(int argc, char** argv) {
     using namespace sightline::test;
-    return writeInto(argc, argv, [](const std::filesystem::path& folder) {
-        bool written = true;
-        for (const Sample& sample : gltfSamples()) written = writeBytes(folder / sample.name, sample.bytes) && written;
-        return written;
+    return writeSeeds(argc, argv, [](auto seed) {
+        for (const Sample& sample : gltfSamples()) seed(sample.name, sample.bytes);
     });
 }

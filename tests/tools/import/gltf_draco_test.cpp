@@ -98,9 +98,7 @@ TEST(GltfDraco, KeepsEveryTriangleInEveryEncoding) {
     for (uint64_t seed = 1; seed <= 400; ++seed) {
         Random random(seed);
         const PackedSource source = randomSource(random);
-        PackedSettings settings;
-        settings.edgebreaker = random.below(3) != 0;
-        settings.valence = random.below(2) != 0;
+        PackedSettings settings{.edgebreaker = random.below(3) != 0, .valence = random.below(2) != 0};
         settings.quantization = kBits[random.below(5)];
         settings.speed = int(random.below(11));
         GltfBuilder b;

@@ -1,6 +1,6 @@
 // What is taken for plain JSON is JSON to a full parser, too.
 // SPDX-License-Identifier: MIT
-#include "sightline/tools/import/gltf/gltf_grammar.h"
+#include "sightline/tools/import/gltf/gltf_text.h"
 
 #include <string>
 

@@ -14,25 +14,16 @@ std::vector<uint64_t> keysOf(const Scene& scene) {
     return out;
 }
 
-TEST(GltfNodes, ComposesTransformsDownTheTree) {
+TEST(GltfNodes, ComposesTransformsDownTheTreeOfOneSharedMesh) {
     const Scene scene = loadSample("node_tree.glb");
     ASSERT_EQ(keysOf(scene), (std::vector<uint64_t>{2, 3}));
     EXPECT_EQ(scene.objects[0].name, "deep");
     // (x, y, z) -> (x + 1, y, z), scaled by (2, 3, 4), a quarter turn about z, then 10 along x.
     expectCorners(cornersOf(scene, 0), {{10, 2, 0}, {10, 4, 0}, {7, 2, 0}});
     EXPECT_GT(glm::determinant(glm::dmat3(scene.objects[0].transform)), 0);
-}
-
-TEST(GltfNodes, KeepsMirrorsInTheTransform) {
-    const Scene scene = loadSample("node_tree.glb");
-    ASSERT_EQ(scene.objects.size(), 2u);
+    // A mirror stays in the transform.
     expectCorners(cornersOf(scene, 1), {{15, 6, 7}, {14, 6, 7}, {15, 7, 7}});
     EXPECT_LT(glm::determinant(glm::dmat3(scene.objects[1].transform)), 0);
-}
-
-TEST(GltfNodes, SharesOneMeshAmongNodes) {
-    const Scene scene = loadSample("node_tree.glb");
-    ASSERT_EQ(scene.objects.size(), 2u);
     EXPECT_EQ(scene.meshes.size(), 1u);
     EXPECT_EQ(scene.objects[0].mesh, scene.objects[1].mesh);
 }
@@ -50,13 +41,9 @@ TEST(GltfNodes, NormalizesRotations) {
     expectCorners(cornersOf(load(b.glb()), 0), {{0, 0, 0}, {0, 1, 0}, {-1, 0, 0}});
 }
 
-TEST(GltfNodes, ShowsTheMarkedScene) { EXPECT_EQ(keysOf(loadSample("scene_marked.glb")), (std::vector<uint64_t>{1})); }
-
-TEST(GltfNodes, ShowsAllScenesIfNoneIsMarked) {
+TEST(GltfNodes, ShowsTheMarkedSceneOrAllOrEveryNode) {
+    EXPECT_EQ(keysOf(loadSample("scene_marked.glb")), (std::vector<uint64_t>{1}));
     EXPECT_EQ(keysOf(loadSample("scenes_unmarked.glb")), (std::vector<uint64_t>{0, 1}));
-}
-
-TEST(GltfNodes, ShowsEveryNodeIfThereIsNoScene) {
     EXPECT_EQ(keysOf(loadSample("scenes_none.glb")), (std::vector<uint64_t>{0, 1, 2}));
 }
 
@@ -76,7 +63,11 @@ TEST(GltfNodes, ReadsLongChains) {
 TEST(GltfNodes, MakesAnObjectOfEachInstance) {
     const Scene scene = loadSample("instances.glb");
     ASSERT_EQ(keysOf(scene), (std::vector<uint64_t>{0, 1, 1, 1}));
-    for (size_t i = 1; i < 4; ++i) EXPECT_EQ(scene.objects[i].name, "grove");
+    for (size_t i = 1; i < 4; ++i) {
+        EXPECT_EQ(scene.objects[i].name, "grove");
+        EXPECT_EQ(scene.objects[i].node, 1u);
+        EXPECT_EQ(objectPath(scene, scene.objects[i]), "grove");
+    }
     EXPECT_EQ(scene.meshes.size(), 1u);
     expectCorners(cornersOf(scene, 1), {{100, 0, 0}, {101, 0, 0}, {100, 1, 0}});
     for (size_t corner = 0; corner < 3; ++corner) {
@@ -118,15 +109,6 @@ TEST(GltfNodes, NamesObjectsOfUnnamedNodesAfterTheirMesh) {
     EXPECT_EQ(objectPath(scene, scene.objects[0]), "Kitchen/Chair");
 }
 
-TEST(GltfNodes, GivesInstancesThePathOfTheirNode) {
-    const Scene scene = loadSample("instances.glb");
-    ASSERT_EQ(scene.objects.size(), 4u);
-    for (size_t i = 1; i < 4; ++i) {
-        EXPECT_EQ(scene.objects[i].node, 1u);
-        EXPECT_EQ(objectPath(scene, scene.objects[i]), "grove");
-    }
-}
-
 TEST(GltfNodes, ReadsCameras) {
     const Scene scene = loadSample("cameras.glb");
     ASSERT_EQ(scene.cameras.size(), 3u) << "one that a scale of zero flattens looks nowhere and is left out";
@@ -145,8 +127,7 @@ TEST(GltfNodes, ReadsCameras) {
 TEST(GltfNodes, IgnoresExtensionsThatLeaveTrianglesAlone) {
     for (const char* name : {"KHR_texture_transform", "KHR_texture_basisu", "KHR_materials_unlit", "EXT_texture_webp",
                              "KHR_lights_punctual"}) {
-        GltfBuilder b;
-        b.node({{"mesh", b.triangleMesh()}});
+        GltfBuilder b = GltfBuilder::triangle();
         b.json["extensionsRequired"] = {name};
         EXPECT_EQ(load(b.glb()).objects.size(), 1u) << name;
     }

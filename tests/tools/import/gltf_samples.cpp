@@ -117,8 +117,7 @@ std::string scenes(int marked, bool any) {
 }
 
 std::string cameras() {
-    GltfBuilder b;
-    b.node({{"mesh", b.triangleMesh()}});
+    GltfBuilder b = GltfBuilder::triangle();
     b.add("cameras", {{"name", "lens"},
                       {"type", "perspective"},
                       {"perspective", {{"yfov", 0.5}, {"znear", 0.25}, {"zfar", 50}, {"aspectRatio", 2}}}});
@@ -149,8 +148,7 @@ std::string instances() {
 }
 
 std::string dataUri(bool escaped) {
-    GltfBuilder b;
-    b.node({{"mesh", b.triangleMesh()}});
+    GltfBuilder b = GltfBuilder::triangle();
     if (!escaped) return b.gltf();
     std::string data = "data:,";
     for (const char c : b.bytes) {

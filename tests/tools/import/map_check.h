@@ -7,7 +7,7 @@
 #include <string>
 
 #include "gltf_check.h"
-#include "sightline/tools/import/quake/game_archive.h"
+#include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/import/quake/prt.h"
 #include "sightline/tools/import/quake/quake_map.h"
 #include "sightline/tools/import/quake/quake_scene.h"

@@ -12,9 +12,7 @@
 #include "map_files.h"
 #include "sightline/base/random.h"
 #include "sightline/tools/import/quake/map_source.h"
-#include "sightline/tools/import/quake/quake_patch.h"
 #include "sightline/tools/import/quake/quake_scene.h"
-#include "sightline/tools/import/quake/quake_surface.h"
 #include "sightline/tools/import/scene_file.h"
 #include "tests/support/shared_scenes.h"
 

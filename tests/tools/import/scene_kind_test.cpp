@@ -93,8 +93,7 @@ TEST_F(SceneKinds, WhatIsNotReadIsRefusedWithWhatToDo) {
 }
 
 TEST_F(SceneKinds, GltfIsReadWhateverItsSuffix) {
-    GltfBuilder builder;
-    builder.node({{"mesh", builder.triangleMesh()}});
+    GltfBuilder builder = GltfBuilder::triangle();
     for (const char* name : {"a.glb", "a.gltf", "a.obj", "a.bin", "a", "a.GLB", "a.json"}) {
         EXPECT_TRUE(load(write(name, builder.glb())).ok()) << name;
         EXPECT_TRUE(load(write(name, builder.gltf())).ok()) << name;

@@ -1,6 +1,6 @@
 // The probe's tree finds what trying every triangle finds.
 // SPDX-License-Identifier: MIT
-#include "sightline/tools/load/ray_probe.h"
+#include "sightline/tools/load/seeded_cameras.h"
 
 #include <gtest/gtest.h>
 

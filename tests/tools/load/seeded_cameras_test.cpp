@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "sightline/base/random.h"
-#include "sightline/tools/load/ray_probe.h"
 #include "sightline/tools/scene/city/city.h"
 
 namespace sightline {

@@ -1,6 +1,6 @@
 // Made scenes are what their names say: geometry that is hard in just one way.
 // SPDX-License-Identifier: MIT
-#include "sightline/tools/scene/made.h"
+#include "sightline/tools/scene/procedural.h"
 
 #include <cmath>
 #include <limits>

@@ -76,9 +76,7 @@ TEST(ObjectPath, OfManyNestedNodesKeepsTheEnd) {
     Scene scene;
     for (uint32_t i = 0; i < 100000; ++i)
         scene.nodes.push_back({"node " + std::to_string(i), i == 0 ? SceneNode::kNone : i - 1});
-    SceneObject object;
-    object.name = "lamp";
-    object.node = 99999;
+    SceneObject object{.name = "lamp", .node = 99999};
     const std::string path = objectPath(scene, object);
     EXPECT_LE(path.size(), kLongestPath);
     EXPECT_EQ(path.substr(0, 4), ".../");

@@ -1,6 +1,6 @@
 // The witnesses' box tree finds what a look at every box finds.
 // SPDX-License-Identifier: MIT
-#include "sightline/tools/truth/box_tree.h"
+#include "sightline/tools/truth/scene_facts.h"
 
 #include <algorithm>
 

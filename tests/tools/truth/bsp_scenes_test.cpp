@@ -7,8 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sightline/studies/hidden/bsp/bsp_back_to_front.h"
-#include "sightline/studies/hidden/bsp/bsp_front_to_back.h"
+#include "sightline/studies/hidden/bsp/bsp_render.h"
 #include "sightline/studies/hidden/compare.h"
 #include "sightline/tools/scene/city/city.h"
 #include "tests/studies/hidden/made_lists.h"
@@ -19,14 +18,6 @@ namespace sightline::test {
 using namespace studies;
 using namespace tools;
 namespace {
-
-HiddenImage emptyImage(const View& view) {
-    HiddenImage image;
-    image.width = view.width;
-    image.height = view.height;
-    image.surface.assign(size_t{view.width} * view.height, HiddenImage::kNone);
-    return image;
-}
 
 /// One tree, three views, drawn in all four ways.
 void expectRight(const char* name, const Scene& scene, double pieces_per_polygon) {
@@ -64,13 +55,9 @@ void expectRight(const char* name, const Scene& scene, double pieces_per_polygon
     }
 }
 
-class BspScenes : public testing::TestWithParam<const char*> {};
+using BspScenes = test::SceneTest;
 
-TEST_P(BspScenes, ShowWhatIsNearest) {
-    const auto scene = test::sharedScene(GetParam());
-    if (!scene) GTEST_SKIP() << "no scenes beside the repository";
-    expectRight(GetParam(), *scene, 3.0);
-}
+TEST_P(BspScenes, ShowWhatIsNearest) { expectRight(GetParam(), *scene, 3.0); }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, BspScenes, kSmallScenes, sceneLabel);
 

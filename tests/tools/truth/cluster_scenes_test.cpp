@@ -12,6 +12,7 @@
 #include "sightline/tools/load/seeded_cameras.h"
 #include "sightline/tools/scene/building/building.h"
 #include "sightline/tools/scene/camera_path.h"
+#include "sightline/tools/truth/scene_facts.h"
 #include "tests/support/shared_scenes.h"
 
 namespace sightline {
@@ -31,17 +32,9 @@ std::vector<MeshPart> partsOf(const Scene& scene, const Mesh& mesh) {
 /// Draws a scene, or what a query left of it.
 class Painter {
 public:
-    explicit Painter(const Scene& scene) : scene_(scene) {
-        for (const Mesh& mesh : scene.meshes) {
+    explicit Painter(const Scene& scene) : scene_(scene), facts_(scene) {
+        for (const Mesh& mesh : scene.meshes)
             clusters_.push_back(prepareDrawClusters({mesh.positions, mesh.indices}, partsOf(scene, mesh)));
-            std::vector<uint8_t>& sides = sides_.emplace_back(mesh.triangles(), 0);
-            std::vector<uint8_t>& writes = writes_.emplace_back(mesh.triangles(), 0);
-            for (const Primitive& primitive : mesh.primitives)
-                for (uint32_t t = 0; t < primitive.triangle_count; ++t) {
-                    sides[primitive.first_triangle + t] = scene.materials[primitive.material].double_sided;
-                    writes[primitive.first_triangle + t] = scene.materials[primitive.material].hides();
-                }
-        }
     }
 
     ZBufferImage whole(const View& view) {
@@ -76,38 +69,35 @@ private:
         part.object = object;
         if (ranges.empty()) {
             part.indices = mesh.indices;
-            part.sides = sides_[which];
-            part.writes = writes_[which];
+            part.sides = facts_.meshFacts(which).double_sided;
+            part.writes = facts_.meshFacts(which).hides;
         }
         for (const DrawRange& range : ranges)
             for (uint32_t t = range.first; t < range.first + range.count; ++t) {
                 const uint32_t triangle = clusters_[which].triangles[t];
                 part.indices.insert(part.indices.end(), mesh.indices.begin() + 3 * triangle,
                                     mesh.indices.begin() + 3 * triangle + 3);
-                part.sides.push_back(sides_[which][triangle]);
-                part.writes.push_back(writes_[which][triangle]);
+                part.sides.push_back(facts_.meshFacts(which).double_sided[triangle]);
+                part.writes.push_back(facts_.meshFacts(which).hides[triangle]);
             }
     }
     ZBufferImage draw(const View& view) const {
         std::vector<DrawItem> items;
         for (const Part& part : drawn_) {
             const SceneObject& object = scene_.objects[part.object];
-            DrawItem item;
-            item.mesh = {scene_.meshes[object.mesh].positions, part.indices};
-            item.double_sided = part.sides;
-            item.writes_depth = part.writes;
-            item.transform = object.transform;
-            item.id = part.object;
+            DrawItem item{.mesh = {scene_.meshes[object.mesh].positions, part.indices},
+                          .double_sided = part.sides,
+                          .writes_depth = part.writes,
+                          .transform = object.transform,
+                          .id = part.object};
             items.push_back(item);
         }
-        ZBufferSettings settings;
-        settings.want_generated = false;
-        return renderZBuffer(items, view, settings);
+        return renderZBuffer(items, view, {.want_generated = false});
     }
 
     const Scene& scene_;
     std::vector<DrawClusters> clusters_;
-    std::vector<std::vector<uint8_t>> sides_, writes_;
+    SceneFacts facts_;
     std::vector<Part> drawn_;
 };
 
@@ -137,13 +127,9 @@ void expectSameImages(const Scene& scene, uint32_t frames, double most_drawn) {
 
 TEST(ClustersOfABuilding, LookTheSame) { expectSameImages(makeBuilding(1, 2), 6, 0.9); }
 
-class ClusterScenes : public testing::TestWithParam<const char*> {};
+using ClusterScenes = test::SceneTest;
 
-TEST_P(ClusterScenes, LookTheSame) {
-    const auto scene = test::sharedScene(GetParam());
-    if (!scene) GTEST_SKIP() << "no scenes beside the repository";
-    expectSameImages(*scene, 4, 0.7);
-}
+TEST_P(ClusterScenes, LookTheSame) { expectSameImages(*scene, 4, 0.7); }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ClusterScenes,
                          testing::Values("dense-spot", "playcanvas-cave", "polyhaven-dutch-ship", "2CylinderEngine"));

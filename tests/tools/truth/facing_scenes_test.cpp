@@ -151,9 +151,7 @@ TEST(GuardBand, SparesNearlyAllThatLiesOutsideInPart) {
     for (const CameraFrame& frame : cityStreetPath(1, 24).frames) {
         const View view = makeView(frame, 1280, 720);
         const SampleGrid grid{view.width, view.height, 0, 1, {}};
-        ProjectorSettings at_sides;
-        at_sides.clipping = Clipping::kFrustum;
-        Projector band(view, grid), sides(view, grid, at_sides);
+        Projector band(view, grid), sides(view, grid, {.clipping = Clipping::kFrustum});
         for (const SceneObject& object : scene.objects) {
             DrawItem item;
             item.mesh = {scene.meshes[object.mesh].positions, scene.meshes[object.mesh].indices};

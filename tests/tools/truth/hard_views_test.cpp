@@ -13,8 +13,10 @@
 #include "sightline/tools/load/seeded_cameras.h"
 #include "sightline/tools/scene/city/city.h"
 #include "sightline/tools/truth/verify.h"
+#include "tests/support/answers.h"
 #include "tests/support/shared_scenes.h"
 #include "tests/support/views.h"
+#include "tests/tools/truth/scene_views.h"
 
 namespace sightline {
 using namespace tools;
@@ -66,20 +68,14 @@ void expectNothingSeenIsCulled(const Scene& scene, uint64_t rounds) {
     const Snapshot now = loaded.world.commit();
     const Witness witness(scene);
     Query query;
-    std::vector<uint8_t> reasons(scene.objects.size());
     for (uint64_t seed = 1; seed <= (full ? 4 * rounds : rounds); ++seed)
         for (const NamedView& named : hardViews(scene, seed)) {
             query.visible(now, named.view);
-            query.reasons(reasons);
-            WitnessSettings settings;
-            settings.rays = full ? 1000000 : 20000;
+            WitnessSettings settings{.rays = full ? 1000000u : 20000u};
             settings.aimed_rays = settings.rays / 2;
             settings.supersampling = named.view.width > 1000 && !full ? 0 : named.view.width == 1 ? 32 : 2;
-            const FrameVerdict verdict = witness.judge(named.view, reasons, settings);
-            for (const FalseCull& cull : verdict.false_culls)
-                ADD_FAILURE() << scene.name << ", " << named.name << ", seed " << seed << ": object " << cull.object
-                              << " is seen at (" << cull.x << ", " << cull.y << ") by " << cull.witness
-                              << " but was culled by stage " << int(reasons[cull.object]) - 1;
+            test::expectNoFalseCulls(witness, named.view, test::reasonsOf(query, now), settings,
+                                     scene.name + ", " + named.name + ", seed " + std::to_string(seed));
         }
 }
 
@@ -96,11 +92,9 @@ TEST(HardViews, OfTheCityHideNothingThatIsSeen) {
     expectNothingSeenIsCulled(movedBy(city, 1e6), 1);
 }
 
-class HardViews : public testing::TestWithParam<const char*> {};
+using HardViews = test::SceneTest;
 
 TEST_P(HardViews, OfARealSceneHideNothingThatIsSeen) {
-    const auto scene = test::sharedScene(GetParam());
-    if (!scene) GTEST_SKIP() << "no scenes beside the repository";
     expectNothingSeenIsCulled(*scene, 1);
     expectNothingSeenIsCulled(movedBy(*scene, 1e6), 1);
 }

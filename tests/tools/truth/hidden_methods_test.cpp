@@ -41,11 +41,9 @@ std::vector<NamedSettings> allSettings() {
     return all;
 }
 
-class HiddenMethods : public testing::TestWithParam<const char*> {};
+using HiddenMethods = test::SceneTest;
 
 TEST_P(HiddenMethods, ShowWhatIsNearest) {
-    const auto scene = test::sharedScene(GetParam());
-    if (!scene) GTEST_SKIP() << "no scenes beside the repository";
     const SceneFacts facts(*scene);
     const std::vector<DrawItem> items = itemsOf(facts);
     const DrawList list(items);

@@ -7,7 +7,9 @@
 #include "sightline/tools/load/load_world.h"
 #include "sightline/tools/truth/verify.h"
 #include "tests/prepare/occluder/patch_laws.h"
+#include "tests/support/answers.h"
 #include "tests/support/views.h"
+#include "tests/tools/truth/scene_views.h"
 
 namespace sightline {
 using namespace tools;
@@ -72,16 +74,10 @@ TEST(InnerOccluders, HideNothingThatIsSeen) {
             drawn_exactly += query.visible(now, view, settings).stats.occluder_triangles;
             settings.occluder_error = 20;
             drawn += query.visible(now, view, settings).stats.occluder_triangles;
-            std::vector<uint8_t> reasons(scene.objects.size());
-            query.reasons(reasons);
+            const std::vector<uint8_t> reasons = test::reasonsOf(query, now);
             for (uint8_t reason : reasons) culled += reason == 1 + static_cast<int>(Stage::kOcclusion);
-            WitnessSettings witnesses;
-            witnesses.rays = 20000;
-            witnesses.aimed_rays = 10000;
-            witnesses.supersampling = 2;
-            for (const FalseCull& cull : witness.judge(view, reasons, witnesses).false_culls)
-                ADD_FAILURE() << "seed " << seed << ", view " << i << ": object " << cull.object << " is seen at ("
-                              << cull.x << ", " << cull.y << ") by " << cull.witness;
+            test::expectNoFalseCulls(witness, view, reasons, {.rays = 20000, .aimed_rays = 10000, .supersampling = 2},
+                                     "seed " + std::to_string(seed) + ", view " + std::to_string(i));
         }
     }
     EXPECT_LT(2 * drawn, drawn_exactly);  // they were drawn

@@ -6,35 +6,14 @@
 
 #include <gtest/gtest.h>
 
-#include "sightline/base/random.h"
 #include "sightline/tools/import/gltf/gltf.h"
 #include "sightline/tools/truth/verify.h"
 #include "tests/support/shared_scenes.h"
+#include "tests/tools/truth/scene_views.h"
 
 namespace sightline {
 using namespace tools;
 namespace {
-
-/// From a corner of the scene's box, from within it, and in parallel projection from outside.
-std::vector<View> viewsOf(const Scene& scene) {
-    const Box3d box = worldBounds(scene);
-    const double size = glm::length(box.size());
-    Random random(1);
-    std::vector<View> views;
-    for (int i = 0; i < 3; ++i) {
-        View view;
-        view.width = 320;
-        view.height = 180;
-        const glm::dvec3 part(random.uniform(0.2, 0.8), random.uniform(0.2, 0.8), random.uniform(0.2, 0.8));
-        const glm::dvec3 inside = box.min + part * box.size();
-        const glm::dvec3 outside = box.center() + 0.7 * (box.max - box.center()) + glm::dvec3(0.4, 0.3, 0.5) * size;
-        view.view = lookAt(i == 1 ? inside : outside, box.center() + 0.01 * inside, {0, 1, 0});
-        view.projection = i == 2 ? orthographic(0.8 * size, 16.0 / 9, 1e-3 * size, 4 * size)
-                                 : perspective(1.0, 16.0 / 9, 5e-4 * size);
-        views.push_back(view);
-    }
-    return views;
-}
 
 TEST(RealScenes, WitnessesAgree) {
     const std::vector<std::filesystem::path> files = test::sharedFiles("scenes", ".glb");
@@ -43,7 +22,7 @@ TEST(RealScenes, WitnessesAgree) {
         const Result<Scene> scene = loadGltf(file.string());
         ASSERT_TRUE(scene.ok()) << scene.error().message;
         const Witness witness(*scene);
-        for (const View& view : viewsOf(*scene)) {
+        for (const View& view : test::viewsOf(worldBounds(*scene), 1)) {
             WitnessSettings rays, ids;
             rays.rays = 100000;
             rays.supersampling = 0;

@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "sightline/base/random.h"
 #include "sightline/studies/hidden/draw_item.h"
 #include "sightline/tools/truth/scene_facts.h"
+#include "sightline/tools/truth/verify.h"
 
 namespace sightline::test {
 using namespace studies;
@@ -45,6 +49,14 @@ inline std::vector<DrawItem> itemsOf(const SceneFacts& facts) {
         items.push_back(item);
     }
     return items;
+}
+
+/// Asks the witness of a query's answer to a view; what was culled and is seen is a failure each.
+inline void expectNoFalseCulls(const Witness& witness, const View& view, const std::vector<uint8_t>& reasons,
+                               const WitnessSettings& looks, const std::string& what) {
+    for (const FalseCull& cull : witness.judge(view, reasons, looks).false_culls)
+        ADD_FAILURE() << what << ": object " << cull.object << " is seen at (" << cull.x << ", " << cull.y << ") by "
+                      << cull.witness << " but was culled by stage " << int(reasons[cull.object]) - 1;
 }
 
 }  // namespace sightline::test

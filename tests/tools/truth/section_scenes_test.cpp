@@ -15,7 +15,9 @@
 #include "sightline/tools/truth/sight.h"
 #include "sightline/tools/truth/verify.h"
 #include "test_scenes.h"
+#include "tests/support/answers.h"
 #include "tests/support/shared_scenes.h"
+#include "tests/tools/truth/scene_views.h"
 
 namespace sightline {
 using namespace tools;
@@ -40,7 +42,6 @@ void expectNothingSeenIsCulled(const Scene& scene, uint64_t frames) {
     const Witness witness(scene);
     const double diagonal = glm::length(worldBounds(scene).size());
     Query query;
-    std::vector<uint8_t> reasons(scene.objects.size());
     Random random(3);
     uint64_t occluded = 0, wrong_without = 0;
     const CameraPath path = seededCameras(scene, static_cast<uint32_t>(frames), 3);
@@ -48,23 +49,16 @@ void expectNothingSeenIsCulled(const Scene& scene, uint64_t frames) {
         const CameraFrame& camera = path.frames[frame];
         View view = makeView(camera, 320, 180);
         QuerySettings settings;
-        WitnessSettings looks;
-        looks.rays = 20000;
-        looks.aimed_rays = 10000;
-        looks.supersampling = 2;
+        WitnessSettings looks{.rays = 20000, .aimed_rays = 10000, .supersampling = 2};
         query.visible(now, view, settings);
-        query.reasons(reasons);
-        const std::vector<uint8_t> whole = reasons;
+        const std::vector<uint8_t> whole = reasonsOf(query, now);
         for (uint64_t i = 0, planes = 1 + random.below(2); i < planes; ++i)
             view.sections.add(randomSection(camera, diagonal, random));
         settings.stages = frame % 3 == 0 ? kAllStages : kDefaultStages;
         settings.bins = frame % 4 == 1 ? 3 : 1;
         occluded += query.visible(now, view, settings).stats.stages[static_cast<int>(Stage::kOcclusion)].culled;
-        query.reasons(reasons);
-        for (const FalseCull& cull : witness.judge(view, reasons, looks).false_culls)
-            ADD_FAILURE() << scene.name << ", frame " << frame << ": object " << cull.object << " is seen at ("
-                          << cull.x << ", " << cull.y << ") by " << cull.witness << " but was culled by stage "
-                          << int(reasons[cull.object]) - 1;
+        expectNoFalseCulls(witness, view, reasonsOf(query, now), looks,
+                           scene.name + ", frame " + std::to_string(frame));
         wrong_without += witness.judge(view, whole, looks).false_culls.size();
     }
     EXPECT_GT(occluded, 0u) << scene.name;
@@ -75,13 +69,9 @@ TEST(SectionScenes, OfTheCityHideNothingThatIsSeen) { expectNothingSeenIsCulled(
 
 TEST(SectionScenes, OfABuildingHideNothingThatIsSeen) { expectNothingSeenIsCulled(makeBuilding(1, 2), 8); }
 
-class SectionScenes : public testing::TestWithParam<const char*> {};
+using SectionScenes = test::SceneTest;
 
-TEST_P(SectionScenes, HideNothingThatIsSeen) {
-    const auto scene = test::sharedScene(GetParam());
-    if (!scene) GTEST_SKIP() << "no scenes beside the repository";
-    expectNothingSeenIsCulled(*scene, 6);
-}
+TEST_P(SectionScenes, HideNothingThatIsSeen) { expectNothingSeenIsCulled(*scene, 6); }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, SectionScenes,
                          testing::Values("bimwhale-tall-building", "bsi-duplex", "2CylinderEngine", "aws-small-house"));
@@ -99,11 +89,7 @@ TEST(WitnessSections, SeeWhatACutLaysOpenAndNothingBeyondIt) {
     const Witness witness(scene);
     const std::vector<uint8_t> all(3, 1);
     const auto seen = [&](uint64_t rays, uint32_t samples) {
-        WitnessSettings settings;
-        settings.rays = rays;
-        settings.aimed_rays = rays / 2;
-        settings.supersampling = samples;
-        return witness.judge(view, all, settings).seen;
+        return witness.judge(view, all, {.rays = rays, .aimed_rays = rays / 2, .supersampling = samples}).seen;
     };
     for (const auto& [rays, samples] : {std::pair<uint64_t, uint32_t>{20000, 0}, {0, 2}}) {
         view.sections = {};

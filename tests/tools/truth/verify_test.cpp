@@ -22,20 +22,9 @@ constexpr double kPi = 3.141592653589793;
 
 View usualView() { return viewBy(perspective(1.0, 4.0 / 3, 0.1), 320, 240); }
 
-WitnessSettings raysOnly() {
-    WitnessSettings settings;
-    settings.rays = 20000;
-    settings.aimed_rays = 5000;
-    settings.supersampling = 0;
-    return settings;
-}
+WitnessSettings raysOnly() { return {.rays = 20000, .aimed_rays = 5000, .supersampling = 0}; }
 
-WitnessSettings idBufferOnly() {
-    WitnessSettings settings;
-    settings.rays = 0;
-    settings.supersampling = 2;
-    return settings;
-}
+WitnessSettings idBufferOnly() { return {.rays = 0, .supersampling = 2}; }
 
 /// What each witness alone says of culled objects; both must agree on the objects.
 std::vector<uint32_t> accused(const Scene& scene, const View& view, const std::vector<uint8_t>& culled) {
@@ -262,11 +251,8 @@ TEST(Witness, SeamsBetweenObjectsAreTight) {
         }
         View view = usualView();
         if (seed % 2) view.view = lookAt({1e6, 1e6, -1e6}, {1e6, 1e6, -1e6 - 1}, {0, 1, 0});
-        WitnessSettings settings;
-        settings.rays = 100000;
-        settings.aimed_rays = 80000;
-        settings.seed = seed;
-        const FrameVerdict verdict = Witness(scene).judge(view, culled, settings);
+        const FrameVerdict verdict =
+            Witness(scene).judge(view, culled, {.rays = 100000, .aimed_rays = 80000, .seed = seed});
         EXPECT_TRUE(verdict.false_culls.empty())
             << "seed " << seed << " object " << (verdict.false_culls.empty() ? 0 : verdict.false_culls[0].object);
         EXPECT_GT(verdict.aimed_rays, 10000u);
@@ -295,11 +281,8 @@ TEST(Witness, NeverAccusesWhatIsEnclosed) {
         View view = seed % 4 == 3 ? viewBy(orthographic(8, 4.0 / 3, -40, 40), 320, 240)
                                   : viewBy(perspective(1.8, 4.0 / 3, 1e-4), 320, 240);
         view.view = lookAt({0, 0, 0}, {random.uniform(-1, 1), random.uniform(-1, 1), 1}, {0, 1, 0});
-        WitnessSettings settings;
-        settings.rays = 60000;
-        settings.aimed_rays = 30000;
-        settings.seed = seed;
-        const FrameVerdict verdict = Witness(scene).judge(view, culled, settings);
+        const FrameVerdict verdict =
+            Witness(scene).judge(view, culled, {.rays = 60000, .aimed_rays = 30000, .seed = seed});
         EXPECT_TRUE(verdict.false_culls.empty()) << "seed " << seed;
         EXPECT_GT(verdict.exactly_visible, 3u) << "seed " << seed;
         unconfirmed += verdict.unconfirmed;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Marc Olano, Trey Greer. Triangle Scan Conversion Using 2D Homogeneous Coordinates. 1997.
+// Jonathan Shewchuk. Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates. 1997.
 #pragma once
 
 #include <algorithm>
@@ -14,6 +15,10 @@
 #include "sightline/studies/hidden/project/screen_polygon.h"
 
 namespace sightline::studies {
+
+/// The sign of dot(cross(a, b), c), which is that of the determinant with rows a, b, c: +1, -1, or 0 if the three lie in
+/// a plane with the origin. Exact for all finite inputs whose products neither overflow nor underflow.
+int tripleProductSign(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
 /// Where samples lie: sample i of row j at (x / w, y / w) = scale * (i, j) + start.
 struct SamplePlaces {

@@ -3,6 +3,7 @@
 //
 // Henri Gouraud. Continuous Shading of Curved Surfaces. 1971. (Normals are interpolated here, not colours: Bui Tuong
 // Phong. Illumination for Computer Generated Pictures. 1975.)
+// Grit Thürmer, Charles Wüthrich. Computing Vertex Normals from Polygonal Facets. 1998.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +13,21 @@
 
 #include <glm/glm.hpp>
 
+#include "sightline/geom/mesh_view.h"
 #include "sightline/studies/hidden/render.h"
 #include "sightline/studies/hidden/shade/light.h"
 #include "sightline/studies/hidden/shade/shadow_map.h"
 
 namespace sightline::studies {
+
+/// One normal a corner, object space, on the front's side: the mean of the faces around its position, each by the angle
+/// of its corner there, that turn from its own face by no more than the crease. Positions are welded where they are equal
+/// bit by bit, whatever their indices. Faces without area take part in nothing, and have normals of length 0; all
+/// others' are of unit length.
+///
+/// @param crease_degrees  0 gives the faces' own normals  [0 to 180]
+/// @return [size: 3 * triangles]
+std::vector<glm::vec3> smoothNormals(const MeshView& mesh, double crease_degrees = 40);
 
 enum class Shading : uint8_t {
     kFlat,    ///< by the triangle's normal

@@ -9,8 +9,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sightline/tools/import/foreign/scene_stream_format.h"
-
 namespace sightline::tools {
 
 using namespace scene_stream;

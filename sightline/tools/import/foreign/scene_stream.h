@@ -10,11 +10,26 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "sightline/tools/scene/scene.h"
 
 namespace sightline::tools {
+
+namespace scene_stream {
+
+inline constexpr char kMagic[16] = {'s', 'i', 'g', 'h', 't', 'l', 'i', 'n', 'e', ' ', 's', 'c', 'e', 'n', 'e', 1};
+inline constexpr uint64_t kLongestText = 1 << 16;  // [bytes]
+
+enum Kind : uint32_t { kProgress = 1, kNote, kMaterial, kNode, kMesh, kObject, kCamera, kFault, kEnd };
+enum Count : size_t { kMaterials, kNodes, kMeshes, kObjects, kCameras };
+
+/// What goes into a stream as it lies in memory.
+template <class T>
+constexpr bool kRaw = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>;
+
+}  // namespace scene_stream
 
 /// With this exit code sightline-import says that its memory did not suffice.
 constexpr int kImportOutOfMemory = 12;

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "sightline/tools/import/foreign/scene_stream.h"
-#include "sightline/tools/import/foreign/scene_stream_format.h"
 
 namespace sightline::tools {
 

@@ -1,6 +1,6 @@
 // How far animations move joints and morph weights: ranges that hold at every time.
 // SPDX-License-Identifier: MIT
-#include "sightline/tools/import/gltf/gltf_animation.h"
+#include "sightline/tools/import/gltf/gltf_deform.h"
 
 #include <algorithm>
 #include <cmath>

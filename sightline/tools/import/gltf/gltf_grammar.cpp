@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Tim Bray. RFC 8259: The JavaScript Object Notation (JSON) Data Interchange Format. 2017.
-#include "sightline/tools/import/gltf/gltf_grammar.h"
+#include "sightline/tools/import/gltf/gltf_text.h"
 
 #include <bitset>
 #include <cstring>

@@ -9,10 +9,19 @@
 #include <vector>
 
 #include "sightline/tools/import/gltf/gltf_document.h"
-#include "sightline/tools/import/gltf/gltf_materials.h"
+#include "sightline/tools/import/gltf/gltf_text.h"
 #include "sightline/tools/scene/scene.h"
 
 namespace sightline::tools::gltf {
+
+struct Materials {
+    std::vector<Material> list;  ///< never empty
+    uint32_t first = 0;          ///< where glTF's material 0 is; 1 if the default material stands before it
+    size_t count = 0;            ///< glTF's own
+};
+
+/// The default material comes first if a primitive names none.
+Materials readMaterials(const JsonText& json);
 
 /// A primitive that draws triangles; its numbers are accessors, of a Draco stream or of the file.
 struct PrimitiveSource {

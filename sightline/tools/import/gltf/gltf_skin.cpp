@@ -12,7 +12,7 @@ namespace sightline::tools::gltf {
 namespace {
 
 constexpr double kSlack = 1 + 1e-5;  // a renderer blends in single precision
-constexpr double kAffineTolerance = 1e-4;
+constexpr double kBindTolerance = 1e-4;
 
 struct Joint {
     glm::dmat4 inverse_bind{1.0};
@@ -34,7 +34,7 @@ std::vector<Joint> readJoints(Document& document, const NodeTree& tree, const Sk
         for (int column = 0; !binds.empty() && column < 4; ++column) {
             for (int row = 0; row < 4; ++row) bind[column][row] = binds[j * 16 + size_t(4 * column + row)];
             const double wanted = column == 3 ? 1 : 0;
-            if (std::abs(bind[column][3] - wanted) > kAffineTolerance)
+            if (std::abs(bind[column][3] - wanted) > kBindTolerance)
                 fail(accessorPlace(document, *skin.inverse_binds), "inverse bind matrix {} is not affine", j);
             bind[column][3] = wanted;
         }

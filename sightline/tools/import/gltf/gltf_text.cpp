@@ -4,8 +4,6 @@
 
 #include <utility>
 
-#include "sightline/tools/import/gltf/gltf_grammar.h"
-
 namespace sightline::tools::gltf {
 namespace {
 

@@ -13,6 +13,11 @@
 
 namespace sightline::tools::gltf {
 
+/// True only if the text is JSON for sure: one value, at most 256 deep, well-formed UTF-8, every number finite in double.
+/// False says nothing: the caller asks a full parser, which also knows the place of a mistake. Surrogate escapes and
+/// very long numbers are among what is left to it.
+bool plainJson(std::span<const unsigned char> text);
+
 /// A top-level array of the JSON, such as `nodes`. Points into the JsonText that it came from.
 class JsonTable {
 public:

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
-#include "sightline/tools/import/quake/quake_faces.h"
+#include "sightline/tools/import/quake/quake_lumps.h"
 
 namespace sightline::tools::quake {
 namespace {

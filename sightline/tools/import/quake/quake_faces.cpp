@@ -1,6 +1,6 @@
 // Of a .bsp: faces by their edges, textures by their texinfo, and the models that own the faces.
 // SPDX-License-Identifier: MIT
-#include "sightline/tools/import/quake/quake_faces.h"
+#include "sightline/tools/import/quake/quake_lumps.h"
 
 #include <algorithm>
 #include <map>

@@ -95,4 +95,10 @@ Records lumpRecords(Bytes bytes, const Directory& directory, Lump lump);
 /// The file's (x, y, z), z up, as (x, z, -y). Throws a Fault if it is not finite or beyond 1e9.
 glm::vec3 takePoint(ByteCursor& cursor, const char* place, uint64_t index);
 
+/// Fills textures, faces, points, indices and models, and the tree's bounds.
+void readFaces(Bytes bytes, const Directory& directory, QuakeMapFile& map);
+
+/// Quake 3's, which have points of their own in place of edges, and shaders.
+void readQuake3Faces(Bytes bytes, const Directory& directory, QuakeMapFile& map);
+
 }  // namespace sightline::tools::quake

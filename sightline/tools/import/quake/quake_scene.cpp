@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/import/quake/quake_scene.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -13,11 +15,88 @@
 #include "sightline/tools/import/gltf/gltf_fault.h"
 #include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/import/quake/quake_map.h"
-#include "sightline/tools/import/quake/quake_patch.h"
-#include "sightline/tools/import/quake/quake_surface.h"
 
 namespace sightline::tools {
 namespace {
+
+using namespace std::string_view_literals;
+
+/// '*' and '!' are liquids, '{' is cut out; the others are not drawn as they look, or not at all.
+bool seenThroughByName(std::string_view name, bool half_life) {
+    constexpr std::array kPrefixes = {"*"sv,          "!"sv,      "{"sv,         "sky"sv,      "trigger"sv,
+                                      "aaatrigger"sv, "clip"sv,   "skip"sv,      "hint"sv,     "origin"sv,
+                                      "null"sv,       "nodraw"sv, "waterskip"sv, "lavaskip"sv, "slimeskip"sv};
+    std::string low(name);
+    std::transform(low.begin(), low.end(), low.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+    if (half_life && (low.starts_with("water") || low.starts_with("laser"))) return true;  // drawn as liquids are
+    return std::any_of(kPrefixes.begin(), kPrefixes.end(),
+                       [&](std::string_view prefix) { return low.starts_with(prefix); });
+}
+
+/// A face parts two contents, the same two everywhere. Close behind the middle of each triangle of its fan must be
+/// what is solid.
+bool solidBehind(const QuakeMapFile& map, const QuakeFace& face) {
+    const glm::vec3* const points = map.points.data() + face.first_point;
+    glm::dvec3 area(0);
+    for (uint32_t i = 1; i + 1 < face.point_count; ++i)
+        area += glm::cross(glm::dvec3(points[i]) - glm::dvec3(points[0]),
+                           glm::dvec3(points[i + 1]) - glm::dvec3(points[0]));
+    if (!(glm::length(area) > 0)) return false;
+    const glm::dvec3 normal = glm::normalize(area);
+    for (uint32_t i = 1; i + 1 < face.point_count; ++i) {
+        const glm::dvec3 middle = (glm::dvec3(points[0]) + glm::dvec3(points[i]) + glm::dvec3(points[i + 1])) / 3.0;
+        for (const double depth : {0.03125, 0.25})  // [world units]: past the rounding of points and planes
+            if (map.tree.contents[leafAt(map.tree, middle - depth * normal)] != LeafContents::kSolid) return false;
+    }
+    return true;
+}
+
+QuakeSurface firstSurface(const QuakeMapFile& map, const QuakeFace& face) {
+    constexpr uint32_t kSpecial = 1;  // without light: liquids and skies
+    const QuakeTexture& texture = map.textures[face.texture];
+    const bool seen_through = (texture.surface_flags & kSpecial) != 0 ||
+                              seenThroughByName(texture.name, map.format == QuakeFormat::kHalfLife);
+    if (seen_through) return QuakeSurface::kSeeThrough;
+    if (face.model != 0) return QuakeSurface::kMovable;
+    return solidBehind(map, face) ? QuakeSurface::kSolid : QuakeSurface::kSeeThrough;
+}
+
+QuakeSurface secondSurface(const QuakeMapFile& map, const QuakeFace& face) {
+    constexpr uint32_t kSky = 4, kWarp = 8, kTrans33 = 0x10, kTrans66 = 0x20, kNoDraw = 0x80, kHint = 0x100,
+                       kSkip = 0x200,
+                       kAlphaTest = 0x2000000;  // of later engines
+    const uint32_t flags = map.textures[face.texture].surface_flags;
+    if (flags & (kNoDraw | kHint | kSkip) && !(flags & kSky)) return QuakeSurface::kNotDrawn;
+    if (flags & (kSky | kWarp | kTrans33 | kTrans66 | kAlphaTest)) return QuakeSurface::kSeeThrough;
+    return face.model == 0 ? QuakeSurface::kSolid : QuakeSurface::kMovable;
+}
+
+QuakeSurface thirdSurface(const QuakeMapFile& map, const QuakeFace& face) {
+    constexpr uint32_t kSky = 4, kNoDraw = 0x80, kHint = 0x100, kSkip = 0x200, kNonSolid = 0x4000;
+    constexpr uint32_t kSolid = 1, kLava = 8, kSlime = 16, kWater = 32, kFog = 64, kTranslucent = 0x20000000;
+    const QuakeTexture& texture = map.textures[face.texture];
+    if (texture.surface_flags & (kNoDraw | kHint | kSkip) && !(texture.surface_flags & kSky))
+        return QuakeSurface::kNotDrawn;
+    if (texture.surface_flags & (kSky | kNonSolid)) return QuakeSurface::kSeeThrough;
+    if (texture.contents & (kLava | kSlime | kWater | kFog | kTranslucent)) return QuakeSurface::kSeeThrough;
+    if (face.kind == QuakeFace::Kind::kPatch) return QuakeSurface::kCurved;
+    if (!(texture.contents & kSolid) || face.kind != QuakeFace::Kind::kPolygon) return QuakeSurface::kSeeThrough;
+    return face.model == 0 ? QuakeSurface::kSolid : QuakeSurface::kMovable;
+}
+
+constexpr uint32_t kSteps = 4;  // along each side of a patch of 3 x 3 control points
+
+/// Quadratic, over each three of the points that share an end with the next three.
+struct Weights {
+    uint32_t first;
+    double of[3];
+};
+
+Weights weightsAt(uint32_t step, uint32_t points) {
+    const uint32_t part = std::min(step / kSteps, (points - 1) / 2 - 1);
+    const double t = double(step - part * kSteps) / kSteps;
+    return {2 * part, {(1 - t) * (1 - t), 2 * t * (1 - t), t * t}};
+}
 
 using gltf::fail;
 using gltf::printable;
@@ -163,6 +242,33 @@ Scene sceneOf(const QuakeMapFile& map, const QuakeMap& text) {
 }
 
 }  // namespace
+
+QuakeSurface quakeSurface(const QuakeMapFile& map, const QuakeFace& face) {
+    if (face.kind == QuakeFace::Kind::kNothing) return QuakeSurface::kNotDrawn;
+    if (map.format == QuakeFormat::kQuake3) return thirdSurface(map, face);
+    return map.format == QuakeFormat::kQuake2 ? secondSurface(map, face) : firstSurface(map, face);
+}
+
+void tessellatePatch(std::span<const glm::vec3> control, uint32_t width, uint32_t height, Mesh& mesh) {
+    const uint32_t columns = (width - 1) / 2 * kSteps, rows = (height - 1) / 2 * kSteps;
+    for (uint32_t row = 0; row <= rows; ++row)
+        for (uint32_t column = 0; column <= columns; ++column) {
+            const Weights u = weightsAt(column, width), v = weightsAt(row, height);
+            glm::dvec3 point(0);
+            for (uint32_t j = 0; j < 3; ++j)
+                for (uint32_t i = 0; i < 3; ++i)
+                    point += u.of[i] * v.of[j] * glm::dvec3(control[size_t(v.first + j) * width + u.first + i]);
+            mesh.positions.emplace_back(point);
+        }
+    for (uint32_t row = 0; row < rows; ++row)
+        for (uint32_t column = 0; column < columns; ++column) {
+            const uint32_t a = row * (columns + 1) + column, b = a + 1, c = a + columns + 1, d = c + 1;
+            for (const uint32_t index : {a, b, d, a, d, c}) mesh.indices.push_back(index);
+        }
+    for (const glm::vec3& point : control) mesh.bounds.grow(glm::dvec3(point));
+    for (const glm::vec3& point : mesh.positions) mesh.bounds.grow(glm::dvec3(point));
+    mesh.deforms = true;
+}
 
 Result<QuakeMap> quakeEntities(const QuakeMapFile& map, const std::string& name) {
     if (map.entities.empty()) return QuakeMap();

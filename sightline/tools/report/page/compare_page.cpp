@@ -8,7 +8,7 @@
 #include "sightline/tools/report/page/page.h"
 #include "sightline/tools/report/pictures/film_files.h"
 #include "sightline/tools/report/run/compare_runs.h"
-#include "sightline/tools/report/run/cull_json.h"
+#include "sightline/tools/report/run/cull_run.h"
 
 namespace sightline::tools {
 namespace {

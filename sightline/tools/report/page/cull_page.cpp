@@ -13,7 +13,7 @@
 #include "sightline/tools/report/page/page.h"
 #include "sightline/tools/report/page/page_table.h"
 #include "sightline/tools/report/pictures/film.h"
-#include "sightline/tools/report/run/cull_json.h"
+#include "sightline/tools/report/run/cull_run.h"
 #include "sightline/tools/report/run/insight.h"
 
 namespace sightline::tools {

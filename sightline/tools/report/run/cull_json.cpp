@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sightline/tools/report/run/cull_json.h"
 #include "sightline/tools/report/run/camera_json.h"
 #include "sightline/tools/report/run/cull_run.h"
 

@@ -184,4 +184,7 @@ std::vector<uint64_t> keysKeptUnseen(const FrameResult& frame, const Scene& scen
 /// The schema `sightline.cull/1`: one frame a line. Names that are not UTF-8 are mended.
 std::string cullJson(const CullRun& run, const Scene& scene);
 
+/// cullJson() without the lists of objects: `kept` of a frame counts what `visible` lists, and `notes` are there.
+std::string cullJsonWithoutSets(const CullRun& run);
+
 }  // namespace sightline::tools

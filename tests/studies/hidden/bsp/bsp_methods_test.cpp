@@ -4,9 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sightline/studies/hidden/bsp/bsp_back_to_front.h"
-#include "sightline/studies/hidden/bsp/bsp_front_to_back.h"
-#include "sightline/studies/hidden/compare.h"
+#include "sightline/studies/hidden/bsp/bsp_render.h"
 #include "tests/studies/hidden/made_lists.h"
 
 namespace sightline::test {
@@ -31,30 +29,21 @@ HiddenImage draw(const DrawList& list, const View& view, const Way& way, bool wa
     return render(list, view, settings);
 }
 
-uint64_t covered(const HiddenImage& image) {
-    uint64_t sum = 0;
-    for (const uint32_t surface : image.surface) sum += surface != HiddenImage::kNone;
-    return sum;
-}
-
 /// The first image is held to the truth, the others to it: they are the same sample for sample.
-void expectAllRight(const MadeList& made, const View& view, bool print = true) {
-    const std::vector<DrawItem> items = made.items();
-    const DrawList list(items);
+void expectAllRight(const MadeList& made, const View& view) {
+    const DrawList list = made.list();
     const HiddenImage truth = nearestSurfaces(list, view);
     std::vector<uint32_t> first;
     for (const Way& way : kWays) {
         const HiddenImage image = draw(list, view, way);
         const Agreement agreement = compareImages(list, view, truth, image);
-        EXPECT_EQ(agreement.wrong, 0u) << made.name << ", " << way.name << ": row " << agreement.row << ", sample "
-                                       << agreement.sample << " shows " << agreement.found << ", expected "
-                                       << agreement.expected;
+        expectNoneWrong(agreement, made.name + ", " + way.name);
         if (first.empty()) first = image.surface;
         EXPECT_TRUE(first == image.surface) << made.name << ", " << way.name;
         EXPECT_EQ(covered(image), covered(truth)) << made.name << ", " << way.name;
         if (way.method == HiddenMethod::kBspFrontToBack) {
             EXPECT_EQ(image.counters.passed, covered(image)) << made.name << ", " << way.name;
-        } else if (print) {
+        } else {
             std::printf("%-28s %6zu samples, at edges %zu, ties %zu, splits %zu\n", made.name.c_str(),
                         size_t(agreement.samples), size_t(agreement.at_edges), size_t(agreement.ties),
                         size_t(image.counters.splits));
@@ -69,11 +58,11 @@ TEST(BspMethods, ShowTheNearestSurfaceEverywhere) {
 TEST(BspMethods, SeeTheSameInParallel) {
     View view = madeView();
     view.projection = orthographic(4, 4.0 / 3, 0.1, 20);
-    for (const MadeList& made : madeLists()) expectAllRight(made, view, false);
+    for (const MadeList& made : madeLists()) expectAllRight(made, view);
     // Off the centre, and from behind things.
     view.projection[3][0] = 0.3;
     view.view = lookAt({3, 2, -8}, {0, 0, -4}, {0, 1, 0});
-    for (const MadeList& made : madeLists()) expectAllRight(made, view, false);
+    for (const MadeList& made : madeLists()) expectAllRight(made, view);
 }
 
 TEST(BspMethods, SeeRightlyFromAnywhere) {
@@ -82,8 +71,8 @@ TEST(BspMethods, SeeRightlyFromAnywhere) {
         View view = madeView(97, 66, 0.01);
         view.view = lookAt({random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-6, 0)},
                            {random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-6, 0)}, {0, 1, 0});
-        expectAllRight(clutter(20 + uint64_t(i), 300, 0.6), view, false);
-        expectAllRight(interpenetration(20 + uint64_t(i)), view, false);
+        expectAllRight(clutter(20 + uint64_t(i), 300, 0.6), view);
+        expectAllRight(interpenetration(20 + uint64_t(i)), view);
     }
 }
 
@@ -106,14 +95,13 @@ TEST(BspMethods, StandAnyInput) {
             if (kind == 5) made.add(p[0], p[1], p[2]);
             if (kind == 6) made.add(p[2], p[1], p[0]);
         }
-        expectAllRight(made, madeView(64, 48), false);
+        expectAllRight(made, madeView(64, 48));
     }
 }
 
 TEST(BspMethods, CountWhatTheyDo) {
     const MadeList made = clutter(5, 3000, 1.0);
-    const std::vector<DrawItem> items = made.items();
-    const DrawList list(items);
+    const DrawList list = made.list();
     HiddenImage images[4];
     for (int i = 0; i < 4; ++i) {
         images[i] = draw(list, madeView(), kWays[i], true);
@@ -144,10 +132,7 @@ TEST(BspMethods, CountWhatTheyDo) {
 HiddenImage drawWith(const BspScene& scene, const DrawList& list, const View& view, const Way& way) {
     RenderSettings settings;
     settings.free_samples = way.free_samples;
-    HiddenImage image;
-    image.width = view.width;
-    image.height = view.height;
-    image.surface.assign(size_t{view.width} * view.height, HiddenImage::kNone);
+    HiddenImage image = emptyImage(view);
     const HiddenInput input{list, view, settings};
     if (way.method == HiddenMethod::kBspBackToFront) drawBspBackToFront(scene, input, image);
     else drawBspFrontToBack(scene, input, image);

@@ -77,14 +77,12 @@ void expectAsFlags(uint64_t seed, int32_t width, int32_t height) {
     }
 }
 
-TEST(DynamicScreen, SegmentsKnowWhatIsFree) {
+TEST(DynamicScreen, SegmentsAndBitsKnowWhatIsFree) {
     const int32_t sizes[][2] = {{200, 70}, {64, 64}, {1, 1}, {65, 130}, {63, 3}, {130, 64}};
-    for (uint64_t seed = 0; seed < 6; ++seed) expectAsFlags<SegmentScreen>(seed, sizes[seed][0], sizes[seed][1]);
-}
-
-TEST(DynamicScreen, BitsKnowWhatIsFree) {
-    const int32_t sizes[][2] = {{200, 70}, {64, 64}, {1, 1}, {65, 130}, {63, 3}, {130, 64}};
-    for (uint64_t seed = 0; seed < 6; ++seed) expectAsFlags<BitScreen>(seed, sizes[seed][0], sizes[seed][1]);
+    for (uint64_t seed = 0; seed < 6; ++seed) {
+        expectAsFlags<SegmentScreen>(seed, sizes[seed][0], sizes[seed][1]);
+        expectAsFlags<BitScreen>(seed, sizes[seed][0], sizes[seed][1]);
+    }
 }
 
 }  // namespace

@@ -17,9 +17,8 @@ RenderSettings newell() {
 }
 
 std::vector<ScreenPolygon> project(const MadeList& made, const View& view) {
-    const std::vector<DrawItem> items = made.items();
     Projector projector(view, {view.width, view.height, 0, 1, {}});
-    return projectAll(DrawList(items), projector);
+    return projectAll(made.list(), projector);
 }
 
 /// The test that lets the first of two triangles be drawn before the second.
@@ -95,8 +94,7 @@ TEST(Newell, NothingDecidesWherePolygonsPassThroughOneAnother) {
 TEST(Newell, DrawsTheLowerSurfaceOfOnePlaneLast) {
     for (uint64_t seed = 1; seed <= 20; ++seed) {
         const MadeList made = coplanar(seed);
-        const std::vector<DrawItem> items = made.items();
-        const DrawList list(items);
+        const DrawList list = made.list();
         View view = madeView();
         EXPECT_EQ(render(list, view, newell()).surface, nearestSurfaces(list, view).surface) << made.name;
     }
@@ -107,8 +105,7 @@ TEST(Newell, SwapsWhereTheFarthestPointMisleads) {
     MadeList made;
     made.add({-3, -0.2f, -1}, {3, -0.2f, -1}, {0, -0.2f, -20});
     made.add({-1, -3, -12}, {1, -3, -12}, {0, -0.3f, -12});
-    const std::vector<DrawItem> items = made.items();
-    const DrawList list(items);
+    const DrawList list = made.list();
     const HiddenImage image = render(list, madeView(), newell());
     EXPECT_EQ(image.counters.swaps, 1u);
     EXPECT_EQ(image.counters.splits, 0u);
@@ -127,8 +124,7 @@ TEST(Newell, CutsACycleAndNothingWithoutNeed) {
         boxes.addBar({x + 0.3f, 0, z}, {x + 0.3f, 0, z - 0.6f}, {0, 1, 0});
         boxes.addBar({x - 0.3f, 0, z}, {x - 0.3f, 0, z - 0.6f}, {0, 1, 0});
     }
-    const std::vector<DrawItem> faces = boxes.items();
-    const HiddenImage image = render(DrawList(faces), madeView(), newell());
+    const HiddenImage image = render(boxes.list(), madeView(), newell());
     EXPECT_EQ(image.counters.splits, 0u);
 }
 
@@ -160,13 +156,10 @@ TEST(Newell, CutsACycleOfPairsThatAreInOrder) {
         };
         if (!(only(0, 1) && only(1, 2) && only(2, 0)) && !(only(1, 0) && only(2, 1) && only(0, 2))) continue;
         ++cycles;
-        const std::vector<DrawItem> items = made.items();
-        const DrawList list(items);
-        const HiddenImage image = render(list, view, newell());
+        const DrawList list = made.list();
+        const HiddenImage image = expectNearest(list, view, newell(), "seed " + std::to_string(seed));
         EXPECT_GE(image.counters.splits, 1u) << "seed " << seed;
-        EXPECT_EQ(compareImages(list, view, nearestSurfaces(list, view), image).wrong, 0u) << "seed " << seed;
     }
-    std::printf("%d cycles\n", cycles);
     EXPECT_GE(cycles, 10);
 }
 
@@ -203,13 +196,9 @@ TEST(Newell, DrawsTheRestSampleBySampleBeyondItsLimit) {
         HiddenCounters counters;
         const NewellOrder order = newellOrder(polygons, view.width, view.height, counters, limit);
         EXPECT_LT(order.proved, order.order.size());
-        HiddenImage image;
-        image.width = view.width;
-        image.height = view.height;
-        image.surface.assign(size_t{view.width} * view.height, HiddenImage::kNone);
+        HiddenImage image = emptyImage(view);
         drawInOrder(order, image);
-        const std::vector<DrawItem> items = made.items();
-        const DrawList list(items);
+        const DrawList list = made.list();
         EXPECT_EQ(compareImages(list, view, nearestSurfaces(list, view), image).wrong, 0u) << limit;
         EXPECT_GT(image.counters.tested, 0u);
     }
@@ -217,10 +206,9 @@ TEST(Newell, DrawsTheRestSampleBySampleBeyondItsLimit) {
 
 TEST(Newell, CountsFragmentsBySampleAndInSum) {
     const MadeList made = clutter(5, 300);
-    const std::vector<DrawItem> items = made.items();
     RenderSettings settings = newell();
     settings.want_counts = true;
-    const HiddenImage image = render(DrawList(items), madeView(), settings);
+    const HiddenImage image = render(made.list(), madeView(), settings);
     uint64_t sum = 0;
     for (const uint16_t count : image.generated) sum += count;
     EXPECT_EQ(sum, image.counters.generated);

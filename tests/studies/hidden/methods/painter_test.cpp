@@ -12,8 +12,7 @@ using namespace studies;
 namespace {
 
 Agreement paint(const MadeList& made, PainterKey key) {
-    const std::vector<DrawItem> items = made.items();
-    const DrawList list(items);
+    const DrawList list = made.list();
     RenderSettings settings;
     settings.method = HiddenMethod::kPainter;
     settings.painter_key = key;
@@ -52,8 +51,7 @@ TEST(Painter, SortingByCentreIsWrongWhereTheFarthestPointIsRight) {
 
 TEST(Painter, ShadesEveryFragment) {
     const MadeList made = clutter(5, 300);
-    const std::vector<DrawItem> items = made.items();
-    const DrawList list(items);
+    const DrawList list = made.list();
     RenderSettings settings;
     settings.method = HiddenMethod::kPainter;
     settings.want_counts = true;

@@ -43,9 +43,8 @@ TEST(Presort, SortsAsTheStableSortDoes) {
 
 TEST(Presort, PutsPolygonsNearToFarOrFarToNear) {
     const MadeList made = clutter(3, 400);
-    const std::vector<DrawItem> items = made.items();
     Projector projector(madeView(), {160, 120, 0, 1, {}});
-    std::vector<ScreenPolygon> polygons = projectAll(DrawList(items), projector);
+    std::vector<ScreenPolygon> polygons = projectAll(made.list(), projector);
     polygons.push_back(polygons[5]);
     const std::vector<uint32_t> near = orderPolygons(polygons, DepthOrder::kNearToFar),
                                 far = orderPolygons(polygons, DepthOrder::kFarToNear);
@@ -82,9 +81,8 @@ uint64_t writes(const std::vector<ScreenPolygon>& polygons, const std::vector<ui
 TEST(Presort, NearToFarSparesAZBufferWritesAndFarToNearDoesNot) {
     for (uint64_t seed = 1; seed <= 5; ++seed) {
         const MadeList made = clutter(seed, 3000);
-        const std::vector<DrawItem> items = made.items();
         Projector projector(madeView(), {160, 120, 0, 1, {}});
-        const std::vector<ScreenPolygon> polygons = projectAll(DrawList(items), projector);
+        const std::vector<ScreenPolygon> polygons = projectAll(made.list(), projector);
         std::vector<uint32_t> given(polygons.size());
         for (uint32_t i = 0; i < given.size(); ++i) given[i] = i;
         const uint64_t near = writes(polygons, orderPolygons(polygons, DepthOrder::kNearToFar)),

@@ -16,10 +16,7 @@ RenderSettings warnock() {
     return settings;
 }
 
-HiddenImage draw(const MadeList& made, const View& view = madeView()) {
-    const std::vector<DrawItem> items = made.items();
-    return render(DrawList(items), view, warnock());
-}
+HiddenImage draw(const MadeList& made, const View& view = madeView()) { return render(made.list(), view, warnock()); }
 
 TEST(Warnock, ShowsWhatIsNearest) { expectAgreement("warnock", warnock()); }
 
@@ -69,17 +66,14 @@ TEST(Warnock, SharesEdgesWithoutCracksOrDoubles) {
         }
     const HiddenImage image = draw(made);
     EXPECT_EQ(image.counters.passed, image.surface.size());
-    const std::vector<DrawItem> items = made.items();
-    EXPECT_EQ(image.surface, nearestSurfaces(DrawList(items), madeView()).surface);
+    EXPECT_EQ(image.surface, nearestSurfaces(made.list(), madeView()).surface);
     EXPECT_EQ(image.counters.splits, 0u);
 }
 
 TEST(Warnock, PaintsEachSampleOnce) {
     for (const MadeList& made : madeLists()) {
         const HiddenImage image = draw(made);
-        uint64_t shown = 0;
-        for (const uint32_t surface : image.surface) shown += surface != HiddenImage::kNone;
-        EXPECT_EQ(image.counters.passed, shown) << made.name;
+        EXPECT_EQ(image.counters.passed, covered(image)) << made.name;
     }
 }
 

@@ -164,8 +164,7 @@ struct Sums {
 void cover(const FlatMesh& mesh, const View& view, int way, int (&counts)[kSamples], Edges& edges, Sums& sums) {
     DrawItem item;
     item.mesh = {mesh.positions, mesh.indices};
-    ProjectorSettings settings;
-    settings.cull_back_faces = false;
+    ProjectorSettings settings{.cull_back_faces = false};
     settings.clipping = way == 1 ? Clipping::kFrustum : Clipping::kGuardBand;
     Projector projector(view, {kWidth, kHeight, 0, 1, {}}, settings);
     projector.begin(item);

@@ -25,8 +25,7 @@ TEST(Clipless, CountsWhatItDoes) {
     settings.want_counts = true;
     settings.depth.hierarchy = false;
     const MadeList made = throughTheEye(7, 40);
-    const std::vector<DrawItem> items = made.items();
-    const HiddenImage image = render(DrawList(items), madeView(), settings);
+    const HiddenImage image = render(made.list(), madeView(), settings);
     const auto sum = [](const std::vector<uint16_t>& counts) {
         return std::accumulate(counts.begin(), counts.end(), uint64_t{0});
     };
@@ -57,8 +56,7 @@ TEST(Clipping, AtAnyGuardBandChangesNoImage) {
 
 TEST(Clipping, CountersOfAllChoicesAddUp) {
     for (const MadeList& made : madeLists()) {
-        const std::vector<DrawItem> items = made.items();
-        const DrawList list(items);
+        const DrawList list = made.list();
         for (const NamedView& named : madeViews()) {
             std::vector<ProjectorSettings> choices(4);
             choices[1].clipping = Clipping::kFrustum;

@@ -100,10 +100,8 @@ TEST(Facing, AClosedMeshLooksTheSameWithAndWithoutItsBackFaces) {
     for (int i = 0; i < 60; ++i) {
         DrawItem item = itemOf(mesh);
         if (i % 2) item.transform[0][0] = -1;  // mirrored
-        ProjectorSettings all;
-        all.cull_back_faces = false;
         const View view = viewOf(random, i);
-        const HiddenImage with = nearestSurfaces(DrawList(std::span(&item, 1)), view, all),
+        const HiddenImage with = nearestSurfaces(DrawList(std::span(&item, 1)), view, {.cull_back_faces = false}),
                           without = nearestSurfaces(DrawList(std::span(&item, 1)), view, {});
         uint64_t differing = 0, covered = 0;
         for (size_t at = 0; at < with.surface.size(); ++at) {
@@ -128,8 +126,7 @@ TEST(Facing, TestsAndFrontsOfTheProjectorAgree) {
         if (i % 5 == 4) view.projection[0] = -view.projection[0];  // a mirrored image
         std::vector<HiddenImage> images;
         for (const FacingTest test : {FacingTest::kHomogeneous, FacingTest::kEyePlane, FacingTest::kScreenArea}) {
-            ProjectorSettings settings;
-            settings.facing_test = test;
+            ProjectorSettings settings{.facing_test = test};
             images.push_back(nearestSurfaces(DrawList(std::span(&item, 1)), view, settings));
             // Clockwise fronts of a mesh with all triangles turned.
             TestMesh turned = mesh;

@@ -10,7 +10,7 @@
 
 #include "sightline/base/random.h"
 #include "sightline/geom/view.h"
-#include "sightline/studies/hidden/project/triple_product.h"
+#include "sightline/studies/hidden/project/homogeneous.h"
 
 namespace sightline {
 using namespace studies;

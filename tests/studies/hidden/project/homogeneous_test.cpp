@@ -80,9 +80,7 @@ TEST(Homogeneous, CoversWhatClippingLeaves) {
         for (const View& view : views()) {
             const std::vector<DrawItem> items = made.items();
             const SampleGrid grid{kWidth, kHeight, 0, 1, {}};
-            ProjectorSettings at_sides;
-            at_sides.clipping = Clipping::kFrustum;
-            Projector band(view, grid), sides(view, grid, at_sides), none(view, grid);
+            Projector band(view, grid), sides(view, grid, {.clipping = Clipping::kFrustum}), none(view, grid);
             for (Projector* projector : {&band, &sides, &none}) projector->begin(items[0]);
             const Layer empty(kWidth * kHeight, std::numeric_limits<double>::quiet_NaN());
             for (size_t t = 0; t < items[0].mesh.triangles(); ++t) {

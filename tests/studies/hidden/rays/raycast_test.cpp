@@ -40,8 +40,7 @@ TEST(Raycast, DrawsNothingWhereThereIsNothing) {
 
 TEST(Raycast, FindsWhatTryingAllTrianglesFinds) {
     const MadeList made = clutter(9, 3000, 0.3);
-    const std::vector<DrawItem> items = made.items();
-    const RayTriangles triangles = rayTriangles(DrawList(items));
+    const RayTriangles triangles = rayTriangles(made.list());
     const RayTree tree(triangles);
     std::vector<RayVisit> stack;
     for (const NamedView& named : madeViews()) {
@@ -51,8 +50,7 @@ TEST(Raycast, FindsWhatTryingAllTrianglesFinds) {
                 SampleRay ray = all.at(row, i);
                 ray.t_near = std::max(ray.t_near, -100.0);
                 ray.t_far = std::min(ray.t_far, 100.0);
-                RayHit expected;
-                expected.t = ray.t_far;
+                RayHit expected{.t = ray.t_far};
                 for (const RayTriangle& triangle : triangles.triangles) {
                     double t;
                     if (meets(triangle, ray.origin + (all.eye() - triangles.origin), ray.direction, all.depthAxis(),
@@ -76,11 +74,10 @@ TEST(Raycast, MissesNothingOnSharedEdges) {
             made.add({x, y, -2}, {x + 1, y, -2}, {x + 1, y + 1, -2});
             made.add({x, y, -2}, {x + 1, y + 1, -2}, {x, y + 1, -2});
         }
-    const std::vector<DrawItem> items = made.items();
     View view = madeView(65, 65);
     view.projection = orthographic(16.25, 1, 0.1, 100);  // four samples a square, one at the origin
     for (const RayTracer tracer : {RayTracer::kBvh, RayTracer::kEmbree}) {
-        const HiddenImage image = render(DrawList(items), view, rays(tracer));
+        const HiddenImage image = render(made.list(), view, rays(tracer));
         for (size_t i = 0; i < image.surface.size(); ++i) ASSERT_NE(image.surface[i], HiddenImage::kNone) << i;
     }
 }
@@ -113,23 +110,16 @@ TEST(Raycast, SeesFarFromTheWorldsOrigin) {
     View view = madeView();
     view.view = lookAt(away, away + glm::dvec3(0, 0, -1), {0, 1, 0});
     const DrawList list(items);
-    const HiddenImage truth = nearestSurfaces(list, view);
-    const Agreement agreement = compareImages(list, view, truth, render(list, view, rays()), bandsOf(1e-5, 1e-8));
-    EXPECT_EQ(agreement.wrong, 0u);
+    expectNearest(list, view, rays(), "far", bandsOf(1e-5, 1e-8));
 }
 
 TEST(Raycast, SeesBesideATriangleAtTheEndOfTheWorld) {
     for (const float far : {1e15f, 1e31f, 3e38f}) {
         MadeList made = clutter(4, 300);
         made.add({far, far, -far}, {far, 0.5f * far, -far}, {0.7f * far, far, 0.3f * far});
-        const std::vector<DrawItem> items = made.items();
-        const DrawList list(items);
-        for (const NamedView& named : madeViews()) {
-            const HiddenImage truth = nearestSurfaces(list, named.view);
-            const HiddenImage image = render(list, named.view, rays());
-            const Agreement agreement = compareImages(list, named.view, truth, image, bandsOf(1e-5, 1e-8));
-            EXPECT_EQ(agreement.wrong, 0u) << far << " " << named.name;
-        }
+        const DrawList list = made.list();
+        for (const NamedView& named : madeViews())
+            expectNearest(list, named.view, rays(), std::to_string(far) + " " + named.name, bandsOf(1e-5, 1e-8));
     }
 }
 
@@ -145,27 +135,22 @@ TEST(Raycast, SeesTheFrontsThatTheProjectorDoesWhicheverWayDepthRuns) {
                 for (int column = 0; column < 4; ++column) view.projection[column][0] *= -1;
             View reversed = view;
             for (int column = 0; column < 4; ++column) reversed.projection[column][2] *= -1;
-            const HiddenImage truth = nearestSurfaces(list, view);
-            EXPECT_EQ(nearestSurfaces(list, reversed).surface, truth.surface) << named.name << mirrored;
-            for (const View& either : {view, reversed}) {
-                const HiddenImage image = render(list, either, rays());
-                const Agreement agreement = compareImages(list, either, truth, image, bandsOf(1e-5, 1e-8));
-                EXPECT_EQ(agreement.wrong, 0u) << named.name << mirrored;
-            }
+            EXPECT_EQ(nearestSurfaces(list, reversed).surface, nearestSurfaces(list, view).surface) << named.name;
+            for (const View& either : {view, reversed})
+                expectNearest(list, either, rays(), named.name, bandsOf(1e-5, 1e-8));
         }
     }
 }
 
 TEST(Raycast, ShowsTheSameForAnyNumberOfThreads) {
     const MadeList made = clutter(6, 500);
-    const std::vector<DrawItem> items = made.items();
     for (const RayTracer tracer : {RayTracer::kBvh, RayTracer::kEmbree}) {
         RenderSettings settings = rays(tracer);
         settings.want_counts = true;
-        const HiddenImage one = render(DrawList(items), madeView(), settings);
+        const HiddenImage one = render(made.list(), madeView(), settings);
         for (const uint32_t threads : {0u, 2u, 5u, 1000u}) {
             settings.threads = threads;
-            const HiddenImage many = render(DrawList(items), madeView(), settings);
+            const HiddenImage many = render(made.list(), madeView(), settings);
             EXPECT_EQ(many.surface, one.surface) << threads;
             EXPECT_EQ(many.shaded, one.shaded) << threads;
             EXPECT_EQ(many.counters.passed, one.counters.passed) << threads;
@@ -197,7 +182,6 @@ TEST(Render, FrontsAndBackFacesAreThoseAskedForByEveryExactMethod) {
 
 TEST(Threads, AreFewerWhereTheSystemGivesNoMore) {
     const MadeList made = clutter(6, 500);
-    const std::vector<DrawItem> items = made.items();
     pthread_attr_t usual, greedy;
     ASSERT_EQ(pthread_getattr_default_np(&usual), 0);
     ASSERT_EQ(pthread_attr_init(&greedy), 0);
@@ -205,10 +189,10 @@ TEST(Threads, AreFewerWhereTheSystemGivesNoMore) {
     for (const HiddenMethod method : {HiddenMethod::kZBuffer, HiddenMethod::kRaycast}) {
         RenderSettings settings;
         settings.method = method;
-        const HiddenImage one = render(DrawList(items), madeView(), settings);
+        const HiddenImage one = render(made.list(), madeView(), settings);
         settings.threads = 8;
         ASSERT_EQ(pthread_setattr_default_np(&greedy), 0);
-        const HiddenImage few = render(DrawList(items), madeView(), settings);
+        const HiddenImage few = render(made.list(), madeView(), settings);
         ASSERT_EQ(pthread_setattr_default_np(&usual), 0);
         EXPECT_EQ(few.surface, one.surface) << static_cast<int>(method);
     }
@@ -218,8 +202,7 @@ TEST(Threads, AreFewerWhereTheSystemGivesNoMore) {
 
 TEST(Raycast, CastsARayASample) {
     const MadeList made = cyclicOverlap();
-    const std::vector<DrawItem> items = made.items();
-    const HiddenImage image = render(DrawList(items), madeView(), rays());
+    const HiddenImage image = render(made.list(), madeView(), rays());
     EXPECT_EQ(image.counters.rays, 160u * 120u);
     EXPECT_EQ(image.counters.shaded, image.counters.passed);
 }

@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "sightline/studies/hidden/shade/smooth_normals.h"
 #include "tests/studies/hidden/made_lists.h"
 
 namespace sightline::test {

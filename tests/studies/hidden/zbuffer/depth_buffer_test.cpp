@@ -30,10 +30,8 @@ double otherNearness(uint32_t surface, int32_t row, int32_t sample, double nearn
 /// What a z-buffer is, said as plainly as can be.
 class Model {
 public:
-    Model(const View& view, const DepthCodec& codec, DepthKey clear) : view_(view), codec_(codec) {
-        image.surface.assign(size_t{view.width} * view.height, HiddenImage::kNone);
-        keys.assign(image.surface.size(), clear);
-    }
+    Model(const View& view, const DepthCodec& codec, DepthKey clear)
+        : image(emptyImage(view)), keys(image.surface.size(), clear), view_(view), codec_(codec) {}
 
     void draw(const ScreenPolygon& polygon, DepthComparison comparison, const DepthSettings& settings) {
         const double offset = codec_.polygonOffset(polygon.depth, settings.offset_factor, settings.offset_units);
@@ -68,22 +66,14 @@ private:
     const DepthCodec& codec_;
 };
 
-Model makeModel(const View& view, const DepthCodec& codec, DepthKey clear) {
-    Model model(view, codec, clear);
-    model.image.width = view.width;
-    model.image.height = view.height;
-    return model;
-}
-
 /// Also that the whole pipeline, with and without what it saves, is what the model is.
 void expectLikeModel(const MadeList& made, const View& view, RenderSettings settings, const std::string& what) {
-    const std::vector<DrawItem> items = made.items();
-    const DrawList list(items);
+    const DrawList list = made.list();
     const DepthCodec codec = depthCodecFor(list, view, settings.depth.format);
     const DepthComparison comparison = settings.depth.comparison.value_or(codec.convention.comparison);
     const DepthKey clear =
         settings.depth.clear_value ? codec.keyOf(*settings.depth.clear_value) : codec.convention.far_value;
-    Model model = makeModel(view, codec, clear);
+    Model model(view, codec, clear);
     Projector projector(view, {view.width, view.height, 0, 1, {}});
     for (const ScreenPolygon& polygon : projectAll(list, projector)) model.draw(polygon, comparison, settings.depth);
     ZBufferMemory memory;
@@ -118,8 +108,7 @@ TEST(DepthBuffer, ComparesAsTheModelDoes) {
             const View view = viewOf(trial % 4 == 3);
             const MadeList made = trial % 2 != 0 ? clutter(random.next() % 1000, 250, 0.8) : coplanar(random.next());
             if (trial % 5 != 0) {
-                const std::vector<DrawItem> items = made.items();
-                const DrawList list(items);
+                const DrawList list = made.list();
                 const DepthCodec codec = depthCodecFor(list, view, settings.depth.format);
                 settings.depth.clear_value =
                     codec.pattern(codec.encodeDistance(codec.range.near_plane + random.uniform(0.5, 6)));
@@ -156,8 +145,7 @@ TEST(DepthBuffer, OffsetsPolygons) {
 
 TEST(DepthBuffer, ShadesBeforeOrAfterTheTest) {
     const MadeList made = clutter(51, 600, 0.8);
-    const std::vector<DrawItem> items = made.items();
-    const DrawList list(items);
+    const DrawList list = made.list();
     const auto shadedAndPassed = [&](ShaderKind kind, bool early) {
         RenderSettings settings;
         settings.want_counts = true;
@@ -188,18 +176,14 @@ TEST(DepthBuffer, BoundsHoldWhenTheComparisonChanges) {
         Random random(seed);
         const View view = viewOf(false);
         const DepthCodec codec(static_cast<DepthFormat>(seed % kDepthFormats), {0.1, 100, false});
-        HiddenImage image;
-        image.width = view.width;
-        image.height = view.height;
-        image.surface.assign(size_t{view.width} * view.height, HiddenImage::kNone);
+        HiddenImage image = emptyImage(view);
         const DepthKey clear = codec.encodeDistance(random.uniform(1, 8));
         DepthBuffer buffer(view.width, view.height, clear);
-        Model model = makeModel(view, codec, clear);
+        Model model(view, codec, clear);
         DepthDrawScratch scratch;
         for (int part = 0; part < 8; ++part) {
             const MadeList made = clutter(100 * seed + static_cast<uint64_t>(part), 60, 1.2);
-            const std::vector<DrawItem> items = made.items();
-            const DrawList list(items);
+            const DrawList list = made.list();
             DepthSettings settings;
             settings.write = random.below(4) != 0;
             settings.compression = seed % 2 != 0;
@@ -224,10 +208,7 @@ TEST(DepthBuffer, BoundsHoldWhenTheComparisonChanges) {
 /// Polygons that were not projected, into a buffer of one's own.
 struct Canvas {
     Canvas(uint32_t width, uint32_t height, const DepthCodec& codec_, bool counting)
-        : codec(codec_), buffer(width, height, codec.convention.far_value) {
-        image.width = width;
-        image.height = height;
-        image.surface.assign(size_t{width} * height, HiddenImage::kNone);
+        : codec(codec_), buffer(width, height, codec.convention.far_value), image(emptyImage(madeView(width, height))) {
         if (counting)
             for (std::vector<uint16_t>* counts : {&image.generated, &image.tested, &image.passed, &image.shaded})
                 counts->assign(image.surface.size(), 0);
@@ -341,8 +322,7 @@ TEST(DepthBuffer, RejectsMostOfWhatComesNearToFar) {
                 made.add(at, at + right + up, at + up);
             }
     }
-    const std::vector<DrawItem> items = made.items();
-    const DrawList list(items);
+    const DrawList list = made.list();
     RenderSettings settings;
     const HiddenCounters with = render(list, madeView(320, 240), settings).counters;
     settings.depth.hierarchy = false;

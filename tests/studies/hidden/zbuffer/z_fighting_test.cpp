@@ -59,8 +59,7 @@ TEST(ZFighting, MarksWhereTheOrderOfDrawingDecides) {
 
 TEST(ZFighting, KnowsWhatLiesInOnePlane) {
     const MadeList made = coplanar(3);
-    const std::vector<DrawItem> items = made.items();
-    const DrawList list(items);
+    const DrawList list = made.list();
     const ZFightingMap map = findZFighting(list, madeView(), DepthFormat::kReversedFloat);
     EXPECT_GT(map.overlaid, 100u);
     EXPECT_GT(map.coplanar + map.fighting, 0.99 * static_cast<double>(map.overlaid));

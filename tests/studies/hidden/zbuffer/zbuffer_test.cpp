@@ -20,9 +20,9 @@ using test::TestMesh;
 
 /// A square at z, facing +z, or -z if turned.
 TestMesh square(float half, float z, bool turned = false) {
-    TestMesh mesh;
-    mesh.positions = {{-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}};
-    mesh.indices = turned ? std::vector<uint32_t>{0, 2, 1, 0, 3, 2} : std::vector<uint32_t>{0, 1, 2, 0, 2, 3};
+    TestMesh mesh{
+        .positions = {{-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}},
+        .indices = turned ? std::vector<uint32_t>{0, 2, 1, 0, 3, 2} : std::vector<uint32_t>{0, 1, 2, 0, 2, 3}};
     return mesh;
 }
 

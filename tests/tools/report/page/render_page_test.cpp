@@ -122,12 +122,13 @@ TEST(RenderPictures, DifferencesAreRed) {
 
 TEST(RenderPictures, AreTheSameForAnySharingOfTheWork) {
     const Made made;
-    PictureSettings backwards;
-    backwards.share = [](size_t count, const std::function<void(size_t)>& work) {
-        for (size_t i = count; i-- > 0;) work(i);
-    };
     EXPECT_EQ(shadedPicture(made.list, made.view, made.image, {}).pixels,
-              shadedPicture(made.list, made.view, made.image, backwards).pixels);
+              shadedPicture(made.list, made.view, made.image,
+                            {.share =
+                                 [](size_t count, const std::function<void(size_t)>& work) {
+                                     for (size_t i = count; i-- > 0;) work(i);
+                                 }})
+                  .pixels);
 }
 
 TEST(RenderPictures, HeatScalesHaveWholeTicks) {

@@ -73,9 +73,7 @@ struct PointMaps {
             view.view = lookAt(light.position, light.position + toward, up);
             view.projection = perspective(angle, 1.0, light.near);
             views.push_back(view);
-            ZBufferSettings pass;
-            pass.want_generated = false;
-            maps.push_back(renderZBuffer(casters, view, pass));
+            maps.push_back(renderZBuffer(casters, view, {.want_generated = false}));
         };
         if (light.kind == LightKind::kSpot) {
             add(light.direction, 2 * light.half_angle);
@@ -124,8 +122,7 @@ void compareSun(const Frame& frame, const Snapshot& now, const glm::dvec3& sun, 
     const ShadowMap all(frame.drawn.casters(), frame.points, frame.image, map_settings);
     double texel = 0;
     frame.forEachPoint([&](const SurfacePoint& point) { texel = std::max(texel, all.texelFor(point)); });
-    Light light;
-    light.direction = -sun;
+    Light light{.direction = -sun};
     CasterSettings settings;
     settings.filter = 2 * texel;  // four texels are looked up,
     settings.bias = 16 * texel;   // along the slope of the surface that asks
@@ -181,10 +178,9 @@ void expectSame(const Scene& scene) {
         compareSun(frame, now, glm::normalize(glm::dvec3(std::cos(turn), 0.3, std::sin(turn))), suns);
         // Beside the eye: a lamp that someone carries.
         const glm::dmat4 camera = glm::inverse(frame.view.view);
-        Light lamp;
-        lamp.position = glm::dvec3(camera * glm::dvec4(0.02 * size, 0.01 * size, 0, 1));
-        lamp.near = 1e-3 * size;
-        lamp.range = 10 * size;
+        Light lamp{.position = glm::dvec3(camera * glm::dvec4(0.02 * size, 0.01 * size, 0, 1)),
+                   .near = 1e-3 * size,
+                   .range = 10 * size};
         lamp.kind = LightKind::kSpot;
         lamp.direction = -glm::dvec3(camera[2]) + 0.2 * glm::dvec3(camera[0]);
         lamp.half_angle = 0.6;

@@ -5,15 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "sightline/base/random.h"
-
-#define STBI_ONLY_PNG
-#define STBI_ONLY_JPEG
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#include <stb/stb_image.h>
-#pragma GCC diagnostic pop
+#include "tests/support/png.h"
 
 namespace sightline {
 using namespace tools;
@@ -24,16 +16,12 @@ TEST(Png, ReadsBackPixelByPixel) {
     for (uint32_t y = 0; y < image.height; ++y)
         for (uint32_t x = 0; x < image.width; ++x) image.at(x, y) = Rgb(x * 6, y * 20, x * y);
     const std::string bytes = encodePng(image);
-    int width = 0, height = 0, channels = 0;
-    stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()),
-                                            static_cast<int>(bytes.size()), &width, &height, &channels, 0);
-    ASSERT_NE(pixels, nullptr);
-    EXPECT_EQ(width, 37);
-    EXPECT_EQ(height, 11);
-    ASSERT_EQ(channels, 3);
+    const test::Decoded read = test::decodePng(bytes);
+    EXPECT_EQ(read.width, 37);
+    EXPECT_EQ(read.height, 11);
+    ASSERT_EQ(read.channels, 3);
     for (size_t i = 0; i < image.pixels.size(); ++i)
-        for (int c = 0; c < 3; ++c) ASSERT_EQ(pixels[3 * i + size_t(c)], image.pixels[i][c]) << "pixel " << i;
-    stbi_image_free(pixels);
+        for (int c = 0; c < 3; ++c) ASSERT_EQ(read.bytes[3 * i + size_t(c)], image.pixels[i][c]) << "pixel " << i;
 }
 
 TEST(Png, EmptyImageGivesNoBytes) { EXPECT_EQ(encodePng(Image<Rgb>()), ""); }
@@ -48,15 +36,11 @@ TEST(Png, PaletteReadsBackPixelByPixelAndIsSmaller) {
     const std::string bytes = encodePalettePng(image);
     EXPECT_EQ(bytes[25], 3);  // colour type: palette
     EXPECT_LT(bytes.size(), encodePng(image).size());
-    int width = 0, height = 0, channels = 0;
-    stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()),
-                                            static_cast<int>(bytes.size()), &width, &height, &channels, 4);
-    ASSERT_NE(pixels, nullptr);
-    ASSERT_EQ(width, 53);
-    ASSERT_EQ(height, 29);
+    const test::Decoded read = test::decodePng(bytes, 4);
+    ASSERT_EQ(read.width, 53);
+    ASSERT_EQ(read.height, 29);
     for (size_t i = 0; i < image.pixels.size(); ++i)
-        for (int c = 0; c < 4; ++c) ASSERT_EQ(pixels[4 * i + size_t(c)], image.pixels[i][c]) << "pixel " << i;
-    stbi_image_free(pixels);
+        for (int c = 0; c < 4; ++c) ASSERT_EQ(read.bytes[4 * i + size_t(c)], image.pixels[i][c]) << "pixel " << i;
 }
 
 TEST(Png, PaletteOfTooManyColoursIsAPlainPng) {
@@ -69,13 +53,9 @@ TEST(Png, PaletteOfTooManyColoursIsAPlainPng) {
 TEST(Png, JpegIsNearThePicture) {
     const Image<Rgb> image(40, 24, Rgb(200, 100, 50));
     const std::string bytes = encodeJpeg(image, 90);
-    int width = 0, height = 0, channels = 0;
-    stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()),
-                                            static_cast<int>(bytes.size()), &width, &height, &channels, 3);
-    ASSERT_NE(pixels, nullptr);
-    ASSERT_EQ(width, 40);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixels[3 * 500 + c], image.pixels[500][c], 6);
-    stbi_image_free(pixels);
+    const test::Decoded read = test::decodePng(bytes, 3);
+    ASSERT_EQ(read.width, 40);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(read.bytes[3 * 500 + size_t(c)], image.pixels[500][c], 6);
     EXPECT_EQ(dataUri(bytes).substr(0, 23), "data:image/jpeg;base64,");
     EXPECT_EQ(encodeJpeg(Image<Rgb>(), 90), "");
 }

@@ -20,12 +20,7 @@ CellGraph rowOfRooms(uint32_t rooms) {
     return graph;
 }
 
-PlanArea areaOf(double width, double height) {
-    PlanArea area;
-    area.width = width;
-    area.height = height;
-    return area;
-}
+PlanArea areaOf(double width, double height) { return {.width = width, .height = height}; }
 
 bool near(Rgb a, Rgb b, int off) {
     return std::abs(a.x - b.x) <= off && std::abs(a.y - b.y) <= off && std::abs(a.z - b.z) <= off;

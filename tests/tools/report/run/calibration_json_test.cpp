@@ -15,11 +15,7 @@ using namespace tools;
 namespace {
 
 TEST(Calibration, IsMeasuredAndReadBack) {
-    FacingCostSettings little;
-    little.rings = 24;
-    little.size = 96;
-    little.rounds = 3;
-    const FacingCosts costs = measureFacingCosts(little);
+    const FacingCosts costs = measureFacingCosts({.rings = 24, .size = 96, .rounds = 3});
     EXPECT_GT(costs.test, 0);
     EXPECT_GT(costs.dropped, 0);
     EXPECT_GT(costs.drawn, 0);

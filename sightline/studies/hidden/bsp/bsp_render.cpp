@@ -1,6 +1,6 @@
-// Hidden surfaces by a BSP tree, front to back: each sample is written once, and what is hidden need not be looked at.
+// Hidden surfaces by a BSP tree: back to front as a painter, or front to back, where each sample is written once.
 // SPDX-License-Identifier: MIT
-#include "sightline/studies/hidden/bsp/bsp_front_to_back.h"
+#include "sightline/studies/hidden/bsp/bsp_render.h"
 
 #include <chrono>
 
@@ -90,6 +90,36 @@ void drawWith(Screen screen, const BspScene& scene, const HiddenInput& input, Hi
 }
 
 }  // namespace
+
+void drawBspBackToFront(const BspScene& scene, const HiddenInput& input, HiddenImage& image) {
+    BspFrame frame(scene, input, image);
+    BspFragment fragment;
+    BspStack stack;
+    const int32_t width = static_cast<int32_t>(image.width);
+    const auto paint = [&](const BspPiece& piece, const BspArrays& arrays) {
+        if (!frame.makeFragment(piece, arrays, fragment)) return;
+        scanFragment(fragment, fragment.window.row_begin, fragment.window.row_end, width,
+                     [&](int32_t row, int32_t begin, int32_t end) { fillSpan(image, row, begin, end, piece.number); });
+    };
+    image.counters.splits = scene.tree.splits + scene.overlay.splits;
+    withTree(scene, [&](const auto& tree) {
+        walkBackToFront(
+            tree, frame.eye(), stack, [](uint32_t) { return true; },
+            [&](uint32_t node) {
+                ++image.counters.nodes;
+                frame.forPieces(node, true, paint);
+            });
+    });
+}
+
+void drawBspBackToFront(const HiddenInput& input, HiddenImage& image) {
+    const auto start = std::chrono::steady_clock::now();
+    const BspScene scene = buildBspScene(input.list);
+    const auto spent = std::chrono::steady_clock::now() - start;
+    image.counters.prepare_nanoseconds =
+        static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count());
+    drawBspBackToFront(scene, input, image);
+}
 
 void drawBspFrontToBack(const BspScene& scene, const HiddenInput& input, HiddenImage& image) {
     const int32_t width = static_cast<int32_t>(image.width), height = static_cast<int32_t>(image.height);

@@ -1,32 +1,15 @@
-// Distance and contribution culling on the command line: what they cost is told, and they are never called false culls.
+// Distance, contribution, section planes and clusters on the command line: what they cost is told, and they are proved.
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-
-#include <nlohmann/json.hpp>
 
 #include "tests/cli/tool.h"
 
 namespace sightline {
 namespace {
 
-using nlohmann::json;
-
-class SizeOptions : public Tool {
-protected:
-    json cull(const std::string& arguments) const {
-        const Outcome outcome = run("cull " + arguments + " --size 320x180 --repeat 1 --json -");
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-        return json::parse(outcome.out);
-    }
-};
-
-uint64_t culledBy(const json& run, const std::string& stage) {
-    uint64_t sum = 0;
-    for (const json& frame : run["frames"])
-        for (const json& row : frame["stages"])
-            if (row["name"] == stage) sum += row["culled"].get<uint64_t>();
-    return sum;
-}
+using SizeOptions = CullTool;
+using SectionOptions = CullTool;
+using ClusterOptions = CullTool;
 
 TEST_F(SizeOptions, AreOffUnlessAsked) {
     const json run = cull("city:1:400 --frames 2 --seed 1");
@@ -116,10 +99,8 @@ TEST_F(SizeOptions, HysteresisKeepsWhatTheFrameBeforeShowed) {
 }
 
 TEST_F(SizeOptions, ExplainNamesThem) {
-    const Outcome small = run("explain city:1:400 --frames 1 --seed 1 --object 3 --contribution 5000 --json -");
-    EXPECT_EQ(small.exit_code, 0) << small.err;
-    const Outcome far = run("explain city:1:400 --frames 1 --seed 1 --object 3 --distance 0.0001 --skip frustum");
-    EXPECT_EQ(far.exit_code, 0) << far.err;
+    const Outcome small = succeed("explain city:1:400 --frames 1 --seed 1 --object 3 --contribution 5000 --json -");
+    const Outcome far = succeed("explain city:1:400 --frames 1 --seed 1 --object 3 --distance 0.0001 --skip frustum");
     EXPECT_NE(far.out.find("culled by distance"), std::string::npos) << far.out;
     const Outcome tiny =
         run("explain city:1:400 --frames 1 --seed 1 --object 3 --contribution 16000 --use contribution --json -");
@@ -133,6 +114,57 @@ TEST_F(SizeOptions, WrongValuesExitWithTwo) {
         expectError("cull city:1:10 --distance=" + std::string(value), 2, "--distance");
     expectError("cull city:1:10 --use frustum,contribution", 2, "--contribution");
     expectError("cull city:1:10 --use distance", 2, "--distance");
+}
+
+TEST_F(SectionOptions, CutTheSceneAndAreProved) {
+    const std::string arguments = "city:1:1000 --frames 3 --seed 1 --verify --rays 20000";
+    const json whole = cull(arguments);
+    EXPECT_FALSE(whole.contains("sections"));
+    const json cut = cull(arguments + " --section=0,-1,0,6 --section -1,0,0.5,80");
+    EXPECT_EQ(cut["sections"], json::parse("[[0.0,-1.0,0.0,6.0],[-1.0,0.0,0.5,80.0]]"));
+    EXPECT_EQ(cut["verification"]["false_culls"], 0);
+    EXPECT_GT(cut["verification"]["exactly_visible"].get<uint64_t>(), 0u);
+    bool differs = false;
+    for (size_t i = 0; i < 3; ++i) differs |= whole["frames"][i]["visible"] != cut["frames"][i]["visible"];
+    EXPECT_TRUE(differs);
+}
+
+TEST_F(SectionOptions, ExplainNamesThem) {
+    const Outcome gone = succeed("explain city:1:400 --frames 1 --seed 1 --object 3 --section 0,1,0,-100000");
+    EXPECT_NE(gone.out.find("section 1"), std::string::npos) << gone.out;
+}
+
+TEST_F(SectionOptions, WrongValuesExitWithTwo) {
+    for (const char* value : {"1,0,0", "1,0,0,0,0", "0,0,0,1", "a,b,c,d", "1,0,nan,0", "1,0,inf,0", "''", ",,,"})
+        expectError("cull city:1:10 --section=" + std::string(value), 2, "--section");
+    std::string nine = "cull city:1:10";
+    for (int i = 0; i < 9; ++i) nine += " --section=1,0,0,1";
+    expectError(nine, 2, "--section");
+}
+
+TEST_F(ClusterOptions, SubmitLessAndAreProved) {
+    const json whole = cull("building:1:2 --frames 3 --seed 1"),
+               left = cull("building:1:2 --frames 3 --seed 1 --use frustum,occlusion,clusters --verify --rays 20000");
+    EXPECT_EQ(left["verification"]["false_culls"], 0);
+    uint64_t drawn = 0, all = 0;
+    for (size_t i = 0; i < 3; ++i) {
+        const json &before = whole["frames"][i], &after = left["frames"][i];
+        EXPECT_FALSE(before.contains("clusters"));
+        const json& clusters = after["clusters"];
+        drawn += clusters["drawn"].get<uint64_t>();
+        all += clusters["whole"].get<uint64_t>();
+        EXPECT_LE(clusters["draws"], clusters["tested"]);
+        EXPECT_LE(after["triangles"], before["triangles"]);
+        EXPECT_EQ(after["stages"].back()["name"], "clusters");
+    }
+    EXPECT_GT(drawn, 0u);
+    EXPECT_LT(drawn, all);
+}
+
+TEST_F(ClusterOptions, AreToldOf) {
+    const Outcome told = succeed("cull building:1:2 --frames 2 --seed 1 --use frustum,occlusion,clusters");
+    EXPECT_NE(told.out.find("visible"), std::string::npos) << told.out;
+    EXPECT_NE(told.out.find("seen from the back"), std::string::npos) << told.out;
 }
 
 }  // namespace
