@@ -38,6 +38,7 @@ constexpr Case kCases[] = {
     {"shadow", benchShadow},
     {"vis", benchVis},
     {"volumes", benchVolumes},
+    {"walks", benchWalks},
 };
 
 }  // namespace

@@ -77,6 +77,10 @@ Table benchVis(const Options& options);
 /// and before them, and what the query then costs.
 Table benchVolumes(const Options& options);
 
+/// Walks through a city, a building and a terrain, 60 frames a second, each frame once and in order: what the query costs a frame, and
+/// keeps, beside the frustum alone.
+Table benchWalks(const Options& options);
+
 // Parts of these cases that have a file of their own.
 
 /// Two eyes, four cascades, the six faces of a cube, from the middle of a world, in one walk of its tree and in a walk for each.

@@ -26,7 +26,6 @@ sightline::Result<sightline::CellSpace> makeRooms() {
     // The door slides along z: half open it leaves half of its portal.
     const auto door = rooms.addDoor("kitchen door", sightline::CellDoor::kNoKey, {0, 0, 1});
     if (!door) return door.error();
-    // Counter-clockwise as seen from the hall, the first of the two cells: the other way round nothing is seen through it.
     const std::vector<glm::dvec3> outline = {{6, 0, 1}, {6, 0, 2}, {6, 2, 2}, {6, 2, 1}};
     const auto added = rooms.addPortal("to the kitchen", *hall, *kitchen, outline, *door);
     if (!added) return added.error();

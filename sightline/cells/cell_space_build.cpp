@@ -42,6 +42,13 @@ Result<uint32_t> CellSpaceBuilder::addCell(std::string name, std::span<const glm
     cell.first_plane = static_cast<uint32_t>(space_.planes.size());
     cell.plane_count = static_cast<uint32_t>(unit.size());
     cell.bounds = region.bounds;
+    glm::dvec3 sum(0.0);
+    double corners = 0;
+    for (const RegionFace& face : region.faces) {
+        for (const glm::dvec3& corner : face.outline) sum += corner;
+        corners += static_cast<double>(face.outline.size());
+    }
+    middles_.push_back(sum / corners);
     space_.planes.insert(space_.planes.end(), unit.begin(), unit.end());
     space_.regions.push_back(cell);
     space_.names.push_back(std::move(name));
@@ -68,6 +75,7 @@ uint32_t CellSpaceBuilder::outside() {
     if (space_.outside != CellGraph::kNoCell) return space_.outside;
     space_.regions.push_back({static_cast<uint32_t>(space_.planes.size()), 0, {}});
     space_.names.push_back("outside");
+    middles_.emplace_back(0.0);
     return space_.outside = space_.graph.cells++;
 }
 
@@ -85,8 +93,22 @@ Status CellSpaceBuilder::addPortal(std::string_view name, uint32_t a, uint32_t b
     if (outline.size() < 3) return fault("portal", name, "has fewer than 3 points");
     for (const glm::dvec3& point : outline)
         if (!finite(point)) return fault("portal", name, "a point is not finite");
+    const size_t before = space_.graph.portals.size();
     if (!space_.graph.addPortal(a, b, outline, door)) return fault("portal", name, "has no area");
+    // An outline that runs the other way round is the same hole seen from b.
+    for (size_t i = before; i < space_.graph.portals.size(); ++i) {
+        CellPortal& portal = space_.graph.portals[i];
+        if (rise(portal.cells[0], portal.cells[1], portal.plane) < 0) std::swap(portal.cells[0], portal.cells[1]);
+    }
     return success();
+}
+
+/// How much higher above a plane the middle of a is than that of b; where one is the outside, than the plane.
+double CellSpaceBuilder::rise(uint32_t a, uint32_t b, const glm::dvec4& plane) const {
+    const auto height = [&](uint32_t cell) {
+        return cell == space_.outside ? 0.0 : glm::dot(plane, glm::dvec4(middles_[cell], 1.0));
+    };
+    return height(a) - height(b);
 }
 
 CellSpace CellSpaceBuilder::take(double tolerance) {
@@ -97,6 +119,7 @@ CellSpace CellSpaceBuilder::take(double tolerance) {
     for (const glm::dvec3& point : space_.graph.points)
         largest = std::max({largest, std::abs(point.x), std::abs(point.y), std::abs(point.z)});
     space_.tolerance = tolerance >= 0 ? tolerance : largest * 0x1p-30;
+    middles_.clear();
     return std::exchange(space_, {});
 }
 

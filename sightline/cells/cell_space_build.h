@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sightline/base/result.h"
 #include "sightline/cells/cell_space.h"
@@ -35,7 +36,8 @@ public:
     /// @param slide  CellDoor::slide
     Result<uint32_t> addDoor(std::string name, uint64_t key = CellDoor::kNoKey, const glm::dvec3& slide = {});
 
-    /// @param outline  of a convex polygon, counter-clockwise as seen from a  [size: 3 or more]
+    /// @param outline  of a convex polygon between the cells, either way round: they tell which side is whose
+    ///                 [size: 3 or more]
     /// @param door     of addDoor(); CellPortal::kNone: nothing shuts it
     Status addPortal(std::string_view name, uint32_t a, uint32_t b, std::span<const glm::dvec3> outline,
                      uint32_t door = CellPortal::kNone);
@@ -46,7 +48,10 @@ public:
     CellSpace take(double tolerance = -1);
 
 private:
+    double rise(uint32_t a, uint32_t b, const glm::dvec4& plane) const;
+
     CellSpace space_;
+    std::vector<glm::dvec3> middles_;  ///< per cell a point inside; of the outside any
 };
 
 }  // namespace sightline

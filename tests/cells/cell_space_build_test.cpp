@@ -133,6 +133,26 @@ TEST(CellSpaceBuilder, BuildsTwoRooms) {
     EXPECT_EQ(rooms.space().graph.cells, 0u) << "it begins a new one";
 }
 
+TEST(CellSpaceBuilder, TakesOutlinesEitherWayRound) {
+    CellSpaceBuilder rooms;
+    const uint32_t hall = *rooms.addCell("hall", Box3d{{0, 0, 0}, {6, 3, 4}}),
+                   kitchen = *rooms.addCell("kitchen", Box3d{{6, 0, 0}, {10, 3, 4}}), outside = rooms.outside();
+    std::vector<glm::dvec3> turned(kDoor.rbegin(), kDoor.rend()), window = kDoor;
+    for (glm::dvec3& point : window) point.x = 10;
+    for (const auto& outline : {kDoor, turned}) {
+        ASSERT_TRUE(rooms.addPortal("way", hall, kitchen, outline).ok());
+        ASSERT_TRUE(rooms.addPortal("back", kitchen, hall, outline).ok());
+    }
+    ASSERT_TRUE(rooms.addPortal("window", kitchen, outside, window).ok());
+    ASSERT_TRUE(rooms.addPortal("window", outside, kitchen, window).ok());
+    for (const CellPortal& portal : rooms.space().graph.portals) {
+        // The normal points into cells[0].
+        const bool to_hall = portal.plane.x < 0;
+        const bool is_window = portal.cells[0] == outside || portal.cells[1] == outside;
+        EXPECT_EQ(portal.cells[0], is_window ? (to_hall ? kitchen : outside) : (to_hall ? hall : kitchen));
+    }
+}
+
 TEST(CellSpaceBuilder, HasOneOutside) {
     CellSpaceBuilder rooms;
     ASSERT_TRUE(rooms.addCell("a", Box3d{{0, 0, 0}, {1, 1, 1}}));

@@ -42,6 +42,13 @@ TEST_F(Cli, WrongArgumentsExitWithTwo) {
     expectError("cull city:1:10 --frames -4", 2, "--frames");
     expectError("cull city:1:10 --threads many", 2, "--threads");
     expectError("cull city:1:10 --cameras a.json --frames 3", 2, "--cameras");
+    expectError("cull city:1:10 --cameras a.json --path walk", 2, "--cameras excludes --path");
+    expectError("cull city:1:10 --path fly", 2, "--path");
+    expectError("cull city:1:10 --frames 3 --fps 30", 2, "--fps goes with --path walk");
+    expectError("verify city:1:10 --path scatter --speed 2", 2, "--speed goes with --path walk");
+    expectError("cull city:1:10 --path walk --fps 0", 2, "--fps");
+    expectError("cull city:1:10 --path walk --fps nan", 2, "--fps");
+    expectError("cull city:1:10 --path walk --speed nan", 2, "--speed");
     expectError("bench nothing", 2, "nothing");
     expectError("bench frustum --verify", 2, "--verify goes with the case occlusion");
     expectError("bench occlusion --rays-per-box 4", 2, "--rays-per-box goes with --verify");

@@ -11,6 +11,33 @@ using SizeOptions = CullTool;
 using SectionOptions = CullTool;
 using ClusterOptions = CullTool;
 
+using PathOptions = CullTool;
+
+TEST_F(PathOptions, WalkAndScatter) {
+    const auto cameras = [&](const std::string& arguments) {
+        json out = json::array();
+        const json run = cull(arguments);
+        for (const json& frame : run["frames"]) out.push_back(frame["camera"]);
+        return out;
+    };
+    const json scattered = cameras("city:1:400 --frames 6 --seed 1");
+    EXPECT_EQ(cameras("city:1:400 --path scatter --frames 6"), scattered);
+    EXPECT_NE(cameras("city:1:400 --frames 6"), scattered) << "a city is walked along its streets";
+    const json walk = cameras("city:1:400 --path walk --frames 6 --fps 10 --speed 2");
+    EXPECT_EQ(walk[0], scattered[0]);
+    for (size_t i = 1; i < walk.size(); ++i) {
+        double squared = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double step = walk[i]["eye"][axis].get<double>() - walk[i - 1]["eye"][axis].get<double>();
+            squared += step * step;
+        }
+        EXPECT_GT(squared, 0.0);
+        EXPECT_LT(squared, 0.2 * 0.2 + 1e-9);
+    }
+    EXPECT_EQ(cull("city:1:400 --path walk --verify --rays 1000 --frames 10 --fps 2")["verification"]["false_culls"],
+              0);
+}
+
 TEST_F(SizeOptions, AreOffUnlessAsked) {
     const json run = cull("city:1:400 --frames 2 --seed 1");
     for (const json& row : run["frames"][0]["stages"]) {

@@ -17,7 +17,6 @@
 #include "apps/cli/verbs/setting_options.h"
 #include "apps/cli/verbs/verbs.h"
 #include "sightline/geom/view.h"
-#include "sightline/tools/load/seeded_cameras.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/readable.h"
 #include "sightline/tools/scene/city/city.h"
@@ -76,14 +75,29 @@ Status readSize(const std::string& option, const std::string& text, uint32_t& wi
 
 void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& shared) {
     addSceneChoice(verb, options.scene);
-    verb.add_option("--cameras", options.cameras, "camera path (JSON)")->type_name("PATH.json")->group("Cameras");
-    verb.add_option("--frames", options.frames,
-                    "so many seeded cameras; a city without --seed is walked along its streets")
+    WalkSettings& walk = options.choice.walk;
+    verb.add_option("--cameras", options.choice.file, "camera path (JSON)")->type_name("PATH.json")->group("Cameras");
+    verb.add_option("--path", options.path,
+                    "seeded cameras that stand anywhere, or walk through free space (default: the scene's own cameras, "
+                    "else scatter)")
+        ->check(CLI::IsMember({"scatter", "walk"}))
+        ->type_name("scatter|walk")
+        ->group("Cameras");
+    verb.add_option("--frames", walk.frames,
+                    "so many seeded cameras; a city without --path and --seed is walked along its streets")
         ->check(CLI::Range(1u, kMostFrames))
         ->type_name("N")
         ->group("Cameras");
-    verb.add_option("--seed", options.seed, "of the seeded cameras")
+    verb.add_option("--seed", walk.seed, "of the seeded cameras")
         ->type_name("S")
+        ->capture_default_str()
+        ->group("Cameras");
+    verb.add_option("--fps", walk.fps, "frames a second of a walk")
+        ->check(CLI::Range(1.0, 10000.0))
+        ->capture_default_str()
+        ->group("Cameras");
+    verb.add_option("--speed", walk.speed, "of a walk [world units a second]")
+        ->check(CLI::Range(0.0, 1e9))
         ->capture_default_str()
         ->group("Cameras");
     verb.add_option("--size", options.size, "of the viewport [pixels]")
@@ -153,6 +167,26 @@ void addQueryOptions(CLI::App& verb, RunOptions& options) {
         ->group("Culling");
 }
 
+namespace {
+
+/// Checks what is asked of the cameras. A seed asks for scattered ones, if no kind is asked for.
+Status finishPath(const CLI::App& verb, RunOptions& options) {
+    PathChoice& choice = options.choice;
+    options.seed_given = verb.count("--seed") > 0;
+    if (!choice.file.empty() && (choice.walk.frames > 0 || options.seed_given || !options.path.empty()))
+        return usageError("--cameras excludes --path, --frames and --seed");
+    if (options.path == "walk") choice.kind = PathKind::kWalk;
+    else if (options.path == "scatter" || options.seed_given) choice.kind = PathKind::kScatter;
+    for (const char* of_walk : {"--fps", "--speed"})
+        if (choice.kind != PathKind::kWalk && verb.count(of_walk) > 0)
+            return usageError(fmt::format("{} goes with --path walk", of_walk));
+    if (!std::isfinite(choice.walk.fps) || !std::isfinite(choice.walk.speed))
+        return usageError("--fps, --speed: not a number");  // no range leaves it out
+    return success();
+}
+
+}  // namespace
+
 Status finish(const CLI::App& verb, RunOptions& options) {
     if (Status size = readSize("--size", options.size, options.width, options.height); !size) return size;
     if (std::isnan(options.jitter)) return usageError("--jitter: not a number");  // no range leaves it out
@@ -171,24 +205,18 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     if (Status sizes = finishSizeOptions(options); !sizes) return sizes;
     if (Status cells = finishVisibilityOptions(options); !cells) return cells;
     if (Status clusters = finishClusterOptions(options); !clusters) return clusters;
-    options.seed_given = verb.count("--seed") > 0;
-    if (!options.cameras.empty() && (options.frames > 0 || options.seed_given))
-        return usageError("--cameras excludes --frames and --seed");
+    if (Status path = finishPath(verb, options); !path) return path;
     if (options.threads == 0) options.threads = std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads);
     if (options.json.empty() && verb.count("--json") > 0) return usageError("--json: the name is empty");
     return success();
 }
 
 Result<CameraPath> loadPath(const Scene& scene, const RunOptions& options) {
-    constexpr uint32_t kDefaultFrames = 16;
+    const PathChoice& choice = options.choice;
     uint64_t city_seed = 0;
-    if (options.cameras.empty() && options.frames > 0 && !options.seed_given &&
+    if (choice.file.empty() && choice.kind == PathKind::kAny && choice.walk.frames > 0 &&
         isCity(options.scene.procedural(), city_seed))
-        return cityStreetPath(city_seed, options.frames);
-    PathChoice choice;
-    choice.file = options.cameras;
-    choice.frames = options.frames == 0 && options.seed_given ? kDefaultFrames : options.frames;
-    choice.seed = options.seed;
+        return cityStreetPath(city_seed, choice.walk.frames);
     return choosePath(scene, choice);
 }
 

@@ -36,7 +36,7 @@ Status finish(const CLI::App& verb, RunOptions& options);
 /// @param option  what an error, kUsage, calls it
 Status readSize(const std::string& option, const std::string& text, uint32_t& width, uint32_t& height);
 
-/// Which path: --cameras; --frames and --seed; a city's streets for --frames alone; the scene's own; 16 seeded.
+/// Which path: --cameras; --path, --frames and --seed; a city's streets for --frames alone; the scene's own; 16 seeded.
 Result<CameraPath> loadPath(const Scene& scene, const RunOptions& options);
 
 /// Writes text to a file aside and renames it, or to standard output for `-`.

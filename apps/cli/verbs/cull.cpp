@@ -175,7 +175,7 @@ struct CullOptions : RunOptions {
 Status checkCullApart(const CullOptions& options) {
     ApartFiles files;
     for (const std::string& name : options.scene.names) files.read("SCENE", name);
-    files.read("--cameras", options.cameras);
+    files.read("--cameras", options.choice.file);
     files.read("--visibility", options.visibility.file);
     files.write("--json", options.json);
     files.write("--trace", options.trace);

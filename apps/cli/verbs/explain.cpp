@@ -64,7 +64,7 @@ Status checkFrame(const ExplainOptions& options, const CameraPath& path) {
 Status checkExplainOutputs(const ExplainOptions& options) {
     ApartFiles files;
     for (const std::string& name : options.scene.names) files.read("SCENE", name);
-    files.read("--cameras", options.cameras);
+    files.read("--cameras", options.choice.file);
     files.read("--visibility", options.visibility.file);
     files.write("--json", options.json);
     files.write("-o", options.picture);

@@ -172,9 +172,10 @@ Status runRender(const CLI::App& verb, RenderOptions& options) {
                                                       options.frame, path->frames.size())};
     const View view = makeView(path->frames[options.frame], options.width, options.height);
     if (!isUsable(view))
-        return Error{Error::Kind::kInput,
-                     fmt::format("{}: frame {}: its matrices are not a camera's",
-                                 options.cameras.empty() ? options.scene.title() : options.cameras, options.frame)};
+        return Error{
+            Error::Kind::kInput,
+            fmt::format("{}: frame {}: its matrices are not a camera's",
+                        options.choice.file.empty() ? options.scene.title() : options.choice.file, options.frame)};
     if (Status writable = checkOutputs(options); !writable) return writable;
 
     RenderRun run = describe(*scene, *path, options);

@@ -96,7 +96,7 @@ void addDepth(CLI::App& verb, RenderOptions& options) {
 Status checkRenderApart(const RenderOptions& options) {
     ApartFiles files;
     for (const std::string& name : options.scene.names) files.read("SCENE", name);
-    files.read("--cameras", options.cameras);
+    files.read("--cameras", options.choice.file);
     files.write("-o", options.image);
     files.write("--ids", options.ids);
     files.write("--heat-map", options.heat_map);

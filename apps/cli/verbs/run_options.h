@@ -10,6 +10,7 @@
 #include "apps/cli/verbs/scene_choice.h"
 #include "sightline/geom/view.h"
 #include "sightline/prepare/facing/merge_facing.h"
+#include "sightline/tools/load/choose_path.h"
 #include "sightline/tools/report/run/cull_run.h"
 
 namespace sightline::cli {
@@ -20,9 +21,8 @@ struct OpenedVisibility;
 /// Options of every verb that moves a camera through a scene.
 struct RunOptions {
     SceneChoice scene;
-    std::string cameras;  ///< file; empty: none
-    uint32_t frames = 0;  ///< 0: not given
-    uint64_t seed = 1;
+    std::string path;  ///< a word for PathChoice::kind, or empty
+    PathChoice choice;
     bool seed_given = false;
     std::string size = "1280x720";
     uint32_t width = 1280, height = 720;  ///< from `size`

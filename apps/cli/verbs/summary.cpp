@@ -266,9 +266,13 @@ void printVerdicts(std::FILE* out, const CullRun& run) {
 
 std::string replayOfRun(const RunOptions& options, bool verify) {
     std::string command = "sightline cull " + options.scene.words();
-    if (!options.cameras.empty()) command += " --cameras " + quoted(options.cameras);
-    if (options.frames > 0) command += fmt::format(" --frames {}", options.frames);
-    if (options.seed_given) command += fmt::format(" --seed {}", options.seed);
+    const PathChoice& choice = options.choice;
+    if (!choice.file.empty()) command += " --cameras " + quoted(choice.file);
+    if (!options.path.empty()) command += " --path " + options.path;
+    if (choice.walk.frames > 0) command += fmt::format(" --frames {}", choice.walk.frames);
+    if (options.seed_given) command += fmt::format(" --seed {}", choice.walk.seed);
+    if (choice.walk.fps != WalkSettings().fps) command += fmt::format(" --fps {}", choice.walk.fps);
+    if (choice.walk.speed != WalkSettings().speed) command += fmt::format(" --speed {}", choice.walk.speed);
     command += fmt::format(" --size {}x{}", options.width, options.height);
     const auto list = [&](const char* option, const std::vector<std::string>& names) {
         if (!names.empty()) command += fmt::format(" {} {}", option, fmt::join(names, ","));

@@ -23,7 +23,7 @@ Result<int> runVerify(const CLI::App& verb, RunOptions& options) {
     if (Status good = finish(verb, options); !good) return good.error();
     ApartFiles files;
     for (const std::string& name : options.scene.names) files.read("SCENE", name);
-    files.read("--cameras", options.cameras);
+    files.read("--cameras", options.choice.file);
     files.read("--visibility", options.visibility.file);
     files.write("--json", options.json);
     if (!files.status()) return files.status().error();

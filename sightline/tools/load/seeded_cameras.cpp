@@ -355,11 +355,4 @@ CameraPath seededCameras(const Scene& scene, uint32_t count, uint64_t seed) {
     return path;
 }
 
-Result<CameraPath> choosePath(const Scene& scene, const PathChoice& choice) {
-    if (!choice.file.empty()) return readCameraPath(choice.file);
-    if (choice.frames > 0) return seededCameras(scene, choice.frames, choice.seed);
-    if (!scene.cameras.empty()) return sceneCameras(scene);
-    return seededCameras(scene, 16, choice.seed);
-}
-
 }  // namespace sightline::tools

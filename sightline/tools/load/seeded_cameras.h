@@ -85,12 +85,4 @@ private:
 /// Vertical angle 60 degrees, near 0.05 % of the diagonal but at most 0.1, infinite far.
 CameraPath seededCameras(const Scene& scene, uint32_t count, uint64_t seed);
 
-/// The path that a run uses: --cameras, else --frames/--seed, else the scene's own, else 16 seeded.
-struct PathChoice {
-    std::string file;     ///< empty: none
-    uint32_t frames = 0;  ///< 0: not asked for
-    uint64_t seed = 1;
-};
-Result<CameraPath> choosePath(const Scene& scene, const PathChoice& choice);
-
 }  // namespace sightline::tools

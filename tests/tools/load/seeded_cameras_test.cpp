@@ -157,24 +157,5 @@ TEST(SeededCameras, SceneWithoutTrianglesIsSeenFromTheOrigin) {
     for (const CameraFrame& frame : seededCameras(scene, 3, 1).frames) EXPECT_TRUE(isUsable(makeView(frame, 10, 10)));
 }
 
-TEST(ChoosePath, FileThenFramesThenTheScenesOwnThenSixteen) {
-    Scene scene = makeCity(1, 300);
-    EXPECT_EQ(choosePath(scene, {})->frames.size(), 16u);
-    EXPECT_TRUE(same(*choosePath(scene, {}), seededCameras(scene, 16, 1)));
-    scene.cameras.resize(2);
-    scene.cameras[0].fov_y = 1;
-    scene.cameras[1].fov_y = 1;
-    EXPECT_EQ(choosePath(scene, {})->frames.size(), 2u);
-    EXPECT_EQ(choosePath(scene, {"", 5, 9})->frames.size(), 5u);
-    EXPECT_TRUE(same(*choosePath(scene, {"", 5, 9}), seededCameras(scene, 5, 9)));
-    const std::string file = testing::TempDir() + "sightline_choose_path.json";
-    std::ofstream(file) << cameraPathJson(cityStreetPath(1, 3));
-    EXPECT_TRUE(same(*choosePath(scene, {file, 5, 9}), cityStreetPath(1, 3)));
-    std::remove(file.c_str());
-    const Result<CameraPath> missing = choosePath(scene, {file, 5, 9});
-    ASSERT_FALSE(missing.ok());
-    EXPECT_NE(missing.error().message.find(file), std::string::npos);
-}
-
 }  // namespace
 }  // namespace sightline

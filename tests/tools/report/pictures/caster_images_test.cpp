@@ -164,16 +164,12 @@ void comparePointLight(const Frame& frame, const Snapshot& now, const Light& lig
 void expectSame(const Scene& scene) {
     LoadedWorld loaded = loadWorld(scene, {}, loadSettings(false, 0));
     const Snapshot now = loaded.world.commit();
-    PathChoice choice;
-    choice.frames = 3;
-    choice.seed = 7;
-    const Result<CameraPath> path = choosePath(scene, choice);
-    ASSERT_TRUE(path.ok()) << path.error().message;
+    const CameraPath path = seededCameras(scene, 3, 7);
     const Box3d bounds = worldBounds(scene);
     const double size = glm::length(bounds.size());
     Compared suns, spots, around;
-    for (size_t i = 0; i < path->frames.size(); ++i) {
-        const Frame frame(scene, path->frames[i]);
+    for (size_t i = 0; i < path.frames.size(); ++i) {
+        const Frame frame(scene, path.frames[i]);
         const double turn = 0.7 + 2.0 * static_cast<double>(i);
         compareSun(frame, now, glm::normalize(glm::dvec3(std::cos(turn), 0.3, std::sin(turn))), suns);
         // Beside the eye: a lamp that someone carries.

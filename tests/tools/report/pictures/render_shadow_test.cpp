@@ -61,12 +61,8 @@ TEST(RenderShadows, OfRealScenesAreWhereRaysSay) {
         if (!std::filesystem::exists(file)) continue;
         const Result<Scene> scene = loadGltf(file);
         ASSERT_TRUE(scene.ok()) << scene.error().message;
-        PathChoice choice;
-        choice.frames = 4;
-        choice.seed = 5;
-        const Result<CameraPath> path = choosePath(*scene, choice);
-        ASSERT_TRUE(path.ok()) << path.error().message;
-        for (size_t i = 0; i < path->frames.size(); ++i) expectSoundShadows(*scene, path->frames[i], i);
+        const CameraPath path = seededCameras(*scene, 4, 5);
+        for (size_t i = 0; i < path.frames.size(); ++i) expectSoundShadows(*scene, path.frames[i], i);
         ++seen;
     }
     if (seen == 0) GTEST_SKIP() << "no scenes beside the repository";

@@ -1,0 +1,83 @@
+// Walks at sixty frames a second, asked in order: what coherence there is to be had is measured by them.
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "bench/cases.h"
+#include "bench/stopwatch.h"
+#include "sightline/query/query.h"
+#include "sightline/tools/load/load_world.h"
+#include "sightline/tools/load/walk.h"
+#include "sightline/tools/scene/building/building.h"
+#include "sightline/tools/scene/city/city.h"
+#include "sightline/tools/scene/terrain/terrain.h"
+
+namespace sightline::bench {
+using namespace tools;
+namespace {
+
+constexpr uint64_t kSeeds[] = {101, 102, 103};
+
+/// What one way of asking costs, frame by frame.
+struct Costs {
+    std::vector<double> times;  ///< the thread's own  [microseconds]
+    double kept = 0;            ///< objects, of all frames
+
+    double mean() const {
+        double sum = 0;
+        for (const double time : times) sum += time;
+        return sum / static_cast<double>(times.size());
+    }
+    double percentile(double share) const {
+        std::vector<double> sorted = times;
+        std::sort(sorted.begin(), sorted.end());
+        return sorted[static_cast<size_t>(share * static_cast<double>(sorted.size() - 1))];
+    }
+    double keptAFrame() const { return kept / static_cast<double>(times.size()); }
+};
+
+/// Each frame once and in order, each way by a query of its own; the ways take turns.
+void measureWalks(const Scene& scene, Table& table) {
+    LoadedWorld loaded = loadWorld(scene, {}, loadSettings(true, 0));
+    const Snapshot now = loaded.world.commit();
+    const QuerySettings ways[] = {{.stages = stageBit(Stage::kFrustum)}, {}};
+    Costs costs[std::size(ways)];
+    size_t still = 0;
+    for (const uint64_t seed : kSeeds) {
+        Query queries[std::size(ways)];
+        const std::vector<CameraFrame> frames = walkThrough(scene, {.seed = seed}).frames;
+        for (size_t i = 0; i < frames.size(); ++i) {
+            const View view = makeView(frames[i], 1280, 720);
+            still += i > 0 && frames[i].eye == frames[i - 1].eye;
+            for (size_t way = 0; way < std::size(ways); ++way) {
+                const double start = threadTime();
+                const VisibleSet seen = queries[way].visible(now, view, ways[way]);
+                costs[way].times.push_back(threadTime() - start);
+                costs[way].kept += static_cast<double>(seen.objects.size());
+            }
+        }
+    }
+    const Costs &frustum = costs[0], &query = costs[1];
+    const Rows row{table, scene.name};
+    row("query, mean of a frame", query.mean(), "us", "frustum alone", frustum.mean());
+    row("query, 99 of 100 frames", query.percentile(0.99), "us", "its mean", query.mean());
+    row("kept", query.keptAFrame(), "objects", "frustum alone", frustum.keptAFrame(),
+        fmt::format("{} frames, {} standing", query.times.size(), still));
+}
+
+}  // namespace
+
+Table benchWalks(const Options& options) {
+    Table table{"walks", {}};
+    if (options.scene) {
+        measureWalks(*options.scene, table);
+        return table;
+    }
+    for (const Scene& scene : {makeCity(1, 20000), makeBuilding(1, 10), makeTerrain(1, 512)})
+        measureWalks(scene, table);
+    return table;
+}
+
+}  // namespace sightline::bench
