@@ -78,7 +78,7 @@ Table benchVis(const Options& options);
 Table benchVolumes(const Options& options);
 
 /// Walks through a city, a building and a terrain, 60 frames a second, each frame once and in order: what the query costs a frame, and
-/// keeps, beside the frustum alone.
+/// keeps, beside the frustum alone and a query without a memory.
 Table benchWalks(const Options& options);
 
 // Parts of these cases that have a file of their own.

@@ -183,6 +183,26 @@ uint64_t gatherClusters(DepthTiles& tiles, const OccludeePlace& place, const Occ
     return polygons;
 }
 
+/// Whether a polygon of one of the clusters shows an open pixel, or is in doubt: the look would end at it, if it did not
+/// end before.
+bool isOpenStill(DepthTiles& tiles, const OccludeePlace& place, const Occluder& shape,
+                 const Array<ClusterLook>& clusters, const OpenPolygon& open) {
+    const auto* const at = std::find_if(clusters.data(), clusters.data() + clusters.size(),
+                                        [&](const ClusterLook& look) { return look.cluster == open.cluster; });
+    if (at == clusters.data() + clusters.size()) return false;
+    ClusterWalk walk(place, shape, open.cluster);
+    if (open.polygon >= walk.cluster.polygon_count) return false;
+    if (!walk.begin(at->w)) return true;
+    const OccluderPolygon& polygon = shape.polygons[walk.cluster.first_polygon + open.polygon];
+    if (tiles.end_column - tiles.first_column < tiles.columns && walk.liesBeside(tiles, polygon)) return false;
+    OccludeePolygon occludee;
+    const Sight made = walk.polygon(polygon, occludee);
+    if (made == Sight::kVisible) return true;
+    if (made == Sight::kOutside || !tiles.clip(occludee.rect)) return false;
+    const Cover cover = lookAt(tiles, occludee);
+    return cover == Cover::kOpen || (cover == Cover::kUndecided && !resolveHidden(tiles, occludee));
+}
+
 }  // namespace
 
 Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder& shape, TriangleScratch& scratch,
@@ -192,6 +212,12 @@ Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder
     look.polygons = 0;
     look.spent = polygons > look.most_polygons;
     if (look.spent) return Sight::kVisible;
+    if (look.first.cluster < shape.clusters.size()) {
+        look.by_first = isOpenStill(tiles, place, shape, scratch.clusters, look.first);
+        look.open = look.first;
+        look.polygons = look.by_first;
+        if (look.by_first) return Sight::kVisible;
+    }
     scratch.undecided.clear();
     scratch.names.clear();
     const bool part = tiles.end_column - tiles.first_column < tiles.columns;

@@ -16,16 +16,20 @@ struct ClusterLook {
 
 /// Which polygon was found open.
 struct OpenPolygon {
-    uint32_t cluster = 0;
+    static constexpr uint32_t kNone = ~0u;
+
+    uint32_t cluster = 0;  ///< kNone: none
     uint32_t polygon = 0;  ///< of the cluster
 };
 
 /// The limit of one look, its cost, and where it ended.
 struct TriangleLook {
-    uint64_t most_polygons = ~0u;  ///< the limit; a look that needs more answers kVisible
-    uint32_t polygons = 0;         ///< that were looked at
-    bool spent = false;            ///< it ran into the limit
-    OpenPolygon open;              ///< where the answer is kVisible and nothing was in doubt
+    uint64_t most_polygons = ~0u;           ///< the limit; a look that needs more answers kVisible
+    OpenPolygon first{OpenPolygon::kNone};  ///< to ask before the others; any, for it changes no answer
+    uint32_t polygons = 0;                  ///< that were looked at
+    bool spent = false;                     ///< it ran into the limit
+    bool by_first = false;                  ///< `first` is open still
+    OpenPolygon open;                       ///< where the answer is kVisible and nothing was in doubt
 };
 
 /// The scratch memory of second looks.
@@ -37,8 +41,8 @@ struct TriangleScratch {
     explicit TriangleScratch(Memory* memory) : clusters(memory), undecided(memory), names(memory) {}
 };
 
-/// Asks an object's triangles until one has an open pixel: first clusters by their boxes, nearest first, then their
-/// polygons. Triangles are clipped at the near plane. A single-sided triangle that is turned away is not drawn, and so
+/// Asks an object's triangles until one has an open pixel: first clusters by their boxes, nearest first, then
+/// TriangleLook::first, then the clusters' polygons. Triangles are clipped at the near plane. A single-sided triangle that is turned away is not drawn, and so
 /// it shows nothing.
 ///
 /// @param place  makeOccludeePlace() of the object and shape.bounds

@@ -26,7 +26,8 @@ enum class Look : uint8_t {
 /// An object that was kept, and will be asked by its triangles.
 struct SecondLook {
     Pending entry;
-    uint32_t visible = 0;  ///< index into TraversalState::visible
+    uint32_t visible = 0;      ///< index into TraversalState::visible
+    bool skips_faces = false;  ///< its faces were not asked, for one of its polygons was open in the last answer
 };
 
 /// Objects that were culled together.
@@ -86,6 +87,7 @@ struct TraversalState {
           culled(memory),
           second(memory),
           looks(memory),
+          open_at(memory),
           visits(memory),
           volumes(memory) {}
 
@@ -98,9 +100,16 @@ struct TraversalState {
     Array<CulledRange> culled;
     Array<SecondLook> second;  ///< objects of `visible` that will be asked by their triangles
     TriangleScratch looks;
+    /// Per place: the polygon that was open in the last answer that asked the object there by its triangles. It outlives
+    /// the answer; what has moved to another place meanwhile is asked in vain.
+    Array<OpenPolygon> open_at;
     Array<NodeVisit> visits;  ///< the queue, where the traversal is in any order
     OpenVolumes volumes;
     QueryStats stats;
+
+    OpenPolygon openAt(uint32_t place) const {
+        return place < open_at.size() ? open_at[place] : OpenPolygon{OpenPolygon::kNone};
+    }
 
     void clear() {
         tiles.clear(0, 0);

@@ -89,7 +89,8 @@ public:
     /// Conservative: in exact projection of the positions given, every object with a visible point
     /// is reported, at any resolution and under any image shift up to View::jitter. Objects in doubt
     /// (bounds that touch the near plane or hold the eye, or are not finite) are reported and counted.
-    /// Deterministic: the same set, in the same order, on every instruction set.
+    /// Deterministic: the same set, in the same order, on every instruction set, given the same calls before; with
+    /// QuerySettings::stateless, whatever was asked before.
     ///
     /// QuerySettings::max_distance and ::contribution are not conservative: they cull what may be visible. Their stages
     /// count these objects apart. Such an object hides nothing: all other culled objects are hidden by objects of the

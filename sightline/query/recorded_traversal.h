@@ -9,7 +9,7 @@
 
 namespace sightline::detail {
 
-/// Keeps its scratch memory from answer to answer.
+/// Keeps its scratch memory from answer to answer; each answer stands by itself, as with QuerySettings::stateless.
 struct RecordedTraversal {
     explicit RecordedTraversal(Memory* memory) : stages(memory), state(memory), record(memory) {}
 
@@ -21,6 +21,7 @@ struct RecordedTraversal {
     /// The whole image of a snapshot, through all stages.
     void run(const Snapshot& now, const View& view, const QuerySettings& settings) {
         frame.begin(now, view, settings);
+        frame.settings.stateless = true;
         chooseStages(frame, stages);
         traverse(frame, state, {}, record);
     }
@@ -30,6 +31,7 @@ struct RecordedTraversal {
              std::span<const uint32_t> shown, const ImagePart& part) {
         frame.snapshot = Snapshot();
         frame.begin(&world, view, settings, shown);
+        frame.settings.stateless = true;
         frame.narrowTo(candidates);
         chooseVolumes(frame, stages);
         traverse(frame, state, part, record);

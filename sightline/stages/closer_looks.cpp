@@ -17,12 +17,16 @@ TurnAnswer settle(const Frame& frame, const TraversalState& state, Look look, Si
 
 }  // namespace
 
+/// An object of which a polygon was open last is likely to be visible still. Its faces are then not worth asking: they
+/// are open wherever a polygon is.
 TurnAnswer cullByFaces(const Frame& frame, TraversalState& state, const Pending& entry) {
     const Look by_box = frame.settings.faces && entry.testable ? Look::kFaces : Look::kBox;
     if (entry.kind != Pending::Kind::kObject) return {};
     const ObjectRecord& object = frame.world->objectAt(entry.index);
     const bool in_layers = object.layers & frame.view.layers;
-    if (frame.settings.faces && in_layers) {
+    const bool again = frame.settings.second_look && object.shape.index != 0 && in_layers;
+    const bool was_open = again && !frame.settings.stateless && state.openAt(entry.index).cluster != OpenPolygon::kNone;
+    if (frame.settings.faces && in_layers && !was_open) {
         const OccludeePlace place = makeOccludeePlace(frame.screen, object.transform, object.bounds);
         ++state.stats.faces_tested;
         const TurnAnswer answer = settle(frame, state, Look::kFaces, askBox(state.tiles, place, object.bounds));
@@ -30,12 +34,23 @@ TurnAnswer cullByFaces(const Frame& frame, TraversalState& state, const Pending&
         if (answer.culled) return answer;
     }
     // Its triangles are asked once all is drawn: an object whose box is near may well be hidden by what is met later.
-    if (frame.settings.second_look && object.shape.index != 0 && in_layers) {
-        state.second.push_back({entry, static_cast<uint32_t>(state.visible.size())});
+    if (again) {
+        state.second.push_back({entry, static_cast<uint32_t>(state.visible.size()), was_open});
         return {false, Stage::kOcclusion, Look::kTriangles};
     }
     return {false, Stage::kOcclusion, by_box};
 }
+
+namespace {
+
+/// Notes which polygon of the object at a place is open.
+void note(const Frame& frame, TraversalState& state, uint32_t place, const OpenPolygon& open) {
+    if (place >= state.open_at.size())
+        state.open_at.resize(frame.world->placed.size(), OpenPolygon{OpenPolygon::kNone});
+    state.open_at[place] = open;
+}
+
+}  // namespace
 
 /// Objects that are culled here were drawn, and may have hidden others. That is sound: along each ray the nearest point
 /// of all that was drawn has nothing in front of it, so that its object is kept, and it hides what they hid.
@@ -44,13 +59,24 @@ TurnAnswer cullByTriangles(const Frame& frame, TraversalState& state, const Seco
     const OccludeePlace place = makeOccludeePlace(frame.screen, object.transform, object.bounds);
     TriangleLook look;
     look.most_polygons = frame.settings.second_look_polygons - state.stats.second_look_polygons;
+    if (!frame.settings.stateless) look.first = state.openAt(kept.entry.index);
     ++state.stats.second_looks;
     const Sight sight =
         askTriangles(state.tiles, place, *frame.world->occluders[object.shape.index], state.looks, look);
     state.stats.second_look_polygons += look.polygons;
     state.stats.second_look_spent |= look.spent;
+    if (!frame.settings.stateless) {
+        const bool open = sight == Sight::kVisible && !look.spent;
+        note(frame, state, kept.entry.index, open ? look.open : OpenPolygon{OpenPolygon::kNone});
+    }
     TurnAnswer answer = settle(frame, state, Look::kTriangles, sight);
     state.stats.second_look_culled += answer.culled;
+    if (!answer.culled && frame.settings.faces && kept.skips_faces && !look.by_first) {
+        ++state.stats.faces_tested;
+        const TurnAnswer by_faces = settle(frame, state, Look::kFaces, askBox(state.tiles, place, object.bounds));
+        state.stats.faces_culled += by_faces.culled;
+        if (by_faces.culled) return by_faces;
+    }
     if (!answer.culled && look.spent) answer.look = Look::kBox;
     return answer;
 }

@@ -73,6 +73,7 @@ inline QuerySettings toolSettings() {
     settings.stages = kDefaultStages & ~(kLossyStages | kCellStages | stageBit(Stage::kClusters));
     settings.occluder_error = 0;
     settings.hysteresis = 0;
+    settings.stateless = true;
     return settings;
 }
 
