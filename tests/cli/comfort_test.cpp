@@ -80,6 +80,15 @@ TEST_F(Comfort, HelpHasHeadingsAndExamples) {
         EXPECT_NE(tool.find(scene), std::string::npos) << scene;
 }
 
+/// A slow machine is told how far the frames are, which is no complaint.
+std::string withoutProgress(const std::string& said) {
+    std::istringstream lines(said);
+    std::string left;
+    for (std::string line; std::getline(lines, line);)
+        if (!line.starts_with("culling: ")) left += line + '\n';
+    return left;
+}
+
 TEST_F(Comfort, FullAndClosedOutputsExitWithFour) {
     for (const char* command :
          {"info city:1:50 >/dev/full", "help >/dev/full", "completions zsh >/dev/full", "info city:1:50 >&-",
@@ -89,7 +98,7 @@ TEST_F(Comfort, FullAndClosedOutputsExitWithFour) {
                                  "' '" SIGHTLINE_TOOL "' 2>.said";
         const int status = std::system(line.c_str());
         EXPECT_EQ(WEXITSTATUS(status), 4) << command;
-        const std::string said = read(path(".said"));
+        const std::string said = withoutProgress(read(path(".said")));
         // A reader who has seen enough is no fault to speak of.
         const bool left = std::string(command).find(" | ") != std::string::npos;
         EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), left ? 0 : 1) << command << "\n" << said;

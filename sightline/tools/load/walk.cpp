@@ -56,12 +56,12 @@ public:
 
 private:
     /// How far one can go from a point in a direction of unit length, no farther than `far`.
-    double freeWay(const glm::dvec3& from, const glm::dvec3& direction, double far) const {
+    double freeWay(const glm::dvec3& from, const glm::dvec3& direction, double far, double margin) const {
         const glm::dvec3 right = anyRight(direction), up = glm::cross(right, direction);
         double free = far;
         for (const glm::dvec3& aside : {glm::dvec3(0), right, -right, up, -up})
-            if (const auto hit = probe_.nearest({from + margin_ * aside, direction}))
-                free = std::min(free, hit->t - margin_);
+            if (const auto hit = probe_.nearest({from + margin * aside, direction}))
+                free = std::min(free, hit->t - margin);
         return free;
     }
 
@@ -74,7 +74,7 @@ private:
         while (left > 0) {
             const glm::dvec3 here = way_.back();
             glm::dvec3 next = here;
-            if (!findGoal(here, was_at, left, next)) next = openPlace(here);
+            if (!findGoal(here, was_at, left, next)) next = anyPlace(here);
             const double length = glm::length(next - here);
             if (!(length > 0)) break;
             way_.push_back(next);
@@ -94,7 +94,7 @@ private:
         for (const auto& [away, goal] : goals) {
             const glm::dvec3 direction = (starts_[goal].eye - here) / away;
             const double needed = std::min(away, far);
-            if (freeWay(here, direction, needed) < needed) continue;
+            if (freeWay(here, direction, needed, margin_) < needed) continue;
             was_at[goal] = true;
             next = needed < away ? here + needed * direction : starts_[goal].eye;
             return true;
@@ -102,8 +102,16 @@ private:
         return false;
     }
 
+    /// A place with room; where it is narrow, with less of a margin; the place itself if there is none.
+    glm::dvec3 anyPlace(const glm::dvec3& here) {
+        glm::dvec3 next = here;
+        for (double margin = margin_; next == here && margin > margin_ / 32; margin /= 2)
+            next = openPlace(here, margin);
+        return next;
+    }
+
     /// Where there is most room, rather ahead than back; the place itself if there is none.
-    glm::dvec3 openPlace(const glm::dvec3& here) {
+    glm::dvec3 openPlace(const glm::dvec3& here, double margin) {
         const glm::dvec3 ahead =
             way_.size() > 1 ? glm::normalize(here - way_[way_.size() - 2]) : starts_[0].target - starts_[0].eye;
         const double far = kLongestLeg * settings_.speed;
@@ -114,9 +122,9 @@ private:
             const double length = glm::length(drawn);
             if (!(length > 0.1 && length <= 1)) continue;
             const glm::dvec3 direction = drawn / length;
-            const double free = 0.9 * freeWay(here, direction, far);
+            const double free = 0.9 * freeWay(here, direction, far, margin);
             const double worth = free * (1.5 + glm::dot(direction, ahead) / glm::length(ahead));
-            if (!(free > margin_) || !(worth > most)) continue;
+            if (!(free > margin) || !(worth > most)) continue;
             most = worth;
             best = here + free * direction;
         }

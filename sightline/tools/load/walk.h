@@ -19,8 +19,8 @@ struct WalkSettings {
 /// A smooth path from a seeded camera to others that can be reached in straight lines through free space, nearest
 /// first; where none can be, towards open space. Two frames in turn are no farther apart than speed / fps, their
 /// directions by no more than 60 degrees a second, and no surface lies between their eyes. The way keeps a margin from
-/// surfaces that lie ahead: a quarter of a unit, but at most a hundredth of the scene's diagonal. The camera looks
-/// where it goes, and about. Where there is no way out it stands, and looks about.
+/// surfaces that lie ahead: a quarter of a unit, but at most a hundredth of the scene's diagonal, and less where it is
+/// narrow. The camera looks where it goes, and about. Where there is no way on it stands, and looks about.
 ///
 /// The same on every machine. A scene without triangles is walked through from the origin.
 CameraPath walkThrough(const Scene& scene, const WalkSettings& settings);
