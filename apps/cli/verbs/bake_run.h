@@ -14,6 +14,10 @@
 #include "sightline/base/result.h"
 #include "sightline/base/thread_pool.h"
 
+namespace CLI {
+class App;
+}
+
 namespace sightline::cli {
 using namespace bake;
 
