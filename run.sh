@@ -37,5 +37,5 @@ prepare "${programs[@]}"
 if [ $# -gt 0 ]; then exec "$tool" "$@"; fi
 
 say "culling a flight through a city of 100,000 objects, and proving it with rays and an id-buffer"
-"$tool" cull city:1:100000 --frames 64 --verify --report "$root/out"
+"$tool" cull city:1:100000 --frames 32 --verify --report "$root/out"
 say "the report: $root/out/index.html"

@@ -15,7 +15,10 @@ function(sightline_settings target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -ffp-contract=off
     $<$<BOOL:${SIGHTLINE_WERROR}>:-Werror>)
-  if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)")
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)")
+    # Processors that have SSSE3 and not SSE4 are older than 2008. Each set costs a fifth of what kernels take to compile.
+    target_compile_definitions(${target} PRIVATE HWY_DISABLED_TARGETS=HWY_SSSE3)
+  elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)")
     # NEON alone, which they all have: vectors of unknown length (SVE) cannot be members, and where the set is chosen at
     # run time GCC cannot make structs of vectors. Highway takes this as a word for "do not choose at run time".
     target_compile_definitions(${target} PRIVATE TOOLCHAIN_MISS_SYS_AUXV_H)
