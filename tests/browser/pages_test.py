@@ -188,11 +188,16 @@ class Pages(unittest.TestCase):
         self.assertEqual(self.browser.evaluate(film)["frame"], 1)
         self.assertNotEqual(self.browser.evaluate(film)["source"], first["source"])
         self.assertIn("frame 1:", self.browser.evaluate("document.getElementById('time-chart-values').textContent"))
+        # The chart takes up its size, and later a click, in the next frame that the browser draws.
+        drawn = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(0))))"
+        self.browser.evaluate("document.querySelector('#kept-chart canvas').scrollIntoView({behavior: 'instant'})")
+        self.browser.evaluate(drawn)
         box = self.browser.evaluate("""(() => { const at = document.querySelector('#kept-chart canvas');
-            at.scrollIntoView({behavior: 'instant'}); const b = at.getBoundingClientRect();
+            const b = at.getBoundingClientRect();
             return [b.left + Chart.getChart(at).chartArea.right - 2, b.top + b.height / 2]; })()""")
         for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
             self.browser.call("Input.dispatchMouseEvent", type=kind, x=box[0], y=box[1], button="left", clickCount=1)
+        self.browser.evaluate(drawn)
         self.assertEqual(self.browser.evaluate(film)["frame"], 4)
         self.assertEqual(self.browser.complaints(), [])
 
