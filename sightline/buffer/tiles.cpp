@@ -19,6 +19,7 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height, Detail new_detai
     base.assign(count, kOpen);
     layer.assign(count, kOpen);
     seams.assign(count, kNone);
+    cover_count.assign(count, 0);
     if (plane.size() < count) {  // these are read only where the ones above say that they were written
         plane.resize(count);
         layer_mask.resize(count);
@@ -28,6 +29,7 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height, Detail new_detai
         paired.resize(count);
         lid.resize(count);
         lid_mask.resize(count);
+        covers.resize(kCovers * count);
     }
     planes.clear();
     block_count = 0;

@@ -58,6 +58,7 @@ struct SeamPolygon {
     uint64_t side_key[4] = {};  ///< per side a hash of its edge in world space, the same for both directions;
                                 ///< set by setSideKeys(), when first needed
     bool keyed = false;
+    uint32_t plane = ~0u;       ///< index into DepthTiles::planes, once seamPlane() has been asked for it
     uint32_t drawn = 0;         ///< index into DepthTiles::drawn
     uint32_t clipped = kWhole;  ///< index into DepthTiles::clipped, or kWhole
     uint8_t source = 0;         ///< which polygon of the cluster it comes from
@@ -99,6 +100,35 @@ struct BufferPlane {
     float error = 0;
 };
 
+/// A few planes: indices into DepthTiles::planes, and kNone behind them.
+struct PlaneSet {
+    static constexpr uint32_t kMost = 4, kNone = ~0u;
+
+    uint32_t plane[kMost];
+
+    explicit PlaneSet(uint32_t one = kNone, uint32_t other = kNone)
+        : plane{one, other == one ? kNone : other, kNone, kNone} {}
+    bool operator==(const PlaneSet&) const = default;
+    bool empty() const { return plane[0] == kNone; }
+    /// Of exactly one plane that plane, else kNone.
+    uint32_t alone() const { return plane[1] == kNone ? plane[0] : kNone; }
+    /// @returns false if there is no room
+    bool add(uint32_t index) {
+        for (uint32_t& place : plane)
+            if (place == index || place == kNone) {
+                place = index;
+                return true;
+            }
+        return false;
+    }
+};
+
+/// Each ray through one of these pixels of a tile meets a polygon on one of the planes.
+struct TileCover {
+    uint64_t mask = 0;
+    PlaneSet planes;
+};
+
 enum class OcclusionDetail : uint8_t {
     kMasked,  ///< two depths and a mask; where they do not fit, the farthest depth stands for all: smallest, but looser
     kFull,    ///< a depth per pixel where two depths do not fit
@@ -106,16 +136,19 @@ enum class OcclusionDetail : uint8_t {
 using Detail = OcclusionDetail;
 
 struct TileLog;
+class OccludeeBox;
 
 /// The buffer. A pixel is covered when every ray through any of its points meets an occluder no farther
 /// than the depth claimed there. Nearness as in Screen: larger is nearer.
 ///
 /// What a tile claims at a pixel is the nearest of: its base (a constant, or a plane where one polygon covers it
-/// all), and its layer (one depth for the pixels of a mask; or a block of 64 depths).
+/// all), and its layer (one depth for the pixels of a mask; or a block of 64 depths). Beside the depths it knows which
+/// planes cover its pixels, for what lies wholly behind them: its covers, and the base's plane (covers.h).
 struct DepthTiles {
     static constexpr uint32_t kNone = ~0u;
     static constexpr float kOpen = -std::numeric_limits<float>::infinity();
-    static constexpr size_t kBeyond = 16;  ///< arrays of tiles go on for so many, which are loaded with the last ones
+    static constexpr uint32_t kCovers = 8;  ///< of a tile, at most
+    static constexpr size_t kBeyond = 16;   ///< arrays of tiles go on for so many, which are loaded with the last ones
 
     explicit DepthTiles(Memory* from = defaultMemory()) : memory(from) {}
     DepthTiles(const DepthTiles&) = delete;
@@ -141,6 +174,9 @@ struct DepthTiles {
     Array<float> lid{memory};            ///< with seams: pixels of lid_mask are surely open to this nearness and to
     Array<uint64_t> lid_mask{memory};    ///< greater ones, unless the tile claims more there
 
+    Array<uint8_t> cover_count{memory};  ///< of its covers, how many are in use
+    Array<TileCover> covers{memory};     ///< kCovers each
+
     Array<BufferPlane> planes{memory};
     Array<float> blocks{memory};                       ///< 64 each; kOpen where the layer claims nothing
     uint32_t block_count = 0;                          ///< in use
@@ -157,13 +193,21 @@ struct DepthTiles {
     /// The scratch of drawing one cluster: the tiles of its rectangle.
     struct Scratch {
         explicit Scratch(Memory* memory)
-            : first(memory), last(memory), z(memory), plane(memory), slot(memory), touched(memory), winding(memory) {}
-        Array<int32_t> first, last;  ///< per row: the columns between which something may become nearer
-        Array<float> z;              ///< no polygon that touches the tile is farther in it; infinity: none does
-        Array<uint32_t> plane;       ///< the plane of the only one, or kNone
-        Array<uint32_t> slot;        ///< of tiles that an open edge meets; kNone: none does
-        Array<uint64_t> touched;     ///< per slot: pixels that an open edge touches
-        Array<uint8_t> winding;      ///< per slot, 64: change of the winding number from the pixel to the left
+            : first(memory),
+              last(memory),
+              z(memory),
+              plane(memory),
+              second_plane(memory),
+              slot(memory),
+              touched(memory),
+              winding(memory) {}
+        Array<int32_t> first, last;    ///< per row: the columns between which something may become nearer
+        Array<float> z;                ///< no polygon that touches the tile is farther in it; infinity: none does
+        Array<uint32_t> plane;         ///< the plane that they lie on, or kNone
+        Array<uint32_t> second_plane;  ///< with a plane: the only other one, or kNone
+        Array<uint32_t> slot;          ///< of tiles that an open edge meets; kNone: none does
+        Array<uint64_t> touched;       ///< per slot: pixels that an open edge touches
+        Array<uint8_t> winding;        ///< per slot, 64: change of the winding number from the pixel to the left
     } scratch{memory};
 
     /// Gaps narrower than this between occluders are closed; set after clear(), which makes it 0  [pixels]
@@ -211,13 +255,16 @@ enum class Seams : uint8_t {
 };
 
 /// Whether the buffer surely hides everything in the rectangle.
-bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams = Seams::kResolve);
+/// @param box  of what is asked about, if it is known: then planes hide it, too
+bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams = Seams::kResolve,
+              const OccludeeBox* box = nullptr);
 
 /// Which pixels of a tile do not surely hide what lies at the given nearnesses.
 /// @param window   the pixels that matter, bit 8 * row + column; other bits of the answer are 0
 /// @param nearest  per pixel: no point of what is asked about is nearer there; read where the window has a bit
+/// @param box      of what is asked about, if it is known: then planes hide it, too
 uint64_t openPixels(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64],
-                    Seams seams = Seams::kResolve);
+                    Seams seams = Seams::kResolve, const OccludeeBox* box = nullptr);
 
 /// Pixels of a tile that seams may still cover; openPixels() with Seams::kResolve decides them.
 uint64_t undecidedSeams(const DepthTiles& tiles, uint32_t tile);

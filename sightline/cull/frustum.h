@@ -20,6 +20,12 @@ struct EyeBoxes {
     alignas(64) float max[3][8];
 };
 
+/// One of them.
+inline Box3f boxOf(const EyeBoxes& boxes, int which) {
+    return {{boxes.min[0][which], boxes.min[1][which], boxes.min[2][which]},
+            {boxes.max[0][which], boxes.max[1][which], boxes.max[2][which]}};
+}
+
 /// The children of a node as the eye sees them.
 /// @param offset  tree origin - eye [world units]
 EyeBoxes eyeBoxes(const BvhNode& node, const glm::dvec3& offset);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "sightline/buffer/screen.h"
+#include "sightline/buffer/ask/occludee_box.h"
 #include "sightline/math/box.h"
 
 namespace sightline {
@@ -26,5 +26,11 @@ struct OccludeePlace {
 /// @param transform  own space to world, affine
 /// @param bounds     of all that will be asked about, in its own space
 OccludeePlace makeOccludeePlace(const Screen& screen, const glm::dmat4& transform, const Box3d& bounds);
+
+/// A box in the occludee's own space, to be held against planes.
+/// @param place  must outlive it
+inline OccludeeBox boxAt(const OccludeePlace& place, const Box3d& box) {
+    return OccludeeBox(place.screen, box, {0.0, place.pixel_error, place.depth_error});
+}
 
 }  // namespace sightline

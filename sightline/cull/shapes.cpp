@@ -155,7 +155,8 @@ Sight makeBoxFaces(const OccludeePlace& place, const Box3d& box, BoxFaces& out) 
 Sight askBox(DepthTiles& tiles, const OccludeePlace& place, const Box3d& box) {
     BoxFaces faces;
     const Sight sight = makeBoxFaces(place, box, faces);
-    if (sight != Sight::kOccluded || !tiles.clip(faces.rect) || isHidden(tiles, faces.rect, Seams::kLeave))
+    const OccludeeBox whole = boxAt(place, box);
+    if (sight != Sight::kOccluded || !tiles.clip(faces.rect) || isHidden(tiles, faces.rect, Seams::kLeave, &whole))
         return sight;
     uint32_t undecided = 0;
     bool in_view = false;
@@ -164,13 +165,13 @@ Sight askBox(DepthTiles& tiles, const OccludeePlace& place, const Box3d& box) {
             in_view = true;
             continue;
         }
-        const Cover cover = lookAt(tiles, faces.faces[i]);
+        const Cover cover = lookAt(tiles, faces.faces[i], &whole);
         if (cover == Cover::kOpen) return Sight::kVisible;
         if (cover == Cover::kUndecided) undecided |= 1u << i;
         in_view |= cover != Cover::kOutside;
     }
     for (; undecided; undecided &= undecided - 1)
-        if (!resolveHidden(tiles, faces.faces[std::countr_zero(undecided)])) return Sight::kVisible;
+        if (!resolveHidden(tiles, faces.faces[std::countr_zero(undecided)], &whole)) return Sight::kVisible;
     return in_view ? Sight::kOccluded : Sight::kOutside;
 }
 

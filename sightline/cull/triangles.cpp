@@ -57,16 +57,21 @@ bool clipAtNear(const Screen& object, const Homogeneous* corner, int count, Corn
     return true;
 }
 
+OccludeeBox boxOf(const OccludeePlace& place, const OccluderCluster& cluster) {
+    return boxAt(place, {glm::dvec3(cluster.bounds.min), glm::dvec3(cluster.bounds.max)});
+}
+
 /// One cluster on its way to the tiles.
 struct ClusterWalk {
     const OccludeePlace& place;
     const Occluder& shape;
     const OccluderCluster& cluster;
     double position_error = 0, depth_error = 0;
+    const OccludeeBox box;
     OccludeeVertices vertices;
 
     ClusterWalk(const OccludeePlace& at, const Occluder& of, uint32_t index)
-        : place(at), shape(of), cluster(of.clusters[index]) {}
+        : place(at), shape(of), cluster(of.clusters[index]), box(boxOf(at, cluster)) {}
 
     /// False if its place is known too badly.
     bool begin(double w) {
@@ -166,7 +171,8 @@ uint64_t gatherClusters(DepthTiles& tiles, const OccludeePlace& place, const Occ
             BoxAnswer box(eight, static_cast<int>(c % 8));
             if (box.outside) continue;
             if (!box.doubt) {
-                if (!tiles.clip(box.rect) || isHidden(tiles, box.rect, Seams::kLeave)) {
+                const OccludeeBox bounds = boxOf(place, shape.clusters[c]);
+                if (!tiles.clip(box.rect) || isHidden(tiles, box.rect, Seams::kLeave, &bounds)) {
                     in_view = true;
                     continue;
                 }
@@ -199,8 +205,8 @@ bool isOpenStill(DepthTiles& tiles, const OccludeePlace& place, const Occluder& 
     const Sight made = walk.polygon(polygon, occludee);
     if (made == Sight::kVisible) return true;
     if (made == Sight::kOutside || !tiles.clip(occludee.rect)) return false;
-    const Cover cover = lookAt(tiles, occludee);
-    return cover == Cover::kOpen || (cover == Cover::kUndecided && !resolveHidden(tiles, occludee));
+    const Cover cover = lookAt(tiles, occludee, &walk.box);
+    return cover == Cover::kOpen || (cover == Cover::kUndecided && !resolveHidden(tiles, occludee, &walk.box));
 }
 
 }  // namespace
@@ -241,7 +247,7 @@ Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder
                 in_view = true;
                 continue;
             }
-            const Cover cover = lookAt(tiles, occludee);
+            const Cover cover = lookAt(tiles, occludee, &walk.box);
             in_view |= cover != Cover::kOutside;
             if (cover == Cover::kOpen) return Sight::kVisible;
             if (cover != Cover::kUndecided) continue;
@@ -252,7 +258,8 @@ Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder
     // Only if nothing is open for good are seams worth resolving.
     for (size_t i = 0; i < scratch.undecided.size(); ++i) {
         look.open = scratch.names[i];
-        if (!resolveHidden(tiles, scratch.undecided[i])) return Sight::kVisible;
+        const OccludeeBox box = boxOf(place, shape.clusters[look.open.cluster]);
+        if (!resolveHidden(tiles, scratch.undecided[i], &box)) return Sight::kVisible;
     }
     return in_view ? Sight::kOccluded : Sight::kOutside;
 }
@@ -262,7 +269,7 @@ bool isOpen(DepthTiles& tiles, const OccludeePlace& place, const Occluder& shape
     OccludeePolygon occludee;
     if (!walk.begin(0.0)) return true;
     const Sight made = walk.polygon(shape.polygons[walk.cluster.first_polygon + polygon.polygon], occludee);
-    return made == Sight::kVisible || (made == Sight::kOccluded && !isPolygonHidden(tiles, occludee));
+    return made == Sight::kVisible || (made == Sight::kOccluded && !isPolygonHidden(tiles, occludee, &walk.box));
 }
 
 bool forTriangles(const OccludeePlace& place, const Occluder& shape, PolygonSink& sink) {

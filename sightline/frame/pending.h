@@ -16,6 +16,7 @@ namespace sightline::detail {
 struct Pending {
     enum class Kind : uint8_t { kNode, kObject, kCluster };
     PixelRect rect;
+    Box3f box;            ///< relative to the eye, each number rounded; not of a cluster
     uint32_t serial = 0;  ///< how many were queued before it
     uint32_t index = 0;   ///< node; place of the object; or cluster
     uint32_t owner = 0;   ///< of a cluster: index into TraversalState::instances

@@ -30,7 +30,7 @@ struct QuerySettings {
     double hysteresis = 0.1;
     uint32_t occluder_volumes = 8;
     uint32_t occluder_triangles = 1u << 17;
-    uint32_t occlusion_size = 640;
+    uint32_t occlusion_size = 384;
     bool masked = false;
     double occluder_error = 2.0;
     double close_gaps = 0;

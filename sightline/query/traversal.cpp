@@ -172,12 +172,7 @@ private:
             PixelRect rect = answer.rect;
             return !state_.tiles.clip(rect);
         }
-        Box3f box;
-        for (int axis = 0; axis < 3; ++axis) {
-            box.min[axis] = group.boxes.min[axis][slot];
-            box.max[axis] = group.boxes.max[axis][slot];
-        }
-        return state_.part.misses(frame_.screen, box);
+        return state_.part.misses(frame_.screen, boxOf(group.boxes, slot));
     }
 
     void queueChild(const Group& group, int slot) {
@@ -189,6 +184,7 @@ private:
         entry.below = placesBelow(group.node, slot);
         entry.planes = group.planes[slot];
         entry.rect = answer.rect;
+        entry.box = boxOf(group.boxes, slot);
         if (answer.doubt) entry.rect.nearness = kInfinity;
         if (answer.outside) entry.rect.nearness = -kInfinity;
         entry.testable = !answer.doubt && !answer.outside;

@@ -9,8 +9,8 @@
 
 namespace sightline::detail {
 
-bool isHiddenHere(TraversalState& state, PixelRect rect, Seams seams) {
-    return !state.tiles.clip(rect) || isHidden(state.tiles, rect, seams);
+bool isHiddenHere(TraversalState& state, PixelRect rect, Seams seams, const OccludeeBox* box) {
+    return !state.tiles.clip(rect) || isHidden(state.tiles, rect, seams, box);
 }
 
 bool isSmall(const Screen& screen, const PixelRect& rect) {
@@ -18,10 +18,16 @@ bool isSmall(const Screen& screen, const PixelRect& rect) {
     return rect.x1 - rect.x0 < least && rect.y1 - rect.y0 < least;
 }
 
-TurnAnswer cullHidden(const Frame&, TraversalState& state, const Pending& entry) {
+OccludeeBox boxAt(const Screen& screen, const Box3f& box) {
+    return OccludeeBox(screen, {glm::dvec3(box.min), glm::dvec3(box.max)}, {.rounding = 0x1p-23});
+}
+
+TurnAnswer cullHidden(const Frame& frame, TraversalState& state, const Pending& entry) {
+    if (!entry.testable) return {};
     // A node in doubt is opened: its children's smaller rectangles need fewer seams.
     const Seams seams = entry.kind == Pending::Kind::kNode ? Seams::kLeave : Seams::kResolve;
-    return {entry.testable && isHiddenHere(state, entry.rect, seams), Stage::kOcclusion, Look::kBox};
+    const OccludeeBox box = boxAt(frame.screen, entry.box);
+    return {isHiddenHere(state, entry.rect, seams, &box), Stage::kOcclusion, Look::kBox};
 }
 
 OfferedOccluder occluderOf(const Frame& frame, uint32_t place) {

@@ -12,7 +12,12 @@
 namespace sightline::detail {
 
 /// Whether a rectangle is hidden, of what of it lies in the traversal's part of the image.
-bool isHiddenHere(TraversalState& state, PixelRect rect, Seams seams);
+/// @param box  of what is asked about, if planes are to be asked, too
+bool isHiddenHere(TraversalState& state, PixelRect rect, Seams seams, const OccludeeBox* box = nullptr);
+
+/// A node's or an object's box, to be held against planes.
+/// @param box  relative to the eye, each number rounded: Pending::box
+OccludeeBox boxAt(const Screen& screen, const Box3f& box);
 
 /// Whether an occluder of this image is too small to be drawn: what is smaller than a thirty-second of the buffer in
 /// both directions hides next to nothing.

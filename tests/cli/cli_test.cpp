@@ -158,7 +158,7 @@ TEST_F(Cli, TheOcclusionBuffersSizeIsAskedForAndNamed) {
     const std::string common = "city:1:2000 --frames 2 --size 640x360 --repeat 1 --jitter 0 --no-second-look ";
     const json small = cull(common + "--occlusion-size 64"), usual = cull(common);
     EXPECT_EQ(small["occlusion_size"], 64);
-    EXPECT_EQ(usual["occlusion_size"], 640);
+    EXPECT_EQ(usual["occlusion_size"], 384);
     for (size_t i = 0; i < 2; ++i)
         EXPECT_GT(small["frames"][i]["visible"].size(), usual["frames"][i]["visible"].size());
     EXPECT_EQ(run("verify city:1:2000 --frames 1 --size 64x36 --rays 5000 --occlusion-size 8").exit_code, 0);

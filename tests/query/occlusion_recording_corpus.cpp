@@ -14,7 +14,7 @@ Array<char> bytesOf(uint64_t seed, int boxes, int sheets, uint32_t side) {
 
 template <class Seed>
 void makeAll(Seed seed) {
-    const Array<char> boxes = bytesOf(2, 8, 0, 1), parallel = bytesOf(1, 8, 1, 2), sheet = bytesOf(3, 2, 2, 4);
+    const Array<char> boxes = bytesOf(2, 8, 0, 1), parallel = bytesOf(1, 6, 1, 2), sheet = bytesOf(3, 2, 2, 4);
     Array<char> cut = boxes, damaged = boxes, long_section = sheet, no_vertex = parallel;
     cut.resize(cut.size() / 2);
     damaged[damaged.size() / 2] ^= 1;

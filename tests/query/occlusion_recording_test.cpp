@@ -42,12 +42,13 @@ bool sameOccluder(const Occluder& a, const Occluder& b) {
 bool sameAsked(const TileLog& a, const TileLog& b) {
     const auto same_rect = [](const TileLog::RectTest& p, const TileLog::RectTest& q) {
         return p.rect.x0 == q.rect.x0 && p.rect.y0 == q.rect.y0 && p.rect.x1 == q.rect.x1 && p.rect.y1 == q.rect.y1 &&
-               p.rect.nearness == q.rect.nearness && p.seams == q.seams && p.hidden == q.hidden;
+               p.rect.nearness == q.rect.nearness && p.box == q.box && p.seams == q.seams && p.hidden == q.hidden;
     };
     const auto same_tile = [](const TileLog::TileTest& p, const TileLog::TileTest& q) {
-        return p.tile == q.tile && p.seams == q.seams && p.window == q.window && p.open == q.open;
+        return p.tile == q.tile && p.box == q.box && p.seams == q.seams && p.window == q.window && p.open == q.open;
     };
-    return a.calls == b.calls && a.nearest == b.nearest &&
+    return a.calls == b.calls && a.nearest == b.nearest && a.boxes.size() == b.boxes.size() &&
+           std::memcmp(a.boxes.data(), b.boxes.data(), a.boxes.size() * sizeof a.boxes[0]) == 0 &&
            std::equal(a.rects.begin(), a.rects.end(), b.rects.begin(), b.rects.end(), same_rect) &&
            std::equal(a.tiles.begin(), a.tiles.end(), b.tiles.begin(), b.tiles.end(), same_tile);
 }
@@ -141,8 +142,8 @@ TEST(OcclusionRecording, SaysInOneLineWhatIsWrongAndWhere) {
     expect("not a recording of occlusion calls", 0, [](auto& b) { b.clear(); });
     expect("the file ends within its head", 20, [](auto& b) { b.resize(20); });
     expect("the file ends within its head", 100, [](auto& b) { b.resize(100); });
-    expect("a recording of version 9, where version 2 is read", 16, [](auto& b) { b[16] = 9; });
-    expect("a recording of version 1, where version 2 is read", 16, [](auto& b) { b[16] = 1; });
+    expect("a recording of version 9, where version 3 is read", 16, [](auto& b) { b[16] = 9; });
+    expect("a recording of version 1, where version 3 is read", 16, [](auto& b) { b[16] = 1; });
     expect("bytes after the last section", good.size(), [](auto& b) { b.push_back(0); });
     expect(
         "the content does not have the hash that it says", 24, [&](auto& b) { b[in(kVertices, 5)] ^= 1; }, false);
@@ -173,16 +174,21 @@ TEST(OcclusionRecording, SaysInOneLineWhatIsWrongAndWhere) {
     expect("a call of a kind that is not known", in(kCalls, 1), [&](auto& b) { b[in(kCalls, 1)] = 3; });
     expect("a draw of a cluster that there is not", in(kDraws, 0),
            [&](auto& b) { overwrite(b, in(kDraws, 4), 1u << 30); });
-    expect("a test of a rectangle outside of the buffer", in(kRects, 13),
-           [&](auto& b) { overwrite(b, in(kRects, 13 + 4), uint16_t{9000}); });
-    expect("a test of a tile outside of the buffer", in(kTiles, 21),
-           [&](auto& b) { overwrite(b, in(kTiles, 21), 1u << 20); });
+    expect("a test of a rectangle outside of the buffer", in(kRects, 17),
+           [&](auto& b) { overwrite(b, in(kRects, 17 + 4), uint16_t{9000}); });
+    expect("a test of a box that there is not", in(kRects, 12),
+           [&](auto& b) { overwrite(b, in(kRects, 12), 1u << 30); });
+    expect("a test of a box that there is not", in(kTiles, 20), [&](auto& b) { overwrite(b, in(kTiles, 20), ~1u); });
+    expect("a number that is not finite", in(kBoxes, 160 + 24),
+           [&](auto& b) { overwrite(b, in(kBoxes, 160 + 24), HUGE_VAL); });
+    expect("a test of a tile outside of the buffer", in(kTiles, 25),
+           [&](auto& b) { overwrite(b, in(kTiles, 25), 1u << 20); });
     size_t part = in(kTiles, 4);  // the window of a test that does not ask about all of its tile
     const auto asksAll = [&](size_t at) {
         return std::all_of(good.begin() + long(at), good.begin() + long(at) + 8, [](char c) { return c == '\xff'; });
     };
-    while (asksAll(part)) part += 21;
-    expect("fewer nearnesses than tests ask for", good.size(), [&](auto& b) { overwrite(b, part, ~uint64_t{0}); });
+    while (asksAll(part)) part += 25;
+    expect("fewer nearnesses than tests ask for", in(kBoxes, 0), [&](auto& b) { overwrite(b, part, ~uint64_t{0}); });
     expect("a number that is not one", in(kNearest, 4), [&](auto& b) { overwrite(b, in(kNearest, 4), nan); });
 }
 

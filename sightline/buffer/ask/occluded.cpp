@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/buffer/covers.h"
 #include "sightline/buffer/seam/seam.h"
 #include "sightline/buffer/tile_log.h"
 
@@ -75,28 +76,46 @@ struct Undecided {
 };
 
 /// Whether seams close the pixels of a tile that are open to what lies at a nearness.
-bool closeSeams(DepthTiles& tiles, uint32_t tile, uint64_t open, float nearness) {
+bool closeSeams(DepthTiles& tiles, uint32_t tile, uint64_t open, float nearness, const OccludeeBox* box) {
     pairSeams(tiles, tile);
     alignas(64) float claims[64];
     claimsOfTile(tiles, tile, claims);
     open &= ~pixelsNearer(claims, nearness);
+    if (open && box) open = openToBox(tiles, tile, open, *box);
     if (!open) return true;
     // Those first that few polygons share: they are the cheapest, and the likeliest to stay open.
     const uint64_t few = lookAtSeams(tiles, tile, open, nearness).few;
     for (uint64_t part : {open & few, open & ~few})
         for (; part; part &= part - 1)
-            if (!resolveSeam(tiles, tile, std::countr_zero(part), nearness)) return false;
+            if (!resolveSeam(tiles, tile, std::countr_zero(part), nearness) &&
+                (!box || openToBox(tiles, tile, part & -part, *box)))
+                return false;
     return true;
 }
 
-bool isHiddenKernel(DepthTiles& tiles, const PixelRect& rect, Seams seams) {
+/// What is left open of a rectangle in a tile where depths leave some open, if planes are asked, too.
+/// @param sure  set if a pixel stays open whatever the seams are, else cleared
+HWY_INLINE uint64_t leaveOpen(DepthTiles& tiles, uint32_t tile, uint64_t open, const PixelRect& rect, Seams seams,
+                              const OccludeeBox* box, bool& sure) {
+    const uint64_t undecided = seams == Seams::kLeave ? 0 : undecidedPixels(tiles, tile, rect.nearness);
+    sure = (open & ~undecided) != 0;
+    if (!box || (open & ~undecided & ~coveredByPlanes(tiles, tile))) return open;
+    open = openToBox(tiles, tile, open, *box);
+    sure = (open & ~undecided) != 0;
+    return open;
+}
+
+bool isHiddenKernel(DepthTiles& tiles, const PixelRect& rect, Seams seams, const OccludeeBox* box) {
     // First the cheap answer: one pixel that stays open makes the rectangle visible.
     Undecided undecided;
     const bool closed = forOpenTiles(tiles, rect, [&](uint32_t tile, int32_t column, int32_t row) HWY_ATTR {
-        const uint64_t open = openInTile(tiles, tile, rect, column, row);
+        if (box && isBehindBase(tiles, tile, *box)) return true;  // before a look at its pixels
+        uint64_t open = openInTile(tiles, tile, rect, column, row);
         if (!open) return true;
-        if (seams == Seams::kLeave || open & ~undecidedPixels(tiles, tile, rect.nearness)) return false;
-        undecided.add(tile, open);
+        bool surely_open;
+        open = leaveOpen(tiles, tile, open, rect, seams, box, surely_open);
+        if (surely_open) return false;
+        if (open) undecided.add(tile, open);
         return true;
     });
     if (!closed || !undecided.count) return closed;
@@ -105,11 +124,11 @@ bool isHiddenKernel(DepthTiles& tiles, const PixelRect& rect, Seams seams) {
     for (int i = 0; i < listed; ++i)
         if (lookAtSeams(tiles, undecided.tile[i], undecided.open[i], rect.nearness).open) return false;
     for (int i = 0; i < listed; ++i)
-        if (!closeSeams(tiles, undecided.tile[i], undecided.open[i], rect.nearness)) return false;
+        if (!closeSeams(tiles, undecided.tile[i], undecided.open[i], rect.nearness, box)) return false;
     if (listed == undecided.count) return true;
     return forOpenTiles(tiles, rect, [&](uint32_t tile, int32_t column, int32_t row) HWY_ATTR {
         const uint64_t open = openInTile(tiles, tile, rect, column, row);
-        return !open || closeSeams(tiles, tile, open, rect.nearness);
+        return !open || closeSeams(tiles, tile, open, rect.nearness, box);
     });
 }
 
@@ -123,8 +142,10 @@ HWY_INLINE uint64_t openAgainst(const DepthTiles& tiles, uint32_t tile, uint64_t
     return window & ~nearer;
 }
 
-uint64_t openPixelsKernel(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64], Seams seams) {
-    const uint64_t open = openAgainst(tiles, tile, window, nearest);
+uint64_t openPixelsKernel(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64], Seams seams,
+                          const OccludeeBox* box) {
+    const auto behind = [&](uint64_t open) { return open && box ? openToBox(tiles, tile, open, *box) : open; };
+    const uint64_t open = behind(openAgainst(tiles, tile, window, nearest));
     const uint64_t undecided = open & undecidedSeams(tiles, tile);
     if (seams == Seams::kLeave || !undecided) return open;
     pairSeams(tiles, tile);
@@ -132,7 +153,7 @@ uint64_t openPixelsKernel(DepthTiles& tiles, uint32_t tile, uint64_t window, con
         const int bit = std::countr_zero(set);
         resolveSeam(tiles, tile, bit, nearest[bit]);
     }
-    return openAgainst(tiles, tile, window, nearest);
+    return behind(openAgainst(tiles, tile, open, nearest));
 }
 
 void readClaimsKernel(const DepthTiles& tiles, uint32_t tile, float (&claims)[64]) {
@@ -155,15 +176,16 @@ HWY_EXPORT(openPixelsKernel);
 HWY_EXPORT(readClaimsKernel);
 HWY_EXPORT(raiseClaimsKernel);
 
-bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams) {
-    const bool hidden = HWY_DYNAMIC_DISPATCH(isHiddenKernel)(tiles, rect, seams);
-    if (tiles.log) tiles.log->note(rect, seams, hidden);
+bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams, const OccludeeBox* box) {
+    const bool hidden = HWY_DYNAMIC_DISPATCH(isHiddenKernel)(tiles, rect, seams, box);
+    if (tiles.log) tiles.log->note(rect, seams, box, hidden);
     return hidden;
 }
 
-uint64_t openPixels(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64], Seams seams) {
-    const uint64_t open = HWY_DYNAMIC_DISPATCH(openPixelsKernel)(tiles, tile, window, nearest, seams);
-    if (tiles.log) tiles.log->note(tile, window, nearest, seams, open);
+uint64_t openPixels(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64], Seams seams,
+                    const OccludeeBox* box) {
+    const uint64_t open = HWY_DYNAMIC_DISPATCH(openPixelsKernel)(tiles, tile, window, nearest, seams, box);
+    if (tiles.log) tiles.log->note(tile, window, nearest, seams, box, open);
     return open;
 }
 

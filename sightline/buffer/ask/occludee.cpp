@@ -76,7 +76,8 @@ HWY_INLINE float nearestOver(const OccludeePolygon& polygon, const PixelRect& ov
 /// hide it; stops when it returns false.
 /// @param inside  set if a row or a tile was looked at
 template <class Look>
-HWY_INLINE bool forOccludeeTiles(DepthTiles& tiles, const OccludeePolygon& polygon, bool& inside, Look look) {
+HWY_INLINE bool forOccludeeTiles(DepthTiles& tiles, const OccludeePolygon& polygon, const OccludeeBox* box,
+                                 bool& inside, Look look) {
     const PixelRect& rect = polygon.rect;
     const int32_t first = rect.x0 >> 3, last = rect.x1 >> 3, low = rect.y0 >> 3, high = rect.y1 >> 3;
     alignas(64) float nearest[64];
@@ -84,7 +85,7 @@ HWY_INLINE bool forOccludeeTiles(DepthTiles& tiles, const OccludeePolygon& polyg
         if (low < high && first < last) {
             PixelRect line{rect.x0, std::max(rect.y0, 8 * row), rect.x1, std::min(rect.y1, 8 * row + 7), 0};
             line.nearness = nearestOver(polygon, line);
-            if (isHidden(tiles, line, Seams::kLeave)) {
+            if (isHidden(tiles, line, Seams::kLeave, box)) {
                 inside = true;
                 continue;
             }
@@ -103,12 +104,12 @@ HWY_INLINE bool forOccludeeTiles(DepthTiles& tiles, const OccludeePolygon& polyg
     return true;
 }
 
-Cover lookAtKernel(DepthTiles& tiles, const OccludeePolygon& polygon) {
-    if (isHidden(tiles, polygon.rect, Seams::kLeave)) return Cover::kHidden;
+Cover lookAtKernel(DepthTiles& tiles, const OccludeePolygon& polygon, const OccludeeBox* box) {
+    if (isHidden(tiles, polygon.rect, Seams::kLeave, box)) return Cover::kHidden;
     bool undecided = false, inside = false;
     const bool closed = forOccludeeTiles(
-        tiles, polygon, inside, [&](uint32_t tile, uint64_t window, const float(&nearest)[64]) HWY_ATTR {
-            const uint64_t open = openPixels(tiles, tile, window, nearest, Seams::kLeave);
+        tiles, polygon, box, inside, [&](uint32_t tile, uint64_t window, const float(&nearest)[64]) HWY_ATTR {
+            const uint64_t open = openPixels(tiles, tile, window, nearest, Seams::kLeave, box);
             undecided |= open != 0;
             return !(open & ~undecidedSeams(tiles, tile));
         });
@@ -116,12 +117,12 @@ Cover lookAtKernel(DepthTiles& tiles, const OccludeePolygon& polygon) {
     return !closed ? Cover::kOpen : undecided ? Cover::kUndecided : Cover::kHidden;
 }
 
-bool resolveHiddenKernel(DepthTiles& tiles, const OccludeePolygon& polygon) {
+bool resolveHiddenKernel(DepthTiles& tiles, const OccludeePolygon& polygon, const OccludeeBox* box) {
     bool inside = false;
     return forOccludeeTiles(
-        tiles, polygon, inside, [&](uint32_t tile, uint64_t window, const float(&nearest)[64]) HWY_ATTR {
-            for (uint64_t open = openPixels(tiles, tile, window, nearest, Seams::kLeave); open; open &= open - 1)
-                if (openPixels(tiles, tile, open & -open, nearest, Seams::kResolve)) return false;
+        tiles, polygon, box, inside, [&](uint32_t tile, uint64_t window, const float(&nearest)[64]) HWY_ATTR {
+            for (uint64_t open = openPixels(tiles, tile, window, nearest, Seams::kLeave, box); open; open &= open - 1)
+                if (openPixels(tiles, tile, open & -open, nearest, Seams::kResolve, box)) return false;
             return true;
         });
 }
@@ -262,17 +263,17 @@ uint64_t occludeePixels(const OccludeePolygon& polygon, int32_t column, int32_t 
     return HWY_DYNAMIC_DISPATCH(occludeePixelsKernel)(polygon, column, row, nearest);
 }
 
-Cover lookAt(DepthTiles& tiles, const OccludeePolygon& polygon) {
-    return HWY_DYNAMIC_DISPATCH(lookAtKernel)(tiles, polygon);
+Cover lookAt(DepthTiles& tiles, const OccludeePolygon& polygon, const OccludeeBox* box) {
+    return HWY_DYNAMIC_DISPATCH(lookAtKernel)(tiles, polygon, box);
 }
 
-bool resolveHidden(DepthTiles& tiles, const OccludeePolygon& polygon) {
-    return HWY_DYNAMIC_DISPATCH(resolveHiddenKernel)(tiles, polygon);
+bool resolveHidden(DepthTiles& tiles, const OccludeePolygon& polygon, const OccludeeBox* box) {
+    return HWY_DYNAMIC_DISPATCH(resolveHiddenKernel)(tiles, polygon, box);
 }
 
-bool isPolygonHidden(DepthTiles& tiles, const OccludeePolygon& polygon) {
-    const Cover cover = lookAt(tiles, polygon);
-    return cover == Cover::kUndecided ? resolveHidden(tiles, polygon) : cover != Cover::kOpen;
+bool isPolygonHidden(DepthTiles& tiles, const OccludeePolygon& polygon, const OccludeeBox* box) {
+    const Cover cover = lookAt(tiles, polygon, box);
+    return cover == Cover::kUndecided ? resolveHidden(tiles, polygon, box) : cover != Cover::kOpen;
 }
 
 void projectOccludee(const Screen& object, const float* x, const float* y, const float* z, uint32_t count,

@@ -57,13 +57,14 @@ enum class Cover : uint8_t {
 
 /// Looks at a polygon without resolving anything: its rectangle first, then rows of tiles, then tile by tile; ends with
 /// the first pixel that is open for good.
-Cover lookAt(DepthTiles& tiles, const OccludeePolygon& polygon);
+/// @param box  that holds the polygon, if one is known: then planes hide it, too
+Cover lookAt(DepthTiles& tiles, const OccludeePolygon& polygon, const OccludeeBox* box = nullptr);
 
 /// Whether the tiles surely hide it. Resolves one seam pixel after another, and ends with the first that stays open.
-bool isPolygonHidden(DepthTiles& tiles, const OccludeePolygon& polygon);
+bool isPolygonHidden(DepthTiles& tiles, const OccludeePolygon& polygon, const OccludeeBox* box = nullptr);
 
 /// The second half of isPolygonHidden(), for a polygon that lookAt() left undecided.
-bool resolveHidden(DepthTiles& tiles, const OccludeePolygon& polygon);
+bool resolveHidden(DepthTiles& tiles, const OccludeePolygon& polygon, const OccludeeBox* box = nullptr);
 
 /// Where the vertices of a cluster lie. Before the near plane x is NaN; and d is kBehind, where that is sure.
 struct OccludeeVertices {

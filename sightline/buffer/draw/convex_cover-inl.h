@@ -9,6 +9,7 @@
 
 #include <bit>
 
+#include "sightline/buffer/covers.h"
 #include "sightline/buffer/draw/convex_outline-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -138,6 +139,13 @@ struct ConvexCover {
         }
         return index;
     }
+    /// The planes that cover a tile: the one that says it all there, or all of them.
+    HWY_INLINE PlaneSet planesOf(int alone) {
+        if (alone >= 0 || depth.count == 0) return PlaneSet(nameOf(alone));
+        PlaneSet out;
+        for (int k = 0; k < depth.count; ++k) out.add(nameOf(k));
+        return out;
+    }
     inline void coverByPlanes(uint32_t tile, uint64_t mask, int alone);
 };
 
@@ -162,6 +170,8 @@ HWY_INLINE void ConvexCover::coverTile(int32_t column, int32_t row, uint32_t til
     if (covered) {
         int alone;
         const float z = depth.in(p.column0 + column, p.row0 + row, alone);
+        if (kSeams && depth.count > 0 && (alone < 0 || covered != ~uint64_t{0}))
+            noteCover(tiles, tile, covered, planesOf(alone));
         const double slope = depth.count == 0 ? 0.0 : alone < 0 ? 1e300 : depth.tilt[alone];
         const bool sloped = kSeams && tiles.detail == Detail::kFull && 8.0 * slope > 0x1p-9 * std::abs(z);
         if (covered == ~uint64_t{0} && (alone >= 0 || !sloped)) coverWhole(tiles, tile, z, nameOf(alone));
@@ -206,11 +216,14 @@ inline void ConvexCover::coverRun(int32_t column, int32_t row, int32_t count, ui
         }
         if (depth.count == 0) least = hn::Set(d, depth.floor);
         const auto mixed = hn::Gt(most, others);
+        const auto within = hn::FirstN(d, static_cast<size_t>(count - i));
+        if (depth.count > 1)
+            for (uint64_t bits = bitsFromMask(d, hn::And(within, mixed)); bits; bits &= bits - 1)
+                noteCover(tiles, tile + static_cast<uint32_t>(i + std::countr_zero(bits)), ~uint64_t{0}, planesOf(-1));
         float* base = tiles.base.data() + tile + i;
-        const auto wanted = hn::FirstN(d, static_cast<size_t>(count - i));
-        auto better = hn::And(wanted, hn::Gt(least, hn::LoadU(d, base)));
+        auto better = hn::And(within, hn::Gt(least, hn::LoadU(d, base)));
         if (tiles.detail == Detail::kFull && depth.count > 1) {
-            for (uint64_t bits = bitsFromMask(d, hn::And(wanted, mixed)); bits; bits &= bits - 1)
+            for (uint64_t bits = bitsFromMask(d, hn::And(within, mixed)); bits; bits &= bits - 1)
                 coverByPlanes(tile + static_cast<uint32_t>(i + std::countr_zero(bits)), ~uint64_t{0}, -1);
             better = hn::AndNot(mixed, better);
         }

@@ -48,8 +48,9 @@ struct Patch {
     double depth_error;     ///< bound on the error of a corner's nearness
     float nearest = 0;      ///< no point of it is nearer
     int32_t column0 = 0, row0 = 0, columns = 0, rows = 0;  ///< [tiles]
-    uint32_t pitch = 0;  ///< tiles from one row of the scratch to the next, a multiple of 16
-    uint32_t slots = 0;  ///< in use
+    uint32_t pitch = 0;      ///< tiles from one row of the scratch to the next, a multiple of 16
+    uint32_t slots = 0;      ///< in use
+    size_t first_plane = 0;  ///< of its own, in DepthTiles::planes
     /// What lies beside these rows and columns does not matter; on their left, only where the winding number changes.
     int32_t open_low = 0, open_high = 0, open_first = 0, open_last = 0;  ///< [tiles]
 };
@@ -108,6 +109,7 @@ inline bool beginPatch(Patch& patch, const Extent& extent) {
     patch.rows = tileOf(extent.y1 + e, 0, tiles.height) - patch.row0 + 1;
     patch.pitch = static_cast<uint32_t>(patch.columns + 15) / 16 * 16;
     patch.slots = 0;
+    patch.first_plane = tiles.planes.size();
     const double near = extent.nearest + std::abs(extent.nearest) * 0x1p-22 + patch.depth_error;
     patch.nearest = static_cast<float>(near + std::abs(near) * 0x1p-22);
     DepthTiles::Scratch& scratch = tiles.scratch;
@@ -115,6 +117,7 @@ inline bool beginPatch(Patch& patch, const Extent& extent) {
     if (scratch.slot.size() < count + DepthTiles::kBeyond) {
         scratch.z.resize(count + DepthTiles::kBeyond);
         scratch.plane.resize(count + DepthTiles::kBeyond);
+        scratch.second_plane.resize(count + DepthTiles::kBeyond);
         scratch.slot.resize(count + DepthTiles::kBeyond);
     }
     if (scratch.first.size() < static_cast<size_t>(patch.rows)) {
@@ -124,6 +127,7 @@ inline bool beginPatch(Patch& patch, const Extent& extent) {
     if (!openColumns(patch)) return false;
     std::fill_n(scratch.z.data(), count, std::numeric_limits<float>::infinity());
     std::fill_n(scratch.plane.data(), count, DepthTiles::kNone);
+    std::fill_n(scratch.second_plane.data(), count, DepthTiles::kNone);
     std::fill_n(scratch.slot.data(), count, DepthTiles::kNone);
     return true;
 }

@@ -14,6 +14,11 @@ HWY_BEFORE_NAMESPACE();
 namespace sightline {
 namespace HWY_NAMESPACE {
 
+/// The planes that a patch's polygons lie on in a tile, by the scratch; none if they are too many, or one has none.
+HWY_INLINE PlaneSet planesAt(const DepthTiles::Scratch& scratch, size_t at) {
+    return scratch.plane[at] == DepthTiles::kNone ? PlaneSet() : PlaneSet(scratch.plane[at], scratch.second_plane[at]);
+}
+
 /// Covers whole tiles of a row that no open edge meets.
 /// @param tile   the first
 /// @param at     its place in the scratch
@@ -27,8 +32,15 @@ HWY_INLINE void coverRun(DepthTiles& tiles, uint32_t tile, size_t at, uint32_t c
         const auto better = hn::And(hn::And(hn::FirstN(d, count - i), hn::Lt(z, none)), hn::Gt(z, hn::LoadU(d, base)));
         if (hn::AllFalse(d, better)) continue;
         hn::BlendedStore(z, better, d, base);
-        hn::BlendedStore(hn::LoadU(u, tiles.scratch.plane.data() + at + i), hn::RebindMask(u, better), u,
-                         tiles.plane.data() + tile + i);
+        const auto none_u = hn::Set(u, DepthTiles::kNone);
+        const auto better_u = hn::RebindMask(u, better);
+        const auto several = hn::Ne(hn::LoadU(u, tiles.scratch.second_plane.data() + at + i), none_u);
+        const auto alone = hn::IfThenElse(several, none_u, hn::LoadU(u, tiles.scratch.plane.data() + at + i));
+        hn::BlendedStore(alone, better_u, u, tiles.plane.data() + tile + i);
+        for (uint64_t bits = bitsFromMask(u, hn::And(better_u, several)); bits; bits &= bits - 1) {
+            const uint32_t k = i + static_cast<uint32_t>(std::countr_zero(bits));
+            noteCover(tiles, tile + k, ~uint64_t{0}, planesAt(tiles.scratch, at + k));
+        }
         float* layer = tiles.layer.data() + tile + i;
         const auto outdone = hn::And(better, hn::Le(hn::LoadU(d, layer), z));
         hn::BlendedStore(hn::Set(d, DepthTiles::kOpen), outdone, d, layer);
@@ -138,7 +150,9 @@ HWY_INLINE Wound windPixels(RowWinding& row, const uint8_t* changes) {
 #endif
 
 /// Covers pixels of a tile, where it pays each at its own depth: where one polygon alone slopes through the tile.
-HWY_INLINE void coverPart(DepthTiles& tiles, uint32_t tile, uint64_t mask, float z, uint32_t plane) {
+HWY_INLINE void coverPart(DepthTiles& tiles, uint32_t tile, uint64_t mask, float z, const PlaneSet& planes) {
+    noteCover(tiles, tile, mask, planes);
+    const uint32_t plane = planes.alone();
     if (tiles.detail == Detail::kFull && plane != DepthTiles::kNone) {
         const BufferPlane& slope = tiles.planes[plane];
         if (8.0 * (std::abs(slope.dx) + std::abs(slope.dy)) > 0x1p-9 * std::abs(z))
@@ -156,8 +170,10 @@ inline void coverBetween(Patch& patch, uint32_t row, uint32_t first, uint32_t en
     const size_t at = size_t{patch.pitch} * row;
     if (inside == ~uint64_t{0}) return coverRun(tiles, tile + first, at + first, end - first);
     for (uint32_t column = first; column < end; ++column)
-        if (const float z = tiles.scratch.z[at + column]; z < std::numeric_limits<float>::infinity())
+        if (const float z = tiles.scratch.z[at + column]; z < std::numeric_limits<float>::infinity()) {
+            noteCover(tiles, tile + column, inside, planesAt(tiles.scratch, at + column));
             coverPixels(tiles, tile + column, inside, z);
+        }
 }
 
 /// Which of sixteen tiles have a slot.
@@ -197,8 +213,13 @@ inline bool coverPatch(Patch& patch, uint32_t source) {
                 const uint64_t touched = scratch.touched[slot], covered = wound.pixels & ~touched;
                 const float z = scratch.z[at];
                 if (covered && z < std::numeric_limits<float>::infinity()) {
-                    if (covered == ~uint64_t{0}) coverWhole(tiles, tile, z, scratch.plane[at]);
-                    else coverPart(tiles, tile, covered, z, scratch.plane[at]);
+                    const PlaneSet planes = planesAt(scratch, at);
+                    if (covered != ~uint64_t{0}) {
+                        coverPart(tiles, tile, covered, z, planes);
+                    } else {
+                        if (planes.alone() == DepthTiles::kNone) noteCover(tiles, tile, covered, planes);
+                        coverWhole(tiles, tile, z, planes.alone());
+                    }
                 }
                 if (!touched) continue;
                 if (const uint64_t seam = notYetNearer(tiles, tile, touched, patch.nearest)) {

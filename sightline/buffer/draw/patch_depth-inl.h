@@ -7,6 +7,7 @@
 #define SIGHTLINE_BUFFER_DRAW_PATCH_DEPTH_INL_H
 #endif
 
+#include "sightline/buffer/covers.h"
 #include "sightline/buffer/draw/patch-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -151,6 +152,22 @@ HWY_INLINE void spansOfRows(const Patch& patch, const PolygonSides& sides, int t
     }
 }
 
+/// Names a plane as one of those that the polygons in sixteen tiles lie on.
+/// @param fresh   no polygon was there before
+/// @param wanted  the tiles that the polygon meets
+template <class U>
+HWY_INLINE void namePlane(U u, uint32_t index, hn::Mask<U> fresh, hn::Mask<U> wanted, uint32_t* first,
+                          uint32_t* second) {
+    const auto none = hn::Set(u, DepthTiles::kNone), name = hn::Set(u, index);
+    const auto one = hn::LoadU(u, first), two = hn::LoadU(u, second);
+    const auto known = hn::Or(hn::Eq(one, none), hn::Or(hn::Eq(one, name), hn::Eq(two, name)));
+    const auto room = hn::Eq(two, none);  // else there are too many
+    const auto new_one = hn::IfThenElse(fresh, name, hn::IfThenElse(hn::Or(known, room), one, none));
+    const auto new_two = hn::IfThenElse(fresh, none, hn::IfThenElse(known, two, hn::IfThenElse(room, name, none)));
+    hn::BlendedStore(new_one, wanted, u, first);
+    hn::BlendedStore(new_two, wanted, u, second);
+}
+
 /// Takes a polygon's part in a row of tiles: those that lie wholly inside it are covered by it alone; in the scratch the
 /// others' depth is lowered to its own.
 HWY_INLINE void lowerRow(Patch& patch, const BufferPlane& plane, uint32_t index, int32_t row, int32_t first,
@@ -176,9 +193,8 @@ HWY_INLINE void lowerRow(Patch& patch, const BufferPlane& plane, uint32_t index,
         const auto depth = hn::Max(hn::Add(start, hn::Mul(step, hn::Iota(d, static_cast<float>(i)))), floor);
         const auto wanted = hn::FirstN(d, static_cast<size_t>(count - i));
         const auto old = hn::LoadU(d, z);
-        const auto index_or_none =
-            hn::IfThenElse(hn::RebindMask(u, hn::Eq(old, untouched)), hn::Set(u, index), hn::Set(u, DepthTiles::kNone));
-        hn::BlendedStore(index_or_none, hn::RebindMask(u, wanted), u, scratch.plane.data() + at + i);
+        namePlane(u, index, hn::RebindMask(u, hn::Eq(old, untouched)), hn::RebindMask(u, wanted),
+                  scratch.plane.data() + at + i, scratch.second_plane.data() + at + i);
         hn::BlendedStore(hn::Min(old, depth), wanted, d, z);
         const int32_t from = std::max(whole_first - first - i, 0), end = std::min(whole_last + 1 - first - i, lanes);
         if (from >= end) continue;
@@ -235,13 +251,23 @@ inline void addDepth(Patch& patch, const Corners& c, int turn) {
             for (int32_t column = c0; column <= c1; ++column) {
                 const size_t at = size_t{patch.pitch} * static_cast<size_t>(row) + static_cast<size_t>(column);
                 scratch.z[at] = std::min(scratch.z[at], farthest);
-                scratch.plane[at] = DepthTiles::kNone;
+                scratch.plane[at] = scratch.second_plane[at] = DepthTiles::kNone;
             }
         return;
     }
-    plane.floor = farthest;
-    const uint32_t index = static_cast<uint32_t>(patch.tiles.planes.size());
-    patch.tiles.planes.push_back(plane);
+    Array<BufferPlane>& planes = patch.tiles.planes;
+    uint32_t index =
+        findPlane(patch.tiles, c.x, c.y, c.d, c.count, static_cast<double>(plane.error), patch.first_plane, 8);
+    if (index == DepthTiles::kNone) {
+        plane.floor = farthest;
+        plane.error += static_cast<float>(kFlatEnough * std::max(std::abs(d0), std::abs(d1)));
+        index = static_cast<uint32_t>(planes.size());
+        planes.push_back(plane);
+    } else {
+        planes[index].floor = std::min(planes[index].floor, farthest);
+        plane = planes[index];
+        plane.floor = farthest;
+    }
     const bool large = c1 - c0 > 1 && r1 - r0 > 1;
     const int surely = large && isConvex(c, turn, patch.reach) ? turn : 0;
     PolygonSides sides;

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/buffer/covers.h"
 #include "sightline/buffer/seam/seam.h"
 #include "sightline/buffer/seam/union.h"
 
@@ -115,6 +116,7 @@ struct Joiner {
     Side sides[4 * kMaxPolygons];
     int partner[4 * kMaxPolygons];
     int piece_count = 0, side_count = 0;
+    int best_group = -1;  ///< the nearest that covers the pixel
 
     /// Lists the sides that meet the pixel. A piece with an open one there cannot help.
     void collectSides(double x, double y) {
@@ -169,6 +171,8 @@ struct Joiner {
         return p;
     }
 
+    bool isIn(int p, int group) { return pieces[p].alive && rootOf(p) == group; }
+
     void joinGroups() {
         for (int p = 0; p < piece_count; ++p) pieces[p].group = p;
         for (int i = 0; i < side_count; ++i)
@@ -183,7 +187,7 @@ struct Joiner {
             int winding = 0;
             bool sure = true;
             for (int p = 0; p < piece_count && sure; ++p) {
-                if (!pieces[p].alive || rootOf(p) != group) continue;
+                if (!isIn(p, group)) continue;
                 const int w = windingAt(pieces[p], x + place[0], y + place[1]);
                 sure = w != kUnsure;
                 winding += w;
@@ -203,8 +207,8 @@ struct Joiner {
             if (!pieces[g].alive || rootOf(g) != g || !holdsPixel(g, x, y)) continue;
             double farthest = std::numeric_limits<double>::infinity();
             for (int p = 0; p < piece_count; ++p)
-                if (pieces[p].alive && rootOf(p) == g)
-                    farthest = std::min(farthest, farthestIn(pieces[p].polygon->raster, x, y));
+                if (isIn(p, g)) farthest = std::min(farthest, farthestIn(pieces[p].polygon->raster, x, y));
+            if (farthest > best) best_group = g;
             best = std::max(best, farthest);
         }
         return best;
@@ -334,6 +338,8 @@ private:
         if (united.used == 1 && tiles_.gap == 0 && united.nearness > before_ && lone_[ranked[united.last].place])
             return -std::numeric_limits<double>::infinity();
         tiles_.closed_gaps += united.bridged;
+        if (united.nearness > -std::numeric_limits<double>::infinity())
+            noteCoverBy(count, [&](int i) { return united.took >> i & 1 ? ranked[i].place : -1; });
         return united.nearness;
     }
 
@@ -357,7 +363,21 @@ private:
             setSideKeys(tiles_, polygon);
             loadPiece(tiles_, polygon, joiner.pieces[joiner.piece_count]);
         }
-        return joiner.resolve(tiles_, x_, y_);
+        const double nearness = joiner.resolve(tiles_, x_, y_);
+        if (joiner.best_group >= 0)
+            noteCoverBy(count_, [&](int p) { return joiner.isIn(p, joiner.best_group) ? p : -1; });
+        return nearness;
+    }
+
+    /// Notes that some of the polygons cover the pixel between them. Where gaps are closed they do not.
+    /// @param placeOf  of one of them its place in found_, or -1
+    template <class PlaceOf>
+    void noteCoverBy(int count, PlaceOf placeOf) const {
+        if (tiles_.gap > 0) return;
+        PlaneSet planes;
+        for (int i = 0; i < count; ++i)
+            if (const int place = placeOf(i); place >= 0 && !planes.add(seamPlane(tiles_, found_[place]))) return;
+        noteCover(tiles_, tile_, pixel_, planes);
     }
 
     DepthTiles& tiles_;

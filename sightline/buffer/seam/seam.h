@@ -13,6 +13,9 @@ namespace sightline {
 /// @param count  gets 0 to 2: none if it is turned away, two triangles of a quadrangle that is not flat
 void seamPolygon(DepthTiles& tiles, uint32_t drawn, uint32_t polygon, uint32_t& first, uint32_t& count);
 
+/// The plane of a seam polygon, in DepthTiles::planes; made at the first call.
+uint32_t seamPlane(DepthTiles& tiles, uint32_t polygon);
+
 /// Where the boxes of a drawn cluster's own polygons begin in DepthTiles::boxes; made at the first call.
 /// @param count  gets how many polygons there are
 uint32_t seamBoxes(DepthTiles& tiles, uint32_t drawn, uint32_t& count);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "sightline/buffer/near_clip.h"
+#include "sightline/buffer/covers.h"
 #include "sightline/buffer/seam/seam.h"
 
 namespace sightline {
@@ -189,6 +190,31 @@ void seamPolygon(DepthTiles& tiles, uint32_t drawn, uint32_t polygon, uint32_t& 
     }
     first = slot / 4;
     count = slot % 4;
+}
+
+uint32_t seamPlane(DepthTiles& tiles, uint32_t polygon) {
+    SeamPolygon& of = tiles.polygons[polygon];
+    if (of.plane != DepthTiles::kNone) return of.plane;
+    const RasterPolygon& raster = of.raster;
+    BufferPlane plane{static_cast<double>(raster.farthest), 0, 0, raster.farthest, 0};  // it lies no farther
+    if (raster.planar) {
+        const double size = std::max(std::abs(raster.farthest), std::abs(raster.nearest));
+        const double error = static_cast<double>(raster.depth_error) + 0x1p-40 * size + 0x1p-48 * std::abs(raster.d0);
+        double x[ClippedPolygon::kMaxCorners], y[ClippedPolygon::kMaxCorners], d[ClippedPolygon::kMaxCorners];
+        for (int i = 0; i < of.corners; ++i) {
+            const size_t at = size_t{tiles.drawn[of.drawn].first_vertex} + of.vertex[i];
+            const bool whole = of.clipped == SeamPolygon::kWhole;
+            x[i] = whole ? tiles.px[at] : tiles.clipped[of.clipped].x[i];
+            y[i] = whole ? tiles.py[at] : tiles.clipped[of.clipped].y[i];
+            d[i] = whole ? tiles.pd[at] : tiles.clipped[of.clipped].d[i];
+        }
+        of.plane = findPlane(tiles, x, y, d, of.corners, error, 0, 24);
+        if (of.plane != DepthTiles::kNone) return of.plane;
+        plane = {raster.d0, raster.dx, raster.dy, raster.farthest, static_cast<float>(error + kFlatEnough * size)};
+    }
+    of.plane = static_cast<uint32_t>(tiles.planes.size());
+    tiles.planes.push_back(plane);
+    return of.plane;
 }
 
 uint32_t seamBoxes(DepthTiles& tiles, uint32_t drawn, uint32_t& count) {

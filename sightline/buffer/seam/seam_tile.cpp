@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/buffer/covers.h"
 #include "sightline/buffer/seam/seam.h"
 
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
@@ -41,8 +42,9 @@ uint64_t polygonsInKernel(const float* boxes, uint32_t count, const SeamRect& re
 /// Covers the pixels that two polygons with a shared side cover between them. A point of a pixel lies on one side or
 /// the other of the shared edge; if the pixel is inside all their other sides, the point is inside that polygon.
 /// @param pixels  those that matter; nothing is done about others, so that it does not matter when this is done
-void coverPair(DepthTiles& tiles, uint32_t tile, uint64_t pixels, const SeamPolygon& a, int side_a,
-               const SeamPolygon& b, int side_b) {
+/// @returns  the pixels that it has covered
+uint64_t coverPair(DepthTiles& tiles, uint32_t tile, uint64_t pixels, const SeamPolygon& a, int side_a,
+                   const SeamPolygon& b, int side_b) {
     const double x = 8.0 * (tile % tiles.stride) + 4.0, y = 8.0 * (tile / tiles.stride) + 4.0;
     struct Line {
         float a, b, c;
@@ -59,7 +61,7 @@ void coverPair(DepthTiles& tiles, uint32_t tile, uint64_t pixels, const SeamPoly
         }
         return true;
     };
-    if (!add(a.raster, side_a) || !add(b.raster, side_b)) return;
+    if (!add(a.raster, side_a) || !add(b.raster, side_b)) return 0;
     TilePlane planes[2];
     for (int i = 0; i < 2; ++i) {
         const RasterPolygon& p = i ? b.raster : a.raster;
@@ -90,6 +92,7 @@ void coverPair(DepthTiles& tiles, uint32_t tile, uint64_t pixels, const SeamPoly
     }
     covered &= pixels;
     if (covered) raiseClaims(tiles, tile, covered, depth);
+    return covered;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -142,7 +145,10 @@ void pairSeams(DepthTiles& tiles, uint32_t tile) {
             if (!findSharedSide(tiles, a, b, side_a, side_b)) continue;
             // Where the side does not meet the tile, one of them is alone there.
             if (std::abs(a.raster.edge[side_a].at(left + 4.0, bottom + 4.0)) > 4.0 + a.raster.slack) continue;
-            HWY_DYNAMIC_DISPATCH(coverPair)(tiles, tile, masks[i] & masks[j], a, side_a, b, side_b);
+            const uint64_t covered =
+                HWY_DYNAMIC_DISPATCH(coverPair)(tiles, tile, masks[i] & masks[j], a, side_a, b, side_b);
+            if (covered && !(tiles.gap > 0))
+                noteCover(tiles, tile, covered, PlaneSet(seamPlane(tiles, found[i]), seamPlane(tiles, found[j])));
         }
 }
 

@@ -173,6 +173,7 @@ PixelUnion subtractFromPixel(double x, double y, const UnionPiece* pieces, int c
         if (used) {
             farthest = std::min(farthest, pieces[p].farthest);
             ++out.used;
+            out.took |= uint32_t{1} << p;
             out.last = p;
         }
         if (rest.empty()) {

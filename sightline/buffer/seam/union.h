@@ -25,6 +25,7 @@ struct PixelUnion {
     bool bridged = false;  ///< gaps had to be closed
     int used = 0;          ///< pieces that took something away
     int last = -1;         ///< the last of them
+    uint32_t took = 0;     ///< bit per piece of them  [limit: 32 pieces]
 };
 
 /// Subtracts the pieces from the square of the pixel whose centre is given, in their order: away from the eye.

@@ -6,6 +6,8 @@
 #include <bit>
 
 #include "sightline/cull/shapes.h"
+#include "sightline/query/explain/trial.h"
+#include "sightline/stages/occlusion.h"
 
 namespace sightline::detail {
 namespace {
@@ -65,9 +67,22 @@ bool paint(const RecordedTraversal& from, uint32_t place, Look look, AskedPixels
     return painter.painted;
 }
 
+/// The box of an object that a look held against planes; it stands for those of its clusters.
+OccludeeBox boxFor(const RecordedTraversal& from, uint32_t place, Look look) {
+    const Frame& frame = from.frame;
+    if (look != Look::kBox) {
+        const ObjectRecord& object = frame.world->objectAt(place);
+        const OccludeePlace at = makeOccludeePlace(frame.screen, object.transform, object.bounds);
+        return OccludeeBox(boxAt(at, object.bounds).image());
+    }
+    const LeafAnswer leaf = askLeaf(*frame.world, place, frame.view, frame.screen);
+    return OccludeeBox(boxAt(frame.screen, boxOf(leaf.boxes, leaf.slot)).image());
+}
+
 }  // namespace
 
 void AskedPixels::run(const PixelRect& around) {
+    box.reset();
     rect = around;
     nearness.assign(static_cast<size_t>(rect.x1 - rect.x0 + 1) * static_cast<size_t>(rect.y1 - rect.y0 + 1),
                     rect.nearness);
@@ -77,6 +92,7 @@ bool AskedPixels::run(const RecordedTraversal& from, uint32_t place, Look look, 
     const PixelRect all{0, 0, static_cast<int32_t>(from.frame.screen.width) - 1,
                         static_cast<int32_t>(from.frame.screen.height) - 1, std::numeric_limits<float>::infinity()};
     run(around ? *around : all);
+    box = boxFor(from, place, look);
     if (look == Look::kBox) return around != nullptr;
     std::fill(nearness.begin(), nearness.end(), kNotAsked);
     if (paint(from, place, look, *this)) return true;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "sightline/query/recorded_traversal.h"
 
@@ -15,8 +16,9 @@ struct AskedPixels {
 
     explicit AskedPixels(Memory* memory) : nearness(memory) {}
 
-    PixelRect rect;         ///< holds them all
-    Array<float> nearness;  ///< per pixel of the rectangle; kNotAsked where nothing of the object can be
+    PixelRect rect;                  ///< holds them all
+    Array<float> nearness;           ///< per pixel of the rectangle; kNotAsked where nothing of the object can be
+    std::optional<OccludeeBox> box;  ///< that was held against planes
 
     /// @param x,y  inside `rect`
     float at(int32_t x, int32_t y) const {

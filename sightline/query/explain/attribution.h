@@ -17,10 +17,12 @@ struct PixelOwner {
     uint32_t owner = kNone;    ///< index into TraversalState::instances
     uint32_t toucher = kNone;  ///< the same
 
-    /// Whose the pixel is, for something that lies behind the given nearness.
-    uint32_t inFrontOf(float depth) const {
+    /// Who hides the pixel from something that is hidden there, and of which no point is nearer than the given nearness.
+    /// What lies behind planes, and not behind the depths of the pixel, is given to the nearest.
+    uint32_t hiderOf(float depth) const {
         if (owner != kNone && nearness > depth) return owner;
-        return toucher != kNone && touching > depth ? toucher : kNone;
+        if (toucher != kNone && touching > depth) return toucher;
+        return owner != kNone ? owner : toucher;
     }
 };
 

@@ -64,7 +64,7 @@ void CreditBook::Impl::share(const detail::TraversalRecord::Cull& cull) {
     for (int32_t y = rect.y0; y <= rect.y1; ++y)
         for (int32_t x = rect.x0; x <= rect.x1; ++x) {
             if (asked.at(x, y) == detail::AskedPixels::kNotAsked) continue;
-            const uint32_t instance = owners.at(x, y).inFrontOf(asked.at(x, y));
+            const uint32_t instance = owners.at(x, y).hiderOf(asked.at(x, y));
             if (instance == detail::PixelOwner::kNone) continue;
             if (pixels[instance]++ == 0) met.push_back(instance);
             ++owned;

@@ -63,7 +63,7 @@ void HiderSearch::collect(const SnapshotState& state, uint32_t item, const Trial
     for (int32_t y = rect.y0; y <= rect.y1; ++y)
         for (int32_t x = rect.x0; x <= rect.x1; ++x) {
             if (asked.at(x, y) == AskedPixels::kNotAsked) continue;
-            const uint32_t instance = owners.at(x, y).inFrontOf(asked.at(x, y));
+            const uint32_t instance = owners.at(x, y).hiderOf(asked.at(x, y));
             if (instance != PixelOwner::kNone) ++pixels[instance];
         }
     candidates.clear();

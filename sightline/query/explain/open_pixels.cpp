@@ -8,8 +8,10 @@
 namespace sightline::detail {
 namespace {
 
-bool isOpen(DepthTiles& tiles, int32_t x, int32_t y, float nearness) {
-    return nearness != AskedPixels::kNotAsked && !isHidden(tiles, {x, y, x, y, nearness});
+bool isOpen(DepthTiles& tiles, const AskedPixels& asked, int32_t x, int32_t y) {
+    const float nearness = asked.at(x, y);
+    return nearness != AskedPixels::kNotAsked &&
+           !isHidden(tiles, {x, y, x, y, nearness}, Seams::kResolve, asked.box ? &*asked.box : nullptr);
 }
 
 bool isCovered(DepthTiles& tiles, int32_t x, int32_t y) {
@@ -33,8 +35,7 @@ void OpenPixels::run(DepthTiles& tiles, const AskedPixels& asked) {
     };
     for (int32_t row = 0; row < height; ++row)
         for (int32_t column = 0; column < width; ++column)
-            if (isOpen(tiles, rect.x0 + column, rect.y0 + row, asked.at(rect.x0 + column, rect.y0 + row)))
-                at(column, row) = ~0u - 1, ++open;
+            if (isOpen(tiles, asked, rect.x0 + column, rect.y0 + row)) at(column, row) = ~0u - 1, ++open;
     // Steps along rows and columns; what lies outside of the rectangle is not open.
     const auto step = [&](int32_t column, int32_t row, int32_t by) {
         uint32_t& here = at(column, row);
@@ -54,7 +55,7 @@ void OpenPixels::run(DepthTiles& tiles, const AskedPixels& asked) {
             const uint32_t here = at(column, row);
             const int32_t off = std::abs(2 * column + 1 - width) + std::abs(2 * row + 1 - height);
             if (here == 0 || here < deepest || (here == deepest && off >= farthest)) continue;
-            if (!isOpen(tiles, rect.x0 + column, rect.y0 + row, asked.at(rect.x0 + column, rect.y0 + row))) continue;
+            if (!isOpen(tiles, asked, rect.x0 + column, rect.y0 + row)) continue;
             deepest = here;
             farthest = off;
             x = rect.x0 + column;

@@ -123,7 +123,8 @@ void putOccluders(Array<char> (&sections)[recording_file::kSectionCount], const 
 
 void putAsked(Array<char> (&sections)[recording_file::kSectionCount], const TileLog& asked) {
     using namespace recording_file;
-    ByteWriter calls(sections[kCalls]), rects(sections[kRects]), tiles(sections[kTiles]), nearest(sections[kNearest]);
+    ByteWriter calls(sections[kCalls]), rects(sections[kRects]), tiles(sections[kTiles]), nearest(sections[kNearest]),
+        boxes(sections[kBoxes]);
     for (const TileLog::Call call : asked.calls) calls.put(static_cast<uint8_t>(call));
     const auto flags = [](Seams seams, bool hidden) {
         return static_cast<uint8_t>((seams == Seams::kLeave ? 1 : 0) | (hidden ? 2 : 0));
@@ -132,15 +133,20 @@ void putAsked(Array<char> (&sections)[recording_file::kSectionCount], const Tile
         for (const int32_t value : {test.rect.x0, test.rect.y0, test.rect.x1, test.rect.y1})
             rects.put(static_cast<uint16_t>(value));
         rects.put(test.rect.nearness);
+        rects.put(test.box);
         rects.put(flags(test.seams, test.hidden));
     }
     for (const TileLog::TileTest& test : asked.tiles) {
         tiles.put(test.tile);
         tiles.put(test.window);
         tiles.put(test.open);
+        tiles.put(test.box);
         tiles.put(flags(test.seams, false));
     }
     for (const float value : asked.nearest) nearest.put(value);
+    for (const OccludeeBox::Image& box : asked.boxes)
+        for (const double(*row)[4] : {&box.row[0], &box.row[1], &box.row[2], &box.row[3], &box.error})
+            for (const double value : *row) boxes.put(value);
 }
 
 }  // namespace
@@ -171,10 +177,10 @@ Result<OcclusionRecording> recordOcclusion(const Snapshot& now, const View& view
 
 Array<char> recordingBytes(const OcclusionRecording& recording, Memory* memory) {
     using namespace recording_file;
-    Array<char> sections[kSectionCount] = {Array<char>(memory), Array<char>(memory), Array<char>(memory),
-                                           Array<char>(memory), Array<char>(memory), Array<char>(memory),
-                                           Array<char>(memory), Array<char>(memory), Array<char>(memory),
-                                           Array<char>(memory), Array<char>(memory), Array<char>(memory)};
+    Array<char> sections[kSectionCount] = {
+        Array<char>(memory), Array<char>(memory), Array<char>(memory), Array<char>(memory), Array<char>(memory),
+        Array<char>(memory), Array<char>(memory), Array<char>(memory), Array<char>(memory), Array<char>(memory),
+        Array<char>(memory), Array<char>(memory), Array<char>(memory)};
     ByteWriter view(sections[kView]), instances(sections[kInstances]), draws(sections[kDraws]);
     put(view, recording.view.view);
     put(view, recording.view.projection);

@@ -61,7 +61,7 @@ namespace recording_file {
 /// The file: magic, version, number of sections, contentHash() of all that follows; the sizes of the sections in their
 /// order; the sections. Numbers are little-endian, sizes have 64 bits.
 inline constexpr char kMagic[16] = {'s', 'i', 'g', 'h', 't', 'l', 'i', 'n', 'e', ' ', 'f', 'r', 'a', 'm', 'e', '\n'};
-inline constexpr uint32_t kVersion = 2;  ///< 1 had no detail of the buffer in its view
+inline constexpr uint32_t kVersion = 3;  ///< 1 had no detail of the buffer in its view, 2 no boxes
 inline constexpr size_t kHashAt = 24;    ///< [bytes]
 inline constexpr size_t kHashedAt = 32;  ///< what the hash is over begins here  [bytes]
 
@@ -78,14 +78,15 @@ enum Section : uint32_t {
     kRects,
     kTiles,
     kNearest,
+    kBoxes,
     kSectionCount
 };
-inline constexpr const char* kSectionNames[kSectionCount] = {"view",     "occluders",  "clusters",  "vertices",
-                                                             "polygons", "edges",      "instances", "calls",
-                                                             "draws",    "rectangles", "tiles",     "nearnesses"};
+inline constexpr const char* kSectionNames[kSectionCount] = {
+    "view",  "occluders", "clusters",   "vertices", "polygons",   "edges", "instances",
+    "calls", "draws",     "rectangles", "tiles",    "nearnesses", "boxes"};
 /// Of one record.  [bytes]
 inline constexpr uint64_t kRecordBytes[kSectionCount] = {
-    2 * 128 + 4 + 4 + 8 + 4 + 4, 40, 52, 12, 5, 4, 132, 1, 8, 13, 21, 4};
+    2 * 128 + 4 + 4 + 8 + 4 + 4, 40, 52, 12, 5, 4, 132, 1, 8, 17, 25, 4, 160};
 
 }  // namespace recording_file
 

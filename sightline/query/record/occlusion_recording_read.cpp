@@ -254,6 +254,7 @@ private:
                 return (void)wrong("not as many records as calls", sections_[kinds[i]].at());
         readDraws();
         const Screen screen = makeScreen(out_.view, out_.settings.occlusion_size);
+        if (good()) readBoxes();
         if (good()) readRects(screen);
         if (good()) readTiles(screen);
     }
@@ -272,6 +273,27 @@ private:
         }
     }
 
+    void readBoxes() {
+        ByteCursor& from = sections_[kBoxes];
+        out_.asked.boxes.reserve(records(kBoxes));
+        while (from.left() > 0) {
+            OccludeeBox::Image& box = out_.asked.boxes.emplace_back();
+            for (double(*row)[4] : {&box.row[0], &box.row[1], &box.row[2], &box.row[3], &box.error})
+                for (double& value : *row) {
+                    const uint64_t at = from.at();
+                    value = from.take<double>();
+                    if (!std::isfinite(value)) return (void)wrong("a number that is not finite", at);
+                }
+        }
+    }
+
+    bool takeBoxIndex(ByteCursor& from, uint32_t& index) {
+        const uint64_t at = from.at();
+        index = from.take<uint32_t>();
+        return index == TileLog::kNoBox || index < out_.asked.boxes.size() ||
+               wrong("a test of a box that there is not", at);
+    }
+
     void readRects(const Screen& screen) {
         ByteCursor& from = sections_[kRects];
         out_.asked.rects.reserve(records(kRects));
@@ -281,6 +303,7 @@ private:
             PixelRect& rect = test.rect;
             for (int32_t* value : {&rect.x0, &rect.y0, &rect.x1, &rect.y1}) *value = from.take<uint16_t>();
             rect.nearness = from.take<float>();
+            if (!takeBoxIndex(from, test.box)) return;
             const uint8_t flags = from.take<uint8_t>();
             if (rect.x0 > rect.x1 || rect.y0 > rect.y1 || rect.x1 >= static_cast<int32_t>(screen.width) ||
                 rect.y1 >= static_cast<int32_t>(screen.height) || std::isnan(rect.nearness) || flags > 3)
@@ -300,6 +323,7 @@ private:
             test.tile = from.take<uint32_t>();
             test.window = from.take<uint64_t>();
             test.open = from.take<uint64_t>();
+            if (!takeBoxIndex(from, test.box)) return;
             const uint8_t flags = from.take<uint8_t>();
             test.seams = flags & 1 ? Seams::kLeave : Seams::kResolve;
             if (test.tile >= screen.width / 8 * (screen.height / 8) || flags > 1 || (test.open & ~test.window))

@@ -62,6 +62,14 @@ ReplayAnswer OcclusionReplay::run() {
         if (same) return;
         if (answer.differences++ == 0) answer.different = call;
     };
+    // A box knows what it was told of planes, so it stays while the tests that follow ask about it.
+    OccludeeBox box{OccludeeBox::Image()};
+    uint32_t known = TileLog::kNoBox;
+    const auto boxAt = [&](uint32_t index) -> const OccludeeBox* {
+        if (index == TileLog::kNoBox) return nullptr;
+        if (index != known) box = OccludeeBox(asked.boxes[known = index]);
+        return &box;
+    };
     const auto start = Clock::now();
     clearTiles();
     for (uint64_t call = 0; call < asked.calls.size(); ++call) {
@@ -69,7 +77,7 @@ ReplayAnswer OcclusionReplay::run() {
             drawOne(draw++, answer);
         } else if (asked.calls[call] == TileLog::Call::kRect) {
             const TileLog::RectTest& test = asked.rects[rect++];
-            const bool hidden = isHidden(tiles_, test.rect, test.seams);
+            const bool hidden = isHidden(tiles_, test.rect, test.seams, boxAt(test.box));
             answer.hidden += hidden;
             compare(hidden == test.hidden, call);
         } else {
@@ -77,7 +85,7 @@ ReplayAnswer OcclusionReplay::run() {
             for (uint64_t left = test.window; left; left &= left - 1)
                 nearest[std::countr_zero(left)] = asked.nearest[nearness++];
             const uint32_t place = test.tile / tiles_.columns * tiles_.stride + test.tile % tiles_.columns;
-            compare(openPixels(tiles_, place, test.window, nearest, test.seams) == test.open, call);
+            compare(openPixels(tiles_, place, test.window, nearest, test.seams, boxAt(test.box)) == test.open, call);
         }
     }
     answer.nanoseconds = since(start);
