@@ -289,7 +289,7 @@ SceneStream readSceneStream(const ByteSource& source, uint64_t most,
     try {
         StreamRecords records(source, most);
         readAll(records, progress, out);
-        return out;
+        if (out.end == SceneStream::End::kWhole) return out;
     } catch (const Cut&) { out.end = SceneStream::End::kCut; } catch (const Large&) {
         out.end = SceneStream::End::kLarge;
     } catch (const Broken& broken) {
