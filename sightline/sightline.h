@@ -6,6 +6,7 @@
 #pragma once
 
 // Asking: a World, its Snapshots, a View, and a Query, which answers with a VisibleSet.
+#include "sightline/geom/clip_space.h"     // a View from the matrices of Vulkan, Direct3D, reversed depth, either hand
 #include "sightline/geom/mirror.h"         // a View of what a flat mirror shows
 #include "sightline/geom/view.h"           // a View: camera, viewport, and what is declared of the frame
 #include "sightline/geom/view_limits.h"    // sections and windows of a view, from boxes and rectangles

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "sightline/frame/image_part.h"
-#include "sightline/geom/depth_order.h"
 
 namespace sightline::detail {
 
@@ -21,7 +20,8 @@ void Frame::begin(const SnapshotState* now, const View& from, const QuerySetting
     volume_owners = {};
     sizes.clear();
     objects = 0;
-    usable = isUsable(view) && runsOutward(view);
+    problem = problemOf(view);
+    usable = problem == ViewProblem::kNone;
     if (usable) {
         frustum = makeFrustum(view);
         limits = makeViewLimits(view, frustum.eye);

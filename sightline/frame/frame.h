@@ -25,8 +25,9 @@ struct Frame {
     const SnapshotState* world = nullptr;  ///< its state; null: there is none
     View view;
     QuerySettings settings;
-    uint32_t stages = 0;      ///< bits of Stage: those in use
-    bool usable = false;      ///< else nothing can be proved hidden: all is kept
+    uint32_t stages = 0;  ///< bits of Stage: those in use
+    ViewProblem problem = ViewProblem::kNone;
+    bool usable = false;      ///< the view has no problem; else nothing can be proved hidden: all is kept
     bool every_layer = true;  ///< no object is outside the view's layers
     uint64_t objects = 0;     ///< within the view's layers
     Frustum frustum;

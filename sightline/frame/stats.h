@@ -25,6 +25,7 @@ struct QueryStats {
     uint64_t visible = 0;
     uint64_t nodes_visited = 0;
     uint64_t occluder_triangles = 0;
+    uint64_t unasked = 0;
     uint64_t seam_pixels = 0;
     uint64_t closed_gaps = 0;
     uint64_t faces_tested = 0;
@@ -71,6 +72,8 @@ inline constexpr CounterRow kQueryCounters[] = {
     {"nodes_visited", &QueryStats::nodes_visited, "nodes", CounterRow::kWork, "of the hierarchy that were opened"},
     {"occluder_triangles", &QueryStats::occluder_triangles, "triangles", CounterRow::kWork,
      "offered to the rasterizer"},
+    {"unasked", &QueryStats::unasked, "nodes and objects", CounterRow::kRare,
+     "kept without a question, because the answers before had kept them"},
     {"seam_pixels", &QueryStats::seam_pixels, "pixels", CounterRow::kWork,
      "resolved by the union of the polygons that share them"},
     {"closed_gaps", &QueryStats::closed_gaps, "pixels", CounterRow::kRare,

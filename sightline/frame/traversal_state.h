@@ -12,6 +12,7 @@
 #include "sightline/frame/pending.h"
 #include "sightline/frame/place_range.h"
 #include "sightline/frame/stats.h"
+#include "sightline/frame/turns.h"
 #include "sightline/world/world_state.h"
 
 namespace sightline::detail {
@@ -88,6 +89,7 @@ struct TraversalState {
           second(memory),
           looks(memory),
           open_at(memory),
+          turns(memory),
           visits(memory),
           volumes(memory) {}
 
@@ -103,6 +105,7 @@ struct TraversalState {
     /// Per place: the polygon that was open in the last answer that asked the object there by its triangles. It outlives
     /// the answer; what has moved to another place meanwhile is asked in vain.
     Array<OpenPolygon> open_at;
+    Turns turns;              ///< it outlives the answer, too
     Array<NodeVisit> visits;  ///< the queue, where the traversal is in any order
     OpenVolumes volumes;
     QueryStats stats;

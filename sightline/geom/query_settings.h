@@ -39,6 +39,7 @@ struct QuerySettings {
     uint32_t second_look_polygons = 1u << 16;
     uint32_t cluster_gap = 0;
     uint32_t bins = 1;
+    uint32_t unasked_answers = 15;
     bool stateless = false;
     bool time_stages = false;
 };
@@ -111,8 +112,12 @@ inline constexpr auto kQuerySettings = std::tuple{
     settingRow("bins", "bins", &QuerySettings::bins, "strips", 1, 16,
                "strips of the occlusion buffer, each with a walk of its own, that threads can share; an object is kept "
                "that one of them keeps"),
+    settingRow(
+        "unasked_answers", nullptr, &QuerySettings::unasked_answers, "answers", 0, 63,
+        "for so many at most, keep what was kept before without asking whether it is hidden by now, while the eye "
+        "moves little; 0: ask each time"),
     settingRow("stateless", nullptr, &QuerySettings::stateless, "", 0, 1,
-               "answer each view by itself, and do not ask first what decided the last answer"),
+               "answer each view by itself: keep nothing unasked, and do not ask first what decided the last answer"),
     settingRow("time_stages", nullptr, &QuerySettings::time_stages, "", 0, 1,
                "measure each stage, which costs some time itself"),
 };

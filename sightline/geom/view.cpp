@@ -110,8 +110,10 @@ uint32_t stagesInUse(const View& view, const QuerySettings& settings) {
 
 namespace {
 
+/// How far a rotation may be off: a matrix of floats that was multiplied many times.
+constexpr double kRigid = 1e-3, kLastRow = 1e-6;
+
 bool areFinite(const ViewPlanes& planes) {
-    if (planes.count > ViewPlanes::kMost) return false;
     for (const glm::dvec4& plane : planes.all())
         for (int i = 0; i < 4; ++i)
             if (!std::isfinite(plane[i])) return false;
@@ -119,7 +121,6 @@ bool areFinite(const ViewPlanes& planes) {
 }
 
 bool areFinite(const ViewOutline& outline) {
-    if (outline.count > ViewOutline::kMost || outline.count == 1 || outline.count == 2) return false;
     for (uint32_t i = 0; i < outline.count; ++i)
         for (int axis = 0; axis < 3; ++axis)
             if (!std::isfinite(outline.points[i][axis])) return false;
@@ -128,15 +129,64 @@ bool areFinite(const ViewOutline& outline) {
 
 }  // namespace
 
-bool isUsable(const View& view) {
+bool runsOutward(const View& view) {
+    // Where z alone grows: from the eye, so that it is the eye turned about (its w is negative), or in parallel away from
+    // the viewer.
+    const glm::dvec4 deeper = glm::inverse(view.projection)[2];
+    return isOrthographic(view) ? deeper.z < 0.0 : deeper.w < 0.0;
+}
+
+ViewProblem problemOf(const View& view) {
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row)
-            if (!std::isfinite(view.view[column][row]) || !std::isfinite(view.projection[column][row])) return false;
-    if (view.width == 0 || view.height == 0 || !(view.jitter >= 0.0 && view.jitter <= 1e6)) return false;
-    if (!(view.eye_radius >= 0.0 && std::isfinite(view.eye_radius))) return false;
-    if (!areFinite(view.sections) || !areFinite(view.window) || !areFinite(view.through)) return false;
+            if (!std::isfinite(view.view[column][row]) || !std::isfinite(view.projection[column][row]))
+                return ViewProblem::kNotFinite;
+    if (view.width == 0 || view.height == 0 || !(view.jitter >= 0.0 && view.jitter <= 1e6) ||
+        !(view.eye_radius >= 0.0 && std::isfinite(view.eye_radius)))
+        return ViewProblem::kOutOfRange;
+    const ViewOutline& through = view.through;
+    if (view.sections.count > ViewPlanes::kMost || view.window.count > ViewPlanes::kMost ||
+        through.count > ViewOutline::kMost || through.count == 1 || through.count == 2)
+        return ViewProblem::kOutOfRange;
+    if (!areFinite(view.sections) || !areFinite(view.window) || !areFinite(through)) return ViewProblem::kNotFinite;
     const double determinant = glm::determinant(view.projection);
-    return std::isfinite(determinant) && determinant != 0.0;
+    if (!std::isfinite(determinant) || determinant == 0.0) return ViewProblem::kSingular;
+    const glm::dmat4& m = view.view;
+    for (int column = 0; column < 4; ++column)  // an inverse that was computed is off a little
+        if (!(std::abs(m[column][3] - (column == 3)) <= kLastRow)) return ViewProblem::kRowMajor;
+    for (int i = 0; i < 3; ++i)
+        for (int j = i; j < 3; ++j)
+            if (!(std::abs(glm::dot(glm::dvec3(m[i]), glm::dvec3(m[j])) - (i == j)) <= kRigid))
+                return ViewProblem::kNotRigid;
+    if (glm::determinant(glm::dmat3(m)) < 0.0) return ViewProblem::kMirrors;
+    return runsOutward(view) ? ViewProblem::kNone : ViewProblem::kReversed;
+}
+
+const char* wordsOf(ViewProblem problem) {
+    switch (problem) {
+        case ViewProblem::kNone:
+            return "nothing is wrong";
+        case ViewProblem::kNotFinite:
+            return "a matrix, a plane or an outline is not finite";
+        case ViewProblem::kOutOfRange:
+            return "the viewport, the jitter, the eye's radius or a count is out of range";
+        case ViewProblem::kSingular:
+            return "the projection cannot be inverted";
+        case ViewProblem::kRowMajor:
+            return "the view matrix's last row is not 0 0 0 1 (is it row-major? transpose it)";
+        case ViewProblem::kNotRigid:
+            return "the view matrix scales or shears (it must rotate and move alone)";
+        case ViewProblem::kMirrors:
+            return "the view matrix mirrors (is it left-handed? say so to setMatrices())";
+        case ViewProblem::kReversed:
+            return "depth runs towards the eye (is it reversed? say so to setMatrices())";
+    }
+    return "";
+}
+
+bool isUsable(const View& view) {
+    const ViewProblem problem = problemOf(view);
+    return problem == ViewProblem::kNone || problem == ViewProblem::kReversed;
 }
 
 }  // namespace sightline

@@ -40,9 +40,10 @@ struct ViewOutline {
 /// One eye's view of a world for one frame.
 ///
 /// Matrices are column-major with column vectors: clip = projection * view * world. Clip space is
-/// OpenGL's: -w <= x, y, z <= w, y up, near at z = -w. The view must be rigid (rotation and
-/// translation); the projection may be perspective or orthographic, off-centre, with a finite or an
-/// infinite far plane. Anything that is not finite makes every object visible.
+/// OpenGL's: -w <= x, y, z <= w, y up, near at z = -w; setMatrices() of geom/clip_space.h takes those of
+/// other conventions. The view must be rigid (rotation and translation); the projection may be perspective or
+/// orthographic, off-centre, with a finite or an infinite far plane. A view that breaks a rule makes every object
+/// visible; problemOf() says which.
 struct View {
     glm::dmat4 view{1.0};        ///< world to eye                                [rigid]
     glm::dmat4 projection{1.0};  ///< eye to clip
@@ -90,8 +91,27 @@ View shiftedEye(const View& view, double right);
 /// True if clip w is the same for all points: parallel projection.
 bool isOrthographic(const View& view);
 
-/// True if all matrices and planes are finite, the viewport has pixels, the jitter is in its range, and the projection
-/// can be inverted.
+/// What keeps a view from being used.
+enum class ViewProblem : uint8_t {
+    kNone,
+    kNotFinite,   ///< a matrix, a plane or a point of the outline
+    kOutOfRange,  ///< a viewport without pixels, the jitter, the eye's radius, or how many planes or points there are
+    kSingular,    ///< the projection cannot be inverted
+    kRowMajor,    ///< the view's last row is not 0 0 0 1: most likely it is transposed
+    kNotRigid,    ///< the view scales or shears
+    kMirrors,     ///< the view mirrors: most likely its eye space is left-handed
+    kReversed,    ///< depth runs towards the eye: most likely it is reversed
+};
+ViewProblem problemOf(const View& view);
+/// The same in words, with what helps: "the view matrix scales or shears".
+const char* wordsOf(ViewProblem problem);
+
+/// True if z / w grows with the distance from the eye, so that the far plane stands behind the near one, as the culling
+/// stages take it to. Reversed depth stands the other way round: what its near plane cuts away would hide.
+/// @param view  isUsable(view)
+bool runsOutward(const View& view);
+
+/// True if it has no problem but, at most, that its depth is reversed.
 bool isUsable(const View& view);
 
 /// The stages that a query for this view uses. They are the settings' stages without distance and contribution if the

@@ -10,6 +10,7 @@
 
 #include <glm/glm.hpp>
 
+#include "sightline/geom/clip_space.h"
 #include "sightline/geom/frustum.h"
 
 namespace sightline {
@@ -28,23 +29,11 @@ struct ViewVolume {
     uint32_t allPlanes() const { return (1u << count) - 1; }
 };
 
-/// Which depths a projection keeps, after division by w. Reversed depth is of either kind: where a matrix exchanges near
-/// and far, the planes are the same and only their names change.
-enum class ClipDepth : uint8_t {
-    kMinusOneToOne,  ///< OpenGL
-    kZeroToOne,      ///< Vulkan, Direct3D, Metal
-};
-
-/// How a matrix projects.
-struct ClipSpace {
-    ClipDepth depth = ClipDepth::kMinusOneToOne;
-    bool reversed = false;  ///< far is at the least depth. Changes Frustum::side alone
-};
-
 /// The frustum of any matrix: perspective or parallel, off-centre, mirrored, with an oblique near plane, with a far plane
 /// at infinity. A plane that the matrix does not have, or that is not finite, is left out.
-/// @param clip  from positions relative to `eye` to clip space
-/// @param eye   what the planes are relative to; near the volume, for precision  [world units]
+/// @param clip   from positions relative to `eye` to clip space
+/// @param eye    what the planes are relative to; near the volume, for precision  [world units]
+/// @param space  its depth, and by `reversed` alone Frustum::side; the planes do not depend on the rest
 Frustum frustumOfMatrix(const glm::dmat4& clip, const glm::dvec3& eye, const ClipSpace& space = {});
 
 ViewVolume volumeOf(const Frustum& frustum);

@@ -164,6 +164,18 @@ void Answer::reasons(std::span<uint8_t> reasons) const {
         if (!(world->object(item).layers & frame_.view.layers)) reasons[item] = 255;
 }
 
+bool Answer::wasUnasked(ObjectId id) const {
+    if (!frame_.world) return false;
+    const uint32_t place = frame_.world->placeOf(id);
+    if (place == PlacedBvh::kNone) return false;
+    for (uint32_t part = 0; part < count_; ++part) {
+        const TraversalState& state = *parts_[part];
+        const auto is = [&](const Visible& v) { return v.id == id; };
+        if (state.turns.wasUnasked(place) && std::any_of(state.visible.begin(), state.visible.end(), is)) return true;
+    }
+    return false;
+}
+
 void Answer::depthImage(Seams seams, std::span<float> nearness, std::span<uint8_t> covered) {
     for (uint32_t part = 0; part < count_; ++part) readDepthImage(parts_[part]->tiles, seams, nearness, covered, 0.0f);
 }

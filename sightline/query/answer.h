@@ -48,6 +48,8 @@ public:
     void reasons(std::span<uint8_t> reasons) const;
     /// As Query::DepthImage has it.  [size: pixels of the buffer]
     void depthImage(Seams seams, std::span<float> nearness, std::span<uint8_t> covered);
+    /// Whether an object of the answer was kept without a question by a part that kept it.
+    bool wasUnasked(ObjectId id) const;
     uint32_t width() const { return parts_[0]->tiles.width; }
     uint32_t height() const { return parts_[0]->tiles.height; }
 

@@ -91,7 +91,8 @@ VisibleSet Query::visible(const Snapshot& now, const View& view, const QuerySett
     impl.shown.unmark(impl.before);
     impl.left.refine();
     impl.findScissors();
-    return {impl.left.visible(), impl.left.stats, impl.left.clusters().ranges(), impl.scissors};
+    return {impl.left.visible(), impl.left.stats, impl.left.clusters().ranges(), impl.scissors,
+            impl.left.frame().problem};
 }
 
 StereoSet Query::visibleStereo(const Snapshot& now, const View& left, const View& right,
@@ -107,7 +108,12 @@ StereoSet Query::visibleStereo(const Snapshot& now, const View& left, const View
         for (size_t eye : {0, 1}) impl.ask({&eyes[eye], 1}, now, {&views[eye], 1}, settings);
     impl.shown.unmark(impl.before);
     impl.mergeEyes();
-    return {impl.both, impl.eyes, impl.left.stats, impl.right->stats};
+    return {impl.both,
+            impl.eyes,
+            impl.left.stats,
+            impl.right->stats,
+            impl.left.frame().problem,
+            impl.right->frame().problem};
 }
 
 /// Puts both answers together: the left eye's objects in their order. An object that the right eye sees alone follows
@@ -242,7 +248,9 @@ void Query::reasons(std::span<uint8_t> reasons, uint8_t eye) const {
 }
 
 Explanation Query::explain(const Snapshot& now, const View& view, ObjectId id, const QuerySettings& settings) const {
-    return Explainer(now, view, settings, impl_->last(), impl_->memory).explain(id);
+    Explanation why = Explainer(now, view, settings, impl_->last(), impl_->memory).explain(id);
+    why.unasked = impl_->left.wasUnasked(id) || (impl_->stereo && impl_->right->wasUnasked(id));
+    return why;
 }
 
 Query::DepthImage Query::depthImage(bool resolve_seams) {

@@ -26,6 +26,7 @@ struct StereoSet {
     std::span<const Visible> objects;  ///< that either eye may see, nearly front to back; valid until the next call
     std::span<const uint8_t> eyes;     ///< per object: which eyes may see it
     QueryStats left, right;            ///< of each eye's own traversal
+    ViewProblem left_problem = ViewProblem::kNone, right_problem = ViewProblem::kNone;  ///< as VisibleSet::problem
 };
 
 struct VisibleSet {
@@ -38,6 +39,8 @@ struct VisibleSet {
     /// With Stage::kPortals, per object: the part of the viewport that may show it, in whole pixels, under any jitter
     /// that the view declares; the whole viewport where nothing is known. Empty if the stage decided nothing.
     std::span<const ImageRect> scissors;
+    /// Why the view could not be used: nothing was culled. Look at it while you bring the library up; wordsOf() says it.
+    ViewProblem problem = ViewProblem::kNone;
 };
 
 /// A part of the image through which a cell is seen.
@@ -124,7 +127,8 @@ public:
     CellStats cellStats() const;
 
     /// Why visible(now, view, settings) has the object in its answer or not; see query/explain/explain.h. The last
-    /// answer does not change; QuerySettings::hysteresis takes it for the answer before. To explain many objects of one
+    /// answer does not change; QuerySettings::hysteresis takes it for the answer before. Of what the last answer kept
+    /// without a question it says so, and what a question would say. To explain many objects of one
     /// answer, make an Explainer: it does the shared work once.
     Explanation explain(const Snapshot& now, const View& view, ObjectId id, const QuerySettings& settings = {}) const;
 

@@ -59,6 +59,7 @@ private:
         tiles.clear(frame_.screen.width, frame_.screen.height,
                     frame_.settings.masked ? OcclusionDetail::kMasked : OcclusionDetail::kFull);
         tiles.gap = closedGap(frame_.settings);
+        state_.turns.begin(frame_);
         if (!state_.part.whole()) tiles.keepColumns(state_.part.first_column, state_.part.end_column);
     }
 
@@ -198,10 +199,13 @@ private:
         TurnAnswer answer;
         for (uint32_t i = 0; i < rows_.turns; ++i) {
             answer = rows_.in_turn[i]->in_turn(frame_, state_, entry);
+            if (answer.settled) break;
             if (!answer.culled) continue;
             noteCulled(entry.below, answer.stage);
+            state_.turns.note(entry, false);
             return observer_.culledInTurn(entry, answer.stage, answer.look);
         }
+        if (!answer.settled && answer.look != Look::kTriangles) state_.turns.note(entry, true);
         if (entry.kind == Pending::Kind::kNode)
             return open(entry.index, entry.planes, frame_.candidateSlots(frame_.world->bvh.nodes[entry.index]));
         keepObject(entry, answer.look);
@@ -268,6 +272,7 @@ private:
         size_t gone = 0;
         for (const SecondLook& next : state_.second) {
             const TurnAnswer answer = rows_.at_end->at_end(frame_, state_, next);
+            state_.turns.note(next.entry, !answer.culled);
             if (answer.culled) {
                 noteCulled(next.entry.below, answer.stage);
                 observer_.culledInTurn(next.entry, answer.stage, answer.look);

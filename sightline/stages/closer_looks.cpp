@@ -9,10 +9,9 @@ namespace {
 /// What a closer look says. Without the frustum stage, what lies outside of the view is kept. What a strip finds outside
 /// may lie in another: to the strip it is hidden.
 TurnAnswer settle(const Frame& frame, const TraversalState& state, Look look, Sight sight) {
-    if (sight == Sight::kVisible || (sight == Sight::kOutside && !frame.uses(Stage::kFrustum)))
-        return {false, Stage::kOcclusion, look};
+    if (sight == Sight::kVisible || (sight == Sight::kOutside && !frame.uses(Stage::kFrustum))) return {.look = look};
     const bool outside = sight == Sight::kOutside && state.part.whole();
-    return {true, outside ? Stage::kFrustum : Stage::kOcclusion, look};
+    return {.culled = true, .stage = outside ? Stage::kFrustum : Stage::kOcclusion, .look = look};
 }
 
 }  // namespace
@@ -36,9 +35,9 @@ TurnAnswer cullByFaces(const Frame& frame, TraversalState& state, const Pending&
     // Its triangles are asked once all is drawn: an object whose box is near may well be hidden by what is met later.
     if (again) {
         state.second.push_back({entry, static_cast<uint32_t>(state.visible.size()), was_open});
-        return {false, Stage::kOcclusion, Look::kTriangles};
+        return {.look = Look::kTriangles};
     }
-    return {false, Stage::kOcclusion, by_box};
+    return {.look = by_box};
 }
 
 namespace {

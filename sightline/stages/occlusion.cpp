@@ -22,12 +22,18 @@ OccludeeBox boxAt(const Screen& screen, const Box3f& box) {
     return OccludeeBox(screen, {glm::dvec3(box.min), glm::dvec3(box.max)}, {.rounding = 0x1p-23});
 }
 
+TurnAnswer keepUnasked(const Frame&, TraversalState& state, const Pending& entry) {
+    const bool still = state.turns.mayStand(entry);
+    state.stats.unasked += still;
+    return {.settled = still};
+}
+
 TurnAnswer cullHidden(const Frame& frame, TraversalState& state, const Pending& entry) {
     if (!entry.testable) return {};
     // A node in doubt is opened: its children's smaller rectangles need fewer seams.
     const Seams seams = entry.kind == Pending::Kind::kNode ? Seams::kLeave : Seams::kResolve;
     const OccludeeBox box = boxAt(frame.screen, entry.box);
-    return {isHiddenHere(state, entry.rect, seams, &box), Stage::kOcclusion, Look::kBox};
+    return {.culled = isHiddenHere(state, entry.rect, seams, &box)};
 }
 
 OfferedOccluder occluderOf(const Frame& frame, uint32_t place) {

@@ -14,6 +14,7 @@ namespace sightline::detail {
 /// What a stage says of a node or an object whose turn has come.
 struct TurnAnswer {
     bool culled = false;
+    bool settled = false;             ///< kept, and not to be asked by further stages
     Stage stage = Stage::kOcclusion;  ///< that culled it
     Look look = Look::kBox;           ///< that decided
 };
@@ -29,7 +30,7 @@ struct PipelineStep {
     uint32_t (*by_box)(const Frame& frame, TraversalState& state, Group& group, uint32_t live) = nullptr;
     /// The same, once they have rectangles in the image: where the traversal is in order.
     uint32_t (*by_rect)(const Frame& frame, TraversalState& state, Group& group, uint32_t live) = nullptr;
-    /// A node or an object, when it is the nearest of all that wait.
+    /// A node or an object, when it is the nearest of all that wait. What a step settles is kept.
     TurnAnswer (*in_turn)(const Frame& frame, TraversalState& state, const Pending& entry) = nullptr;
     /// An object that was kept, when all occluders are drawn that were found.
     TurnAnswer (*at_end)(const Frame& frame, TraversalState& state, const SecondLook& kept) = nullptr;
@@ -46,6 +47,7 @@ uint32_t cullFar(const Frame& frame, TraversalState& state, Group& group, uint32
 uint32_t cullSmall(const Frame& frame, TraversalState& state, Group& group, uint32_t live);
 void chooseVolumes(Frame& frame, StageMemory& memory);
 uint32_t cullInVolumes(const Frame& frame, TraversalState& state, Group& group, uint32_t live);
+TurnAnswer keepUnasked(const Frame& frame, TraversalState& state, const Pending& entry);
 TurnAnswer cullHidden(const Frame& frame, TraversalState& state, const Pending& entry);
 TurnAnswer cullByFaces(const Frame& frame, TraversalState& state, const Pending& entry);
 TurnAnswer cullByTriangles(const Frame& frame, TraversalState& state, const SecondLook& kept);
@@ -59,6 +61,7 @@ inline constexpr PipelineStep kPipeline[] = {
     {.stage = Stage::kDistance, .by_box = cullFar},
     {.stage = Stage::kContribution, .by_box = cullSmall},
     {.stage = Stage::kVolumes, .choose = chooseVolumes, .by_box = cullInVolumes},
+    {.stage = Stage::kOcclusion, .in_turn = keepUnasked},
     {.stage = Stage::kOcclusion, .in_turn = cullHidden},
     {.stage = Stage::kOcclusion, .in_turn = cullByFaces, .at_end = cullByTriangles},
     {.stage = Stage::kClusters, .of_answer = cullClusters},

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "sightline/base/random.h"
-#include "sightline/geom/depth_order.h"
 #include "sightline/geom/frustum.h"
 #include "sightline/geom/view_limits.h"
 #include "tests/support/random.h"

@@ -1,6 +1,5 @@
 // The laws of views: matrices put points where their definition says, and the eye is found again.
 // SPDX-License-Identifier: MIT
-#include "sightline/geom/depth_order.h"
 #include "sightline/geom/view.h"
 
 #include <gtest/gtest.h>

@@ -21,6 +21,7 @@
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/verbs.h"
 #include "sightline/tools/scene/procedural.h"
+#include "sightline/tools/scene/suggestion.h"
 #include "sightline/tools/scene/text_file.h"
 
 #define TOML_EXCEPTIONS 0

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
-#include <numeric>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -18,22 +17,6 @@
 
 namespace sightline::cli {
 namespace {
-
-/// Levenshtein's distance: how many characters must be changed, left out or put in.
-size_t distance(const std::string& a, const std::string& b) {
-    std::vector<size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), size_t{0});
-    for (size_t i = 1; i <= a.size(); ++i) {
-        size_t diagonal = i - 1;
-        row[0] = i;
-        for (size_t j = 1; j <= b.size(); ++j) {
-            const size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-            diagonal = row[j];
-            row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
-        }
-    }
-    return row.back();
-}
 
 constexpr size_t kColumn = 30, kWidth = 70;  // of the names and of what is said of them  [characters]
 
@@ -204,18 +187,6 @@ std::vector<std::string> verbNames(const CLI::App& tool) {
     std::vector<std::string> names;
     for (const CLI::App* verb : tool.get_subcommands({})) names.push_back(verb->get_name());
     return names;
-}
-
-std::string suggestion(const std::string& word, const std::vector<std::string>& words) {
-    constexpr size_t kLongest = 64;  // longer ones are no slips
-    std::string best;
-    size_t least = word.size() <= kLongest ? std::min<size_t>(2, word.size() / 2) + 1 : 0;
-    for (const std::string& each : words)
-        if (const size_t d = least > 0 ? distance(word, each) : 0; d < least) {
-            least = d;
-            best = each;
-        }
-    return best.empty() ? std::string() : "; did you mean " + best + "?";
 }
 
 void dressHelp(CLI::App& tool) {

@@ -27,9 +27,6 @@ bool isWritten(const CLI::Option& option);
 /// The names of all verbs.
 std::vector<std::string> verbNames(const CLI::App& tool);
 
-/// The nearest of some words as "; did you mean X?", or nothing if none is near enough to have been meant.
-std::string suggestion(const std::string& word, const std::vector<std::string>& words);
-
 /// Puts the options of the tool and of its verbs under headings, and gives them the look of their help and its last
 /// words. After all options were added.
 void dressHelp(CLI::App& tool);

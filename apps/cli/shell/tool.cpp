@@ -20,6 +20,7 @@
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/verbs.h"
 #include "sightline/tools/scene/procedural.h"
+#include "sightline/tools/scene/suggestion.h"
 
 namespace sightline::cli {
 namespace {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sightline/geom/depth_order.h"
 #include "sightline/query/answer.h"
 #include "sightline/query/explain/hiders.h"
 #include "sightline/query/explain/open_pixels.h"
@@ -123,7 +122,7 @@ void Explainer::Impl::explainVisible(uint32_t item, Explanation& out) {
     VisibleReason& why = out.visible;
     const SnapshotState& state = snapshot.state();
     const uint32_t place = detail::hierarchyPlace(state, item);
-    if (!isUsable(view) || !runsOutward(view)) {
+    if (problemOf(view) != ViewProblem::kNone) {
         why.because = KeptBecause::kViewNotUsable;
     } else if (place == TraversalRecord::kNowhere) {
         why.because = KeptBecause::kBoundsNotUsable;

@@ -128,12 +128,15 @@ struct Explanation {
     /// Objects that were culled in one step with it, itself included: the node of the hierarchy that held them.
     uint32_t together = 1;
     uint32_t width = 0, height = 0;  ///< of the viewport
-    bool on_screen = false;          ///< its box has an image: `rect` and `depth` hold
-    ImageRect rect;                  ///< of its box
-    double depth = 0;                ///< of its box's nearest point, along the direction of view  [world units]
-    FrustumReason frustum;           ///< not for objects in doubt
-    bool cut = false;                ///< a section cuts its occluder, of which only whole clusters hide others
-    SizeReason size;                 ///< where a stage of distance or contribution is in use; not for objects in doubt
+    /// The query whose answer is explained kept it without a question, QuerySettings::unasked_answers; all else says what
+    /// it answers when it is asked. Set by Query::explain() alone.
+    bool unasked = false;
+    bool on_screen = false;  ///< its box has an image: `rect` and `depth` hold
+    ImageRect rect;          ///< of its box
+    double depth = 0;        ///< of its box's nearest point, along the direction of view  [world units]
+    FrustumReason frustum;   ///< not for objects in doubt
+    bool cut = false;        ///< a section cuts its occluder, of which only whole clusters hide others
+    SizeReason size;         ///< where a stage of distance or contribution is in use; not for objects in doubt
     OcclusionReason occlusion;
     VisibleReason visible;
     ClustersReason clusters;  ///< of what is kept, and of what the stage culls, with that stage

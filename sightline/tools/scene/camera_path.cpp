@@ -5,9 +5,12 @@
 #include <cmath>
 #include <limits>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "sightline/geom/clip_space.h"
+#include "sightline/tools/scene/one_line.h"
+#include "sightline/tools/scene/suggestion.h"
 #include "sightline/tools/scene/text_file.h"
 
 namespace sightline::tools {
@@ -49,13 +52,27 @@ std::optional<double> readOptional(const json& value, const std::string& name) {
     return readNumber(value, name);
 }
 
-/// Which of the values that have no default were given.
+/// Which of the values that have no default were given; and how its matrices project, if that was said.
 struct Given {
     bool eye = false, target = false;
+    std::optional<ClipSpace> clip;
 };
 
+constexpr const char* kKeys[] = {"eye",  "target",     "up",   "fov_y_degrees", "near", "far", "orthographic_height",
+                                 "view", "projection", "clip", "frames"};
+
+ClipSpace readClipSpace(const json& value) {
+    std::vector<std::string> names;
+    for (const NamedClipSpace& known : kClipSpaces) {
+        if (value == known.name) return known.space;
+        names.push_back(known.name);
+    }
+    const std::string near = value.is_string() ? suggestion(value.get<std::string>(), names) : std::string();
+    throw Complaint{fmt::format("\"clip\" is none of {}{}", fmt::join(names, ", "), near)};
+}
+
 /// Takes what an object holds, the head's or a frame's, over what is there.
-void overlay(const json& object, CameraFrame& frame, Given& given) {
+void overlay(const json& object, CameraFrame& frame, Given& given, bool is_head = false) {
     if (!object.is_object()) throw Complaint{"not a JSON object"};
     for (const auto& [name, value] : object.items()) {
         if (name == "eye") {
@@ -78,22 +95,42 @@ void overlay(const json& object, CameraFrame& frame, Given& given) {
             frame.view = readMatrix(value, name);
         } else if (name == "projection") {
             frame.projection = readMatrix(value, name);
+        } else if (name == "clip") {
+            given.clip = readClipSpace(value);
+        } else if (name != "frames" || !is_head) {
+            throw Complaint{fmt::format("there is no \"{}\"{}", oneLine(name),
+                                        suggestion(name, {std::begin(kKeys), std::end(kKeys)}))};
         }
     }
 }
 
-void checkMatrices(const CameraFrame& frame) {
+/// Brings a frame's matrices into the conventions of views, and holds them to the rules of a view.
+void settleMatrices(CameraFrame& frame, const Given& given) {
     if (!frame.view) throw Complaint{"\"projection\" without \"view\""};
     if (!frame.projection) throw Complaint{"\"view\" without \"projection\""};
-    const glm::dmat4& m = *frame.view;
-    if (m[0][3] != 0 || m[1][3] != 0 || m[2][3] != 0 || m[3][3] != 1)
-        throw Complaint{"the last row of \"view\" is not 0 0 0 1"};
-    // Matrices are often written from floats: each product may be off by some 1e-7.
-    for (int i = 0; i < 3; ++i)
-        for (int j = i; j < 3; ++j)
-            if (std::abs(glm::dot(glm::dvec3(m[i]), glm::dvec3(m[j])) - (i == j)) > 1e-4)
-                throw Complaint{"\"view\" is not rigid (a rotation and a translation)"};
-    if (glm::determinant(glm::dmat3(m)) < 0) throw Complaint{"\"view\" mirrors"};
+    View seen;
+    seen.view = *frame.view;
+    seen.projection = *frame.projection;
+    const ViewProblem before = problemOf(seen);
+    if (given.clip || before == ViewProblem::kMirrors || before == ViewProblem::kReversed)
+        setMatrices(seen, *frame.view, *frame.projection,
+                    given.clip ? *given.clip : tellClipSpace(*frame.view, *frame.projection));
+    switch (problemOf(seen)) {
+        case ViewProblem::kNone:
+            break;
+        case ViewProblem::kRowMajor:
+            throw Complaint{"the last row of \"view\" is not 0 0 0 1 (matrices are column-major: transpose it)"};
+        case ViewProblem::kNotRigid:
+            throw Complaint{"\"view\" is not rigid (a rotation and a translation)"};
+        case ViewProblem::kMirrors:
+            throw Complaint{"\"view\" mirrors"};
+        case ViewProblem::kReversed:
+            throw Complaint{"depth runs towards the eye: \"clip\" says something else"};
+        default:
+            throw Complaint{"its matrices are singular or overflow"};
+    }
+    frame.view = seen.view;
+    frame.projection = seen.projection;
 }
 
 void checkCamera(const CameraFrame& frame, const Given& given) {
@@ -110,8 +147,8 @@ void checkCamera(const CameraFrame& frame, const Given& given) {
     if (frame.z_far && !(*frame.z_far > frame.z_near)) throw Complaint{"\"far\" is not greater than \"near\""};
 }
 
-void checkFrame(const CameraFrame& frame, const Given& given) {
-    if (frame.view || frame.projection) checkMatrices(frame);
+void settleFrame(CameraFrame& frame, const Given& given) {
+    if (frame.view || frame.projection) settleMatrices(frame, given);
     else checkCamera(frame, given);
     if (!isUsable(makeView(frame, 1, 1))) throw Complaint{"its matrices are singular or overflow"};
 }
@@ -120,7 +157,7 @@ CameraPath readFrames(const json& head) {
     CameraFrame defaults;
     Given given_by_head;
     try {
-        overlay(head, defaults, given_by_head);
+        overlay(head, defaults, given_by_head, true);
     } catch (const Complaint& complaint) { throw Complaint{"head: " + complaint.what}; }
     const auto list = head.find("frames");
     if (list == head.end() || !list->is_array() || list->empty())
@@ -132,7 +169,7 @@ CameraPath readFrames(const json& head) {
         Given given = given_by_head;
         try {
             overlay(entry, frame, given);
-            checkFrame(frame, given);
+            settleFrame(frame, given);
         } catch (const Complaint& complaint) {
             throw Complaint{fmt::format("frame {}: {}", path.frames.size(), complaint.what)};
         }

@@ -138,6 +138,24 @@ TEST(CameraPath, AbsentFarIsInfinite) {
     EXPECT_LT(far.z, far.w);
 }
 
+TEST(CameraPath, TakesMatricesOfOtherClipSpaces) {
+    // The same camera as OpenGL, Vulkan and reversed Direct3D have it; reversed depth and the left hand tell themselves.
+    const std::string view = R"("view": [1,0,0,0, 0,1,0,0, 0,0,1,0, -5,-6,-7,1], )";
+    const std::string frames[] = {
+        R"("projection": [1,0,0,0, 0,2,0,0, 0,0,-1,-1, 0,0,-0.5,0])",
+        R"("clip": "vulkan", "projection": [1,0,0,0, 0,-2,0,0, 0,0,-1,-1, 0,0,-0.25,0])",
+        R"("clip": "direct3d-reversed", "projection": [1,0,0,0, 0,2,0,0, 0,0,0,-1, 0,0,0.25,0])",
+        R"("projection": [1,0,0,0, 0,2,0,0, 0,0,0,-1, 0,0,0.25,0])",
+    };
+    for (const std::string& frame : frames) {
+        const Result<CameraPath> path = readText("{\"frames\": [{" + view + frame + "}]}");
+        ASSERT_TRUE(path.ok()) << frame << path.error().message;
+        EXPECT_EQ(*path->frames[0].projection, glm::dmat4(1, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1, -1, 0, 0, -0.5, 0))
+            << frame;
+        EXPECT_EQ((*path->frames[0].view)[3], glm::dvec4(-5, -6, -7, 1)) << frame;
+    }
+}
+
 struct Mistake {
     const char* text;
     const char* says;
@@ -180,9 +198,19 @@ TEST(CameraPath, NamesEveryMistakeWithFileAndFrame) {
         {"{\"frames\": [{\"view\": [2,0,0,0, 0,2,0,0, 0,0,2,0, 0,0,0,1],"
          "\"projection\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}]}",
          "not rigid"},
-        {"{\"frames\": [{\"view\": [-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],"
+        {"{\"clip\": \"opengl\", \"frames\": [{\"view\": [-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],"
          "\"projection\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}]}",
          "mirrors"},
+        {"{\"clip\": \"opengl\", \"frames\": [{\"view\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],"
+         "\"projection\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}]}",
+         "depth runs towards the eye"},
+        {"{\"clip\": \"vulcan\", \"frames\": [GOOD]}", "did you mean vulkan?"},
+        {"{\"clip\": 3, \"frames\": [GOOD]}", "head: \"clip\" is none of opengl, direct3d, vulkan"},
+        {"{\"fov_y_degree\": 50, \"frames\": [GOOD]}",
+         "head: there is no \"fov_y_degree\"; did you mean fov_y_degrees?"},
+        {"{\"frames\": [GOOD, {\"eye\": [0, 0, 0], \"target\": [0, 0, 1], \"roll\": 3}]}",
+         "frame 1: there is no \"roll\""},
+        {"{\"frames\": [{\"frames\": []}]}", "frame 0: there is no \"frames\""},
         {"{\"frames\": [{\"view\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,2],"
          "\"projection\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}]}",
          "last row"},

@@ -1,0 +1,61 @@
+// Whose turn it is to be asked: nodes and objects that were kept before are kept for a few answers without a question.
+// SPDX-License-Identifier: MIT
+#include "sightline/frame/turns.h"
+
+#include <algorithm>
+
+namespace sightline::detail {
+namespace {
+
+constexpr double kLittle = 1.0 / 16.0;  // the eye's way, as a part of the distance
+constexpr uint32_t kLongest = 31;       // of Turn::wait
+
+bool areEqual(const ViewPlanes& a, const ViewPlanes& b) {
+    return std::equal(a.all().begin(), a.all().end(), b.all().begin(), b.all().end());
+}
+
+}  // namespace
+
+void Turns::begin(const Frame& frame) {
+    most_ = 0;
+    if (frame.settings.stateless || !frame.screen.perspective) return;
+    most_ = std::min(frame.settings.unasked_answers, kEyes - 1);
+    eyes_[++answer_ % kEyes] = frame.frustum.eye;
+    if (frame.view.layers != layers_ || frame.stages != stages_ || !areEqual(frame.view.sections, sections_)) {
+        since_ = answer_;
+        layers_ = frame.view.layers;
+        stages_ = frame.stages;
+        sections_ = frame.view.sections;
+    }
+    places_ = frame.world->placed.size();
+    node_count_ = frame.world->bvh.nodes.size();
+}
+
+bool Turns::mayStand(const Pending& entry) const {
+    if (most_ == 0 || !entry.testable) return false;
+    const Array<Turn>& turns = entry.kind == Pending::Kind::kNode ? nodes_ : objects_;
+    if (entry.index >= turns.size() || !turns[entry.index].kept) return false;
+    const Turn turn = turns[entry.index];
+    const uint32_t age = static_cast<uint16_t>(answer_ - turn.answer);
+    const uint32_t spread = entry.index * 0x9e3779b9u >> 24 & turn.wait;
+    if (age > std::min({most_, turn.wait + spread, answer_ - since_})) return false;
+    const double moved = glm::length(eyes_[answer_ % kEyes] - eyes_[(answer_ - age) % kEyes]);
+    return moved * static_cast<double>(entry.rect.nearness) <= kLittle;
+}
+
+void Turns::note(const Pending& entry, bool kept) {
+    if (most_ == 0) return;
+    const bool node = entry.kind == Pending::Kind::kNode;
+    Array<Turn>& turns = node ? nodes_ : objects_;
+    if (entry.index >= turns.size()) turns.resize(node ? node_count_ : places_);
+    Turn& turn = turns[entry.index];
+    const uint32_t wait = !turn.kept ? 1 : std::min(kLongest, 2u * turn.wait + 1);
+    turn = {static_cast<uint16_t>(answer_), static_cast<uint8_t>(kept ? wait : 0), kept};
+}
+
+bool Turns::wasUnasked(uint32_t place) const {
+    return most_ > 0 && place < objects_.size() && objects_[place].kept &&
+           objects_[place].answer != static_cast<uint16_t>(answer_);
+}
+
+}  // namespace sightline::detail
