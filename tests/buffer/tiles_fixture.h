@@ -73,36 +73,50 @@ struct Drawing {
     uint64_t openPixels() const { return uint64_t{tiles.width} * tiles.height - coveredPixels(); }
 };
 
-/// The nearness of the nearest drawn front face along the ray through a buffer point; -infinity if there is none.
-/// Plain ray casting from the eye: nothing of the rasterizer's arithmetic. Edges are widened by 1e-9.
-inline double castRay(const Drawing& drawing, double px, double py) {
-    const glm::dmat4 inverse = glm::inverse(drawing.view.projection);
-    const double wide_x = 1.0 + 2.0 * drawing.view.jitter / drawing.view.width;
-    const double wide_y = 1.0 + 2.0 * drawing.view.jitter / drawing.view.height;
-    const double nx = (2.0 * px / drawing.screen.width - 1.0) * wide_x;
-    const double ny = (2.0 * py / drawing.screen.height - 1.0) * wide_y;
-    const auto unproject = [&](double z) {
-        const glm::dvec4 p = inverse * glm::dvec4(nx, ny, z, 1.0);
-        return glm::dvec3(p) / p.w;
-    };
-    const bool parallel = !drawing.screen.perspective;
-    const glm::dvec3 near = unproject(-1.0);
-    const glm::dvec3 origin = parallel ? near : glm::dvec3(0.0);
-    const glm::dvec3 direction = parallel ? glm::dvec3(0, 0, -1) : near;
-    const double t_near = parallel ? 0.0 : 1.0;
-    double best = -std::numeric_limits<double>::infinity();
-    for (const Solid& solid : drawing.solids) {
-        const glm::dmat4 to_eye = drawing.view.view * solid.transform;
-        const bool flips = glm::determinant(glm::dmat3(solid.transform)) < 0;
-        for (size_t t = 0; t + 2 < solid.indices.size(); t += 3) {
-            glm::dvec3 v[3];
-            for (int k = 0; k < 3; ++k)
-                v[k] = glm::dvec3(to_eye * glm::dvec4(glm::dvec3(solid.positions[solid.indices[t + k]]), 1.0));
-            if (flips) std::swap(v[1], v[2]);
+/// Sends rays from the eye of a drawing among its triangles. Plain ray casting: nothing of the rasterizer's arithmetic.
+/// Triangles are brought before the eye once, and passed over where a ray is beside their image.
+class RayCaster {
+public:
+    explicit RayCaster(const Drawing& drawing)
+        : inverse_(glm::inverse(drawing.view.projection)),
+          wide_x_(1.0 + 2.0 * drawing.view.jitter / drawing.view.width),
+          wide_y_(1.0 + 2.0 * drawing.view.jitter / drawing.view.height),
+          width_(drawing.screen.width),
+          height_(drawing.screen.height),
+          parallel_(!drawing.screen.perspective) {
+        for (const Solid& solid : drawing.solids) {
+            const glm::dmat4 to_eye = drawing.view.view * solid.transform;
+            const bool flips = glm::determinant(glm::dmat3(solid.transform)) < 0;
+            for (size_t t = 0; t + 2 < solid.indices.size(); t += 3) {
+                Triangle triangle;
+                for (int k = 0; k < 3; ++k)
+                    triangle.v[k] =
+                        glm::dvec3(to_eye * glm::dvec4(glm::dvec3(solid.positions[solid.indices[t + k]]), 1.0));
+                if (flips) std::swap(triangle.v[1], triangle.v[2]);
+                triangle.both = !solid.double_sided.empty() && solid.double_sided[t / 3];
+                bound(triangle, drawing.view.projection);
+                triangles_.push_back(triangle);
+            }
+        }
+    }
+
+    /// The nearness of the nearest drawn front face along the ray through a buffer point; -infinity if there is none.
+    /// Edges are widened by 1e-9.
+    double cast(double px, double py) const {
+        const double nx = (2.0 * px / width_ - 1.0) * wide_x_, ny = (2.0 * py / height_ - 1.0) * wide_y_;
+        const glm::dvec4 h = inverse_ * glm::dvec4(nx, ny, -1.0, 1.0);
+        const glm::dvec3 near = glm::dvec3(h) / h.w;
+        const glm::dvec3 origin = parallel_ ? near : glm::dvec3(0.0);
+        const glm::dvec3 direction = parallel_ ? glm::dvec3(0, 0, -1) : near;
+        const double t_near = parallel_ ? 0.0 : 1.0;
+        double best = -std::numeric_limits<double>::infinity();
+        for (const Triangle& triangle : triangles_) {
+            if (!(px >= triangle.low.x && px <= triangle.high.x && py >= triangle.low.y && py <= triangle.high.y))
+                continue;
+            const glm::dvec3(&v)[3] = triangle.v;
             const glm::dvec3 n = glm::cross(v[1] - v[0], v[2] - v[0]);
             const double slope = glm::dot(n, direction);
-            const bool both = !solid.double_sided.empty() && solid.double_sided[t / 3];
-            if (slope == 0.0 || (slope > 0.0 && !both)) continue;  // a back face is not drawn
+            if (slope == 0.0 || (slope > 0.0 && !triangle.both)) continue;  // a back face is not drawn
             const double hit = glm::dot(n, v[0] - origin) / slope;
             if (!(hit >= t_near * (1.0 - 1e-7))) continue;
             const glm::dvec3 p = origin + hit * direction;
@@ -112,21 +126,50 @@ inline double castRay(const Drawing& drawing, double px, double py) {
                 const double side = glm::dot(glm::cross(edge, p - v[k]), n);
                 inside &= side >= -1e-9 * glm::length(edge) * glm::length(n) * std::max(1.0, glm::length(p));
             }
-            if (inside) best = std::max(best, parallel ? p.z : 1.0 / -p.z);
+            if (inside) best = std::max(best, parallel_ ? p.z : 1.0 / -p.z);
         }
+        return best;
     }
-    return best;
-}
+
+private:
+    struct Triangle {
+        glm::dvec3 v[3];  ///< relative to the eye
+        glm::dvec2 low{-std::numeric_limits<double>::infinity()}, high{std::numeric_limits<double>::infinity()};
+        bool both = false;
+    };
+
+    /// Bounds its image with a hundredth of a pixel to spare, unless a corner lies near the eye or behind it.
+    void bound(Triangle& triangle, const glm::dmat4& projection) const {
+        glm::dvec2 low(1e300), high(-1e300);
+        for (const glm::dvec3& v : triangle.v) {
+            const glm::dvec4 h = projection * glm::dvec4(v, 1.0);
+            if (!(h.w > 1e-2)) return;
+            const glm::dvec2 pixel((h.x / h.w / wide_x_ + 1.0) * 0.5 * width_,
+                                   (h.y / h.w / wide_y_ + 1.0) * 0.5 * height_);
+            const glm::dvec2 spare = 0.01 + 1e-6 * glm::abs(pixel);
+            low = glm::min(low, pixel - spare);
+            high = glm::max(high, pixel + spare);
+        }
+        triangle.low = low;
+        triangle.high = high;
+    }
+
+    const glm::dmat4 inverse_;
+    const double wide_x_, wide_y_, width_, height_;
+    const bool parallel_;
+    std::vector<Triangle> triangles_;
+};
 
 /// Sends rays through each covered pixel, corners and border included; returns a line on the first that gets past.
 inline std::string findLeak(const Drawing& drawing, uint64_t seed, int rays_per_pixel) {
     Random random(seed);
+    const RayCaster rays(drawing);
     for (uint32_t y = 0; y < drawing.tiles.height; ++y)
         for (uint32_t x = 0; x < drawing.tiles.width; ++x) {
             if (!drawing.covered(x, y)) continue;
             for (int i = 0; i < rays_per_pixel; ++i) {
                 const double u = i < 4 ? i & 1 : random.uniform(), v = i < 4 ? i >> 1 : random.uniform();
-                const double truth = castRay(drawing, x + u, y + v);
+                const double truth = rays.cast(x + u, y + v);
                 if (truth >= drawing.depth(x, y)) continue;
                 return "seed " + std::to_string(seed) + ": the ray through (" + std::to_string(x + u) + ", " +
                        std::to_string(y + v) + ") meets nothing nearer than " + std::to_string(truth) +

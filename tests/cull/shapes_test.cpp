@@ -34,6 +34,7 @@ void drawWalls(Drawing& drawing, Random& random) {
 void expectTrue(const Drawing& drawing, Sight sight, const std::function<glm::dvec3()>& point,
                 const std::string& what) {
     if (sight == Sight::kVisible) return;
+    const RayCaster rays(drawing);
     for (int i = 0; i < 60; ++i) {
         const glm::dvec4 h(point() - drawing.screen.eye, 1.0);
         if (glm::dot(drawing.screen.near, h) < 0) continue;  // not drawn
@@ -41,7 +42,7 @@ void expectTrue(const Drawing& drawing, Sight sight, const std::function<glm::dv
         const double x = glm::dot(drawing.screen.x, h) / w, y = glm::dot(drawing.screen.y, h) / w;
         if (!(x > 0 && y > 0 && x < drawing.screen.width && y < drawing.screen.height)) continue;
         ASSERT_NE(int(sight), int(Sight::kOutside)) << what << " has a point in view";
-        ASSERT_GT(castRay(drawing, x, y), glm::dot(drawing.screen.d, h) / w) << what << " shows at " << x << ", " << y;
+        ASSERT_GT(rays.cast(x, y), glm::dot(drawing.screen.d, h) / w) << what << " shows at " << x << ", " << y;
     }
 }
 

@@ -56,7 +56,7 @@ Box3d someBox(Random& random, const std::vector<Solid>& solids) {
 }
 
 /// A point of a box that a ray meets first, if one is found among its corners and some others.
-std::string findSeen(const Drawing& drawing, const Box3d& box, Random& random) {
+std::string findSeen(const Drawing& drawing, const RayCaster& rays, const Box3d& box, Random& random) {
     for (int i = 0; i < 40; ++i) {
         glm::dvec3 p;
         for (int axis = 0; axis < 3; ++axis) {
@@ -69,7 +69,7 @@ std::string findSeen(const Drawing& drawing, const Box3d& box, Random& random) {
         if (!(glm::dot(drawing.screen.near, h) > 0 && x > 0 && y > 0 && x < drawing.screen.width &&
               y < drawing.screen.height))
             continue;
-        const double nearness = glm::dot(drawing.screen.d, h) / w, first = castRay(drawing, x, y);
+        const double nearness = glm::dot(drawing.screen.d, h) / w, first = rays.cast(x, y);
         if (first >= nearness - 1e-12 * std::abs(nearness)) continue;
         std::ostringstream seen;
         seen << p.x << ", " << p.y << ", " << p.z << " at nearness " << nearness << " before " << first;
@@ -93,6 +93,7 @@ void expectRaysAgree(uint64_t seed, OcclusionDetail detail, Tried& tried) {
     std::vector<Solid> solids(1 + random.below(4));
     for (Solid& solid : solids) solid = someSurface(random);
     drawing.draw(solids);
+    const RayCaster rays(drawing);
     for (int i = 0; i < 300; ++i) {
         const Box3d box = someBox(random, drawing.solids);
         const Seams seams = i % 3 ? Seams::kResolve : Seams::kLeave;
@@ -101,7 +102,7 @@ void expectRaysAgree(uint64_t seed, OcclusionDetail detail, Tried& tried) {
         tried.hidden += by_planes;
         tried.by_planes += by_planes && !by_depth;
         if (!by_planes) continue;
-        ASSERT_EQ(findSeen(drawing, box, random), "") << "seed " << seed << ", box " << i;
+        ASSERT_EQ(findSeen(drawing, rays, box, random), "") << "seed " << seed << ", box " << i;
     }
 }
 

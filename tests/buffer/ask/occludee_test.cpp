@@ -75,12 +75,13 @@ void expectRaysInside(uint64_t seed, int round, Tried& tried) {
     Painted painted(drawing.screen);
     ASSERT_TRUE(forTriangles(place, shape, painted));
     std::vector<uint8_t> near_hit(painted.nearest.size(), 0);
+    const RayCaster rays(drawing);
     const int width = static_cast<int>(drawing.screen.width), height = static_cast<int>(drawing.screen.height);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const size_t at = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
             for (int i = 0; i < 3; ++i) {
-                const double truth = castRay(drawing, x + random.uniform(), y + random.uniform());
+                const double truth = rays.cast(x + random.uniform(), y + random.uniform());
                 if (truth == -std::numeric_limits<double>::infinity()) continue;
                 ++tried.hits;
                 ASSERT_GE(painted.nearest[at], truth)

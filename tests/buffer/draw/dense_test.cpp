@@ -56,9 +56,10 @@ TEST(DenseTiles, CoverAllThatASmoothSheetCovers) {
     EXPECT_EQ(drawing.openPixels(), 0u);
     EXPECT_EQ(findLeak(drawing, 3, 6), "");
     // The depth is that of the sheet within what it changes over a tile.
+    const RayCaster rays(drawing);
     for (uint32_t y = 0; y < drawing.tiles.height; y += 5)
         for (uint32_t x = 0; x < drawing.tiles.width; x += 5)
-            EXPECT_GT(drawing.depth(x, y), castRay(drawing, x + 0.5, y + 0.5) * 0.93) << x << ", " << y;
+            EXPECT_GT(drawing.depth(x, y), rays.cast(x + 0.5, y + 0.5) * 0.93) << x << ", " << y;
 }
 
 TEST(DenseTiles, CoverOnlyWhatIsBeforeTheNearPlane) {

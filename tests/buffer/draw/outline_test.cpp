@@ -81,12 +81,12 @@ struct Fit {
 
 Fit fitOf(const Drawing& drawing) {
     Fit fit;
+    const RayCaster rays(drawing);
     for (uint32_t y = 0; y < drawing.tiles.height; ++y)
         for (uint32_t x = 0; x < drawing.tiles.width; ++x) {
             double farthest = 1e300;
             for (int i = 0; i < 16; ++i)
-                farthest =
-                    std::min(farthest, castRay(drawing, x - 0.02 + 1.04 * (i % 4) / 3, y - 0.02 + 1.04 * (i / 4) / 3));
+                farthest = std::min(farthest, rays.cast(x - 0.02 + 1.04 * (i % 4) / 3, y - 0.02 + 1.04 * (i / 4) / 3));
             if (!(farthest > 0.0)) continue;
             ++fit.inside;
             if (!drawing.covered(x, y)) continue;

@@ -82,7 +82,7 @@ TEST(Gaps, TheFartherSideSaysHowFar) {
 }
 
 /// Whether two occluder points at least as near lie on opposite sides of a point, no farther from each other than that.
-bool liesInGap(const Drawing& drawing, double x, double y, double gap, double nearness) {
+bool liesInGap(const RayCaster& rays, double x, double y, double gap, double nearness) {
     constexpr int kTurns = 24, kSteps = 24;
     for (int turn = 0; turn < kTurns; ++turn) {
         const double angle = 3.14159265 * turn / kTurns, dx = std::cos(angle), dy = std::sin(angle);
@@ -90,7 +90,7 @@ bool liesInGap(const Drawing& drawing, double x, double y, double gap, double ne
         for (int side = 0; side < 2; ++side)
             for (int step = 1; step <= kSteps; ++step) {
                 const double t = gap * step / kSteps, way = side ? -t : t;
-                if (castRay(drawing, x + way * dx, y + way * dy) < nearness) continue;
+                if (rays.cast(x + way * dx, y + way * dy) < nearness) continue;
                 least[side] = t;
                 break;
             }
@@ -120,14 +120,15 @@ TEST(Gaps, NothingElseIsClosed) {
         }
         drawing.drawAndResolve(solids);
         closed += drawing.tiles.closed_gaps;
+        const RayCaster rays(drawing);
         for (uint32_t y = 0; y < drawing.tiles.height; ++y)
             for (uint32_t x = 0; x < drawing.tiles.width; ++x) {
                 if (!drawing.covered(x, y)) continue;
                 for (int i = 0; i < 24; ++i) {
                     const double px = x + random.uniform(), py = y + random.uniform(), claim = drawing.depth(x, y);
-                    if (castRay(drawing, px, py) >= claim) continue;
+                    if (rays.cast(px, py) >= claim) continue;
                     ++through;
-                    ASSERT_TRUE(liesInGap(drawing, px, py, kWide, claim))
+                    ASSERT_TRUE(liesInGap(rays, px, py, kWide, claim))
                         << "seed " << seed << ": the ray through (" << px << ", " << py << ")";
                 }
             }
