@@ -24,12 +24,14 @@ if(SIGHTLINE_TOOLS)
   sightline_install(EXPORT sightline-tools LIBRARIES scene import bake truth report
     HEADERS bake/bake.h tools/scene/procedural.h tools/import/scene_file.h tools/load/load_world.h tools/truth/verify.h
             tools/report/page/page.h)
-  install(TARGETS sightline sightline-bench)
+  # ./run.sh builds the tool alone: what it has not built is left out.
+  install(TARGETS sightline)
+  install(TARGETS sightline-bench OPTIONAL)
   if(TARGET sightline_completions)
     set(pages ${PROJECT_BINARY_DIR}/apps/cli/completions)
-    install(FILES ${pages}/sightline DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
-    install(FILES ${pages}/_sightline DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
-    install(FILES ${pages}/sightline.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+    install(FILES ${pages}/sightline DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
+    install(FILES ${pages}/_sightline DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions OPTIONAL)
+    install(FILES ${pages}/sightline.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d OPTIONAL)
   endif()
   if(SIGHTLINE_HAS_ASSIMP)
     install(TARGETS sightline-import DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/sightline)

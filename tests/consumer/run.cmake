@@ -20,6 +20,16 @@ step("build" ${CMAKE_COMMAND} --build ${WORK}/build)
 foreach(program consumer first_query portals_and_doors shadow_casters occlusion_buffer)
   step("run ${program}" ${WORK}/build/${program})
 endforeach()
+# An older language is refused in one line.
+execute_process(COMMAND ${COMPILER} -std=c++17 -fsyntax-only -I ${prefix}/include ${EXAMPLES}/first_query.cpp
+  RESULT_VARIABLE code ERROR_VARIABLE said)
+if(code EQUAL 0 OR NOT said MATCHES "Sightline needs C\\+\\+20")
+  message(FATAL_ERROR "C++17 is not refused:\n${said}")
+endif()
+# As a part of another project: the library alone is configured, by its names.
+step("add_subdirectory" ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/part -B ${WORK}/part -G Ninja
+  -D CMAKE_CXX_COMPILER=${COMPILER} -D SIGHTLINE_SOURCE=${EXAMPLES}/..)
+
 if(TOOLS)
   step("run tools" ${WORK}/build/consumer_of_tools)
   step("run bake" ${WORK}/build/bake building:1:1 ${WORK}/build/house.vis)
