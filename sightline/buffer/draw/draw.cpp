@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/buffer/draw/loose.h"
+
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sightline/buffer/draw/draw.cpp"
@@ -15,7 +17,6 @@
 
 #include "sightline/buffer/draw/dense-inl.h"
 #include "sightline/buffer/draw/joined_outline-inl.h"
-#include "sightline/buffer/draw/loose-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline {
@@ -184,10 +185,10 @@ bool drawJoined(const ClusterDraw& c, const Projected& projected, const Windings
     return coverPatch(patch, source);
 }
 
-void drawClusterKernel(DepthTiles& tiles, const DrawnCluster& cluster, const Screen& object, bool flips) {
+/// @returns false, with nothing drawn, if it is a loose one
+bool drawJoinedKernel(DepthTiles& tiles, const DrawnCluster& cluster, const Screen& object, bool flips) {
     const OccluderCluster& source = cluster.occluder->clusters[cluster.cluster];
-    if (source.edge_count == 0 || source.edge_count + kMaxAtOnce > OpenEdges::kMost)
-        return drawLooseCluster(tiles, cluster, object, flips);
+    if (source.edge_count == 0 || source.edge_count + kMaxAtOnce > OpenEdges::kMost) return false;
     const size_t first = roomForVertices(tiles, source);
     const Projected projected = projectVertices(object, *cluster.occluder, source, tiles.px.data() + first,
                                                 tiles.py.data() + first, tiles.pd.data() + first);
@@ -230,6 +231,7 @@ void drawClusterKernel(DepthTiles& tiles, const DrawnCluster& cluster, const Scr
             drawBoth(&cuts);
         }
     }
+    return true;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -239,10 +241,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sightline {
 
-HWY_EXPORT(drawClusterKernel);
+HWY_EXPORT(drawJoinedKernel);
 
 void drawCluster(DepthTiles& tiles, const DrawnCluster& cluster, const Screen& object, bool flips) {
-    HWY_DYNAMIC_DISPATCH(drawClusterKernel)(tiles, cluster, object, flips);
+    if (!HWY_DYNAMIC_DISPATCH(drawJoinedKernel)(tiles, cluster, object, flips))
+        drawLooseCluster(tiles, cluster, object, flips);
 }
 
 }  // namespace sightline

@@ -3,12 +3,16 @@
 //
 // Small polygons are classified by the batch, and leave no seams unless all detail is wanted: in a soup nothing closes
 // them, and resolving them costs more than all else.
-#if defined(SIGHTLINE_BUFFER_DRAW_LOOSE_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SIGHTLINE_BUFFER_DRAW_LOOSE_INL_H
-#undef SIGHTLINE_BUFFER_DRAW_LOOSE_INL_H
-#else
-#define SIGHTLINE_BUFFER_DRAW_LOOSE_INL_H
-#endif
+#include "sightline/buffer/draw/loose.h"
+
+#include <algorithm>
+#include <cmath>
+
+#define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sightline/buffer/draw/loose.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
 
 #include "sightline/buffer/draw/lone_polygon-inl.h"
 #include "sightline/buffer/draw/small_classify-inl.h"
@@ -169,8 +173,7 @@ inline void drawSmall(DepthTiles& tiles, const DrawnCluster& cluster, const Scre
     small.large_count = left;
 }
 
-/// Draws a loose cluster; see drawCluster().
-inline void drawLooseCluster(DepthTiles& tiles, const DrawnCluster& cluster, const Screen& object, bool flips) {
+void drawLooseKernel(DepthTiles& tiles, const DrawnCluster& cluster, const Screen& object, bool flips) {
     const OccluderCluster& source = cluster.occluder->clusters[cluster.cluster];
     const int8_t front = flips != object.mirrored ? -1 : 1;
     const uint32_t polygons = source.polygon_count + source.ring_count;
@@ -217,4 +220,14 @@ inline void drawLooseCluster(DepthTiles& tiles, const DrawnCluster& cluster, con
 }  // namespace sightline
 HWY_AFTER_NAMESPACE();
 
-#endif  // per-target include guard
+#if HWY_ONCE
+namespace sightline {
+
+HWY_EXPORT(drawLooseKernel);
+
+void drawLooseCluster(DepthTiles& tiles, const DrawnCluster& cluster, const Screen& object, bool flips) {
+    HWY_DYNAMIC_DISPATCH(drawLooseKernel)(tiles, cluster, object, flips);
+}
+
+}  // namespace sightline
+#endif  // HWY_ONCE
