@@ -106,7 +106,7 @@ TEST(SecondLook, RemembersWhatWasOpen) {
             View view = viewAt(eye, {3 * step.x, 0, 3 * step.z}, {frame % 8 == 7 ? 100.0 : 50.0, 320, 180});
             const Snapshot now = made.world.commit();
             const std::string what = "seed " + std::to_string(seed) + " frame " + std::to_string(frame);
-            const VisibleSet set = expectSound(made, query, now, view, {}, what);
+            const VisibleSet set = expectSound(made, query, now, view, {.unasked_answers = 0}, what);
             QueryStats alone;
             kept_alone += sortedKeys(now, view, {.stateless = true}, &alone).size();
             kept += set.objects.size();
