@@ -35,6 +35,10 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
             least = d;
             best = each;
         }
+    // Or the only one that begins so.
+    const auto begins = [&](const std::string& each) { return each.starts_with(word); };
+    if (best.empty() && word.size() >= 3 && std::count_if(words.begin(), words.end(), begins) == 1)
+        best = *std::find_if(words.begin(), words.end(), begins);
     return best.empty() ? std::string() : "; did you mean " + best + "?";
 }
 

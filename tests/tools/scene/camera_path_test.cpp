@@ -208,6 +208,7 @@ TEST(CameraPath, NamesEveryMistakeWithFileAndFrame) {
         {"{\"clip\": 3, \"frames\": [GOOD]}", "head: \"clip\" is none of opengl, direct3d, vulkan"},
         {"{\"fov_y_degree\": 50, \"frames\": [GOOD]}",
          "head: there is no \"fov_y_degree\"; did you mean fov_y_degrees?"},
+        {"{\"fov\": 50, \"frames\": [GOOD]}", "head: there is no \"fov\"; did you mean fov_y_degrees?"},
         {"{\"frames\": [GOOD, {\"eye\": [0, 0, 0], \"target\": [0, 0, 1], \"roll\": 3}]}",
          "frame 1: there is no \"roll\""},
         {"{\"frames\": [{\"frames\": []}]}", "frame 0: there is no \"frames\""},
