@@ -64,6 +64,29 @@ TEST_F(Comfort, SlipsAreToldWhatIsNearest) {
     EXPECT_EQ(run("xyzzy").err.find("did you mean"), std::string::npos);
 }
 
+TEST_F(Comfort, ValuesThatMeanNothingAreRefused) {
+    expectError("cull city:1:10 --cameras ''", 2, "--cameras: its value is empty");
+    expectError("cull city:1:10 --report ''", 2, "--report: its value is empty");
+    expectError("cull city:1:10 --seed -1", 2, "--seed: -1 is below 0");
+    expectError("render city:1:10 -o picture.JPG", 2, "picture.JPG: pictures are written as PNG");
+    expectError("render city:1:10 --ids ids.bmp", 2, "--ids: ids.bmp: pictures are written as PNG");
+    EXPECT_FALSE(std::filesystem::exists(path("picture.JPG")));
+    EXPECT_EQ(run("render city:1:10 --size 16x16 -o picture.PNG --quiet").exit_code, 0);
+}
+
+TEST_F(Comfort, ObjectsAndMapsAreToldWhatIsNearest) {
+    const std::string scene = "explain building:1:1 --size 160x90 --frames 1 ";
+    expectError(scene + "--object 'Noth wall'", 2, "; did you mean North wall?");
+    expectError(scene + "--object xyzzyxyzzy", 2, "has no object of that key, name or path");
+    const std::string map = "{\n\"classname\" \"worldspawn\"\n{\n( 0 0 0 ) ( 0 1 0 ) ( 1 0 0 ) T 0 0 0 1 1\n}\n}\n";
+    write("house.map", map);
+    write("house.txt", map);
+    for (const char* file : {"house.map", "house.txt"})
+        expectError(std::string("cull ") + file, 3, "is the source of a game map, which vis reads");
+    write("not.json", "{\"classname\": \"worldspawn\"}");
+    expectError("cull not.json", 3, "is JSON, but not glTF");
+}
+
 TEST_F(Comfort, HelpHasHeadingsAndExamples) {
     const std::string help = run("help cull").out;
     EXPECT_EQ(help, run("cull --help").out);

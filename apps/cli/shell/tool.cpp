@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <new>
 #include <optional>
@@ -170,6 +171,29 @@ std::string explained(const CLI::App& tool, const CLI::ParseError& error) {
     return fmt::format("{}{} (see {} --help)", what, meant, verbOf(tool));
 }
 
+/// Refuses what no option means: values of nothing, numbers below zero where only others count, and pictures by the
+/// suffix of another format.
+Status checkValues(const CLI::App& verb) {
+    for (const CLI::Option* option : verb.get_options()) {
+        if (isFlag(*option) || option->get_positional()) continue;
+        const std::string kind = valueName(*option);
+        const auto wrong = [&](const std::string& what) {
+            return Error{Error::Kind::kUsage, fmt::format("--{}: {}", option->get_single_name(), what)};
+        };
+        for (const std::string& value : option->results()) {
+            if (value.empty()) return wrong("its value is empty");
+            if ((kind == "N" || kind == "S" || kind == "UINT") && value[0] == '-') return wrong(value + " is below 0");
+            if (kind != "FILE.png") continue;
+            const std::string suffix = std::filesystem::path(value).extension().string();
+            for (const char* other :
+                 {".jpg", ".jpeg", ".webp", ".gif", ".bmp", ".tga", ".tif", ".tiff", ".ppm", ".exr"})
+                if (CLI::detail::to_lower(suffix) == other)
+                    return wrong(fmt::format("{}: pictures are written as PNG: name it .png", value));
+        }
+    }
+    return success();
+}
+
 /// All that happens between the command line and the verb.
 void beginVerb(CLI::App& tool, const SessionOptions& session) {
     CLI::App& verb = *tool.get_subcommands().front();
@@ -180,6 +204,7 @@ void beginVerb(CLI::App& tool, const SessionOptions& session) {
         insist(Error{Error::Kind::kUsage, "--no-config excludes --config"});
     const ConfigChoice config = findConfig(session);
     insist(applyConfig(tool, verb, config));
+    insist(checkValues(verb));
     setQuiet(session.quiet);
     if (config.here && verb.get_configurable()) note("options are taken from ./" + config.file);
 }

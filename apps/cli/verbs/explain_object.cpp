@@ -18,6 +18,7 @@
 #include "sightline/tools/report/pictures/render_list.h"
 #include "sightline/tools/report/run/explain_text.h"
 #include "sightline/tools/scene/one_line.h"
+#include "sightline/tools/scene/suggestion.h"
 #include "sightline/tools/truth/verify.h"
 
 namespace sightline::cli {
@@ -225,9 +226,12 @@ Result<std::vector<uint32_t>> findObjects(const Scene& scene, const std::string&
         scene,
         [&](const SceneObject& object) { return lower(objectPath(scene, object)).find(part) != std::string::npos; },
         keys);
-    if (word.empty() || keys.empty())
-        return Error{Error::Kind::kUsage, fmt::format("--object {}: {} has no object of that key, name or path",
-                                                      word.empty() ? "\"\"" : word, scene.name)};
+    if (keys.empty()) {
+        std::vector<std::string> names;
+        for (const SceneObject& object : scene.objects) names.push_back(object.name);
+        return Error{Error::Kind::kUsage, fmt::format("--object {}: {} has no object of that key, name or path{}",
+                                                      oneLine(word), scene.name, oneLine(suggestion(word, names)))};
+    }
     if (found.empty()) return ambiguous(scene, word, keys);
     return found;
 }

@@ -197,6 +197,15 @@ SceneKind jsonKind(std::string_view head, bool whole, std::string_view suffix) {
     return refuse("is JSON, but not glTF");
 }
 
+/// An entity of a map's source begins as JSON does, but between a key and its value stands no colon.
+bool isMapSource(std::string_view text) {
+    const size_t open = text.find_first_not_of(" \t\r\n", 1);
+    if (open == std::string_view::npos || text[open] != '"') return false;
+    const size_t close = text.find('"', open + 1);
+    const size_t next = close == std::string_view::npos ? close : text.find_first_not_of(" \t\r\n", close + 1);
+    return next != std::string_view::npos && text[next] == '"';
+}
+
 /// STEP is the text that IFC is written in, too.
 SceneKind stepKind(const std::string& head) {
     const size_t schema = head.find("file_schema");
@@ -299,12 +308,13 @@ SceneKind sceneKind(const std::string& file, std::string_view head, uint64_t siz
 
     const std::string low = lower(head);
     const std::string_view text = trimmed(low);
-    if (text.starts_with('{')) return jsonKind(head, size <= head.size(), suffix);
+    if (text.starts_with('{') && !isMapSource(text)) return jsonKind(head, size <= head.size(), suffix);
     if (text.starts_with("iso-10303-21")) return stepKind(low);
     if (text.starts_with("<!doctype html")) return refuse("is a web page, not the file: download the file itself");
     if (text.starts_with('<'))
         if (SceneKind xml = xmlKind(low); xml.format || !xml.refusal.empty()) return xml;
 
+    if (isMapSource(text)) suffix = "map";
     for (const Refused& refused : kRefused)
         if (listed(refused.suffixes, suffix)) return refuse(refused.words);
     const SceneFormat* format = sceneFormat(suffix);
