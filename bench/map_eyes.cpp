@@ -15,7 +15,7 @@ namespace {
 constexpr double kEyeHeight = 46, kRoom = 16, kNear = 4;  // of a player [units of the maps]
 
 /// The region of each leaf, or the map's bounds where it has none.
-void boundLeaves(const LeafTree& tree, MapCells& cells) {
+void boundLeaves(const LeafTree& tree, MapOfLeaves& cells) {
     std::vector<glm::dvec4> planes = planesOfBox(tree.bounds);
     const auto descend = [&](const auto& self, uint32_t child) -> void {
         if ((child & LeafTreeNode::kLeaf) != 0) {
@@ -39,7 +39,7 @@ void boundLeaves(const LeafTree& tree, MapCells& cells) {
 
 }  // namespace
 
-bool readMapCells(const std::string& path, MapCells& cells) {
+bool readMapOfLeaves(const std::string& path, MapOfLeaves& cells) {
     Result<QuakeMapFile> map = readQuakeMap(path);
     if (!map) return false;
     cells.map = std::move(*map);
@@ -53,7 +53,7 @@ bool readMapCells(const std::string& path, MapCells& cells) {
     return true;
 }
 
-std::vector<View> playerViews(const MapCells& cells, const TreeRays& rays, uint32_t count, uint64_t seed) {
+std::vector<View> playerViews(const MapOfLeaves& cells, const TreeRays& rays, uint32_t count, uint64_t seed) {
     Random random(seed);
     const Box3d& box = cells.map.tree.bounds;
     const double far = glm::length(box.size());
@@ -88,7 +88,7 @@ std::vector<View> playerViews(const MapCells& cells, const TreeRays& rays, uint3
     return views;
 }
 
-std::vector<bool> trulySeen(const MapCells& cells, const TreeRays& rays, const View& view, const PortalFlood& may,
+std::vector<bool> trulySeen(const MapOfLeaves& cells, const TreeRays& rays, const View& view, const PortalFlood& may,
                             uint32_t segments, Random& random) {
     std::vector<bool> seen(cells.space.graph.cells, false);
     const glm::dvec3 eye = eyePosition(view);

@@ -19,7 +19,7 @@ namespace sightline::bench {
 using namespace tools;
 
 /// A map of the Quake family as cells: each open leaf is one; water is a wall, as the maps' own rows have it.
-struct MapCells {
+struct MapOfLeaves {
     QuakeMapFile map;
     CellSpace space;
     std::vector<Box3d> bounds;           ///< of each cell: of its leaf's region  [size: cells]
@@ -27,15 +27,15 @@ struct MapCells {
 };
 
 /// @returns false if the file is not there, or is none
-bool readMapCells(const std::string& path, MapCells& cells);
+bool readMapOfLeaves(const std::string& path, MapOfLeaves& cells);
 
 /// Eyes at a player's height above a floor, 16 units from walls, with views of 90 degrees that look about level.
-std::vector<View> playerViews(const MapCells& cells, const TreeRays& rays, uint32_t count, uint64_t seed);
+std::vector<View> playerViews(const MapOfLeaves& cells, const TreeRays& rays, uint32_t count, uint64_t seed);
 
 /// Which cells a view truly sees, as far as segments find out: over the whole image, and then, until few are found,
 /// through the windows of cells that may be seen.
 /// @param may  an answer that holds all that is seen
-std::vector<bool> trulySeen(const MapCells& cells, const TreeRays& rays, const View& view, const PortalFlood& may,
+std::vector<bool> trulySeen(const MapOfLeaves& cells, const TreeRays& rays, const View& view, const PortalFlood& may,
                             uint32_t segments, Random& random);
 
 }  // namespace sightline::bench

@@ -74,7 +74,7 @@ Ways timeViews(const std::vector<View>& views, int repeat, Run run) {
     return ways;
 }
 
-void measureMap(const std::string& name, const MapCells& cells, int repeat, Table& table) {
+void measureMap(const std::string& name, const MapOfLeaves& cells, int repeat, Table& table) {
     const CellGraph& graph = cells.space.graph;
     const Rows row{table, name};
     const TreeRays rays(cells.map.tree, {.contents_stop = true});
@@ -183,8 +183,8 @@ void measureMap(const std::string& name, const MapCells& cells, int repeat, Tabl
 Table benchPortals(const Options& options) {
     Table table{"portals", {}};
     for (const char* name : {"lq_e1m5", "lqdm3", "lq_e2m2", "lq_e4m1"}) {
-        MapCells cells;
-        if (readMapCells(std::string("../shared/maps/") + name + ".vis.bsp", cells))
+        MapOfLeaves cells;
+        if (readMapOfLeaves(std::string("../shared/maps/") + name + ".vis.bsp", cells))
             measureMap(name, cells, options.repeat ? options.repeat : 5, table);
     }
     return table;
