@@ -13,18 +13,23 @@ using ClusterOptions = CullTool;
 
 using PathOptions = CullTool;
 
-TEST_F(PathOptions, WalkAndScatter) {
+TEST_F(PathOptions, TourWalkOrbitOverviewAndScatter) {
     const auto cameras = [&](const std::string& arguments) {
         json out = json::array();
         const json run = cull(arguments);
         for (const json& frame : run["frames"]) out.push_back(frame["camera"]);
         return out;
     };
-    const json scattered = cameras("city:1:400 --frames 6 --seed 1");
-    EXPECT_EQ(cameras("city:1:400 --path scatter --frames 6"), scattered);
-    EXPECT_NE(cameras("city:1:400 --frames 6"), scattered) << "a city is walked along its streets";
+    const json tour = cameras("city:1:400 --frames 6 --seed 1");
+    EXPECT_EQ(cameras("city:1:400 --path tour --frames 6"), tour);
+    EXPECT_NE(cameras("city:1:400 --path tour --frames 6 --seed 2"), tour);
+    EXPECT_NE(cameras("city:1:400 --frames 6"), tour) << "a city is walked along its streets";
+    const json overview = cameras("city:1:400 --path overview");
+    ASSERT_EQ(overview.size(), 1u);
+    EXPECT_EQ(overview[0], tour[0]);
+    for (const char* path : {"scatter", "orbit"})
+        EXPECT_EQ(cameras("city:1:400 --frames 6 --path " + std::string(path)).size(), 6u);
     const json walk = cameras("city:1:400 --path walk --frames 6 --fps 10 --speed 2");
-    EXPECT_EQ(walk[0], scattered[0]);
     for (size_t i = 1; i < walk.size(); ++i) {
         double squared = 0;
         for (int axis = 0; axis < 3; ++axis) {

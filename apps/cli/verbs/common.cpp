@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <thread>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -29,6 +30,11 @@ namespace {
 constexpr uint32_t kLargestSide = 16384;  // [pixels]
 constexpr uint32_t kMostFrames = 1000000;
 constexpr uint32_t kMostThreads = 1024;
+constexpr std::pair<const char*, PathKind> kPathKinds[] = {{"tour", PathKind::kTour},
+                                                           {"walk", PathKind::kWalk},
+                                                           {"orbit", PathKind::kOrbit},
+                                                           {"overview", PathKind::kOverview},
+                                                           {"scatter", PathKind::kScatter}};
 
 /// Reads a whole number that is all of the text.
 template <class T>
@@ -74,24 +80,23 @@ Status readSize(const std::string& option, const std::string& text, uint32_t& wi
 }
 
 void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& shared) {
+    std::vector<std::string> paths;
+    for (const auto& [word, kind] : kPathKinds) paths.emplace_back(word);
     addSceneChoice(verb, options.scene);
     WalkSettings& walk = options.choice.walk;
     verb.add_option("--cameras", options.choice.file, "camera path (JSON)")->type_name("PATH.json")->group("Cameras");
     verb.add_option("--path", options.path,
-                    "seeded cameras that stand anywhere, or walk through free space (default: the scene's own cameras, "
-                    "else scatter)")
-        ->check(CLI::IsMember({"scatter", "walk"}))
-        ->type_name("scatter|walk")
+                    "a view of the whole and a walk through it; a walk, frame by frame; once around; the whole from "
+                    "outside; or cameras that stand anywhere (default: the scene's own cameras, else tour)")
+        ->check(CLI::IsMember(paths))
+        ->type_name(fmt::format("{}", fmt::join(paths, "|")))
         ->group("Cameras");
     verb.add_option("--frames", walk.frames,
-                    "so many seeded cameras; a city without --path and --seed is walked along its streets")
+                    "so many cameras; a city without --path and --seed is walked along its streets")
         ->check(CLI::Range(1u, kMostFrames))
         ->type_name("N")
         ->group("Cameras");
-    verb.add_option("--seed", walk.seed, "of the seeded cameras")
-        ->type_name("S")
-        ->capture_default_str()
-        ->group("Cameras");
+    verb.add_option("--seed", walk.seed, "of the path")->type_name("S")->capture_default_str()->group("Cameras");
     verb.add_option("--fps", walk.fps, "frames a second of a walk")
         ->check(CLI::Range(1.0, 10000.0))
         ->capture_default_str()
@@ -169,14 +174,14 @@ void addQueryOptions(CLI::App& verb, RunOptions& options) {
 
 namespace {
 
-/// Checks what is asked of the cameras. A seed asks for scattered ones, if no kind is asked for.
+/// Checks what is asked of the cameras.
 Status finishPath(const CLI::App& verb, RunOptions& options) {
     PathChoice& choice = options.choice;
-    options.seed_given = verb.count("--seed") > 0;
-    if (!choice.file.empty() && (choice.walk.frames > 0 || options.seed_given || !options.path.empty()))
+    choice.seeded = verb.count("--seed") > 0;
+    if (!choice.file.empty() && (choice.walk.frames > 0 || choice.seeded || !options.path.empty()))
         return usageError("--cameras excludes --path, --frames and --seed");
-    if (options.path == "walk") choice.kind = PathKind::kWalk;
-    else if (options.path == "scatter" || options.seed_given) choice.kind = PathKind::kScatter;
+    for (const auto& [word, kind] : kPathKinds)
+        if (options.path == word) choice.kind = kind;
     for (const char* of_walk : {"--fps", "--speed"})
         if (choice.kind != PathKind::kWalk && verb.count(of_walk) > 0)
             return usageError(fmt::format("{} goes with --path walk", of_walk));
@@ -214,7 +219,7 @@ Status finish(const CLI::App& verb, RunOptions& options) {
 Result<CameraPath> loadPath(const Scene& scene, const RunOptions& options) {
     const PathChoice& choice = options.choice;
     uint64_t city_seed = 0;
-    if (choice.file.empty() && choice.kind == PathKind::kAny && choice.walk.frames > 0 &&
+    if (choice.file.empty() && choice.kind == PathKind::kAny && choice.walk.frames > 0 && !choice.seeded &&
         isCity(options.scene.procedural(), city_seed))
         return cityStreetPath(city_seed, choice.walk.frames);
     return choosePath(scene, choice);

@@ -23,7 +23,6 @@ struct RunOptions {
     SceneChoice scene;
     std::string path;  ///< a word for PathChoice::kind, or empty
     PathChoice choice;
-    bool seed_given = false;
     std::string size = "1280x720";
     uint32_t width = 1280, height = 720;  ///< from `size`
     uint32_t threads = 0;                 ///< 0: all cores

@@ -270,7 +270,7 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     if (!choice.file.empty()) command += " --cameras " + quoted(choice.file);
     if (!options.path.empty()) command += " --path " + options.path;
     if (choice.walk.frames > 0) command += fmt::format(" --frames {}", choice.walk.frames);
-    if (options.seed_given) command += fmt::format(" --seed {}", choice.walk.seed);
+    if (choice.seeded) command += fmt::format(" --seed {}", choice.walk.seed);
     if (choice.walk.fps != WalkSettings().fps) command += fmt::format(" --fps {}", choice.walk.fps);
     if (choice.walk.speed != WalkSettings().speed) command += fmt::format(" --speed {}", choice.walk.speed);
     command += fmt::format(" --size {}x{}", options.width, options.height);

@@ -2,20 +2,34 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/load/choose_path.h"
 
+#include "sightline/tools/load/orbit.h"
 #include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/load/tour.h"
 
 namespace sightline::tools {
 
 Result<CameraPath> choosePath(const Scene& scene, const PathChoice& choice) {
-    constexpr uint32_t kScattered = 16;
+    constexpr uint32_t kFrames = 16;
     if (!choice.file.empty()) return readCameraPath(choice.file);
     WalkSettings walk = choice.walk;
-    if (choice.kind == PathKind::kWalk) {
-        if (walk.frames == 0) walk.frames = WalkSettings().frames;
-        return walkThrough(scene, walk);
+    if (choice.kind == PathKind::kAny && walk.frames == 0 && !choice.seeded && !scene.cameras.empty())
+        return sceneCameras(scene);
+    const auto framesOr = [&](uint32_t usual) { return walk.frames > 0 ? walk.frames : usual; };
+    switch (choice.kind) {
+        case PathKind::kWalk:
+            walk.frames = framesOr(WalkSettings().frames);
+            return walkThrough(scene, walk);
+        case PathKind::kOrbit:
+            return orbitAround(scene, framesOr(kFrames), walk.seed);
+        case PathKind::kOverview:
+            return overviewsOf(scene, framesOr(1), walk.seed);
+        case PathKind::kScatter:
+            return seededCameras(scene, framesOr(kFrames), walk.seed);
+        case PathKind::kAny:
+        case PathKind::kTour:
+            break;
     }
-    if (choice.kind == PathKind::kAny && walk.frames == 0 && !scene.cameras.empty()) return sceneCameras(scene);
-    return seededCameras(scene, walk.frames > 0 ? walk.frames : kScattered, walk.seed);
+    return tourOf(scene, framesOr(kFrames), walk.seed);
 }
 
 }  // namespace sightline::tools

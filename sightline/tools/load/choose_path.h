@@ -12,19 +12,23 @@
 namespace sightline::tools {
 
 enum class PathKind {
-    kAny,      ///< none was asked for
-    kScatter,  ///< seededCameras()
-    kWalk,     ///< walkThrough()
+    kAny,       ///< none was asked for
+    kTour,      ///< tourOf()
+    kWalk,      ///< walkThrough()
+    kOrbit,     ///< orbitAround()
+    kOverview,  ///< overviewsOf()
+    kScatter,   ///< seededCameras()
 };
 
 struct PathChoice {
     std::string file;  ///< empty: none
     PathKind kind = PathKind::kAny;
+    bool seeded = false;             ///< a seed was asked for
     WalkSettings walk{.frames = 0};  ///< frames and seed are any kind's; 0 frames: not asked for
 };
 
-/// The file's cameras; else those of a kind, 16 scattered ones or a walk of 600 frames if nothing says how many; else,
-/// if no frames were asked for either, the scene's own; else scattered ones. Errors: of readCameraPath().
+/// The file's cameras; else those of a kind; else, if neither frames nor a seed were asked for, the scene's own; else a
+/// tour. If nothing says how many: 600 of a walk, one overview, 16 of the others. Errors: of readCameraPath().
 Result<CameraPath> choosePath(const Scene& scene, const PathChoice& choice);
 
 }  // namespace sightline::tools

@@ -298,6 +298,17 @@ std::optional<ProbeHit> RayProbe::nearest(const ProbeRay& ray, double from) cons
     return best;
 }
 
+glm::dvec3 RayProbe::normal(const ProbeHit& hit) const {
+    const SceneObject& object = scene_->objects[hit.object];
+    const Mesh& mesh = scene_->meshes[object.mesh];
+    const auto corner = [&](uint32_t k) { return glm::dvec3(mesh.positions[mesh.indices[3 * hit.triangle + k]]); };
+    const glm::dvec3 a = corner(0);
+    const glm::dmat3 linear(object.transform);
+    const glm::dvec3 mapped = cofactors(linear) * glm::cross(corner(1) - a, corner(2) - a);
+    const double length = glm::length(mapped);
+    return length > 0 ? mapped * ((glm::determinant(linear) < 0 ? -1 : 1) / length) : glm::dvec3(0);
+}
+
 void RayProbe::meet(uint32_t object, const ProbeRay& ray, double from, ProbeHit& best) const {
     const SceneObject& placed = scene_->objects[object];
     if (!meshes_[placed.mesh]) return;

@@ -70,6 +70,9 @@ public:
     /// The nearest hit with t > from, or none.
     std::optional<ProbeHit> nearest(const ProbeRay& ray, double from = 0) const;
 
+    /// The unit normal of the triangle that was hit, on its front; zero if it has no area.
+    glm::dvec3 normal(const ProbeHit& hit) const;
+
 private:
     void meet(uint32_t object, const ProbeRay& ray, double from, ProbeHit& best) const;
 

@@ -1,4 +1,4 @@
-// Walks through a scene's free space: legs between seeded cameras, rounded corners, and a glance here and there.
+// Walks: a way over a floor or through free space, rounded corners, and glances to where one sees far.
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/load/walk.h"
 
@@ -8,18 +8,21 @@
 #include <vector>
 
 #include "sightline/base/random.h"
-#include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/load/floor_way.h"
 
 namespace sightline::tools {
 namespace {
 
-constexpr uint32_t kGoals = 64;           // seeded cameras
-constexpr int kDirections = 32;           // tried where no goal can be reached
-constexpr double kLongestLeg = 4;         // of these  [s]
-constexpr int kRoundings = 8;             // pieces of a corner
-constexpr double kTurn = 1.0471975512;    // pi / 3  [radians / s]
-constexpr double kGlance = 2;             // between two glances  [s]
-constexpr double kAside = 0.7, kUp = .2;  // how far a glance goes, as tangents
+constexpr uint32_t kGoals = 64;    // seeded cameras
+constexpr int kDirections = 32;    // tried where no goal can be reached
+constexpr double kLongestLeg = 4;  // of these  [s]
+constexpr int kRoundings = 8;      // pieces of a corner
+constexpr double kHalfTurn = 3.14159265358979323846;
+constexpr double kTurn = kHalfTurn / 3;  // [radians / s]
+constexpr double kGlance = 2;            // between two glances  [s]
+constexpr int kGlances = 7;              // to each side, of which one is taken
+constexpr double kAside = 0.35;          // between two of them  [radians]
+constexpr double kAhead = 2;             // so far ahead on the way one looks  [metres]
 
 glm::dvec3 anyRight(const glm::dvec3& direction) {
     const glm::dvec3 flat(-direction.z, 0, direction.x);
@@ -27,30 +30,48 @@ glm::dvec3 anyRight(const glm::dvec3& direction) {
     return length > 1e-6 ? flat / length : glm::dvec3(1, 0, 0);
 }
 
-/// Turns a direction towards another one, by at most an angle of which `tangent` is no more than half.
-glm::dvec3 turned(const glm::dvec3& from, const glm::dvec3& to, double tangent) {
+/// Turns a direction towards another one, by at most an angle of which `tangent` is no more than half; aside rather than
+/// over head or feet.
+glm::dvec3 turned(const glm::dvec3& from, const glm::dvec3& wanted, double tangent) {
+    if (2 * tangent >= kHalfTurn) return wanted;
+    glm::dvec3 to = wanted;
+    const glm::dvec3 right = anyRight(from), ahead = glm::cross(glm::dvec3(0, 1, 0), right);
+    if (glm::dot(wanted, ahead) < 0) {
+        const double flat = std::sqrt(std::max(0.0, 1 - wanted.y * wanted.y));
+        to = (glm::dot(wanted, right) < 0 ? -flat : flat) * right + glm::dvec3(0, wanted.y, 0);
+    }
     const double scale = 1 / (1 + tangent * tangent);
     const double cosine = (1 - tangent * tangent) * scale, sine = 2 * tangent * scale;
     if (glm::dot(from, to) >= cosine) return to;
-    glm::dvec3 across = to - glm::dot(from, to) * from;
-    if (!(glm::length(across) > 1e-9)) across = anyRight(from);
+    const glm::dvec3 across = to - glm::dot(from, to) * from;
+    if (!(glm::length(across) > 1e-9)) return from;
     return glm::normalize(cosine * from + sine * glm::normalize(across));
+}
+
+glm::dvec3 turnedAside(const glm::dvec3& direction, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {c * direction.x - s * direction.z, direction.y, s * direction.x + c * direction.z};
 }
 
 class Walker {
 public:
-    Walker(const Scene& scene, const WalkSettings& settings)
-        : probe_(scene),
+    Walker(const Scene& scene, const RayProbe& probe, const Floor& floor, const WalkSettings& settings)
+        : scene_(scene),
+          probe_(probe),
+          floor_(floor),
           settings_(settings),
-          random_(mixSeed(settings.seed, 0x77616c6b)),
-          starts_(seededCameras(scene, kGoals, settings.seed).frames) {
+          random_(mixSeed(settings.seed, 0x77616c6b)) {
         const Box3d bounds = worldBounds(scene);
-        const double diagonal = bounds.finite() ? glm::length(bounds.size()) : 0;
-        margin_ = std::isfinite(diagonal) ? std::min(0.25, 0.01 * diagonal) : 0.25;
+        diagonal_ = bounds.finite() ? glm::length(bounds.size()) : 0;
+        if (!std::isfinite(diagonal_)) diagonal_ = 0;
+        margin_ = diagonal_ > 0 ? std::min(0.25, 0.01 * diagonal_) : 0;
     }
 
     CameraPath path() {
-        findWay();
+        const double needed = 1.2 * settings_.speed * settings_.frames / settings_.fps;  // rounded corners are shorter
+        if (floor_.places.size() > 1) walkFar(needed);
+        else flyFar(needed);
+        roundCorners();
         return alongWay();
     }
 
@@ -65,13 +86,29 @@ private:
         return free;
     }
 
-    /// The legs of the way, as long as all frames need.
-    void findWay() {
-        way_ = {starts_[0].eye};
+    /// Over the floor; to and fro where it is small.
+    void walkFar(double needed) {
+        way_ = wayOver(floor_, probe_, needed);
+        if (way_.size() < 2) way_ = {floor_.eye(0), floor_.eye(floor_.places[0].next[0])};
+        first_.eye = way_[0];
+        first_.target = way_[0] + glm::normalize(way_[1] - way_[0]);
+        if (diagonal_ > 0) first_.z_near = std::min(0.0005 * diagonal_, 0.1);
+        double length = 0;
+        for (size_t i = 1; i < way_.size(); ++i) length += glm::length(way_[i] - way_[i - 1]);
+        const std::vector<glm::dvec3> once = way_;
+        for (double left = needed - length; length > 0 && left > 0; left -= length)
+            if (way_.back() == once.back()) way_.insert(way_.end(), once.rbegin() + 1, once.rend());
+            else way_.insert(way_.end(), once.begin() + 1, once.end());
+    }
+
+    /// Through free space.
+    void flyFar(double needed) {
+        starts_ = seededCameras(scene_, kGoals, settings_.seed).frames;
+        first_ = starts_[0];
+        way_ = {first_.eye};
         std::vector<bool> was_at(starts_.size());
         was_at[0] = true;
-        double left = 1.2 * settings_.speed * settings_.frames / settings_.fps;  // rounded corners are shorter
-        while (left > 0) {
+        for (double left = needed; left > 0;) {
             const glm::dvec3 here = way_.back();
             glm::dvec3 next = here;
             if (!findGoal(here, was_at, left, next)) next = anyPlace(here);
@@ -80,7 +117,6 @@ private:
             way_.push_back(next);
             left -= length;
         }
-        roundCorners();
     }
 
     /// The nearest seeded camera where the way has not been yet, in a straight line.
@@ -113,7 +149,7 @@ private:
     /// Where there is most room, rather ahead than back; the place itself if there is none.
     glm::dvec3 openPlace(const glm::dvec3& here, double margin) {
         const glm::dvec3 ahead =
-            way_.size() > 1 ? glm::normalize(here - way_[way_.size() - 2]) : starts_[0].target - starts_[0].eye;
+            way_.size() > 1 ? glm::normalize(here - way_[way_.size() - 2]) : first_.target - first_.eye;
         const double far = kLongestLeg * settings_.speed;
         double most = 0;
         glm::dvec3 best = here;
@@ -164,7 +200,7 @@ private:
         CameraPath out;
         const double step = settings_.speed / settings_.fps, tangent = 0.5 * kTurn / settings_.fps;
         const auto glance = static_cast<uint32_t>(std::max(1.0, kGlance * settings_.fps));
-        CameraFrame frame = starts_[0];
+        CameraFrame frame = first_;
         glm::dvec3 look = glm::normalize(frame.target - frame.eye), forward = look;
         const double distance = glm::length(frame.target - frame.eye);
         double aside = 0, up = 0;
@@ -172,18 +208,58 @@ private:
         for (uint32_t i = 0; i < settings_.frames; ++i) {
             if (i > 0) goOn(place, step);
             frame.eye = at(place);
-            forward = directionAt(place, forward);
+            forward = aheadOf(place, forward);
             if (i % glance == 0) {
-                aside = random_.uniform(-kAside, kAside);
-                up = random_.uniform(-kUp, kUp);
+                aside = farGlance(frame.eye, forward);
+                up = random_.uniform(-0.15, 0.03);
             }
-            glm::dvec3 wanted = forward + aside * anyRight(forward);
+            glm::dvec3 wanted = turnedAside(forward, aside);
             wanted.y = 0.3 * wanted.y + up;
-            if (i > 0) look = turned(look, glm::normalize(wanted), tangent);
+            wanted = glm::normalize(wanted);
+            look = i > 0 || floor_.places.empty() ? turned(look, wanted, tangent) : wanted;
             frame.target = frame.eye + look * distance;
             out.frames.push_back(frame);
         }
         return out;
+    }
+
+    /// A number of an object's side that was hit: other sides of it have others.
+    uint64_t sideOf(const ProbeHit& hit) const {
+        const glm::dvec3 normal = probe_.normal(hit);
+        uint64_t side = uint64_t{hit.object} + 1;
+        for (int axis = 0; axis < 3; ++axis)
+            side = side << 4 | static_cast<uint64_t>(std::lround(4 * normal[axis]) + 4);
+        return side;
+    }
+
+    /// The angle of a glance to where one sees farther and more than elsewhere, rather ahead than aside.
+    double farGlance(const glm::dvec3& eye, const glm::dvec3& forward) {
+        const double far = (floor_.places.empty() ? 0.1 * diagonal_ : 25 * floor_.spacing) + margin_;
+        double most = 0, best = 0;
+        std::vector<uint64_t> seen;
+        for (int side = -kGlances; side <= kGlances; ++side) {
+            const double angle = kAside * side;
+            double sum = 0, least = far;
+            seen.clear();
+            for (const double beside : {-0.7, -0.35, 0.0, 0.35, 0.7})
+                for (const double rise : {-0.3, 0.0, 0.3}) {
+                    glm::dvec3 direction = turnedAside(forward, angle + beside);
+                    direction.y = 0.3 * direction.y + rise;
+                    const auto hit = probe_.nearest({eye, glm::normalize(direction)});
+                    const double free = hit ? std::min(hit->t, far) : 0.7 * far;  // rather a view than the sky
+                    if (rise == 0) sum += free;
+                    if (rise == 0) least = std::min(least, free);
+                    seen.push_back(hit ? sideOf(*hit) : 0);
+                }
+            std::sort(seen.begin(), seen.end());
+            const auto things = static_cast<double>(std::unique(seen.begin(), seen.end()) - seen.begin());
+            const double worth =
+                (sum + 2 * least) * (1 + things / 4) * (2.5 + std::cos(angle)) * random_.uniform(0.8, 1);
+            if (!(worth > most)) continue;
+            most = worth;
+            best = angle;
+        }
+        return best;
     }
 
     /// On the way: a leg, and how far along it.
@@ -197,31 +273,55 @@ private:
         if (place.leg + 1 >= way_.size() || !(lengthOf(place.leg) > 0)) return otherwise;
         return (way_[place.leg + 1] - way_[place.leg]) / lengthOf(place.leg);
     }
+    /// Where one looks who looks ahead on the way.
+    glm::dvec3 aheadOf(const Place& place, const glm::dvec3& otherwise) const {
+        Place there = place;
+        there.done += kAhead * (floor_.places.empty() ? 1 : floor_.unit);
+        while (there.leg + 1 < way_.size() && there.done >= lengthOf(there.leg)) there.done -= lengthOf(there.leg++);
+        if (there.leg + 1 >= way_.size()) return directionAt(place, otherwise);
+        const glm::dvec3 way = at(there) - at(place);  // short where the way turns back
+        return glm::length(way) > 0.5 * kAhead * (floor_.places.empty() ? 1 : floor_.unit)
+                   ? glm::normalize(way)
+                   : directionAt(place, otherwise);
+    }
     glm::dvec3 at(const Place& place) const { return way_[place.leg] + place.done * directionAt(place, glm::dvec3(0)); }
 
-    /// A step along the way, or to the next corner where the corner cannot be cut.
+    /// A step along the way, or as much of it as can be seen from where one is; at least to the next corner.
     void goOn(Place& place, double step) const {
-        Place next = place;
-        next.done += step;
-        while (next.leg + 1 < way_.size() && next.done >= lengthOf(next.leg)) {
-            next.done -= lengthOf(next.leg);
-            ++next.leg;
+        if (!(step > 0) || place.leg + 1 >= way_.size()) return;
+        for (double part = step; part > step / 64; part /= 2) {
+            Place next = place;
+            next.done += part;
+            while (next.leg + 1 < way_.size() && next.done >= lengthOf(next.leg)) next.done -= lengthOf(next.leg++);
+            if (next.leg + 1 >= way_.size()) next.done = 0;
+            if (next.leg > place.leg && !isFree(at(place), at(next))) continue;
+            place = next;
+            return;
         }
-        if (next.leg + 1 >= way_.size()) next.done = 0;
-        if (next.leg > place.leg && !isFree(at(place), at(next))) next = {place.leg + 1, 0};
-        place = next;
+        place = {place.leg + 1, 0};
     }
 
-    const RayProbe probe_;
+    const Scene& scene_;
+    const RayProbe& probe_;
+    const Floor& floor_;
     const WalkSettings settings_;
     Random random_;
-    const std::vector<CameraFrame> starts_;  ///< seeded cameras: the first is where the walk begins
-    double margin_ = 0;                      ///< [world units]
+    CameraFrame first_;                ///< where the walk begins
+    std::vector<CameraFrame> starts_;  ///< seeded cameras, between which one flies
+    double diagonal_ = 0;              ///< of the scene; 0 if it has none  [world units]
+    double margin_ = 0;                ///< [world units]
     std::vector<glm::dvec3> way_;
 };
 
 }  // namespace
 
-CameraPath walkThrough(const Scene& scene, const WalkSettings& settings) { return Walker(scene, settings).path(); }
+CameraPath walkThrough(const Scene& scene, const WalkSettings& settings) {
+    const RayProbe probe(scene);
+    return walkOver(scene, probe, findFloor(scene, probe, settings.seed), settings);
+}
+
+CameraPath walkOver(const Scene& scene, const RayProbe& probe, const Floor& floor, const WalkSettings& settings) {
+    return Walker(scene, probe, floor, settings).path();
+}
 
 }  // namespace sightline::tools

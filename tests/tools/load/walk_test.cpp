@@ -10,7 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "sightline/tools/load/choose_path.h"
+#include "sightline/tools/load/orbit.h"
 #include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/load/tour.h"
 #include "sightline/tools/scene/building/building.h"
 #include "sightline/tools/scene/city/city.h"
 #include "sightline/tools/scene/terrain/terrain.h"
@@ -70,7 +72,6 @@ TEST(Walk, IsTheSameForASeed) {
     EXPECT_FALSE(same(path, walkThrough(scene, {.frames = 50, .seed = 4})));
     const CameraPath longer = walkThrough(scene, {.frames = 20, .seed = 3});
     EXPECT_EQ(longer.frames[0].eye, path.frames[0].eye);
-    EXPECT_EQ(longer.frames[0].eye, seededCameras(scene, 1, 3).frames[0].eye);
 }
 
 TEST(Walk, GoesThroughNothing) {
@@ -80,25 +81,46 @@ TEST(Walk, GoesThroughNothing) {
     EXPECT_EQ(expectSmooth(scene, {.frames = 30, .speed = 0}, walkThrough(scene, {.frames = 30, .speed = 0})), 0.0);
 }
 
-TEST(ChoosePath, FileThenKindThenFramesThenTheScenesOwnThenSixteen) {
+TEST(Walk, KeepsTheHeightOfAnEyeOverTheFloor) {
+    const Scene building = makeBuilding(1, 2), city = makeCity(2, 400);
+    for (const Scene* scene : {&building, &city}) {
+        const RayProbe probe(*scene);
+        for (const CameraFrame& frame : walkThrough(*scene, {.frames = 300, .seed = 7}).frames) {
+            const auto below = probe.nearest({frame.eye, {0, -1, 0}});
+            ASSERT_TRUE(below);
+            EXPECT_GT(below->t, 0.5);  // a post is stepped over
+            EXPECT_LT(below->t, 2.2);
+        }
+    }
+}
+
+TEST(ChoosePath, FileThenKindThenTheScenesOwnThenATour) {
     Scene scene = makeCity(1, 300);
     EXPECT_EQ(choosePath(scene, {})->frames.size(), 16u);
-    EXPECT_TRUE(same(*choosePath(scene, {}), seededCameras(scene, 16, 1)));
+    EXPECT_TRUE(same(*choosePath(scene, {}), tourOf(scene, 16, 1)));
     scene.cameras.resize(2);
     scene.cameras[0].fov_y = 1;
     scene.cameras[1].fov_y = 1;
     EXPECT_EQ(choosePath(scene, {})->frames.size(), 2u);
     PathChoice choice;
     choice.kind = PathKind::kScatter;
-    EXPECT_EQ(choosePath(scene, choice)->frames.size(), 16u);
+    EXPECT_TRUE(same(*choosePath(scene, choice), seededCameras(scene, 16, 1)));
+    choice.kind = PathKind::kTour;
+    EXPECT_TRUE(same(*choosePath(scene, choice), tourOf(scene, 16, 1)));
+    choice.kind = PathKind::kOrbit;
+    EXPECT_TRUE(same(*choosePath(scene, choice), orbitAround(scene, 16, 1)));
+    choice.kind = PathKind::kOverview;
+    EXPECT_TRUE(same(*choosePath(scene, choice), overviewsOf(scene, 1, 1)));
     choice.kind = PathKind::kWalk;
     EXPECT_EQ(choosePath(scene, choice)->frames.size(), 600u);
     choice.walk.frames = 5;
     choice.walk.seed = 9;
     EXPECT_TRUE(same(*choosePath(scene, choice), walkThrough(scene, {.frames = 5, .seed = 9})));
     choice.kind = PathKind::kAny;
-    EXPECT_EQ(choosePath(scene, choice)->frames.size(), 5u);
-    EXPECT_TRUE(same(*choosePath(scene, choice), seededCameras(scene, 5, 9)));
+    EXPECT_TRUE(same(*choosePath(scene, choice), tourOf(scene, 5, 9)));
+    choice.walk.frames = 0;
+    choice.seeded = true;
+    EXPECT_TRUE(same(*choosePath(scene, choice), tourOf(scene, 16, 9)));
     choice.file = testing::TempDir() + "sightline_choose_path.json";
     std::ofstream(choice.file) << cameraPathJson(cityStreetPath(1, 3));
     EXPECT_TRUE(same(*choosePath(scene, choice), cityStreetPath(1, 3)));
