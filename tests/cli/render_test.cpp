@@ -114,6 +114,23 @@ TEST_F(Render, ThreadsDoNotChangeThePicture) {
     }
 }
 
+TEST_F(Render, SplitScenesLookTheSame) {
+    // Cameras of a path that is found in a scene change with its objects.
+    write("path.json", R"({"frames": [{"eye": [30, 12, 40], "target": [0, 2, 0]}]})");
+    const std::string common =
+        "render building:1:1 --cameras path.json --size 200x120 --shading flat --method zbuffer";
+    ASSERT_EQ(run(common + " -o whole.png").exit_code, 0);
+    for (const std::string how : {"parts", "materials", "grid:5"}) {
+        ASSERT_EQ(run(common + " --split " + how + " -o split.png").exit_code, 0);
+        EXPECT_TRUE(decode("whole.png").colours == decode("split.png").colours) << how;
+    }
+    expectError("render building:1:1 --split grid:0", 2, "--split: \"grid:0\" is not parts, materials or grid:N");
+    const json run = json::parse(
+        succeed("cull building:1:1 --split grid:3 --frames 3 --size 160x90 --verify --rays 20000 --json -").out);
+    EXPECT_EQ(run["verification"]["false_culls"], 0);
+    EXPECT_GT(run["scene"]["objects"], 1000);
+}
+
 TEST_F(Render, AllMethodsFillTheReport) {
     const Outcome outcome = succeed("render " + kCity + "--method all --report deep/out -o all.png");
     const std::string page = read(path("deep/out/index.html"));

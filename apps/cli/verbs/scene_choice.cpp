@@ -19,6 +19,7 @@
 #include "apps/cli/shell/session.h"
 #include "sightline/tools/import/scene_file.h"
 #include "sightline/tools/scene/procedural.h"
+#include "sightline/tools/scene/split.h"
 
 namespace sightline::cli {
 using namespace tools;
@@ -120,6 +121,25 @@ Result<Scene> loadOne(const std::string& name, ImportSettings settings) {
     return loadSceneFile(name, settings);
 }
 
+/// Says so where objects that reach through half a scene hold most of it, and what may help.
+void tellOfWideObjects(const Scene& scene) {
+    constexpr uint64_t kMany = 20000;
+    const uint64_t all = drawnTriangles(scene);
+    const double half = glm::length(worldBounds(scene).size()) / 2;
+    uint64_t wide = 0, objects = 0;
+    for (const SceneObject& object : scene.objects) {
+        const Mesh& mesh = scene.meshes[object.mesh];
+        if (mesh.deforms || !(glm::length(transformBox(mesh.bounds, object.transform).size()) > half)) continue;
+        wide += mesh.triangles();
+        ++objects;
+    }
+    if (wide < kMany || wide < all / 2) return;
+    note(fmt::format("{} {:.0f} % of the triangles: more may be culled with --split grid:8",
+                     objects == 1 ? "one object through half the scene holds"
+                                  : fmt::format("{} objects through half the scene hold", objects),
+                     100.0 * static_cast<double>(wide) / static_cast<double>(all)));
+}
+
 }  // namespace
 
 std::string SceneChoice::title() const { return fmt::format("{}", fmt::join(names, " + ")); }
@@ -129,6 +149,7 @@ std::string SceneChoice::words() const {
     for (const std::string& name : names)  // a name that looks like an option needs its directory
         words += (words.empty() ? "" : " ") + quoted(name.starts_with('-') ? "./" + name : name);
     for (const auto& [name, value] : optionsOf(*this)) words += " " + name + " " + quoted(value);
+    if (!split.empty()) words += " --split " + split;
     return words;
 }
 
@@ -142,6 +163,12 @@ void addSceneChoice(CLI::App& verb, SceneChoice& choice) {
                     "building:1:3, terrain:1:256 or made:cycle; several are joined")
         ->required()
         ->expected(1, 1000);
+    verb.add_option(
+            "--split", choice.split,
+            "cut meshes into objects of their own: what hangs together, what is of one material, or what lies in "
+            "one cube of a grid with N cubes along a mesh's longest side")
+        ->type_name("parts|materials|grid:N")
+        ->group("Input");
     addImportOptions(verb, choice);
 }
 
@@ -168,6 +195,12 @@ void addImportOptions(CLI::App& verb, SceneChoice& choice) {
 Result<Scene> loadScene(const SceneChoice& choice) {
     const Result<ImportSettings> settings = settingsOf(choice);
     if (!settings) return settings.error();
+    Split split;
+    if (!choice.split.empty()) {
+        Result<Split> read = readSplit(choice.split);
+        if (!read) return Error{read.error().kind, "--split: " + read.error().message};
+        split = *read;
+    }
     if (std::all_of(choice.names.begin(), choice.names.end(), isProcedural) && !optionsOf(choice).empty())
         return Error{Error::Kind::kUsage,
                      fmt::format("{}: says how files are read, but there is none", optionsOf(choice).front().first)};
@@ -182,7 +215,8 @@ Result<Scene> loadScene(const SceneChoice& choice) {
         return Error{
             Error::Kind::kInput,
             joined.name + ": draws nothing: it has cells or portals alone; name the scene that they belong to, too"};
-    return joined;
+    if (choice.split.empty()) tellOfWideObjects(joined);
+    return splitScene(std::move(joined), split);
 }
 
 }  // namespace sightline::cli

@@ -19,6 +19,7 @@ struct SceneChoice {
     std::vector<std::string> names;  ///< files and procedural scenes; several are joined in this order
     // How files are read, as the options say it; empty: not given.
     std::string up, unit, sides, memory, time;
+    std::string split;  ///< for readSplit(); empty: meshes stay whole
 
     /// For a reader: "a.glb + b.glb".
     std::string title() const;

@@ -20,26 +20,26 @@ constexpr double kNoHit = std::numeric_limits<double>::infinity();
 constexpr double kKnee = 0.4, kEye = 1.6, kHead = 1.75, kClimb = 0.45, kNarrow = 0.2;
 constexpr double kLeastLevel = 0.75;  // of a floor: the height of its unit normal
 
-constexpr double kHall = 12;          // no ceiling of a usual room is higher
-constexpr double kRooms = 5;          // so many times as high as the low ones are high rooms
+constexpr double kHall = 12;           // no ceiling of a usual room is higher
+constexpr double kRooms = 5;           // so many times as high as the low ones are high rooms
 constexpr size_t kFewestCeilings = 8;  // that tell what a metre is
 
-constexpr int kColumns = 256;         // where starts are searched
-constexpr int kLevels = 24;           // of a column
-constexpr int kAround = 16;           // directions in which a start looks
-constexpr double kRise = 0.27;        // of those that look upwards: 15 degrees
-constexpr double kEnclosed = 1;       // worth of a start that needs no floor
-constexpr double kSmall = 60;         // across: a scene that is looked at from outside  [metres],
-constexpr double kSmallWorth = 0.6;   // unless a start in it is worth this
+constexpr int kColumns = 256;        // where starts are searched
+constexpr int kLevels = 24;          // of a column
+constexpr int kAround = 16;          // directions in which a start looks
+constexpr double kRise = 0.27;       // of those that look upwards: 15 degrees
+constexpr double kEnclosed = 1;      // worth of a start that needs no floor
+constexpr double kSmall = 60;        // across: a scene that is looked at from outside  [metres],
+constexpr double kSmallWorth = 0.6;  // unless a start in it is worth this
 constexpr uint32_t kMostPlaces = 2500;
 constexpr uint32_t kEnough = 800;     // places: no better start is looked for
 constexpr uint32_t kFewest = 24;      // places: with fewer there is nothing to walk on
-constexpr uint32_t kMostStarts = 12;   // from which a floor is grown
+constexpr uint32_t kMostStarts = 12;  // from which a floor is grown
 
 /// Somebody could begin here.
 struct Start {
     glm::dvec3 foot;
-    bool on_ground = false;    ///< on no surface
+    bool on_ground = false;   ///< on no surface
     double ceiling = kNoHit;  ///< height above the foot
     double worth = 0;         ///< 0 to 1.5: how much is seen around, above all at and over the height of the eye
     double wide = 0;          ///< how far one sees
@@ -167,7 +167,9 @@ private:
         std::nth_element(far.begin(), far.begin() + kAround / 2, far.end());
         start.wide = far[kAround / 2];
         start.worth = (0.5 * level + over) / kAround;
-        const double least = start.on_ground ? kEnclosed : glm::length(bounds_.size()) < kSmall * unit_ ? kSmallWorth : 0;
+        const double least = start.on_ground                                ? kEnclosed
+                             : glm::length(bounds_.size()) < kSmall * unit_ ? kSmallWorth
+                                                                            : 0;
         if (start.worth < least) start.worth = 0;
     }
 

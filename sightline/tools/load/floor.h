@@ -22,9 +22,9 @@ struct Floor {
         std::vector<uint32_t> next;  ///< indices into places
     };
 
-    double unit = 1;     ///< what a metre is; other than 1 if rooms are so high that the unit cannot be one
-    double spacing = 0;  ///< of the grid: more where the view is wide  [world units]
-    double climb = 0;    ///< between two places that lead to each other, at most  [world units]
+    double unit = 1;               ///< what a metre is; other than 1 if rooms are so high that the unit cannot be one
+    double spacing = 0;            ///< of the grid: more where the view is wide  [world units]
+    double climb = 0;              ///< between two places that lead to each other, at most  [world units]
     std::optional<double> ground;  ///< taken for a floor where there is none below
     std::vector<Place> places;
 

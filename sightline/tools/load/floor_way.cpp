@@ -13,11 +13,11 @@
 namespace sightline::tools {
 namespace {
 
-constexpr double kToKnee = 1.2;         // below the eye  [metres]
-constexpr double kBeen = 1.5;         // this near to the way one has been  [metres], more where the view is wide
-constexpr double kAlongWall = 4;         // a step along a wall costs so many more in the open
+constexpr double kToKnee = 1.2;      // below the eye  [metres]
+constexpr double kBeen = 1.5;        // this near to the way one has been  [metres], more where the view is wide
+constexpr double kAlongWall = 4;     // a step along a wall costs so many more in the open
 constexpr double kLeastView = 0.35;  // of the widest: where a leg may end
-constexpr size_t kLongestLeg = 24;    // places that one leg passes
+constexpr size_t kLongestLeg = 24;   // places that one leg passes
 
 class WayFinder {
 public:

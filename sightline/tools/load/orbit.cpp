@@ -67,8 +67,8 @@ public:
         double distance = 0;
         for (const glm::dvec3& p : points_) {
             const glm::dvec3 away = p - center();
-            const double across = std::max(std::abs(glm::dot(away, axes.up)),
-                                           std::abs(glm::dot(away, axes.right)) / kNarrowest);
+            const double across =
+                std::max(std::abs(glm::dot(away, axes.up)), std::abs(glm::dot(away, axes.right)) / kNarrowest);
             distance = std::max(distance, across / kTangent + glm::dot(away, side));
         }
         return distance;
@@ -120,8 +120,7 @@ CameraPath orbitAround(const Scene& scene, uint32_t frames, uint64_t seed) {
     const Subject subject(scene);
     const double first = seededSide(seed);
     double distance = 0;
-    for (int i = 0; i < 64; ++i)
-        distance = std::max(distance, subject.distanceFrom(sideAt(kPi / 32 * i, kElevation)));
+    for (int i = 0; i < 64; ++i) distance = std::max(distance, subject.distanceFrom(sideAt(kPi / 32 * i, kElevation)));
     CameraPath path;
     for (uint32_t i = 0; i < frames; ++i) {
         const glm::dvec3 side = sideAt(first + 2 * kPi * i / frames, kElevation);

@@ -130,7 +130,8 @@ TEST(Floor, IsTheGroundWhereRoomsHaveNone) {
 TEST(Floor, IsNotOnThings) {
     EXPECT_TRUE(floorOf({}).places.empty());
     EXPECT_TRUE(floorOf(Boxes().add({0, 0, 0}, {1, 1, 1}).scene()).places.empty());
-    EXPECT_TRUE(floorOf(Boxes().add({0, 0, 0}, {4, 1, 2}).add({1, 1, 0}, {3, 1.5, 2}).scene()).places.empty()) << "a car";
+    EXPECT_TRUE(floorOf(Boxes().add({0, 0, 0}, {4, 1, 2}).add({1, 1, 0}, {3, 1.5, 2}).scene()).places.empty())
+        << "a car";
     EXPECT_TRUE(floorOf(Boxes().add({-3, 0, -3}, {3, 1, 3}).add({-1, 1, -1}, {1, 8, 1}).scene()).places.empty())
         << "a statue";
     // Gaps of all sizes, as between the parts of an engine.

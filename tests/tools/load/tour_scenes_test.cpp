@@ -32,8 +32,9 @@ double ofOneSurface(const Scene& scene, const RayProbe& probe, const CameraFrame
         if (hit) {
             const glm::dvec3 n = probe.normal(*hit), a = frame.eye + hit->t * direction;
             const auto rounded = [](double value) { return std::lround(value); };
-            most = std::max(most, ++surfaces[{rounded(20 * n.x), rounded(20 * n.y), rounded(20 * n.z),
-                                              rounded(glm::dot(n, a) / unit)}]);
+            most = std::max(
+                most,
+                ++surfaces[{rounded(20 * n.x), rounded(20 * n.y), rounded(20 * n.z), rounded(glm::dot(n, a) / unit)}]);
         }
     }
     if (surfaces.empty()) return 1;
@@ -61,8 +62,8 @@ TEST_P(TourOfScene, IsConnectedAndShowsSomething) {
 
 TEST_P(TourOfScene, WalksWhereThereAreRoomsOrStreets) {
     const std::string name = GetParam();
-    const bool thing = name == "2CylinderEngine" || name == "dense-spot" || name == "gazebo-pr2" ||
-                       name == "polyhaven-dutch-ship";
+    const bool thing =
+        name == "2CylinderEngine" || name == "dense-spot" || name == "gazebo-pr2" || name == "polyhaven-dutch-ship";
     const RayProbe probe(*scene);
     for (uint64_t seed = 11; seed <= 41; ++seed)
         EXPECT_EQ(findFloor(*scene, probe, seed).places.empty(), thing) << "seed " << seed;

@@ -114,8 +114,8 @@ double wallBefore(const Scene& scene, const RayProbe& probe, const CameraFrame& 
     constexpr int kWide = 16, kHigh = 9;
     int near = 0;
     for (int i = 0; i < kWide * kHigh; ++i) {
-        const glm::dvec4 p = from_clip * glm::dvec4((i % kWide + 0.5) / kWide * 2 - 1, (i / kWide + 0.5) / kHigh * 2 - 1,
-                                                    0.5, 1);
+        const glm::dvec4 p =
+            from_clip * glm::dvec4((i % kWide + 0.5) / kWide * 2 - 1, (i / kWide + 0.5) / kHigh * 2 - 1, 0.5, 1);
         const auto hit = probe.nearest({frame.eye, glm::normalize(glm::dvec3(p) / p.w - frame.eye)});
         near += hit && hit->t < 1 && hit->object < scene.objects.size() ? 1 : 0;
     }
