@@ -117,8 +117,7 @@ TEST_F(Render, ThreadsDoNotChangeThePicture) {
 TEST_F(Render, SplitScenesLookTheSame) {
     // Cameras of a path that is found in a scene change with its objects.
     write("path.json", R"({"frames": [{"eye": [30, 12, 40], "target": [0, 2, 0]}]})");
-    const std::string common =
-        "render building:1:1 --cameras path.json --size 200x120 --shading flat --method zbuffer";
+    const std::string common = "render building:1:1 --cameras path.json --size 200x120 --shading flat --method zbuffer";
     ASSERT_EQ(run(common + " -o whole.png").exit_code, 0);
     for (const std::string how : {"parts", "materials", "grid:5"}) {
         ASSERT_EQ(run(common + " --split " + how + " -o split.png").exit_code, 0);

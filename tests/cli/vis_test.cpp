@@ -73,6 +73,37 @@ TEST_F(Vis, MapsOfAllFormatsGetTheirLump) {
     EXPECT_EQ(vis("a.pak --cells leaves")["leafs"], vis("a.pak:maps/a.bsp --cells groups")["leafs"]);
 }
 
+TEST_F(Vis, AMapIsWrittenInItsPlaceAsCompilersDo) {
+    MadeMap made;
+    madeVisibility(QuakeFormat::kQuake, false, made);
+    const std::string bytes = mapBytes(QuakeFormat::kQuake, made);
+    write("m.bsp", bytes);
+    write("n.bsp", bytes);
+    ASSERT_EQ(run("vis m.bsp -o out.bsp").exit_code, 0);
+    ASSERT_EQ(run("vis m.bsp -o m.bsp").exit_code, 0);
+    EXPECT_EQ(read(path("m.bsp")), read(path("out.bsp")));
+    // As a profile of an editor calls it.
+    const Outcome outcome = run("vis -threads 2 -level 4 -fast -v -noambientsky n -o ./n.bsp");
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(read(path("n.bsp")), read(path("out.bsp")));
+    EXPECT_NE(outcome.err.find("-level has no effect: rows are always as tight"), std::string::npos);
+    EXPECT_NE(outcome.err.find("-noambientsky has no effect"), std::string::npos);
+    expectError("vis -visdist 512 n.bsp", 2, "-visdist: nothing is cut off at a distance");
+    expectError("vis n.bsp -threads", 2, "-threads: its value is missing");
+    expectError("vis n.bsp -threads many", 2, "--threads");
+    expectError("vis n.bsp -frobnicate", 2, "-frobnicate");
+    expectError("vis n.bsp -o n.see --json n.bsp", 2, "is taken by");
+    expectError("vis n.bsp -o n.bsp --json n.bsp", 2, "is taken by");
+    expectError("vis none -o none.bsp", 3, "none");
+    EXPECT_EQ(read(path("n.bsp")), read(path("out.bsp")));
+}
+
+TEST_F(Vis, ASourceWithoutBrushesIsAnError) {
+    write("empty.map", "{\n\"classname\" \"worldspawn\"\n}\n");
+    expectError("vis empty.map -o empty.see", 3, "empty.map: has no brushes");
+    EXPECT_FALSE(std::filesystem::exists(path("empty.see")));
+}
+
 TEST_F(Vis, ASourceThatLeaksTellsTheWay) {
     // A floor alone, and somebody who stands on it.
     write("open.map",

@@ -21,13 +21,17 @@ std::filesystem::path placeOf(const std::filesystem::path& name) {
 
 }  // namespace
 
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+    return !a.empty() && !b.empty() && placeOf(a) == placeOf(b);
+}
+
 void ApartFiles::read(const std::string& option, const std::filesystem::path& name) { take(option, name, false); }
 
 void ApartFiles::write(const std::string& option, const std::filesystem::path& name) { take(option, name, true); }
 
 void ApartFiles::writeAgain(const std::string& option, const std::filesystem::path& name,
                             const std::filesystem::path& first) {
-    if (first.empty() || placeOf(first) != placeOf(name)) write(option, name);
+    if (!sameFile(first, name)) write(option, name);
 }
 
 void ApartFiles::take(const std::string& option, const std::filesystem::path& name, bool written) {

@@ -10,6 +10,9 @@
 
 namespace sightline::cli {
 
+/// Whether two names lead to one file; not, if one is empty.
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b);
+
 /// The files of one command, in the order of their naming. Of two outputs in one file the later one would be left, and
 /// an output in an input's place would be the end of that.
 class ApartFiles {

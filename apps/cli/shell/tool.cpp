@@ -20,6 +20,7 @@
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/verbs.h"
+#include "apps/cli/verbs/vis_words.h"
 #include "sightline/tools/scene/procedural.h"
 #include "sightline/tools/scene/suggestion.h"
 
@@ -260,6 +261,9 @@ int runTool(std::vector<std::string> words, const BenchVerb& bench) {
     if (!words[0].starts_with('-') && std::find(names.begin(), names.end(), words[0]) == names.end())
         return report({Error::Kind::kUsage, fmt::format("there is no verb \"{}\"{} (see sightline --help)", words[0],
                                                         suggestion(words[0], names))});
+    Result<std::vector<std::string>> known = visWords(words);
+    if (!known) return report(known.error());
+    words = std::move(*known);
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     try {
         tool.parse(words);

@@ -88,6 +88,13 @@ std::string endOf(const std::string& name) { return lower(std::filesystem::path(
 /// `-o` names a map (.bsp), and not a visibility file.
 bool writesMap(const VisOptions& options) { return endOf(options.output) == ".bsp"; }
 
+/// The map that a name without an end stands for, as compilers take it.
+std::string mapFileOf(const std::string& name) {
+    std::error_code none;
+    if (std::filesystem::path(name).has_extension() || std::filesystem::exists(name, none)) return name;
+    return std::filesystem::exists(name + ".bsp", none) ? name + ".bsp" : name;
+}
+
 Status checkVisFiles(VisOptions& options) {
     if (options.in_place && writesMap(options))
         return Error{Error::Kind::kUsage, "--in-place goes with -o of a visibility file"};
@@ -99,8 +106,8 @@ Status checkVisFiles(VisOptions& options) {
     if (!options.leak.empty() && mapKind(options.map.name) != ".map")
         return Error{Error::Kind::kUsage, "--leak goes with a .map"};
     ApartFiles files;
-    files.read("MAP", splitMapName(options.map.name).file);
-    files.read("--bsp", options.map.bsp);
+    for (const auto& [option, name] : {std::pair("MAP", options.map.name), std::pair("--bsp", options.map.bsp)})
+        if (!(writesMap(options) && sameFile(options.output, name))) files.read(option, name);
     files.read("--prt", portalFileOf(options.map));
     files.write("--leak", options.leak);
     if (Status good = finishBakeOptions(options, files); !good) return good.error();
@@ -200,6 +207,7 @@ Result<VisMap> loadCheckedMap(VisOptions& options) {
 
 Result<int> runVis(VisOptions& options) {
     const Clock::time_point begin = Clock::now();
+    options.map.name = mapFileOf(options.map.name);
     const Result<VisMap> map = loadCheckedMap(options);
     if (!map) return map.error();
     BakeRun run(options);
@@ -239,11 +247,14 @@ Result<int> runVis(VisOptions& options) {
 void addVis(CLI::App& tool, int& exit_code) {
     CLI::App* verb = tool.add_subcommand("vis", "which leaves of a Quake-family map see one another");
     const auto options = std::make_shared<VisOptions>();
-    verb->add_option("MAP", options->map.name, "a .prt, a .bsp, a .bsp in a .pak or .pk3 (x.pk3:maps/y.bsp), or a .map")
+    verb->add_option("MAP", options->map.name,
+                     "a .prt, a .bsp (which may be left out), a .bsp in a .pak or .pk3 (x.pk3:maps/y.bsp), or a .map")
         ->required()
         ->type_name("FILE");
-    addBakeOptions(*verb, *options,
-                   "write the .bsp with its visibility lump, or, if the name ends otherwise, a visibility file");
+    addBakeOptions(
+        *verb, *options,
+        "write the .bsp with its visibility lump, which may be MAP itself; or, if the name ends otherwise, a "
+        "visibility file");
     verb->add_option("--bsp", options->map.bsp,
                      "the .bsp that a .prt belongs to (default: beside it, of the same name)")
         ->type_name("FILE");

@@ -194,6 +194,9 @@ Result<VisMap> loadSource(const VisMapChoice& choice) {
     const Result<QuakeMap> source =
         parseQuakeMap({reinterpret_cast<const unsigned char*>(text->data()), text->size()}, choice.name);
     if (!source) return source.error();
+    if (source->brushes.empty())
+        return Error{Error::Kind::kInput,
+                     choice.name + ": has no brushes: there is nothing that could hide or be seen"};
     VisMap out;
     out.content_hash = contentHash(*text);
     BrushTree brushes = treeOfBrushes(*source);

@@ -104,10 +104,14 @@ Cut cutByGrid(const Mesh& mesh, uint32_t cubes) {
 
 Cut cutMesh(const Scene& scene, const Mesh& mesh, const Split& split) {
     switch (split.along) {
-        case Split::Along::kParts: return cutIntoParts(mesh);
-        case Split::Along::kMaterials: return cutByMaterial(mesh, scene.materials);
-        case Split::Along::kGrid: return cutByGrid(mesh, split.cubes);
-        case Split::Along::kNothing: break;
+        case Split::Along::kParts:
+            return cutIntoParts(mesh);
+        case Split::Along::kMaterials:
+            return cutByMaterial(mesh, scene.materials);
+        case Split::Along::kGrid:
+            return cutByGrid(mesh, split.cubes);
+        case Split::Along::kNothing:
+            break;
     }
     return {};
 }
