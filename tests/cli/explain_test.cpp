@@ -26,7 +26,7 @@ TEST_F(ExplainVerb, TellsWhatStandsBeforeWhat) {
     expectNarrow(hidden.out);
     const Outcome kept = run("explain made:walls --object 7");
     EXPECT_NE(kept.out.find("kept: object 7 'grey wall'"), std::string::npos) << kept.out;
-    EXPECT_NE(kept.out.find("It is seen"), std::string::npos) << kept.out;
+    EXPECT_NE(kept.out.find("is seen: "), std::string::npos) << kept.out;
     expectNarrow(kept.out);
     EXPECT_EQ(run("explain made:walls --object 'RED w'").out, hidden.out) << "a part that is its own names it, too";
     EXPECT_EQ(run("explain made:walls --object 0").out, hidden.out);

@@ -136,14 +136,14 @@ Json keptJson(const AskedScene& asked, const VisibleReason& reason) {
     return out;
 }
 
-/// What the witnesses say, as a sentence.
+/// What the witnesses say of what was kept, as the end of a sentence about it.
 std::string sightingText(const ObjectAnswer& answer) {
     const Sighting& sighting = *answer.sighting;
     if (sighting.seen)
-        return fmt::format("It is seen: {} at pixel ({:.1f}, {:.1f}).",
+        return fmt::format("is seen: {} at pixel ({:.1f}, {:.1f}).",
                            sighting.witness == "rays" ? "a ray meets it" : "the id-buffer has it", sighting.x,
                            sighting.y);
-    std::string text = fmt::format("No witness saw it, by {} rays and an id-buffer", grouped(sighting.rays));
+    std::string text = fmt::format("is seen by no witness, of {} rays and an id-buffer", grouped(sighting.rays));
     const VisibleReason& kept = answer.why.visible;
     if (kept.because == KeptBecause::kOpenPixel)
         text += kept.by_triangles ? ": it is kept because pixels of the occlusion buffer say less than rays"
@@ -306,9 +306,9 @@ Sighting lookFor(const Scene& scene, const View& view, uint32_t object, const Ru
 
 std::string answerText(const AskedScene& asked, const ObjectAnswer& answer) {
     const auto name = [&](ObjectId id) { return asked.nameOf(id); };
-    std::string text = eyeText(answer) + explanationText(answer.why, titleOf(asked.scene, answer.object), name);
+    std::string text = eyeText(answer) + explanationText(answer.why, titleOf(asked.scene, answer.object), name,
+                                                         answer.sighting ? sightingText(answer) : std::string());
     if (isByCells(answer.why)) text += cellsText(asked, answer.why.cells);
-    if (answer.sighting) text += " " + sightingText(answer);
     return wrapped(text, kColumns, "  ") + "\n";
 }
 

@@ -3,6 +3,7 @@
 #include "sightline/tools/report/run/explain_text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <string_view>
 #include <vector>
@@ -184,7 +185,8 @@ std::string keptText(const Explanation& why, const NameOfObject& name) {
                          "hide it was drawn";
     }
     std::string where = fmt::format("nothing hides pixel ({:.1f}, {:.1f})", reason.x, reason.y);
-    if (reason.covered)
+    if (reason.covered && reason.cover != ObjectId() && reason.cover == why.id) where += ", which it covers itself";
+    else if (reason.covered)
         where += fmt::format(": {} covers it, but not in front of the nearest point of {}",
                              reason.cover == ObjectId() ? "something" : name(reason.cover),
                              reason.by_triangles ? "its triangles there"
@@ -216,7 +218,8 @@ std::string rowsText(const CellsReason& cells) {
 
 }  // namespace
 
-std::string explanationText(const Explanation& why, const std::string& subject, const NameOfObject& name) {
+std::string explanationText(const Explanation& why, const std::string& subject, const NameOfObject& name,
+                            const std::string& seen) {
     switch (why.verdict) {
         case Verdict::kNoSuchObject:
             return "there is no such object.";
@@ -243,7 +246,10 @@ std::string explanationText(const Explanation& why, const std::string& subject, 
         case Verdict::kVisible:
             break;
     }
-    return fmt::format("kept: {}: {}.", subject, keptText(why, name)) + rectangleText(why) + drawnText(why.clusters);
+    std::string reason = keptText(why, name);
+    if (!seen.empty()) reason[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(reason[0])));
+    return fmt::format("kept: {}{} {}.", subject, seen.empty() ? ":" : " " + seen, reason) + rectangleText(why) +
+           drawnText(why.clusters);
 }
 
 std::string explanationClause(const Explanation& why, const NameOfObject& name, size_t most) {

@@ -15,7 +15,9 @@ using NameOfObject = std::function<std::string(ObjectId)>;
 /// "culled by occlusion: object 4711 'Desk' lies behind 'Wall 12' (71 %) and 'Door 3' (29 %); without these two it would
 /// be visible." and what else there is to say, in one paragraph.
 /// @param subject  the object itself: "object 4711 'Desk'"
-std::string explanationText(const Explanation& why, const std::string& subject, const NameOfObject& name);
+/// @param seen     what else is known of it if it is kept, said first, as the end of a sentence: "is seen: ..."; or empty
+std::string explanationText(const Explanation& why, const std::string& subject, const NameOfObject& name,
+                            const std::string& seen = {});
 
 /// One clause without the object's name: "behind 'Wall 12' (71 %) and 'Door 3' (29 %)", for lists of frames.
 /// @param most  occluders that are named; of more, their number is

@@ -134,6 +134,13 @@ TEST(ExplainText, NamesPlanesAndDoubts) {
     EXPECT_EQ(explanationText(why, "object 7", nameOf),
               "kept: object 7: nothing hides pixel (3.5, 8.0): 'E' covers it, but not in front of the nearest point of "
               "its box; 25 % of its rectangle is open.");
+    EXPECT_EQ(
+        explanationText(why, "object 7", nameOf, "is seen: a ray meets it at pixel (3.0, 9.0)."),
+        "kept: object 7 is seen: a ray meets it at pixel (3.0, 9.0). Nothing hides pixel (3.5, 8.0): 'E' covers it, "
+        "but not in front of the nearest point of its box; 25 % of its rectangle is open.");
+    why.id = why.visible.cover;
+    EXPECT_EQ(explanationText(why, "object 7", nameOf),
+              "kept: object 7: nothing hides pixel (3.5, 8.0), which it covers itself; 25 % of its rectangle is open.");
     why.verdict = Verdict::kOutsideLayers;
     EXPECT_NE(explanationText(why, "object 7", nameOf).find("layers"), std::string::npos);
     why.verdict = Verdict::kNoSuchObject;
