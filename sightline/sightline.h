@@ -33,9 +33,8 @@
 #include "sightline/query/record/occlusion_recording.h"  // a frame's occlusion calls, in a file
 #include "sightline/query/record/occlusion_replay.h"     // the same done again, and timed
 
-// The occlusion buffer alone: draw occluders into DepthTiles and ask, without a world.
-#include "sightline/buffer/depth_image.h"
-#include "sightline/cull/occlusion.h"
+// The occlusion buffer alone: draw occluders and ask about boxes, without a world.
+#include "sightline/cull/occlusion_buffer.h"
 
 // What the program brings with it, if it likes.
 #include "sightline/base/assert.h"       // who hears of a broken invariant

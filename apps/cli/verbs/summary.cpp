@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
+#include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/cull_path.h"
 #include "apps/cli/verbs/explain_object.h"
@@ -86,7 +87,8 @@ std::string groupOf(const Explanation& why) {
 /// Why the frame keeps what no witness saw.
 std::vector<std::string> looseNotes(const Scene& scene, const RunOptions& options, std::optional<LoadedWorld> world,
                                     const CullRun& run, const FrameResult& frame) {
-    constexpr size_t kMost = 300;  // explained: of more, every so-manyth
+    // So many are explained, of more every so-manyth; fewer in large scenes, where each takes longer.
+    const size_t most = std::clamp<size_t>(3'000'000 / std::max<size_t>(scene.objects.size(), 1), 20, 300);
     const std::vector<uint32_t>& unseen = frame.verification->kept_unseen;
     std::vector<std::string> notes;
     notes.push_back(fmt::format("{} of {} kept objects were seen by no witness.", grouped(unseen.size()),
@@ -98,11 +100,13 @@ std::vector<std::string> looseNotes(const Scene& scene, const RunOptions& option
     view.height = run.height;
     Explainer explainer(asked.now, view, options.settings);
     std::map<std::string, std::vector<uint32_t>> groups;
-    const size_t step = (unseen.size() + kMost - 1) / kMost;
+    const size_t step = (unseen.size() + most - 1) / most;
     size_t asked_for = 0;
+    Progress progress("explaining", "objects", (unseen.size() + step - 1) / step);
     for (size_t i = 0; i < unseen.size() && !interrupted(); i += step, ++asked_for) {
         const Explanation why = explainer.explain(asked.loaded.ids[unseen[i]], {false, false});
         if (why.verdict == Verdict::kVisible) groups[groupOf(why)].push_back(unseen[i]);
+        progress.step();
     }
     std::vector<std::pair<size_t, std::string>> lines;
     for (const auto& [reason, objects] : groups) {
@@ -223,7 +227,8 @@ void printSummary(std::FILE* out, const CullRun& run) {
                    "{}: {} object{}, {} triangles; {} frame{} of {}x{}, means over the frames\n", oneLine(run.scene),
                    grouped(run.objects), run.objects == 1 ? "" : "s", grouped(run.triangles), run.frames.size(),
                    run.frames.size() == 1 ? "" : "s", run.width, run.height);
-    fmt::format_to(std::back_inserter(text), "visible      {:>10} objects  {:7.3f} %\n", rounded(visible / frames),
+    fmt::format_to(std::back_inserter(text), "visible      {:>10} {:<8} {:7.3f} %\n", rounded(visible / frames),
+                   visible == frames ? "object" : "objects",
                    percentOf(visible / frames, static_cast<double>(run.objects)));
     for (int stage = 0; stage < kStageCount; ++stage) {
         if (!(run.settings.stages >> stage & 1)) continue;

@@ -14,7 +14,7 @@ namespace sightline::cli {
 using namespace tools;
 
 /// Fills FrameResult::notes of the slowest frame, and of a verified run's frame with the largest over-estimate. Explains
-/// up to some hundreds of objects, each at the cost of a query.
+/// up to 300 objects, in large scenes down to 20, each at the cost of a query, and shows progress.
 /// @param world  that gave the run; without one it is loaded again if something is to be asked of it
 void noteFrames(const Scene& scene, const RunOptions& options, std::optional<LoadedWorld> world, CullRun& run);
 
