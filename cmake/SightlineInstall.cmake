@@ -1,40 +1,51 @@
-# What an installation holds: libraries, headers under <sightline/...>, the tool, and how to find them.
+# What an installation holds: libraries, headers under <sightline/...>, the tool, and how to find them. Its components:
+#   runtime      what programs that link shared libraries need to run; of static ones the licence alone
+#   development  sightline::run, ::bsp and ::studies with their headers, and the files that find them
+#   tools        the programs with their completions, and the libraries that they are made of
 include(CMakePackageConfigHelpers)
 
 # Installs libraries with the headers of their users and exports them as sightline::NAME.
+#   COMPONENT  that they belong to; shared libraries to runtime
 #   EXPORT     the export set; sightline-config.cmake includes one file for each
 #   LIBRARIES  names as given to sightline_library
 #   HEADERS    of sightline/, that users include; what these include is installed, too, and no other header
 function(sightline_install)
-  cmake_parse_arguments(arg "" "EXPORT" "LIBRARIES;HEADERS" ${ARGN})
+  cmake_parse_arguments(arg "" "EXPORT;COMPONENT" "LIBRARIES;HEADERS" ${ARGN})
   list(TRANSFORM arg_LIBRARIES PREPEND sightline_ OUTPUT_VARIABLE targets)
-  install(TARGETS ${targets} EXPORT ${arg_EXPORT})
+  install(TARGETS ${targets} EXPORT ${arg_EXPORT}
+    ARCHIVE COMPONENT ${arg_COMPONENT} LIBRARY COMPONENT runtime NAMELINK_COMPONENT ${arg_COMPONENT}
+    RUNTIME COMPONENT runtime)
   install(CODE "
     include(${PROJECT_SOURCE_DIR}/cmake/SightlineInstallHeaders.cmake)
-    sightline_install_headers(${PROJECT_SOURCE_DIR} \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR} ${arg_HEADERS})")
-  install(EXPORT ${arg_EXPORT} NAMESPACE sightline:: DESTINATION ${SIGHTLINE_CMAKE_DIR})
+    sightline_install_headers(${PROJECT_SOURCE_DIR} \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR} ${arg_HEADERS})"
+    COMPONENT ${arg_COMPONENT})
+  install(EXPORT ${arg_EXPORT} NAMESPACE sightline:: DESTINATION ${SIGHTLINE_CMAKE_DIR}
+    COMPONENT ${arg_COMPONENT})
 endfunction()
 
 set(SIGHTLINE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/sightline)
 
-sightline_install(EXPORT sightline-runtime LIBRARIES run HEADERS sightline.h)
-sightline_install(EXPORT sightline-studies LIBRARIES bsp studies
+sightline_install(EXPORT sightline-runtime COMPONENT development LIBRARIES run HEADERS sightline.h)
+sightline_install(EXPORT sightline-studies COMPONENT development LIBRARIES bsp studies
   HEADERS studies/hidden/render.h studies/hidden/zbuffer/zbuffer.h)
 if(SIGHTLINE_TOOLS)
-  sightline_install(EXPORT sightline-tools LIBRARIES scene import bake truth report
+  sightline_install(EXPORT sightline-tools COMPONENT tools LIBRARIES scene import bake truth report
     HEADERS bake/bake.h tools/scene/procedural.h tools/import/scene_file.h tools/load/load_world.h tools/truth/verify.h
             tools/report/page/page.h)
   # ./run.sh builds the tool alone: what it has not built is left out.
-  install(TARGETS sightline)
-  install(TARGETS sightline-bench OPTIONAL)
+  install(TARGETS sightline COMPONENT tools)
+  install(TARGETS sightline-bench COMPONENT tools OPTIONAL)
   if(TARGET sightline_completions)
     set(pages ${PROJECT_BINARY_DIR}/apps/cli/completions)
-    install(FILES ${pages}/sightline DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
-    install(FILES ${pages}/_sightline DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions OPTIONAL)
-    install(FILES ${pages}/sightline.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d OPTIONAL)
+    install(FILES ${pages}/sightline DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+      COMPONENT tools OPTIONAL)
+    install(FILES ${pages}/_sightline DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions
+      COMPONENT tools OPTIONAL)
+    install(FILES ${pages}/sightline.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d
+      COMPONENT tools OPTIONAL)
   endif()
   if(SIGHTLINE_HAS_ASSIMP)
-    install(TARGETS sightline-import DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/sightline)
+    install(TARGETS sightline-import DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/sightline COMPONENT tools)
   endif()
 endif()
 
@@ -44,7 +55,7 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sightline-config.cmake
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/sightline-config-version.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/sightline-config.cmake ${PROJECT_BINARY_DIR}/sightline-config-version.cmake
-  DESTINATION ${SIGHTLINE_CMAKE_DIR})
+  DESTINATION ${SIGHTLINE_CMAKE_DIR} COMPONENT development)
 
 # Written while installing, so that it names the prefix that --prefix chose.
 install(CODE "
@@ -55,5 +66,6 @@ install(CODE "
   foreach(name sightline sightline-studies)
     configure_file(${PROJECT_SOURCE_DIR}/cmake/\${name}.pc.in
       \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/pkgconfig/\${name}.pc @ONLY)
-  endforeach()")
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  endforeach()" COMPONENT development)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
+  COMPONENT runtime)
