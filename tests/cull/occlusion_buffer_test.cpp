@@ -33,8 +33,8 @@ Wall makeWall(Random& random, const glm::dvec3& eye) {
     const glm::dvec3 turn(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 1);
     wall.transform = glm::inverse(lookAt({0, 0, 0}, turn, {0, 1, 0}));
     for (int axis = 0; axis < 3; ++axis) wall.transform[axis] *= random.uniform(0.5, 6);
-    wall.transform[3] = glm::dvec4(
-        eye + glm::dvec3(random.uniform(-8, 8), random.uniform(-5, 5), random.uniform(-20, -4)), 1);
+    wall.transform[3] =
+        glm::dvec4(eye + glm::dvec3(random.uniform(-8, 8), random.uniform(-5, 5), random.uniform(-20, -4)), 1);
     return wall;
 }
 
@@ -109,7 +109,8 @@ TEST(OcclusionBuffer, AsksInObjectsAsInTheWorld) {
     // Behind the wall, in its own space: its box in the world is larger.
     const glm::dvec3 away = glm::dvec3(glm::inverse(wall.transform) * glm::dvec4(0, 0, -1, 0));
     const float side = away.z > 0 ? 1.0f : -1.0f;
-    const Box3f box{{-0.2f, -0.2f, std::min(0.1f * side, 0.2f * side)}, {0.2f, 0.2f, std::max(0.1f * side, 0.2f * side)}};
+    const Box3f box{{-0.2f, -0.2f, std::min(0.1f * side, 0.2f * side)},
+                    {0.2f, 0.2f, std::max(0.1f * side, 0.2f * side)}};
     EXPECT_EQ(buffer.ask(box, wall.transform), Sight::kOccluded);
     const Box3f before{{-0.2f, -0.2f, std::min(-0.1f * side, -0.2f * side)},
                        {0.2f, 0.2f, std::max(-0.1f * side, -0.2f * side)}};
@@ -124,7 +125,8 @@ TEST(OcclusionBuffer, DoubtsAndUnusableViewsAreVisible) {
     EXPECT_EQ(buffer.ask(box), Sight::kVisible) << "before the first frame";
     EXPECT_EQ(buffer.draw(wall.occluder), 0u);
     ASSERT_EQ(buffer.begin(viewFrom({0, 0, 0}, false)), ViewProblem::kNone);
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kEndless = std::numeric_limits<double>::infinity();
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
+                     kEndless = std::numeric_limits<double>::infinity();
     EXPECT_EQ(buffer.ask({{-1, -1, -1}, {1, 1, 1}}), Sight::kVisible) << "holds the eye";
     EXPECT_EQ(buffer.ask({{kNan, -1, -9}, {1, 1, -8}}), Sight::kVisible);
     EXPECT_EQ(buffer.ask({{-kEndless, -1, -9}, {kEndless, 1, -8}}), Sight::kVisible);

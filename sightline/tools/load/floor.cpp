@@ -36,6 +36,23 @@ constexpr uint32_t kEnough = 800;     // places: no better start is looked for
 constexpr uint32_t kFewest = 24;      // places: with fewer there is nothing to walk on
 constexpr uint32_t kMostStarts = 12;  // from which a floor is grown
 
+/// One of kAround directions: a quarter of a quarter turn from one to the next.
+glm::dvec3 directionOf(int which) {
+    // Cosine and sine: those of the standard library differ between machines.
+    constexpr double kTurns[4][2] = {{1, 0}, {0.92388, 0.38268}, {0.70711, 0.70711}, {0.38268, 0.92388}};
+    const auto& [c, s] = kTurns[which % 4];
+    switch (which / 4) {
+        case 0:
+            return {c, 0, s};
+        case 1:
+            return {-s, 0, c};
+        case 2:
+            return {-c, 0, -s};
+        default:
+            return {s, 0, -c};
+    }
+}
+
 /// Somebody could begin here.
 struct Start {
     glm::dvec3 foot;
@@ -132,13 +149,11 @@ private:
 
     /// A place with its surroundings as far as `far`. What is too narrow is not measured to the end.
     Floor::Place placeAt(const glm::dvec3& foot, double far) const {
-        static constexpr std::array<std::pair<double, double>, 8> kCompass = {
-            {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {.707, .707}, {-.707, .707}, {.707, -.707}, {-.707, -.707}}};
         Floor::Place place{.foot = foot, .room = far, .next = {}};
-        for (const auto& [x, z] : kCompass) {
-            const auto hit = probe_.nearest({above(foot, kEye), {x, 0, z}});
+        for (int i = 0; i < kAround; i += 2) {
+            const auto hit = probe_.nearest({above(foot, kEye), directionOf(i)});
             const double free = hit ? std::min(hit->t, far) : far;
-            place.view += free / kCompass.size();
+            place.view += free * 2 / kAround;
             place.room = std::min(place.room, free);
             if (place.room < kNarrow * unit_) break;
         }
@@ -154,8 +169,7 @@ private:
         int level = 0, over = 0, back = 0;
         std::array<double, kAround> far;
         for (int i = 0; i < kAround; ++i) {
-            const double angle = 2 * 3.14159265358979 * i / kAround;
-            const glm::dvec3 direction(std::cos(angle), 0, std::sin(angle));
+            const glm::dvec3 direction = directionOf(i);
             const auto ahead = probe_.nearest({eye, direction});
             const auto higher = probe_.nearest({eye, glm::normalize(direction + glm::dvec3(0, kRise, 0))});
             far[i] = ahead ? ahead->t : glm::length(bounds_.size());
@@ -173,7 +187,7 @@ private:
         if (start.worth < least) start.worth = 0;
     }
 
-    /// The better half of the starts, at least eight, in the seed's order; and how wide the views are.
+    /// Starts that are worth four fifths of the best, at least twelve, in the seed's order.
     void chooseStarts(std::vector<Start>& starts) {
         for (Start& start : starts) judge(start);
         std::erase_if(starts, [](const Start& start) { return !(start.worth > 0); });

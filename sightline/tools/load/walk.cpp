@@ -20,9 +20,10 @@ constexpr int kRoundings = 8;      // pieces of a corner
 constexpr double kHalfTurn = 3.14159265358979323846;
 constexpr double kTurn = kHalfTurn / 3;  // [radians / s]
 constexpr double kGlance = 2;            // between two glances  [s]
-constexpr int kGlances = 7;              // to each side, of which one is taken
-constexpr double kAside = 0.35;          // between two of them  [radians]
-constexpr double kAhead = 2;             // so far ahead on the way one looks  [metres]
+// Glances of which one is taken, 0.35 radians apart, as tangents of half their angles: no cosine of the standard
+// library, which differ between machines.
+constexpr double kGlances[] = {0, 0.17683, 0.36503, 0.57927, 0.84229, 1.19742, 1.74332, 2.77792};
+constexpr double kAhead = 2;  // so far ahead on the way one looks  [metres]
 
 glm::dvec3 anyRight(const glm::dvec3& direction) {
     const glm::dvec3 flat(-direction.z, 0, direction.x);
@@ -48,8 +49,11 @@ glm::dvec3 turned(const glm::dvec3& from, const glm::dvec3& wanted, double tange
     return glm::normalize(cosine * from + sine * glm::normalize(across));
 }
 
-glm::dvec3 turnedAside(const glm::dvec3& direction, double angle) {
-    const double c = std::cos(angle), s = std::sin(angle);
+/// @param half_tangent  of the angle
+double cosineOf(double half_tangent) { return (1 - half_tangent * half_tangent) / (1 + half_tangent * half_tangent); }
+
+glm::dvec3 turnedAside(const glm::dvec3& direction, double half_tangent) {
+    const double c = cosineOf(half_tangent), s = 2 * half_tangent / (1 + half_tangent * half_tangent);
     return {c * direction.x - s * direction.z, direction.y, s * direction.x + c * direction.z};
 }
 
@@ -232,34 +236,39 @@ private:
         return side;
     }
 
-    /// The angle of a glance to where one sees farther and more than elsewhere, rather ahead than aside.
+    /// A glance to where one sees farther and more than elsewhere, rather ahead than aside: its half tangent.
     double farGlance(const glm::dvec3& eye, const glm::dvec3& forward) {
-        const double far = (floor_.places.empty() ? 0.1 * diagonal_ : 25 * floor_.spacing) + margin_;
         double most = 0, best = 0;
-        std::vector<uint64_t> seen;
-        for (int side = -kGlances; side <= kGlances; ++side) {
-            const double angle = kAside * side;
-            double sum = 0, least = far;
-            seen.clear();
-            for (const double beside : {-0.7, -0.35, 0.0, 0.35, 0.7})
-                for (const double rise : {-0.3, 0.0, 0.3}) {
-                    glm::dvec3 direction = turnedAside(forward, angle + beside);
-                    direction.y = 0.3 * direction.y + rise;
-                    const auto hit = probe_.nearest({eye, glm::normalize(direction)});
-                    const double free = hit ? std::min(hit->t, far) : 0.7 * far;  // rather a view than the sky
-                    if (rise == 0) sum += free;
-                    if (rise == 0) least = std::min(least, free);
-                    seen.push_back(hit ? sideOf(*hit) : 0);
-                }
-            std::sort(seen.begin(), seen.end());
-            const auto things = static_cast<double>(std::unique(seen.begin(), seen.end()) - seen.begin());
-            const double worth =
-                (sum + 2 * least) * (1 + things / 4) * (2.5 + std::cos(angle)) * random_.uniform(0.8, 1);
-            if (!(worth > most)) continue;
-            most = worth;
-            best = angle;
-        }
+        for (const double angle : kGlances)
+            for (const double side : {angle, -angle}) {
+                const glm::dvec3 direction = turnedAside(forward, side);
+                const double worth = worthOf(eye, direction) * (2.5 + cosineOf(side)) * random_.uniform(0.8, 1);
+                if (!(worth > most)) continue;
+                most = worth;
+                best = side;
+            }
         return best;
+    }
+
+    /// What a look is worth: how far one sees, and how many sides of things.
+    double worthOf(const glm::dvec3& eye, const glm::dvec3& look) const {
+        const double far = (floor_.places.empty() ? 0.1 * diagonal_ : 25 * floor_.spacing) + margin_;
+        double sum = 0, least = far;
+        std::vector<uint64_t> seen;
+        for (const double beside : {-kGlances[2], -kGlances[1], 0.0, kGlances[1], kGlances[2]})
+            for (const double rise : {-0.3, 0.0, 0.3}) {
+                glm::dvec3 direction = turnedAside(look, beside);
+                direction.y = 0.3 * direction.y + rise;
+                const auto hit = probe_.nearest({eye, glm::normalize(direction)});
+                seen.push_back(hit ? sideOf(*hit) : 0);
+                if (rise != 0) continue;
+                const double free = hit ? std::min(hit->t, far) : 0.7 * far;  // rather a view than the sky
+                sum += free;
+                least = std::min(least, free);
+            }
+        std::sort(seen.begin(), seen.end());
+        const auto sides = static_cast<double>(std::unique(seen.begin(), seen.end()) - seen.begin());
+        return (sum + 2 * least) * (1 + sides / 4);
     }
 
     /// On the way: a leg, and how far along it.
