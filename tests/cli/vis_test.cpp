@@ -66,6 +66,10 @@ TEST_F(Vis, MapsOfAllFormatsGetTheirLump) {
         EXPECT_EQ(run("info n.bsp").exit_code, 0);
         // What is written is read again, and baked to the same.
         const json again = vis("n.bsp -o o.bsp");
+        EXPECT_EQ(again["before"]["removed"], 0) << quakeFormatName(format);
+        EXPECT_EQ(again["before"]["added"], 0) << quakeFormatName(format);
+        EXPECT_GT(again["before"]["visible_pairs"], 0) << quakeFormatName(format);
+        EXPECT_TRUE(out.contains("before"));
         EXPECT_EQ(again["visible_leaf_pairs"], out["visible_leaf_pairs"]) << quakeFormatName(format);
         EXPECT_EQ(read(path("n.bsp")), read(path("o.bsp"))) << quakeFormatName(format);
     }
@@ -80,7 +84,10 @@ TEST_F(Vis, AMapIsWrittenInItsPlaceAsCompilersDo) {
     write("m.bsp", bytes);
     write("n.bsp", bytes);
     ASSERT_EQ(run("vis m.bsp -o out.bsp").exit_code, 0);
+    EXPECT_NE(run("vis m.bsp").err.find("nothing was written"), std::string::npos);
     ASSERT_EQ(run("vis m.bsp -o m.bsp").exit_code, 0);
+    EXPECT_NE(run("vis m.bsp -o out2.bsp").out.find("visible pairs: 0 of them are gone, 0 are new\n"),
+              std::string::npos);
     EXPECT_EQ(read(path("m.bsp")), read(path("out.bsp")));
     // As a profile of an editor calls it.
     const Outcome outcome = run("vis -threads 2 -level 4 -fast -v -noambientsky n -o ./n.bsp");

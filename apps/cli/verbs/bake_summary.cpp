@@ -80,6 +80,10 @@ void printVisSummary(std::FILE* out, const VisSummary& s) {
     tell(out, fmt::format("  witnessed by rays     {}\n  unresolved            {} ({} of the visible)\n",
                           grouped(s.witnessed_pairs), grouped(s.unresolved_pairs),
                           percentText(s.unresolved_pairs, s.visible_leaf_pairs)));
+    if (s.before)
+        tell(out, fmt::format("the lump that it came with had {} visible pairs: {} of them are gone, {} are new{}\n",
+                              grouped(s.before->visible_pairs), grouped(s.before->removed), grouped(s.before->added),
+                              s.before->added > s.before->removed ? ", so that this one is looser" : ""));
     printLimits(out, s);
     for (const VisSummary::Leak& leak : s.leaks)
         tell(out,

@@ -1,6 +1,7 @@
 // The verb `vis`: which leaves of a Quake-family map see one another.
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -128,6 +129,23 @@ BitMatrix leafRows(const VisMap& map, const BitMatrix& cells) {
     return rows;
 }
 
+/// The lump that a map came with, beside the rows that would take its place.
+std::optional<VisSummary::Before> compareWithLump(const VisMap& map, const BitMatrix& cells) {
+    if (!map.map || map.map->visibility.empty()) return std::nullopt;
+    const Result<QuakeVisibility> lump = readQuakeVisibility(*map.map, map.map_name);
+    if (!lump) return std::nullopt;  // it is not what is asked about
+    const BitMatrix rows = leafRows(map, cells);
+    VisSummary::Before before;
+    for (size_t row = 0; row < rows.rows(); ++row)
+        for (size_t word = 0; word < rows.wordsPerRow(); ++word) {
+            const uint64_t was = lump->seen.row(row)[word], is = rows.row(row)[word];
+            before.visible_pairs += static_cast<uint64_t>(std::popcount(was));
+            before.removed += static_cast<uint64_t>(std::popcount(was & ~is));
+            before.added += static_cast<uint64_t>(std::popcount(is & ~was));
+        }
+    return before;
+}
+
 /// What is written, and its sizes.
 struct VisOutputs {
     BakedFile rows;
@@ -223,6 +241,7 @@ Result<int> runVis(VisOptions& options) {
     run.end();
 
     VisSummary summary = summaryOf(*map, *visibility, *outputs);
+    summary.before = compareWithLump(*map, visibility->visible);
     summary.map = options.map.name;
     summary.threads = run.threads();
     summary.cpu_seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
@@ -237,6 +256,8 @@ Result<int> runVis(VisOptions& options) {
             !written)
             return written.error();
     printVisSummary(options.json == "-" ? stderr : stdout, summary);
+    if (options.output.empty() && options.json.empty() && options.report.empty())
+        note("nothing was written: -o writes the map with its lump, or a visibility file");
     if (!options.json.empty())
         if (Status written = writeText(options.json, visJson(summary)); !written) return written.error();
     return summary.verification && summary.verification->false_negatives > 0 ? kAnswerIsNo : kDone;

@@ -36,6 +36,10 @@ std::string visJson(const VisSummary& summary) {
         for (const glm::dvec3& point : leak.path) path.push_back(vector(point));
         out["leaks"].push_back({{"from", leak.from}, {"path", path}});
     }
+    if (summary.before)
+        out["before"] = {{"visible_pairs", summary.before->visible_pairs},
+                         {"removed", summary.before->removed},
+                         {"added", summary.before->added}};
     if (summary.objects)
         out["objects"] = {{"count", summary.objects->objects},
                           {"visible_pairs", summary.objects->visible_pairs},

@@ -34,6 +34,12 @@ struct VisSummary {
     };
     std::vector<Leak> leaks;  ///< ways out of a map that is not sealed; one is told
 
+    /// The lump that the map came with beside the new one, in ordered pairs of its clusters.
+    struct Before {
+        uint64_t visible_pairs = 0, removed = 0, added = 0;
+    };
+    std::optional<Before> before;  ///< none: it has no lump
+
     struct Objects {
         uint64_t objects = 0, visible_pairs = 0, pairs_by_cells = 0;  ///< cells and objects; what lies in visible cells
         double cpu_seconds = 0;
