@@ -38,38 +38,61 @@ void drawLine(Image<Rgb>& image, const glm::dvec2& from, const glm::dvec2& to) {
     }
 }
 
-/// A line in clip space, cut at the near plane and at the picture's borders.
-void drawEdge(Image<Rgb>& image, const glm::dvec4& a, const glm::dvec4& b) {
+/// A line in clip space, cut at the near plane and at the picture's borders; false if nothing of it is in the picture.
+bool drawEdge(Image<Rgb>& image, const glm::dvec4& a, const glm::dvec4& b) {
     double first = 0, last = 1;
     const glm::dvec4 planes[6] = {{1, 0, 0, 1}, {-1, 0, 0, 1}, {0, 1, 0, 1}, {0, -1, 0, 1}, {0, 0, 1, 1}, {0, 0, 0, 1}};
     for (const glm::dvec4& plane : planes) {
         const double da = glm::dot(plane, a), db = glm::dot(plane, b);
-        if (da < 0 && db < 0) return;
+        if (da < 0 && db < 0) return false;
         if (da < 0) first = std::max(first, da / (da - db));
         if (db < 0) last = std::min(last, da / (da - db));
     }
-    if (!(first < last)) return;
+    if (!(first < last)) return false;
     const auto place = [&](double t) {
         const glm::dvec4 p = a + (b - a) * t;
         return glm::dvec2(0.5 * (p.x / p.w + 1) * image.width, 0.5 * (1 - p.y / p.w) * image.height);
     };
     const glm::dvec2 from = place(first), to = place(last);
-    if (std::isfinite(from.x) && std::isfinite(from.y) && std::isfinite(to.x) && std::isfinite(to.y))
-        drawLine(image, from, to);
+    if (!(std::isfinite(from.x) && std::isfinite(from.y) && std::isfinite(to.x) && std::isfinite(to.y))) return false;
+    drawLine(image, from, to);
+    return true;
 }
 
-/// The twelve edges of an object's box.
+/// At the picture's border, towards what lies beyond it.
+/// @param towards  x to the right, y up; any length
+void drawArrow(Image<Rgb>& image, glm::dvec2 towards) {
+    const glm::dvec2 size(image.width, image.height), middle = 0.5 * size;
+    const double length = glm::length(towards);
+    glm::dvec2 along =
+        length > 0 && std::isfinite(length) ? glm::dvec2(towards.x, -towards.y) / length : glm::dvec2(0, 1);
+    const double unit = 0.04 * std::min(size.x, size.y);
+    const glm::dvec2 room = middle - glm::dvec2(0.5 * unit);
+    const double reach = std::min(along.x != 0 ? room.x / std::abs(along.x) : room.x + room.y,
+                                  along.y != 0 ? room.y / std::abs(along.y) : room.x + room.y);
+    const glm::dvec2 tip = middle + reach * along, across(-along.y, along.x);
+    drawLine(image, tip - 3 * unit * along, tip);
+    for (const double side : {-0.6, 0.6}) drawLine(image, tip - unit * (along + side * across), tip);
+}
+
+/// The twelve edges of an object's box, or, where none is in the picture, an arrow towards it; nothing around the eye.
 void drawBox(Image<Rgb>& image, const View& view, const Box3d& box, const glm::dmat4& transform) {
     if (!box.finite() || box.empty()) return;
+    const glm::dmat4 to_eye = view.view * transform;
     glm::dvec4 corners[8];
     for (int which = 0; which < 8; ++which) {
         const glm::dvec4 corner(which & 1 ? box.max.x : box.min.x, which & 2 ? box.max.y : box.min.y,
                                 which & 4 ? box.max.z : box.min.z, 1.0);
-        corners[which] = view.projection * (view.view * (transform * corner));
+        corners[which] = view.projection * (to_eye * corner);
     }
+    bool drawn = false;
     for (int which = 0; which < 8; ++which)
         for (const int axis : {1, 2, 4})
-            if (!(which & axis)) drawEdge(image, corners[which], corners[which | axis]);
+            if (!(which & axis)) drawn |= drawEdge(image, corners[which], corners[which | axis]);
+    if (drawn) return;
+    const glm::dvec3 eye = glm::dvec3(glm::inverse(to_eye)[3]);
+    if (glm::all(glm::greaterThan(eye, box.min)) && glm::all(glm::lessThan(eye, box.max))) return;
+    drawArrow(image, glm::dvec2(to_eye * glm::dvec4(box.center(), 1)));
 }
 
 void drawRing(Image<Rgb>& image, const glm::dvec2& centre) {

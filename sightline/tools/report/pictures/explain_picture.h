@@ -13,7 +13,8 @@ namespace sightline::tools {
 
 /// What stands out, as indices into Scene::objects.
 struct Emphasis {
-    uint32_t object = 0;                  ///< in blue where it is seen; its box in outline, through everything
+    uint32_t object = 0;                  ///< in blue where it is seen; its box in outline, through everything;
+                                          ///< or an arrow at the border towards a box beyond it
     std::span<const uint32_t> occluders;  ///< in orange
     bool has_pixel = false;               ///< a place to mark with a ring  [viewport pixels from the left and the top]
     double x = 0, y = 0;
