@@ -33,9 +33,11 @@ constexpr const char* kWords = R"(Scenes:
 
 Cameras:
   --cameras PATH.json         a camera path
-  --frames N, --seed S        so many seeded cameras that stand as a visitor would
-  neither                     the scene's own cameras, else 16 seeded ones. A city with --frames and
-                              without --seed is walked along its streets
+  --path WORD                 tour: the whole, then a walk through it, or around it; walk: frame by frame;
+                              orbit; overview; scatter: anywhere, as proofs want it
+  --frames N, --seed S        so many cameras of it; where it begins
+  none of these               the scene's own cameras, else a tour of 16. A city with --frames alone is
+                              walked along its streets
 
 Exit codes:
   0                           done
