@@ -65,7 +65,7 @@ TEST_P(TourOfScene, WalksWhereThereAreRoomsOrStreets) {
     const bool thing =
         name == "2CylinderEngine" || name == "dense-spot" || name == "gazebo-pr2" || name == "polyhaven-dutch-ship";
     const RayProbe probe(*scene);
-    for (uint64_t seed = 11; seed <= 41; ++seed)
+    for (uint64_t seed = 11; seed <= 16; ++seed)
         EXPECT_EQ(findFloor(*scene, probe, seed).places.empty(), thing) << "seed " << seed;
 }
 
