@@ -19,7 +19,8 @@ protected:
 
 TEST_F(Visibility, CullsWhatCellsHideAndIsProved) {
     bake("building:2:2", "house.vis");
-    const std::string arguments = "building:2:2 --frames 6 --seed 3 --verify --rays 20000 --skip occlusion";
+    const std::string arguments =
+        "building:2:2 --path scatter --frames 6 --seed 3 --verify --rays 20000 --skip occlusion";
     const json plain = cull(arguments);
     EXPECT_FALSE(plain.contains("visibility"));
     EXPECT_FALSE(plain["frames"][0].contains("cells"));
@@ -47,7 +48,8 @@ TEST_F(Visibility, CullsWhatCellsHideAndIsProved) {
 
 TEST_F(Visibility, ALimitedDepthIsNotHeldToBeProved) {
     bake("building:2:1", "house.vis");
-    const std::string arguments = "building:2:1 --frames 6 --seed 3 --verify --rays 20000 --visibility house.vis";
+    const std::string arguments =
+        "building:2:1 --path scatter --frames 6 --seed 3 --verify --rays 20000 --visibility house.vis";
     const json all = cull(arguments), near = cull(arguments + " --portal-depth 1");
     EXPECT_EQ(near["portal_depth"], 1);
     EXPECT_EQ(near["verification"]["false_culls"], 0);
