@@ -20,6 +20,7 @@ constexpr int kRoundings = 8;      // pieces of a corner
 constexpr double kHalfTurn = 3.14159265358979323846;
 constexpr double kTurn = kHalfTurn / 3;  // [radians / s]
 constexpr double kGlance = 2;            // between two glances  [s]
+constexpr double kGlanceWay = 1.5;       // or so far  [metres]
 // Glances of which one is taken, 0.35 radians apart, as tangents of half their angles: no cosine of the standard
 // library, which differ between machines.
 constexpr double kGlances[] = {0, 0.17683, 0.36503, 0.57927, 0.84229, 1.19742, 1.74332, 2.77792};
@@ -203,7 +204,10 @@ private:
     CameraPath alongWay() {
         CameraPath out;
         const double step = settings_.speed / settings_.fps, tangent = 0.5 * kTurn / settings_.fps;
-        const auto glance = static_cast<uint32_t>(std::max(1.0, kGlance * settings_.fps));
+        // A glance takes some hundreds of rays: where frames are close together, it lasts for several.
+        const double unit = floor_.places.empty() ? 1 : floor_.unit;
+        const auto glance = static_cast<uint32_t>(
+            std::max({1.0, kGlance * settings_.fps, step > 0 ? std::min(kGlanceWay * unit / step, 1e6) : 1.0}));
         CameraFrame frame = first_;
         glm::dvec3 look = glm::normalize(frame.target - frame.eye), forward = look;
         const double distance = glm::length(frame.target - frame.eye);
