@@ -21,13 +21,18 @@ namespace sightline {
 /// itself. Programs that include this link the system's threads.
 class ThreadPool final : public Jobs {
 public:
-    /// @param workers  threads that work on a run, the caller's included; fewer where the system gives no more  [>= 1]
+    /// @param workers  threads that work on a run, the caller's included; fewer where the system gives no more, which ends
+    ///                 a program that is compiled without exceptions  [>= 1]
     /// @param spin     how long a thread looks for work before it sleeps: waking one takes some tens of microseconds
     explicit ThreadPool(uint32_t workers, std::chrono::microseconds spin = std::chrono::microseconds(100))
         : spin_(spin) {
+#ifdef __cpp_exceptions
         try {
-            for (uint32_t i = 1; i < workers; ++i) threads_.emplace_back([this] { work(); });
+            start(workers);
         } catch (const std::exception&) {}  // no more threads, or no memory for them: those that run do it all
+#else
+        start(workers);
+#endif
     }
     ~ThreadPool() {
         {
@@ -73,6 +78,10 @@ private:
         void* context = nullptr;
         uint32_t count = 0;
     };
+
+    void start(uint32_t workers) {
+        for (uint32_t i = 1; i < workers; ++i) threads_.emplace_back([this] { work(); });
+    }
 
     void takeTasks(const Run& run) {
         for (uint32_t i; (i = next_.fetch_add(1, std::memory_order_relaxed)) < run.count;) run.task(run.context, i);

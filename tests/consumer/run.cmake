@@ -44,6 +44,11 @@ if(TOOLS)
   expect(tools TRUE bin/sightline)
   expect(tools FALSE include/sightline/sightline.h)
 endif()
+# Games are compiled without exceptions and without types at run time.
+foreach(example first_query portals_and_doors shadow_casters occlusion_buffer)
+  step("compile ${example} without exceptions" ${COMPILER} -std=c++20 -fno-exceptions -fno-rtti -fsyntax-only
+    -I ${prefix}/include ${EXAMPLES}/${example}.cpp)
+endforeach()
 # An older language is refused in one line.
 execute_process(COMMAND ${COMPILER} -std=c++17 -fsyntax-only -I ${prefix}/include ${EXAMPLES}/first_query.cpp
   RESULT_VARIABLE code ERROR_VARIABLE said)
