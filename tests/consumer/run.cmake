@@ -56,8 +56,11 @@ if(code EQUAL 0 OR NOT said MATCHES "Sightline needs C\\+\\+20")
   message(FATAL_ERROR "C++17 is not refused:\n${said}")
 endif()
 # As a part of another project: the library alone is configured, by its names.
-step("add_subdirectory" ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/part -B ${WORK}/part -G Ninja
-  -D CMAKE_CXX_COMPILER=${COMPILER} -D SIGHTLINE_SOURCE=${EXAMPLES}/..)
+foreach(way add_subdirectory FetchContent)
+  string(COMPARE EQUAL ${way} FetchContent by_fetch)
+  step(${way} ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/part -B ${WORK}/${way} -G Ninja
+    -D CMAKE_CXX_COMPILER=${COMPILER} -D SIGHTLINE_SOURCE=${EXAMPLES}/.. -D BY_FETCH=${by_fetch})
+endforeach()
 
 if(TOOLS)
   step("run tools" ${WORK}/build/consumer_of_tools)
