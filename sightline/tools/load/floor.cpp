@@ -75,15 +75,15 @@ public:
         ground_ = *low;
     }
 
-    Floor find() {
-        Floor best;
+    WalkFloor find() {
+        WalkFloor best;
         if (!bounds_.finite() || bounds_.empty()) return best;
         std::vector<Start> starts = findStarts();
         unit_ = tellUnit(starts);
         if (!(unit_ > 0)) return best;
         chooseStarts(starts);
         for (uint32_t i = 0; i < std::min<size_t>(starts.size(), kMostStarts); ++i) {
-            Floor floor = growFrom(starts[i]);
+            WalkFloor floor = growFrom(starts[i]);
             if (floor.places.size() > best.places.size()) best = std::move(floor);
             if (best.places.size() >= kEnough) break;
         }
@@ -148,8 +148,8 @@ private:
     }
 
     /// A place with its surroundings as far as `far`. What is too narrow is not measured to the end.
-    Floor::Place placeAt(const glm::dvec3& foot, double far) const {
-        Floor::Place place{.foot = foot, .room = far, .next = {}};
+    WalkFloor::Place placeAt(const glm::dvec3& foot, double far) const {
+        WalkFloor::Place place{.foot = foot, .room = far, .next = {}};
         for (int i = 0; i < kAround; i += 2) {
             const auto hit = probe_.nearest({above(foot, kEye), directionOf(i)});
             const double free = hit ? std::min(hit->t, far) : far;
@@ -203,7 +203,7 @@ private:
 
     /// A foot near a height in a column, or none: a floor, or the ground where a start on it has none below, and room for
     /// a head over it.
-    bool footAt(const Floor& floor, double x, double z, double height, glm::dvec3& foot) const {
+    bool footAt(const WalkFloor& floor, double x, double z, double height, glm::dvec3& foot) const {
         const double lift = std::max(floor.climb, 0.9 * unit_);
         const auto hit = probe_.nearest({{x, height + lift, z}, {0, -1, 0}});
         foot = {x, hit ? height + lift - hit->t : floor.ground.value_or(-kNoHit), z};
@@ -221,8 +221,8 @@ private:
     }
 
     /// All that can be reached from a start, nearest first.
-    Floor growFrom(const Start& start) const {
-        Floor floor;
+    WalkFloor growFrom(const Start& start) const {
+        WalkFloor floor;
         floor.unit = unit_;
         const double wide = std::clamp(start.wide / (6 * unit_), 1.0, 12.0);
         floor.spacing = 0.4 * unit_ * wide;
@@ -231,7 +231,7 @@ private:
         const double far = 8 * unit_ * wide;
         std::unordered_map<uint64_t, std::vector<uint32_t>> columns;
         std::vector<std::pair<int32_t, int32_t>> cells;  // of places
-        const auto add = [&](int32_t column, int32_t row, const Floor::Place& place) {
+        const auto add = [&](int32_t column, int32_t row, const WalkFloor::Place& place) {
             columns[keyOf(column, row)].push_back(static_cast<uint32_t>(floor.places.size()));
             cells.emplace_back(column, row);
             floor.places.push_back(place);
@@ -258,7 +258,7 @@ private:
                 const double x = start.foot.x + column * floor.spacing, z = start.foot.z + row * floor.spacing;
                 glm::dvec3 next;
                 if (!inBounds(x, z) || !footAt(floor, x, z, foot.y, next) || !canWalk(foot, next)) continue;
-                const Floor::Place place = placeAt(next, far);
+                const WalkFloor::Place place = placeAt(next, far);
                 if (place.room < kNarrow * unit_) continue;
                 const auto there = static_cast<uint32_t>(floor.places.size());
                 add(column, row, place);
@@ -271,7 +271,7 @@ private:
     static uint64_t keyOf(int32_t column, int32_t row) {
         return uint64_t{static_cast<uint32_t>(column)} << 32 | static_cast<uint32_t>(row);
     }
-    static bool leads(const Floor::Place& place, uint32_t there) {
+    static bool leads(const WalkFloor::Place& place, uint32_t there) {
         return std::find(place.next.begin(), place.next.end(), there) != place.next.end();
     }
 
@@ -284,7 +284,7 @@ private:
 
 }  // namespace
 
-Floor findFloor(const Scene& scene, const RayProbe& probe, uint64_t seed) {
+WalkFloor findFloor(const Scene& scene, const RayProbe& probe, uint64_t seed) {
     return FloorFinder(scene, probe, seed).find();
 }
 

@@ -14,7 +14,7 @@
 namespace sightline::tools {
 
 /// A grid of places that can be reached from the first one on foot: over floors and stairs, upright, past walls.
-struct Floor {
+struct WalkFloor {
     struct Place {
         glm::dvec3 foot;
         double room = 0;             ///< free around the head, as far as it was looked  [world units]
@@ -36,6 +36,6 @@ struct Floor {
 /// streets rather than on roofs. Where rooms or streets have no floor, the ground is where objects begin. At most 2500
 /// places, the nearest ones. None at all where there is nothing to walk on: a car, a statue, an engine. The same on
 /// every machine.
-Floor findFloor(const Scene& scene, const RayProbe& probe, uint64_t seed);
+WalkFloor findFloor(const Scene& scene, const RayProbe& probe, uint64_t seed);
 
 }  // namespace sightline::tools

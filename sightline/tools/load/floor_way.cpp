@@ -21,8 +21,8 @@ constexpr size_t kLongestLeg = 24;   // places that one leg passes
 
 class WayFinder {
 public:
-    WayFinder(const Floor& floor, const RayProbe& probe) : floor_(floor), probe_(probe) {
-        for (const Floor::Place& place : floor.places) view_ = std::max(view_, place.view);
+    WayFinder(const WalkFloor& floor, const RayProbe& probe) : floor_(floor), probe_(probe) {
+        for (const WalkFloor::Place& place : floor.places) view_ = std::max(view_, place.view);
         open_ = std::max(0.9 * floor.unit, 2 * floor.spacing);
     }
 
@@ -143,7 +143,7 @@ private:
         return way;
     }
 
-    const Floor& floor_;
+    const WalkFloor& floor_;
     const RayProbe& probe_;
     double view_ = 1e-9;  ///< the widest of any place  [world units]
     double open_ = 0;     ///< with so much room one is in the open  [world units]
@@ -151,7 +151,7 @@ private:
 
 }  // namespace
 
-std::vector<glm::dvec3> wayOver(const Floor& floor, const RayProbe& probe, double length) {
+std::vector<glm::dvec3> wayOver(const WalkFloor& floor, const RayProbe& probe, double length) {
     if (floor.places.size() < 2) return {};
     return WayFinder(floor, probe).find(length);
 }

@@ -12,7 +12,7 @@ namespace sightline::tools {
 namespace {
 
 /// Between two frames, so that all of them see most of a floor  [world units].
-double stepOver(const Floor& floor, uint32_t frames) {
+double stepOver(const WalkFloor& floor, uint32_t frames) {
     const double area = floor.spacing * floor.spacing * static_cast<double>(floor.places.size());
     const double length = area / (2 * std::max(1.5 * floor.unit, 3 * floor.spacing));
     return std::clamp(length / frames, 0.4 * floor.unit, 10 * floor.spacing);
@@ -24,7 +24,7 @@ CameraPath tourOf(const Scene& scene, uint32_t frames, uint64_t seed) {
     CameraPath path = overviewsOf(scene, std::min(frames, 1u), seed);
     if (frames < 2) return path;
     const RayProbe probe(scene);
-    const Floor floor = findFloor(scene, probe, seed);
+    const WalkFloor floor = findFloor(scene, probe, seed);
     CameraPath rest;
     if (floor.places.empty()) {
         rest = orbitAround(scene, frames - 1, seed);

@@ -60,7 +60,7 @@ glm::dvec3 turnedAside(const glm::dvec3& direction, double half_tangent) {
 
 class Walker {
 public:
-    Walker(const Scene& scene, const RayProbe& probe, const Floor& floor, const WalkSettings& settings)
+    Walker(const Scene& scene, const RayProbe& probe, const WalkFloor& floor, const WalkSettings& settings)
         : scene_(scene),
           probe_(probe),
           floor_(floor),
@@ -316,7 +316,7 @@ private:
 
     const Scene& scene_;
     const RayProbe& probe_;
-    const Floor& floor_;
+    const WalkFloor& floor_;
     const WalkSettings settings_;
     Random random_;
     CameraFrame first_;                ///< where the walk begins
@@ -333,7 +333,7 @@ CameraPath walkThrough(const Scene& scene, const WalkSettings& settings) {
     return walkOver(scene, probe, findFloor(scene, probe, settings.seed), settings);
 }
 
-CameraPath walkOver(const Scene& scene, const RayProbe& probe, const Floor& floor, const WalkSettings& settings) {
+CameraPath walkOver(const Scene& scene, const RayProbe& probe, const WalkFloor& floor, const WalkSettings& settings) {
     return Walker(scene, probe, floor, settings).path();
 }
 

@@ -23,14 +23,14 @@ struct WalkSettings {
 /// reached in straight lines through free space, nearest first, and where none can be, towards open space.
 ///
 /// Two frames in turn are no farther apart than speed / fps, their directions by no more than 60 degrees a second, and no
-/// surface lies between their eyes. A flight keeps a margin from surfaces ahead: a quarter of a unit, at
-/// most a hundredth of the scene's diagonal, and less where it is narrow; a walk a fifth of a metre. The camera looks ahead, and about, where one sees far. Where there is
-/// no way on it stands.
+/// surface lies between their eyes. A flight keeps a margin from surfaces ahead: a quarter of a unit, at most a hundredth
+/// of the scene's diagonal, and less where it is narrow; a walk a fifth of a metre. The camera looks ahead, and about,
+/// where one sees far. Where there is no way on it stands.
 ///
 /// The same on every machine. A scene without triangles is walked through from the origin.
 CameraPath walkThrough(const Scene& scene, const WalkSettings& settings);
 
 /// The same over a floor that is known already: that of findFloor() with the same seed.
-CameraPath walkOver(const Scene& scene, const RayProbe& probe, const Floor& floor, const WalkSettings& settings);
+CameraPath walkOver(const Scene& scene, const RayProbe& probe, const WalkFloor& floor, const WalkSettings& settings);
 
 }  // namespace sightline::tools

@@ -50,12 +50,12 @@ private:
     Scene scene_;
 };
 
-Floor floorOf(const Scene& scene, uint64_t seed = 1) { return findFloor(scene, RayProbe(scene), seed); }
+WalkFloor floorOf(const Scene& scene, uint64_t seed = 1) { return findFloor(scene, RayProbe(scene), seed); }
 
 /// Places on both sides of the wall between two rooms.
-std::pair<int, int> inRooms(const Floor& floor, double scale = 1) {
+std::pair<int, int> inRooms(const WalkFloor& floor, double scale = 1) {
     std::pair<int, int> count{0, 0};
-    for (const Floor::Place& place : floor.places) ++(place.foot.x < 6.1 * scale ? count.first : count.second);
+    for (const WalkFloor::Place& place : floor.places) ++(place.foot.x < 6.1 * scale ? count.first : count.second);
     return count;
 }
 
@@ -69,7 +69,7 @@ TEST(Floor, CarriesWhoStandsAndWalksThere) {
     for (const Scene* scene : {&building, &city, &terrain})
         for (uint64_t seed = 1; seed <= 4; ++seed) {
             const RayProbe probe(*scene);
-            const Floor floor = findFloor(*scene, probe, seed);
+            const WalkFloor floor = findFloor(*scene, probe, seed);
             ASSERT_GT(floor.places.size(), 50u) << scene->name << ", seed " << seed;
             ASSERT_LE(floor.places.size(), 2500u);
             EXPECT_EQ(floor.unit, 1);
@@ -110,7 +110,7 @@ TEST(Floor, TellsWhatAMetreIs) {
         Boxes rooms(scale);
         rooms.addRooms(true, true);
         // A unit is told by the rooms' heights alone; they are of all kinds in a building of three such rooms.
-        const Floor floor = floorOf(rooms.scene());
+        const WalkFloor floor = floorOf(rooms.scene());
         const auto [left, right] = inRooms(floor, scale);
         EXPECT_GT(std::min(left, right), 20) << scale;
         EXPECT_GT(1.6 * floor.unit, 0.3 * scale) << "the eye is at the knee";
@@ -120,10 +120,10 @@ TEST(Floor, TellsWhatAMetreIs) {
 
 TEST(Floor, IsTheGroundWhereRoomsHaveNone) {
     const Scene rooms = Boxes().addRooms(true, false).scene();
-    const Floor floor = floorOf(rooms);
+    const WalkFloor floor = floorOf(rooms);
     const auto [left, right] = inRooms(floor);
     EXPECT_GT(std::min(left, right), 60);
-    for (const Floor::Place& place : floor.places) EXPECT_NEAR(place.foot.y, 0, 1e-9);
+    for (const WalkFloor::Place& place : floor.places) EXPECT_NEAR(place.foot.y, 0, 1e-9);
     ASSERT_TRUE(floor.ground.has_value());
 }
 
@@ -146,7 +146,7 @@ TEST(Floor, IsNotOnThings) {
 
 TEST(Floor, IsTheSameForASeed) {
     const Scene scene = makeBuilding(1, 2);
-    const Floor one = floorOf(scene, 5), same = floorOf(scene, 5), other = floorOf(scene, 6);
+    const WalkFloor one = floorOf(scene, 5), same = floorOf(scene, 5), other = floorOf(scene, 6);
     ASSERT_EQ(one.places.size(), same.places.size());
     for (size_t i = 0; i < one.places.size(); ++i) {
         EXPECT_EQ(one.places[i].foot, same.places[i].foot);
@@ -176,7 +176,7 @@ TEST(FloorWay, GoesToBothRoomsInTheOpen) {
 TEST(FloorWay, IsAsLongAsAskedForWhereThereIsRoom) {
     const Scene scene = makeCity(3, 400);
     const RayProbe probe(scene);
-    const Floor floor = findFloor(scene, probe, 1);
+    const WalkFloor floor = findFloor(scene, probe, 1);
     double length = 0;
     const std::vector<glm::dvec3> way = wayOver(floor, probe, 50);
     for (size_t i = 1; i < way.size(); ++i) length += glm::length(way[i] - way[i - 1]);
