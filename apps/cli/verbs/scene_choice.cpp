@@ -19,7 +19,6 @@
 #include "apps/cli/shell/session.h"
 #include "sightline/tools/import/scene_file.h"
 #include "sightline/tools/scene/procedural.h"
-#include "sightline/tools/scene/split.h"
 
 namespace sightline::cli {
 using namespace tools;
@@ -157,6 +156,12 @@ std::string SceneChoice::procedural() const {
     return names.size() == 1 && isProcedural(names.front()) ? names.front() : std::string();
 }
 
+std::string SceneChoice::plainFile() const {
+    const bool is_plain =
+        names.size() == 1 && !isProcedural(names.front()) && up.empty() && unit.empty() && sides.empty();
+    return is_plain ? names.front() : std::string();
+}
+
 void addSceneChoice(CLI::App& verb, SceneChoice& choice) {
     verb.add_option("SCENE", choice.names,
                     "files (sightline info --formats lists what can be read) or procedural scenes, as city:1:100000, "
@@ -192,10 +197,9 @@ void addImportOptions(CLI::App& verb, SceneChoice& choice) {
         ->group("Input");
 }
 
-Result<Scene> loadScene(const SceneChoice& choice) {
+Result<Scene> loadWholeScene(const SceneChoice& choice, Split& split) {
     const Result<ImportSettings> settings = settingsOf(choice);
     if (!settings) return settings.error();
-    Split split;
     if (!choice.split.empty()) {
         Result<Split> read = readSplit(choice.split);
         if (!read) return Error{read.error().kind, "--split: " + read.error().message};
@@ -216,7 +220,14 @@ Result<Scene> loadScene(const SceneChoice& choice) {
             Error::Kind::kInput,
             joined.name + ": draws nothing: it has cells or portals alone; name the scene that they belong to, too"};
     if (choice.split.empty()) tellOfWideObjects(joined);
-    return splitScene(std::move(joined), split);
+    return joined;
+}
+
+Result<Scene> loadScene(const SceneChoice& choice) {
+    Split split;
+    Result<Scene> scene = loadWholeScene(choice, split);
+    if (!scene) return scene;
+    return splitScene(std::move(*scene), split);
 }
 
 }  // namespace sightline::cli

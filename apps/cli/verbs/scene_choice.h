@@ -7,6 +7,7 @@
 
 #include "sightline/base/result.h"
 #include "sightline/tools/scene/scene.h"
+#include "sightline/tools/scene/split.h"
 
 namespace CLI {
 class App;
@@ -27,6 +28,8 @@ struct SceneChoice {
     std::string words() const;
     /// The one procedural scene's specification, or empty.
     std::string procedural() const;
+    /// The one file that is read as it is, without a word of how; or empty.
+    std::string plainFile() const;
 };
 
 /// SCENE and the options of importing.
@@ -37,5 +40,7 @@ void addImportOptions(CLI::App& verb, SceneChoice& choice);
 /// Files by their formats, procedural scenes by their specifications; shows progress and notes. Errors name the file
 /// and say what is wrong.
 Result<Scene> loadScene(const SceneChoice& choice);
+/// The same before it is split, and how it is to be.
+Result<Scene> loadWholeScene(const SceneChoice& choice, Split& split);
 
 }  // namespace sightline::cli

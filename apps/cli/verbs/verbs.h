@@ -17,6 +17,7 @@ void addRender(CLI::App& tool, int& exit_code);
 void addExplain(CLI::App& tool, int& exit_code);
 void addVis(CLI::App& tool, int& exit_code);
 void addBake(CLI::App& tool, int& exit_code);
+void addExport(CLI::App& tool, int& exit_code);
 void addReplay(CLI::App& tool, int& exit_code);
 void addCalibrate(CLI::App& tool, int& exit_code);
 void addReport(CLI::App& tool, int& exit_code);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -14,6 +15,8 @@
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "sightline/tools/scene/joined_sets.h"
 
 namespace sightline::tools {
 namespace {
@@ -39,24 +42,6 @@ Cut numbered(const std::vector<Key>& keys, Name&& name) {
     return cut;
 }
 
-/// Sets that grow together; each is known by its least member.
-class Sets {
-public:
-    explicit Sets(size_t size) : parents_(size) { std::iota(parents_.begin(), parents_.end(), 0u); }
-
-    uint32_t find(uint32_t i) {
-        while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-        return i;
-    }
-    void join(uint32_t a, uint32_t b) {
-        const uint32_t root_a = find(a), root_b = find(b);
-        parents_[std::max(root_a, root_b)] = std::min(root_a, root_b);
-    }
-
-private:
-    std::vector<uint32_t> parents_;
-};
-
 Cut cutIntoParts(const Mesh& mesh) {
     std::map<std::array<float, 3>, uint32_t> places;
     std::vector<uint32_t> place_of;
@@ -64,7 +49,7 @@ Cut cutIntoParts(const Mesh& mesh) {
         const std::array<float, 3> key = {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};  // no zero has a sign
         place_of.push_back(places.try_emplace(key, static_cast<uint32_t>(places.size())).first->second);
     }
-    Sets sets(places.size());
+    JoinedSets sets(places.size());
     const auto& indices = mesh.indices;
     for (size_t i = 0; i < indices.size(); i += 3)
         for (const size_t k : {i + 1, i + 2}) sets.join(place_of[indices[i]], place_of[indices[k]]);
@@ -116,43 +101,53 @@ Cut cutMesh(const Scene& scene, const Mesh& mesh, const Split& split) {
     return {};
 }
 
-/// One mesh for each piece.
-std::vector<Mesh> piecesOf(const Mesh& mesh, const Cut& cut) {
-    std::vector<Mesh> pieces(cut.names.size());
-    std::vector<std::unordered_map<uint32_t, uint32_t>> corners(pieces.size());  // the mesh's to the piece's
-    for (size_t i = 0; i < pieces.size(); ++i)
-        pieces[i].name = mesh.name.empty() ? cut.names[i] : mesh.name + " " + cut.names[i];
-    for (const Primitive& primitive : mesh.primitives)
-        for (uint32_t t = primitive.first_triangle; t < primitive.first_triangle + primitive.triangle_count; ++t) {
-            Mesh& piece = pieces[cut.piece_of[t]];
-            auto& known = corners[cut.piece_of[t]];
-            if (piece.primitives.empty() || piece.primitives.back().material != primitive.material)
-                piece.primitives.push_back({static_cast<uint32_t>(piece.triangles()), 0, primitive.material});
-            ++piece.primitives.back().triangle_count;
-            for (size_t k = 3 * size_t{t}; k < 3 * size_t{t} + 3; ++k) {
-                const uint32_t corner = mesh.indices[k];
-                const auto [found, is_new] = known.try_emplace(corner, static_cast<uint32_t>(piece.positions.size()));
-                if (is_new) piece.positions.push_back(mesh.positions[corner]);
-                if (is_new) piece.bounds.grow(glm::dvec3(mesh.positions[corner]));
-                piece.indices.push_back(found->second);
-            }
+/// Some triangles of a mesh as a mesh.
+/// @param triangles  ascending
+Mesh partOf(const Mesh& mesh, const std::vector<uint32_t>& triangles) {
+    Mesh part;
+    part.name = mesh.name;
+    std::unordered_map<uint32_t, uint32_t> known;  // the mesh's corners to the part's
+    auto primitive = mesh.primitives.begin();
+    for (const uint32_t t : triangles) {
+        while (t >= primitive->first_triangle + primitive->triangle_count) ++primitive;
+        if (part.primitives.empty() || part.primitives.back().material != primitive->material)
+            part.primitives.push_back({static_cast<uint32_t>(part.triangles()), 0, primitive->material});
+        ++part.primitives.back().triangle_count;
+        for (size_t k = 3 * size_t{t}; k < 3 * size_t{t} + 3; ++k) {
+            const uint32_t corner = mesh.indices[k];
+            const auto [found, is_new] = known.try_emplace(corner, static_cast<uint32_t>(part.positions.size()));
+            if (is_new) part.positions.push_back(mesh.positions[corner]);
+            if (is_new) part.bounds.grow(glm::dvec3(mesh.positions[corner]));
+            part.indices.push_back(found->second);
         }
-    return pieces;
+    }
+    return part;
 }
 
 /// Takes out the meshes that no object is of.
-void dropUnused(Scene& scene) {
+void dropUnused(CutScene& cut) {
+    Scene& scene = cut.scene;
     constexpr uint32_t kUnused = ~0u;
     std::vector<uint32_t> now_at(scene.meshes.size(), kUnused);
     for (const SceneObject& object : scene.objects) now_at[object.mesh] = 0;
     std::vector<Mesh> used;
+    std::vector<std::vector<uint32_t>> triangles;
     for (size_t i = 0; i < scene.meshes.size(); ++i) {
         if (now_at[i] == kUnused) continue;
         now_at[i] = static_cast<uint32_t>(used.size());
         used.push_back(std::move(scene.meshes[i]));
+        triangles.push_back(std::move(cut.triangles_of[i]));
     }
     for (SceneObject& object : scene.objects) object.mesh = now_at[object.mesh];
     scene.meshes = std::move(used);
+    cut.triangles_of = std::move(triangles);
+}
+
+std::vector<bool> shutPortals(const Scene& scene) {
+    std::vector<bool> doors(scene.objects.size());
+    for (const ScenePortal& portal : scene.portals)
+        if (portal.door != ScenePortal::kNone) doors[portal.door] = true;
+    return doors;
 }
 
 }  // namespace
@@ -174,65 +169,146 @@ Result<Split> readSplit(std::string_view text) {
                  fmt::format("\"{}\" is not parts, materials or grid:N with N from 1 to {}", text, Split::kMostCubes)};
 }
 
-Scene splitScene(Scene scene, const Split& split) {
-    if (split.along == Split::Along::kNothing) return scene;
-    std::vector<bool> whole(scene.objects.size());
-    for (const ScenePortal& portal : scene.portals)
-        if (portal.door != ScenePortal::kNone) whole[portal.door] = true;
+CutScene uncut(Scene scene) {
+    CutScene cut;
+    for (const SceneObject& object : scene.objects) cut.keys.push_back(object.key);
+    cut.object_of.resize(scene.objects.size());
+    std::iota(cut.object_of.begin(), cut.object_of.end(), 0u);
+    cut.triangles_of.resize(scene.meshes.size());
+    cut.scene = std::move(scene);
+    return cut;
+}
+
+CutScene cutScene(Scene whole_scene, const Split& split) {
+    CutScene out = uncut(std::move(whole_scene));
+    if (split.along == Split::Along::kNothing) return out;
+    Scene& scene = out.scene;
+    const std::vector<bool> doors = shutPortals(scene);
 
     struct Cutting {
-        Cut cut;
+        std::vector<std::string> names;
         uint32_t first = 0;  ///< mesh of its pieces
     };
     std::vector<std::optional<Cutting>> cuttings(scene.meshes.size());
     std::vector<Mesh> pieces;
     const auto first_piece = static_cast<uint32_t>(scene.meshes.size());
-    const auto cuttingOf = [&](uint32_t mesh) -> const Cutting& {
-        if (!cuttings[mesh]) {
-            Cutting made{cutMesh(scene, scene.meshes[mesh], split), first_piece + static_cast<uint32_t>(pieces.size())};
-            if (made.cut.names.size() > 1)
-                for (Mesh& piece : piecesOf(scene.meshes[mesh], made.cut)) pieces.push_back(std::move(piece));
-            cuttings[mesh] = std::move(made);
+    const auto cuttingOf = [&](uint32_t index) -> const Cutting& {
+        if (cuttings[index]) return *cuttings[index];
+        const Mesh& mesh = scene.meshes[index];
+        Cut cut = cutMesh(scene, mesh, split);
+        cuttings[index] = Cutting{std::move(cut.names), first_piece + static_cast<uint32_t>(pieces.size())};
+        const std::vector<std::string>& names = cuttings[index]->names;
+        if (names.size() < 2) return *cuttings[index];
+        std::vector<std::vector<uint32_t>> triangles(names.size());
+        for (uint32_t t = 0; t < cut.piece_of.size(); ++t) triangles[cut.piece_of[t]].push_back(t);
+        for (size_t i = 0; i < names.size(); ++i) {
+            pieces.push_back(partOf(mesh, triangles[i]));
+            pieces.back().name = mesh.name.empty() ? names[i] : mesh.name + " " + names[i];
+            out.triangles_of.push_back(std::move(triangles[i]));
         }
-        return *cuttings[mesh];
+        return *cuttings[index];
     };
 
     std::vector<SceneObject> objects;
+    std::vector<uint32_t> object_of;
     std::vector<uint32_t> now_at(scene.objects.size());  // of the first piece of each object
     for (size_t i = 0; i < scene.objects.size(); ++i) {
         SceneObject& object = scene.objects[i];
         now_at[i] = static_cast<uint32_t>(objects.size());
-        const bool stays = whole[i] || scene.meshes[object.mesh].deforms;
+        const bool stays = doors[i] || scene.meshes[object.mesh].deforms;
         const Cutting* cutting = stays ? nullptr : &cuttingOf(object.mesh);
-        if (!cutting || cutting->cut.names.size() < 2) {
+        if (!cutting || cutting->names.size() < 2) {
             objects.push_back(std::move(object));
+            object_of.push_back(static_cast<uint32_t>(i));
             continue;
         }
         const auto node = static_cast<uint32_t>(scene.nodes.size());
         scene.nodes.push_back({std::move(object.name), object.node});
-        for (size_t k = 0; k < cutting->cut.names.size(); ++k) {
+        for (size_t k = 0; k < cutting->names.size(); ++k) {
             SceneObject piece;
             piece.mesh = cutting->first + static_cast<uint32_t>(k);
             piece.transform = object.transform;
-            piece.name = cutting->cut.names[k];
+            piece.name = cutting->names[k];
             piece.node = node;
             objects.push_back(std::move(piece));
+            object_of.push_back(static_cast<uint32_t>(i));
         }
     }
     for (ScenePortal& portal : scene.portals)
         if (portal.door != ScenePortal::kNone) portal.door = now_at[portal.door];
     for (SceneFile& file : scene.files) {
         // Files follow one another, and so do their objects.
-        const auto first = std::find_if(scene.objects.begin(), scene.objects.end(),
-                                        [&](const SceneObject& object) { return object.key >= file.first_key; });
-        const auto index = static_cast<size_t>(first - scene.objects.begin());
+        const auto first =
+            std::find_if(out.keys.begin(), out.keys.end(), [&](uint64_t key) { return key >= file.first_key; });
+        const auto index = static_cast<size_t>(first - out.keys.begin());
         file.first_key = index < now_at.size() ? now_at[index] : objects.size();
     }
     for (size_t i = 0; i < objects.size(); ++i) objects[i].key = i;
     scene.objects = std::move(objects);
+    out.object_of = std::move(object_of);
     for (Mesh& piece : pieces) scene.meshes.push_back(std::move(piece));
-    dropUnused(scene);
-    return scene;
+    dropUnused(out);
+    return out;
+}
+
+Scene splitScene(Scene scene, const Split& split) { return cutScene(std::move(scene), split).scene; }
+
+std::vector<std::vector<uint32_t>> inPieces(const CutScene& cut, const std::vector<std::vector<uint32_t>>& of_wholes) {
+    std::vector<std::vector<uint32_t>> out(cut.scene.objects.size());
+    for (size_t i = 0; i < out.size(); ++i) {
+        const std::vector<uint32_t>& of_whole = of_wholes[cut.object_of[i]];
+        const std::vector<uint32_t>& triangles = cut.triangles_of[cut.scene.objects[i].mesh];
+        if (triangles.empty()) out[i] = of_whole;
+        for (uint32_t t = 0; t < triangles.size(); ++t)
+            if (std::binary_search(of_whole.begin(), of_whole.end(), triangles[t])) out[i].push_back(t);
+    }
+    return out;
+}
+
+uint64_t leaveOut(CutScene& cut, const std::vector<std::vector<uint32_t>>& without) {
+    Scene& scene = cut.scene;
+    const uint64_t before = drawnTriangles(scene);
+    const std::vector<bool> doors = shutPortals(scene);
+    const auto goes = [&](size_t i) {
+        return !doors[i] && without[i].size() == scene.meshes[scene.objects[i].mesh].triangles();
+    };
+    // A triangle of a mesh goes where none of the objects that are left needs it.
+    std::vector<std::optional<std::vector<uint32_t>>> unneeded(scene.meshes.size());
+    for (size_t i = 0; i < scene.objects.size(); ++i) {
+        if (goes(i)) continue;
+        auto& of_mesh = unneeded[scene.objects[i].mesh];
+        std::vector<uint32_t> both;
+        if (of_mesh && !doors[i])
+            std::set_intersection(of_mesh->begin(), of_mesh->end(), without[i].begin(), without[i].end(),
+                                  std::back_inserter(both));
+        else if (!doors[i]) both = without[i];
+        of_mesh = std::move(both);
+    }
+    std::vector<SceneObject> objects;
+    std::vector<uint32_t> object_of, now_at(scene.objects.size());
+    for (size_t i = 0; i < scene.objects.size(); ++i) {
+        now_at[i] = static_cast<uint32_t>(objects.size());
+        if (goes(i)) continue;
+        objects.push_back(std::move(scene.objects[i]));
+        object_of.push_back(cut.object_of[i]);
+    }
+    scene.objects = std::move(objects);
+    cut.object_of = std::move(object_of);
+    for (ScenePortal& portal : scene.portals)
+        if (portal.door != ScenePortal::kNone) portal.door = now_at[portal.door];
+
+    for (size_t m = 0; m < scene.meshes.size(); ++m) {
+        Mesh& mesh = scene.meshes[m];
+        if (!unneeded[m] || unneeded[m]->empty() || mesh.deforms) continue;
+        std::vector<uint32_t> all(mesh.triangles()), left, of;
+        std::iota(all.begin(), all.end(), 0u);
+        std::set_difference(all.begin(), all.end(), unneeded[m]->begin(), unneeded[m]->end(), std::back_inserter(left));
+        for (const uint32_t t : left) of.push_back(cut.triangles_of[m].empty() ? t : cut.triangles_of[m][t]);
+        mesh = partOf(mesh, left);
+        cut.triangles_of[m] = std::move(of);
+    }
+    dropUnused(cut);
+    return before - drawnTriangles(scene);
 }
 
 }  // namespace sightline::tools

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <numeric>
 #include <set>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -15,33 +15,13 @@
 #include "sightline/tools/scene/building/building.h"
 #include "sightline/tools/scene/city/city.h"
 #include "sightline/tools/scene/solids.h"
+#include "tests/support/drawn_triangles.h"
 
 namespace sightline {
 using namespace tools;
 namespace {
 
 using Corner = std::array<double, 3>;
-using Triangle = std::tuple<uint32_t, Corner, Corner, Corner>;  ///< of a material
-
-/// All drawn triangles in world space, sorted.
-std::vector<Triangle> trianglesOf(const Scene& scene) {
-    std::vector<Triangle> out;
-    for (const SceneObject& object : scene.objects) {
-        const Mesh& mesh = scene.meshes[object.mesh];
-        for (const Primitive& primitive : mesh.primitives)
-            for (uint32_t t = primitive.first_triangle; t < primitive.first_triangle + primitive.triangle_count; ++t) {
-                const auto corner = [&](uint32_t k) {
-                    const glm::vec3& p = mesh.positions[mesh.indices[3 * t + k]];
-                    const glm::dvec4 world = object.transform * glm::dvec4(p, 1);
-                    return Corner{world.x, world.y, world.z};
-                };
-                out.emplace_back(primitive.material, corner(0), corner(1), corner(2));
-            }
-    }
-    std::sort(out.begin(), out.end());
-    return out;
-}
-
 /// What holds of every scene: tables that fit together, boxes that hold their meshes, keys in order.
 void expectWhole(const Scene& scene) {
     std::set<uint32_t> used;
@@ -108,7 +88,7 @@ TEST(Split, KeepsEveryTriangleOnce) {
     for (const Scene* scene : {&cubes, &building, &city})
         for (const char* how : {"parts", "materials", "grid:1", "grid:3", "grid:40"}) {
             const Scene split = splitScene(*scene, *readSplit(how));
-            EXPECT_EQ(trianglesOf(split), trianglesOf(*scene)) << scene->name << ", " << how;
+            EXPECT_EQ(test::trianglesDrawn(split), test::trianglesDrawn(*scene)) << scene->name << ", " << how;
             EXPECT_GE(split.objects.size(), scene->objects.size());
             EXPECT_EQ(split.cells.size(), scene->cells.size());
             expectWhole(split);
@@ -158,7 +138,7 @@ TEST(Split, InstancesShareTheirPieces) {
     const Scene split = splitScene(scene, *readSplit("parts"));
     EXPECT_EQ(split.objects.size(), 8u);
     EXPECT_EQ(split.meshes.size(), 2u);
-    EXPECT_EQ(trianglesOf(split), trianglesOf(scene));
+    EXPECT_EQ(test::trianglesDrawn(split), test::trianglesDrawn(scene));
 }
 
 TEST(Split, LeavesWholeWhatMoves) {
@@ -185,6 +165,71 @@ TEST(Split, FilesBeginWhereTheirPiecesBegin) {
     const Scene split = splitScene(scene, *readSplit("parts"));
     EXPECT_EQ(split.files[0].first_key, 0u);
     EXPECT_EQ(split.files[1].first_key, 2u);
+}
+
+/// A triangle of a mesh, by its corners there.
+std::array<Corner, 3> cornersAt(const Mesh& mesh, uint32_t triangle) {
+    std::array<Corner, 3> out;
+    for (uint32_t k = 0; k < 3; ++k) {
+        const glm::vec3& p = mesh.positions[mesh.indices[3 * triangle + k]];
+        out[k] = {p.x, p.y, p.z};
+    }
+    return out;
+}
+
+TEST(Split, TellsWhereItsPiecesComeFrom) {
+    const Scene city = makeCity(3, 40);
+    const CutScene cut = cutScene(city, *readSplit("grid:3"));
+    ASSERT_EQ(cut.object_of.size(), cut.scene.objects.size());
+    ASSERT_EQ(cut.keys.size(), city.objects.size());
+    for (size_t i = 0; i < cut.object_of.size(); ++i) {
+        const SceneObject& object = cut.scene.objects[i];
+        const Mesh &piece = cut.scene.meshes[object.mesh], &whole = city.meshes[city.objects[cut.object_of[i]].mesh];
+        const std::vector<uint32_t>& from = cut.triangles_of[object.mesh];
+        EXPECT_EQ(object.transform, city.objects[cut.object_of[i]].transform);
+        ASSERT_EQ(from.empty() ? whole.triangles() : from.size(), piece.triangles());
+        for (uint32_t t = 0; t < piece.triangles(); ++t)
+            ASSERT_EQ(cornersAt(piece, t), cornersAt(whole, from.empty() ? t : from[t]));
+    }
+}
+
+TEST(Split, LeavesOutWhatNoObjectNeeds) {
+    Scene scene = threeCubes();
+    scene.objects.push_back(scene.objects[0]);
+    scene.objects.back().transform[3].y = 10;
+    // Of the first object all of one cube and half of another, of the second the latter half alone.
+    std::vector<uint32_t> first(18), second(6);
+    std::iota(first.begin(), first.end(), 0u);
+    std::iota(second.begin(), second.end(), 12u);
+    CutScene whole = uncut(scene);
+    EXPECT_EQ(leaveOut(whole, {first, second}), 12u) << "the mesh is shared: what both can do without goes";
+    EXPECT_EQ(whole.scene.objects.size(), 2u);
+
+    CutScene parts = cutScene(scene, *readSplit("parts"));
+    const std::vector<std::vector<uint32_t>> in_pieces = inPieces(parts, {first, second});
+    EXPECT_EQ(in_pieces[0].size(), 12u);
+    EXPECT_EQ(in_pieces[1], (std::vector<uint32_t>{0, 1, 2, 3, 4, 5}));
+    EXPECT_TRUE(in_pieces[2].empty());
+    EXPECT_EQ(leaveOut(parts, in_pieces), 12u + 6 + 6);
+    EXPECT_EQ(parts.scene.objects.size(), 3u) << "an object without triangles goes";
+    EXPECT_EQ(parts.object_of, (std::vector<uint32_t>{0, 1, 1}));
+    for (size_t i = 0; i < parts.scene.objects.size(); ++i) {
+        const SceneObject& object = parts.scene.objects[i];
+        for (uint32_t t = 0; t < parts.scene.meshes[object.mesh].triangles(); ++t)
+            EXPECT_EQ(cornersAt(parts.scene.meshes[object.mesh], t),
+                      cornersAt(scene.meshes[0], parts.triangles_of[object.mesh][t]));
+    }
+}
+
+TEST(Split, LeavesOutNoDoor) {
+    Scene scene = threeCubes();
+    scene.portals.resize(1);
+    scene.portals[0].door = 0;
+    std::vector<uint32_t> all(36);
+    std::iota(all.begin(), all.end(), 0u);
+    CutScene cut = uncut(scene);
+    EXPECT_EQ(leaveOut(cut, {all}), 0u);
+    EXPECT_EQ(cut.scene.portals[0].door, 0u);
 }
 
 }  // namespace

@@ -2,110 +2,32 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/import/gltf/gltf.h"
 
-#include <array>
-#include <exception>
-#include <filesystem>
-#include <new>
-#include <stdexcept>
-#include <utility>
+#include <optional>
 
-#include "sightline/tools/import/gltf/gltf_container.h"
-#include "sightline/tools/import/gltf/gltf_document.h"
 #include "sightline/tools/import/gltf/gltf_objects.h"
+#include "sightline/tools/import/gltf/gltf_open.h"
 
 namespace sightline::tools {
 namespace {
 
 using namespace gltf;
 
-constexpr uint64_t kLargestFile = uint64_t(4) << 30;  // what a GLB's 32-bit lengths can say
-
-// What we read, and what does not change where triangles are.
-bool isHarmless(const std::string& name) {
-    constexpr std::array kExact = {"KHR_mesh_quantization",      "EXT_meshopt_compression", "KHR_meshopt_compression",
-                                   "KHR_draco_mesh_compression", "EXT_mesh_gpu_instancing", "KHR_node_visibility",
-                                   "KHR_animation_pointer",      "MSFT_texture_dds",        "EXT_mesh_features",
-                                   "EXT_structural_metadata",    "EXT_instance_features"};
-    constexpr std::array kPrefixes = {"KHR_texture_",     "EXT_texture_", "KHR_materials_", "EXT_materials_",
-                                      "ADOBE_materials_", "KHR_lights_",  "EXT_lights_",    "KHR_xmp"};
-    for (const char* exact : kExact)
-        if (name == exact) return true;
-    for (const char* prefix : kPrefixes)
-        if (name.starts_with(prefix)) return true;
-    return false;
-}
-
-void checkAsset(Document& document) {
-    const Json members = document.json.members({"asset"});
-    const Json* asset = findObject(members, "asset", "");
-    if (!asset) fail("", "not glTF 2.0: asset is missing");
-    const std::string version = text(*asset, "version", "asset");
-    if (!version.starts_with("2.")) fail("asset", "version '{}' is not 2.0", printable(version));
-    const JsonTable required = document.json.table("extensionsRequired");
-    for (size_t i = 0; i < required.size(); ++i) {
-        const std::string place = at("extensionsRequired", i);
-        const Json value = required[i];
-        if (!value.is_string()) fail(place, "is not a string");
-        const std::string name = value.get<std::string>();
-        if (!isHarmless(name)) fail(place, "{} is required but not supported", printable(name));
-        document.draco_required |= name == "KHR_draco_mesh_compression";
-    }
-}
-
-// Some writers pad the JSON chunk with zeros instead of spaces, or put a byte order mark before the text.
-Bytes trimmed(Bytes text) {
-    while (!text.empty() && text.back() == 0) text = text.first(text.size() - 1);
-    if (text.size() >= 3 && text[0] == 0xef && text[1] == 0xbb && text[2] == 0xbf) text = text.subspan(3);
-    return text;
-}
-
-Scene import(ByteSource bytes, const std::string& name, std::optional<std::string> directory,
-             const Progress::Report& progress) {
-    Document document;
-    document.progress = Progress(progress);
-    document.bytes = std::move(bytes);
-    const Container container = splitContainer(document.bytes);
-    const Bytes json = document.bytes.read(container.json);
-    document.progress.reach(0, Progress::kRead, 1);
-    document.json = JsonText(trimmed(json));
-    document.progress.reach(Progress::kRead, Progress::kChecked, 1);
-    document.chunk = container.binary;
-    document.directory = std::move(directory);
-    document.budget.grant(document.bytes.size());
-    checkAsset(document);
-    readTables(document);
+Scene sceneOf(Document document, const std::string& name) {
     Scene scene = makeScene(document);
     scene.name = name;
     document.progress.reach(Progress::kBuilt, Progress::kTotal, 1);
     return scene;
 }
 
-// Whatever is thrown inside ends here as one line.
-template <class Read>
-Result<Scene> guarded(const std::string& name, Read&& read) {
-    std::string what;
-    try {
-        return read();
-    } catch (const Fault& fault) { what = fault.message; } catch (const std::bad_alloc&) {
-        what = "needs more memory than there is";
-    } catch (const std::length_error&) {
-        what = "needs more memory than there is";
-    } catch (const std::exception& error) { what = std::string("cannot be read: ") + error.what(); }
-    return Error{Error::Kind::kInput, printable(name + ": " + what, std::string::npos)};
-}
-
 }  // namespace
 
 Result<Scene> loadGltf(const std::string& path, const std::function<void(size_t done, size_t total)>& progress) {
-    return guarded(path, [&] {
-        ByteSource bytes = ByteSource::open(path, "", kLargestFile + 1);
-        if (bytes.size() > kLargestFile) fail("", "is larger than 4 GiB");
-        return import(std::move(bytes), path, std::filesystem::path(path).parent_path().string(), progress);
-    });
+    return guarded(path, [&]() -> Result<Scene> { return sceneOf(openGltf(path, progress), path); });
 }
 
 Result<Scene> parseGltf(std::span<const unsigned char> bytes, const std::string& name) {
-    return guarded(name, [&] { return import(ByteSource(bytes), name, std::nullopt, {}); });
+    return guarded(name,
+                   [&]() -> Result<Scene> { return sceneOf(openDocument(ByteSource(bytes), std::nullopt), name); });
 }
 
 }  // namespace sightline::tools

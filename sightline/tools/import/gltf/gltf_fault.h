@@ -2,15 +2,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <exception>
+#include <new>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "sightline/base/result.h"
+
 namespace sightline::tools::gltf {
 
-/// Caught by loadGltf and parseGltf, which put the file's name in front.
+/// Caught by guarded(), which puts the file's name in front.
 struct Fault {
     std::string message;
 };
@@ -34,6 +39,22 @@ inline std::string printable(std::string_view text, size_t most = 80) {
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
     if (text.size() > most) out += "...";
     return out;
+}
+
+/// What `read` gives; whatever it throws becomes one line.
+/// @param name  of the file
+/// @param read  returns a Result
+template <class Read>
+auto guarded(const std::string& name, Read&& read) -> decltype(read()) {
+    std::string what;
+    try {
+        return read();
+    } catch (const Fault& fault) { what = fault.message; } catch (const std::bad_alloc&) {
+        what = "needs more memory than there is";
+    } catch (const std::length_error&) {
+        what = "needs more memory than there is";
+    } catch (const std::exception& error) { what = std::string("cannot be read: ") + error.what(); }
+    return Error{Error::Kind::kInput, printable(name + ": " + what, std::string::npos)};
 }
 
 }  // namespace sightline::tools::gltf

@@ -124,7 +124,7 @@ std::optional<PrimitiveSource> readPrimitive(Document& document, const Json& jso
 
 // Corners of triangles from the corners of a list, strip or fan. Every second triangle of a strip is
 // turned round, so that all face the same way.
-std::vector<uint32_t> triangleCorners(std::vector<uint32_t> corners, uint32_t mode) {
+std::vector<uint32_t> unrolled(std::vector<uint32_t> corners, uint32_t mode) {
     if (mode == kTriangles) {
         corners.resize(corners.size() / 3 * 3);
         return corners;
@@ -157,6 +157,10 @@ std::vector<uint32_t> readCorners(Document& document, const PrimitiveSource& sou
 
 }  // namespace
 
+std::vector<uint32_t> triangleCorners(Document& document, const PrimitiveSource& source, uint32_t vertices) {
+    return unrolled(readCorners(document, source, vertices), source.mode);
+}
+
 Materials readMaterials(const JsonText& json) {
     Materials out;
     const JsonTable array = json.table("materials");
@@ -187,6 +191,7 @@ std::vector<MeshSource> readMeshes(Document& document, const Materials& material
             auto primitive =
                 readPrimitive(document, objectAt(primitives, p, primitive_place), materials, primitive_place);
             if (!primitive) continue;
+            primitive->number = static_cast<uint32_t>(p);
             mesh.targets = std::max(mesh.targets, primitive->targets.size());
             mesh.skinnable |= !primitive->influences.empty();
             for (const auto& target : primitive->targets) mesh.morphs |= target.has_value();
@@ -230,7 +235,7 @@ void MeshBuilder::addPrimitive(const PrimitiveSource& source, bool keep_runs, Bu
         positions.decoded = true;
     }
     const std::vector<uint32_t> corners =
-        triangleCorners(readCorners(document_, source, static_cast<uint32_t>(positions.epoch.size())), source.mode);
+        triangleCorners(document_, source, static_cast<uint32_t>(positions.epoch.size()));
     document_.budget.charge(corners.size(), sizeof(uint32_t) + sizeof(glm::vec3), source.place);
 
     Mesh& mesh = out.mesh;

@@ -26,6 +26,7 @@ Materials readMaterials(const JsonText& json);
 /// A primitive that draws triangles; its numbers are accessors, of a Draco stream or of the file.
 struct PrimitiveSource {
     std::string place;
+    uint32_t number = 0;  ///< in its mesh
     uint32_t mode = 4;
     std::optional<uint32_t> indices;
     uint32_t positions = 0;
@@ -34,6 +35,10 @@ struct PrimitiveSource {
     std::vector<std::pair<uint32_t, uint32_t>> influences;  ///< joints and weights, set by set
     std::vector<std::optional<uint32_t>> targets;           ///< displacements of the morph targets
 };
+
+/// Corners of the triangles that a primitive draws, lists, strips and fans alike.
+/// @param vertices  that it has; a Fault if a corner is none of them
+std::vector<uint32_t> triangleCorners(Document& document, const PrimitiveSource& source, uint32_t vertices);
 
 struct MeshSource {
     std::string name;

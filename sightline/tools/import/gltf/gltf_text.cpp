@@ -169,4 +169,6 @@ Json JsonText::members(std::initializer_list<const char*> keys) const {
     return out;
 }
 
+Json JsonText::all() const { return parse(text_); }
+
 }  // namespace sightline::tools::gltf

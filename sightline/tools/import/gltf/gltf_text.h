@@ -57,6 +57,9 @@ public:
     /// An object with those top-level members that are no arrays and bear one of these names.
     Json members(std::initializer_list<const char*> keys) const;
 
+    /// All of it as values: several times the memory of its text.
+    Json all() const;
+
 private:
     struct Member {
         uint64_t begin = 0, end = 0;

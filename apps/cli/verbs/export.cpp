@@ -1,0 +1,186 @@
+// The verb `export`: a scene as glTF, cut into objects and without what is not seen.
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/cli/shell/apart.h"
+#include "apps/cli/shell/progress.h"
+#include "apps/cli/verbs/common.h"
+#include "apps/cli/verbs/cull_path.h"
+#include "apps/cli/verbs/verbs.h"
+#include "sightline/tools/export/encased.h"
+#include "sightline/tools/export/gltf_cut.h"
+#include "sightline/tools/export/gltf_scene.h"
+#include "sightline/tools/import/scene_kind.h"
+#include "sightline/tools/report/output_file.h"
+
+namespace sightline::cli {
+using namespace tools;
+namespace {
+
+struct ExportOptions : RunOptions {
+    std::string output;
+    bool outside = false;    ///< leave out what closed surfaces encase
+    bool from_path = false;  ///< leave out objects that no frame sees
+};
+
+/// What went into a file and what did not.
+struct Exported {
+    uint64_t objects = 0, triangles = 0;            ///< of the scene, drawn
+    uint64_t objects_written = 0, written = 0;      ///< drawn triangles
+    uint64_t shells = 0, encased = 0, unseen = 0;   ///< triangles that were left out
+    size_t frames = 0;
+    bool keeps_textures = false;
+};
+
+Status checkExport(const CLI::App& verb, const ExportOptions& options) {
+    if (lower(std::filesystem::path(options.output).extension().string()) != ".glb")
+        return usageError(fmt::format("-o {}: what is written is a .glb", options.output));
+    for (const char* option : {"--cameras", "--path", "--frames", "--seed", "--fps", "--speed", "--size"})
+        if (!options.from_path && verb.count(option) > 0)
+            return usageError(fmt::format("{} goes with --from-path", option));
+    ApartFiles files;
+    for (const std::string& name : options.scene.names) files.read("SCENE", name);
+    files.read("--cameras", options.choice.file);
+    files.write("-o", options.output);
+    files.write("--json", options.json);
+    if (!files.status()) return files.status();
+    return canWriteFile(options.output);
+}
+
+/// Whether the scene is one glTF, of which all is kept.
+bool isGltf(const SceneChoice& choice) {
+    const std::string file = choice.plainFile();
+    if (file.empty()) return false;
+    const Result<SceneKind> kind = fileKind(file);
+    return kind && (kind->suffix == "glb" || kind->suffix == "gltf");
+}
+
+/// The triangles that closed surfaces encase, by object. Interrupted, those that were found.
+std::vector<std::vector<uint32_t>> findEncased(const Scene& scene, Exported& out) {
+    Progress progress("looking into closed surfaces", "surfaces", 0);
+    Encased encased = encasedTriangles(scene, [&](size_t done, size_t total) {
+        progress.set(done, total);
+        return !interrupted();
+    });
+    out.shells = encased.shells;
+    return std::move(encased.triangles);
+}
+
+/// All triangles of the objects that no frame sees.
+std::vector<std::vector<uint32_t>> unseenObjects(const Scene& scene, const CullRun& run) {
+    std::vector<std::vector<uint32_t>> out(scene.objects.size());
+    for (size_t i = 0; i < out.size(); ++i) {
+        const bool is_seen = std::any_of(run.frames.begin(), run.frames.end(),
+                                         [&](const FrameResult& frame) { return frame.reasons[i] == 0; });
+        if (is_seen) continue;
+        out[i].resize(scene.meshes[scene.objects[i].mesh].triangles());
+        std::iota(out[i].begin(), out[i].end(), 0u);
+    }
+    return out;
+}
+
+double percentOf(uint64_t part, uint64_t whole) {
+    return whole == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
+void printExported(std::FILE* out, const ExportOptions& options, const Exported& e) {
+    tell(out, fmt::format("{}: {} objects, where there were {}; {} of {} triangles; {}\n", options.output,
+                          grouped(e.objects_written), grouped(e.objects), grouped(e.written), grouped(e.triangles),
+                          e.keeps_textures ? "materials and textures as they were" : "materials without textures"));
+    if (options.outside)
+        tell(out, fmt::format("left out: {} triangles ({:.1f} %) within {}: no eye outside of these can see them, which "
+                              "is proved\n",
+                              grouped(e.encased), percentOf(e.encased, e.triangles),
+                              e.shells == 1 ? "1 closed surface" : grouped(e.shells) + " closed surfaces"));
+    if (options.from_path)
+        tell(out, fmt::format("left out: {} triangles ({:.1f} %) of objects that {} cannot see, which is proved; of what "
+                              "lies between the frames nothing is\n",
+                              grouped(e.unseen), percentOf(e.unseen, e.triangles),
+                              e.frames == 1 ? "the one frame" : fmt::format("the {} frames", e.frames)));
+}
+
+std::string exportJson(const ExportOptions& options, const Exported& e) {
+    nlohmann::ordered_json out;
+    out["schema"] = "sightline.export/1";
+    out["scene"] = {{"file", options.scene.title()}, {"objects", e.objects}, {"triangles", e.triangles}};
+    out["written"] = {{"file", options.output},
+                      {"objects", e.objects_written},
+                      {"triangles", e.written},
+                      {"textures", e.keeps_textures}};
+    if (options.outside)
+        out["outside"] = {{"closed_surfaces", e.shells}, {"triangles_left_out", e.encased}, {"proved", true}};
+    if (options.from_path)
+        out["path"] = {{"frames", e.frames}, {"triangles_left_out", e.unseen}, {"proved", true}};
+    return out.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+Result<int> runExport(const CLI::App& verb, ExportOptions& options) {
+    if (Status good = finish(verb, options); !good) return good.error();
+    if (Status good = checkExport(verb, options); !good) return good.error();
+    Split split;
+    Result<Scene> scene = loadWholeScene(options.scene, split);
+    if (!scene) return scene.error();
+    Exported out;
+    out.objects = scene->objects.size();
+    out.triangles = drawnTriangles(*scene);
+    std::vector<std::vector<uint32_t>> encased(scene->objects.size());
+    stopGently();
+    if (options.outside) encased = findEncased(*scene, out);
+    if (interrupted()) return reportInterruption("the closed surfaces", false);
+    CutScene cut = cutScene(std::move(*scene), split);
+    out.encased = leaveOut(cut, inPieces(cut, encased));
+    if (options.from_path) {
+        const Result<CameraPath> path = loadPath(cut.scene, options);
+        if (!path) return path.error();
+        const CullRun run = cullPath(cut.scene, *path, options);
+        if (run.interrupted) return reportInterruption(fmt::format("{} of {} frames", run.frames.size(), path->frames.size()), false);
+        out.frames = run.frames.size();
+        out.unseen = leaveOut(cut, unseenObjects(cut.scene, run));
+    }
+    if (cut.scene.objects.empty())
+        return Error{Error::Kind::kInput, options.scene.title() + ": nothing is left to write"};
+    out.objects_written = cut.scene.objects.size();
+    out.written = drawnTriangles(cut.scene);
+    out.keeps_textures = isGltf(options.scene);
+    const Result<WrittenGltf> written = out.keeps_textures ? cutGltf(options.scene.plainFile(), cut)
+                                                           : sceneGltf(cut.scene, options.output);
+    if (!written) return written.error();
+    for (const std::string& text : written->notes) note(text);
+    if (written->animated && (options.outside || options.from_path))
+        note("what animations move was judged where it stands at rest");
+    if (Status done = writeFileAside(options.output, written->bytes); !done) return done.error();
+    printExported(options.json == "-" ? stderr : stdout, options, out);
+    if (!options.json.empty())
+        if (Status done = writeText(options.json, exportJson(options, out)); !done) return done.error();
+    return kDone;
+}
+
+}  // namespace
+
+void addExport(CLI::App& tool, int& exit_code) {
+    CLI::App* verb = tool.add_subcommand("export", "the scene as glTF, cut into objects and without what is not seen");
+    const auto options = std::make_shared<ExportOptions>();
+    options->repeat = 1;
+    addCameraOptions(*verb, *options, "the frames");
+    verb->add_option("-o,--output", options->output, "write the scene")->required()->type_name("FILE.glb");
+    verb->add_flag("--outside", options->outside,
+                   "leave out triangles within closed surfaces, which no eye outside of these can see");
+    verb->add_flag("--from-path", options->from_path, "leave out objects that no frame of the path can see");
+    verb->callback([verb, options, &exit_code] {
+        const Result<int> done = runExport(*verb, *options);
+        exit_code = done ? *done : report(done.error());
+    });
+}
+
+}  // namespace sightline::cli
