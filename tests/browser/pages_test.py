@@ -314,6 +314,27 @@ class Pages(unittest.TestCase):
                       "A sight line through", "Who sees whom", "portals clipped"):
             self.assertIn(words, self.text())
 
+    def test_a_cell_of_the_plan_can_be_asked(self):
+        self.open("map")
+        kinds = "[...document.querySelectorAll('.cells polygon')].sort((a, b) => a.dataset.cell - b.dataset.cell)" \
+                ".map((at) => at.getAttribute('class'))"
+        number = "document.querySelector('#plan input')"
+        asked = int(self.browser.evaluate(number + ".value"))
+        self.assertEqual(self.browser.evaluate(kinds)[asked], "asked")
+        # The third room is seen from all; the first and the last do not see one another.
+        for cell in (0, 3):
+            self.browser.evaluate(f"{number}.value = {cell}; {number}.dispatchEvent(new Event('change'))")
+            found = self.browser.evaluate(kinds)
+            self.assertEqual(found[cell], "asked")
+            self.assertIn(found[1], ("witnessed", "unresolved"))
+            self.assertIn("of 3 other cells", self.text("#plan output"))
+        place = self.browser.evaluate("(() => { const box = document.querySelector('[data-cell=\"1\"]')"
+                                      ".getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]; })()")
+        for kind in ("mousePressed", "mouseReleased"):
+            self.browser.call("Input.dispatchMouseEvent", type=kind, x=place[0], y=place[1], button="left", clickCount=1)
+        self.assertEqual(self.browser.evaluate(kinds)[1], "asked")
+        self.assertEqual(self.browser.complaints(), [])
+
     def test_both_schemes_can_be_read(self):
         for name in PAGES:
             with self.subTest(page=name):

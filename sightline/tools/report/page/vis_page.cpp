@@ -22,6 +22,7 @@ namespace sightline::tools {
 namespace {
 
 constexpr uint32_t kPlanWidth = 1200;       // [pixels]
+constexpr uint32_t kMostAskedCells = 2048;  // their rows are in the page: a megabyte and a half
 constexpr uint32_t kRaysForPicture = 4096;  // of which the one through most cells is drawn
 
 /// A line and what it passes.
@@ -82,6 +83,31 @@ std::vector<uint32_t> cellsBySight(const BitMatrix& visible) {
     return order;
 }
 
+/// The plan whose cells a reader may ask: outlines in pixels, and the rows as bits, each row in whole words.
+nlohmann::ordered_json askedPlan(const CellPlan& plan, const BitMatrix& visible, const BitMatrix& witnessed,
+                                 uint32_t first) {
+    const auto bitsOf = [](const BitMatrix& rows) {
+        std::string bytes;
+        for (size_t r = 0; r < rows.rows(); ++r)
+            for (const uint64_t word : rows.row(r))
+                for (int at = 0; at < 64; at += 8) bytes += static_cast<char>(word >> at & 0xff);
+        return base64(bytes);
+    };
+    nlohmann::ordered_json cells = nlohmann::ordered_json::array();
+    for (const std::vector<glm::dvec2>& outline : plan.outlines()) {
+        std::string points;
+        for (const glm::dvec2& p : outline) points += fmt::format("{:.1f},{:.1f} ", p.x, p.y);
+        cells.push_back(std::move(points));
+    }
+    return {{"width", plan.width()},
+            {"height", plan.height()},
+            {"first", first},
+            {"cells", std::move(cells)},
+            {"visible", bitsOf(visible)},
+            {"witnessed", bitsOf(witnessed)},
+            {"row_bytes", visible.wordsPerRow() * 8}};
+}
+
 /// The pictures of a page, which are files beside it as well.
 class VisPictures {
 public:
@@ -92,10 +118,12 @@ public:
         save(name + ".png", png);
         pictures_.push_back({{"name", name}, {"image", dataUri(png)}, {"text", text}});
     }
+    void ask(nlohmann::ordered_json plan) { plan_ = std::move(plan); }
     Status finish(const VisSummary& summary) {
         const std::string json = visJson(summary);
         save("vis.json", json);
-        save("index.html", pageWith("{\"page\":\"vis\",\"pictures\":" + pictures_.dump() + ",\"run\":" + json + "}"));
+        save("index.html", pageWith("{\"page\":\"vis\",\"pictures\":" + pictures_.dump() + ",\"plan\":" + plan_.dump() +
+                                    ",\"run\":" + json + "}"));
         return status_;
     }
 
@@ -106,6 +134,7 @@ private:
 
     std::string directory_;
     nlohmann::ordered_json pictures_ = nlohmann::ordered_json::array();
+    nlohmann::ordered_json plan_;  // null: there is none to ask
     Status status_ = success();
 };
 
@@ -128,6 +157,7 @@ Status writeVisPage(const CellGraph& graph, const BitMatrix& visible, const BitM
         const CellPlan plan(graph, cellPlanArea(graph), kPlanWidth);
         page.add("graph", plan.graph(), "From above: cells, and the portals between them.");
         const std::vector<uint32_t> order = cellsBySight(visible);
+        if (visible.rows() <= kMostAskedCells) page.ask(askedPlan(plan, visible, witnessed, order.front()));
         page.add("most", plan.seenFrom(order.front(), visible, witnessed),
                  fmt::format("What cell {} sees, which sees most.", order.front()));
         const uint32_t middle = order[order.size() / 2];

@@ -30,6 +30,11 @@ public:
     /// @param width  of the pictures  [pixels]
     CellPlan(const CellGraph& graph, const PlanArea& area, uint32_t width);
 
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+    /// Of each cell what it is drawn as; empty without portals.  [pixels]
+    const std::vector<std::vector<glm::dvec2>>& outlines() const { return hulls_; }
+
     /// The graph over the plan: cells pale, portals dark, and a thin line from the middle of each cell to the middle of
     /// each of its portals.
     Image<Rgb> graph() const;

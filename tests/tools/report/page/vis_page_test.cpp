@@ -9,6 +9,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "sightline/tools/report/pictures/png.h"
 #include "tests/tools/report/page/page_data.h"
 
 namespace sightline {
@@ -72,6 +73,30 @@ TEST_F(VisPageFiles, HoldsMatrixPlanCellsAndALine) {
     const std::string text = data["pictures"].back()["text"];
     EXPECT_EQ(text.find("A sight line through 4 cells"), 0u) << text;  // it begins in a portal
     EXPECT_EQ(nlohmann::json::parse(read("vis.json"))["visible_leaf_pairs"], 25);
+}
+
+TEST_F(VisPageFiles, HasThePlanThatCanBeAsked) {
+    Row row(70);
+    BitMatrix witnessed(70, 70);
+    row.visible.clear(3, 69);
+    witnessed.set(3, 65);
+    ASSERT_TRUE(writeVisPage(row.graph, row.visible, witnessed, VisSummary(), directory_.string()).ok());
+    const nlohmann::json plan = dataOf(read("index.html"))["plan"];
+    EXPECT_EQ(plan["cells"].size(), 70u);
+    EXPECT_EQ(plan["row_bytes"], 16) << "whole words";
+    EXPECT_NE(plan["cells"][3], "");
+    // What the script decodes, byte for byte.
+    std::string visible(70 * 16, '\0'), seen(70 * 16, '\0');
+    for (size_t r = 0; r < 70; ++r)
+        for (size_t c = 0; c < 70; ++c) {
+            if (row.visible.at(r, c)) visible[r * 16 + c / 8] |= static_cast<char>(1 << c % 8);
+            if (witnessed.at(r, c)) seen[r * 16 + c / 8] |= static_cast<char>(1 << c % 8);
+        }
+    EXPECT_EQ(plan["visible"], base64(visible));
+    EXPECT_EQ(plan["witnessed"], base64(seen));
+    const Row large(2049);
+    ASSERT_TRUE(writeVisPage(large.graph, large.visible, large.visible, VisSummary(), directory_.string()).ok());
+    EXPECT_TRUE(dataOf(read("index.html"))["plan"].is_null()) << "its rows would be most of the page";
 }
 
 TEST_F(VisPageFiles, TakesGraphsWithoutPortalsOrCells) {
