@@ -38,8 +38,8 @@ TEST_F(Export, CutsAFileAndKeepsItsNodes) {
     EXPECT_NE(objects.out.find("Large/cube 0 0 0"), std::string::npos) << objects.out;
     // With a unit it is a scene like any other.
     EXPECT_EQ(answer("export boxes.glb --unit cm -o small.glb")["written"]["textures"], false);
-    EXPECT_NEAR(info("small.glb")["bounds"]["max"][0].get<double>(), info("boxes.glb")["bounds"]["max"][0].get<double>() / 100,
-                1e-9);
+    EXPECT_NEAR(info("small.glb")["bounds"]["max"][0].get<double>(),
+                info("boxes.glb")["bounds"]["max"][0].get<double>() / 100, 1e-9);
 }
 
 TEST_F(Export, LeavesOutWhatClosedSurfacesEncase) {

@@ -36,9 +36,9 @@ struct ExportOptions : RunOptions {
 
 /// What went into a file and what did not.
 struct Exported {
-    uint64_t objects = 0, triangles = 0;            ///< of the scene, drawn
-    uint64_t objects_written = 0, written = 0;      ///< drawn triangles
-    uint64_t shells = 0, encased = 0, unseen = 0;   ///< triangles that were left out
+    uint64_t objects = 0, triangles = 0;           ///< of the scene, drawn
+    uint64_t objects_written = 0, written = 0;     ///< drawn triangles
+    uint64_t shells = 0, encased = 0, unseen = 0;  ///< triangles that were left out
     size_t frames = 0;
     bool keeps_textures = false;
 };
@@ -99,15 +99,17 @@ void printExported(std::FILE* out, const ExportOptions& options, const Exported&
                           grouped(e.objects_written), grouped(e.objects), grouped(e.written), grouped(e.triangles),
                           e.keeps_textures ? "materials and textures as they were" : "materials without textures"));
     if (options.outside)
-        tell(out, fmt::format("left out: {} triangles ({:.1f} %) within {}: no eye outside of these can see them, which "
-                              "is proved\n",
-                              grouped(e.encased), percentOf(e.encased, e.triangles),
-                              e.shells == 1 ? "1 closed surface" : grouped(e.shells) + " closed surfaces"));
+        tell(out,
+             fmt::format("left out: {} triangles ({:.1f} %) within {}: no eye outside of these can see them, which "
+                         "is proved\n",
+                         grouped(e.encased), percentOf(e.encased, e.triangles),
+                         e.shells == 1 ? "1 closed surface" : grouped(e.shells) + " closed surfaces"));
     if (options.from_path)
-        tell(out, fmt::format("left out: {} triangles ({:.1f} %) of objects that {} cannot see, which is proved; of what "
-                              "lies between the frames nothing is\n",
-                              grouped(e.unseen), percentOf(e.unseen, e.triangles),
-                              e.frames == 1 ? "the one frame" : fmt::format("the {} frames", e.frames)));
+        tell(out,
+             fmt::format("left out: {} triangles ({:.1f} %) of objects that {} cannot see, which is proved; of what "
+                         "lies between the frames nothing is\n",
+                         grouped(e.unseen), percentOf(e.unseen, e.triangles),
+                         e.frames == 1 ? "the one frame" : fmt::format("the {} frames", e.frames)));
 }
 
 std::string exportJson(const ExportOptions& options, const Exported& e) {
@@ -120,8 +122,7 @@ std::string exportJson(const ExportOptions& options, const Exported& e) {
                       {"textures", e.keeps_textures}};
     if (options.outside)
         out["outside"] = {{"closed_surfaces", e.shells}, {"triangles_left_out", e.encased}, {"proved", true}};
-    if (options.from_path)
-        out["path"] = {{"frames", e.frames}, {"triangles_left_out", e.unseen}, {"proved", true}};
+    if (options.from_path) out["path"] = {{"frames", e.frames}, {"triangles_left_out", e.unseen}, {"proved", true}};
     return out.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -144,7 +145,8 @@ Result<int> runExport(const CLI::App& verb, ExportOptions& options) {
         const Result<CameraPath> path = loadPath(cut.scene, options);
         if (!path) return path.error();
         const CullRun run = cullPath(cut.scene, *path, options);
-        if (run.interrupted) return reportInterruption(fmt::format("{} of {} frames", run.frames.size(), path->frames.size()), false);
+        if (run.interrupted)
+            return reportInterruption(fmt::format("{} of {} frames", run.frames.size(), path->frames.size()), false);
         out.frames = run.frames.size();
         out.unseen = leaveOut(cut, unseenObjects(cut.scene, run));
     }
@@ -153,8 +155,8 @@ Result<int> runExport(const CLI::App& verb, ExportOptions& options) {
     out.objects_written = cut.scene.objects.size();
     out.written = drawnTriangles(cut.scene);
     out.keeps_textures = isGltf(options.scene);
-    const Result<WrittenGltf> written = out.keeps_textures ? cutGltf(options.scene.plainFile(), cut)
-                                                           : sceneGltf(cut.scene, options.output);
+    const Result<WrittenGltf> written =
+        out.keeps_textures ? cutGltf(options.scene.plainFile(), cut) : sceneGltf(cut.scene, options.output);
     if (!written) return written.error();
     for (const std::string& text : written->notes) note(text);
     if (written->animated && (options.outside || options.from_path))

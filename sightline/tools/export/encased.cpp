@@ -341,7 +341,8 @@ Encased encasedTriangles(const Scene& scene, const std::function<bool(size_t, si
             }
             if (items.empty()) continue;
             around.prepare();
-            std::erase_if(items, [&](const AllTriangles::Item& item) { return !around.isApart(all.at(item), distance); });
+            std::erase_if(items,
+                          [&](const AllTriangles::Item& item) { return !around.isApart(all.at(item), distance); });
             // The shell touches none of them, so that it winds equally around all that hang together.
             JoinedSets sets = hangingTogether(scene, items);
             std::map<uint32_t, bool> hidden;

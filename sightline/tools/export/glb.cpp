@@ -49,13 +49,12 @@ uint32_t Glb::addIndices(std::span<const uint32_t> indices) {
         for (const uint32_t index : indices) words.push_back(static_cast<uint16_t>(index));
         view = addView(bytesOf(words), Target::kIndices);
     } else {
-        view = addView({reinterpret_cast<const unsigned char*>(indices.data()), indices.size_bytes()},
-                       Target::kIndices);
+        view =
+            addView({reinterpret_cast<const unsigned char*>(indices.data()), indices.size_bytes()}, Target::kIndices);
     }
-    return add("accessors", {{"bufferView", view},
-                             {"componentType", narrow ? 5123 : 5125},
-                             {"count", indices.size()},
-                             {"type", "SCALAR"}});
+    return add(
+        "accessors",
+        {{"bufferView", view}, {"componentType", narrow ? 5123 : 5125}, {"count", indices.size()}, {"type", "SCALAR"}});
 }
 
 Result<std::string> Glb::bytes(const std::string& name) const {

@@ -90,7 +90,8 @@ public:
     Result<WrittenGltf> write() {
         dropUnknown();
         out_.json = in_;
-        for (const char* key : {"buffers", "bufferViews", "accessors", "meshes", "nodes", "images"}) out_.json.erase(key);
+        for (const char* key : {"buffers", "bufferViews", "accessors", "meshes", "nodes", "images"})
+            out_.json.erase(key);
         out_.json["asset"]["generator"] = "Sightline";
         writeImages();
         writeSkins();
@@ -180,8 +181,7 @@ private:
             Json& image = images[i];
             if (!image.is_object()) fail(at("images", i), "is not an object");
             if (image.contains("bufferView")) {
-                image["bufferView"] =
-                    viewAt(requiredIndex(image, "bufferView", view_at_.size(), at("images", i)));
+                image["bufferView"] = viewAt(requiredIndex(image, "bufferView", view_at_.size(), at("images", i)));
                 continue;
             }
             const std::string uri = text(image, "uri", at("images", i));
@@ -221,9 +221,9 @@ private:
         Json& animations = out_.json["animations"];
         for (size_t i = 0; i < animations.size(); ++i) {
             const std::string place = at("animations", i);
-            table(animations[i], "samplers", place);
-            for (Json& sampler : animations[i]["samplers"])
-                for (const char* key : {"input", "output"}) moveAccessor(sampler, key, place);
+            if (!table(animations[i], "samplers", place).empty())
+                for (Json& sampler : animations[i]["samplers"])
+                    for (const char* key : {"input", "output"}) moveAccessor(sampler, key, place);
             for (const Json& channel : table(animations[i], "channels", place)) {
                 // Meshes are numbered anew.
                 const Json* target = find(channel, "target");
@@ -238,8 +238,7 @@ private:
         const std::string place = "extensions.EXT_structural_metadata";
         if (!extension(out_.json, "EXT_structural_metadata", "")) return;
         Json& metadata = out_.json["extensions"]["EXT_structural_metadata"];
-        if (!metadata.contains("propertyTables")) return;
-        table(metadata, "propertyTables", place);
+        if (table(metadata, "propertyTables", place).empty()) return;
         for (Json& properties : metadata["propertyTables"]) {
             if (!findObject(properties, "properties", place)) continue;
             for (Json& property : properties["properties"])
@@ -296,7 +295,8 @@ private:
             nodes[index].erase(key);
         }
         for (const char* name : {kInstancing, "EXT_instance_features"}) {
-            if (const Json* found = extension(nodes[index], name, at("nodes", index))) shared["extensions"][name] = *found;
+            if (const Json* found = extension(nodes[index], name, at("nodes", index)))
+                shared["extensions"][name] = *found;
             dropExtension(nodes[index], name);
         }
         std::vector<Json> drawn;
@@ -414,7 +414,8 @@ private:
             indices.push_back(known->second);
         }
         for (const auto& [name, accessor] : attributesOf(json, source)) {
-            const uint32_t declared = requiredIndex(json["attributes"], name.c_str(), accessor_at_.size(), source.place);
+            const uint32_t declared =
+                requiredIndex(json["attributes"], name.c_str(), accessor_at_.size(), source.place);
             json["attributes"][name] = someElements(accessor, declared, vertices, name == "POSITION");
         }
         if (json.contains("targets"))
@@ -435,8 +436,8 @@ private:
         if (!source.stream) return out;
         std::optional<uint32_t> indices = index(json, "indices", accessor_at_.size(), source.place);
         const bool is_list = whole(json, "mode", source.place).value_or(4) == 4;
-        const uint32_t stream = useDraco(document_, *extension(json, kDraco, source.place), out, indices, is_list,
-                                         source.place);
+        const uint32_t stream =
+            useDraco(document_, *extension(json, kDraco, source.place), out, indices, is_list, source.place);
         unpackDraco(document_, stream);
         return out;
     }
@@ -457,8 +458,8 @@ private:
             const Bytes view = viewBytes(document_, *from.elements.view);
             const uint32_t step = document_.views[*from.elements.view].stride;
             for (size_t k = 0; k < which.size(); ++k)
-                std::memcpy(&bytes[k * stride], view.data() + from.elements.offset + uint64_t{which[k]} * (step ? step : size),
-                            size);
+                std::memcpy(&bytes[k * stride],
+                            view.data() + from.elements.offset + uint64_t{which[k]} * (step ? step : size), size);
         }
         if (from.sparse) replace(*from.sparse, size, which, stride, bytes);
 
@@ -507,7 +508,8 @@ private:
         for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
             Json left = Json::array();
             for (const Json& name : table(in_, key))
-                if (name.is_string() && isKnownExtension(name.get<std::string>()) && !gone.count(name.get<std::string>()))
+                if (name.is_string() && isKnownExtension(name.get<std::string>()) &&
+                    !gone.count(name.get<std::string>()))
                     left.push_back(name);
             out_.json.erase(key);
             if (!left.empty()) out_.json[key] = std::move(left);

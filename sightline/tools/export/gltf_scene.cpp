@@ -46,7 +46,8 @@ public:
         Result<std::string> bytes = glb_.bytes(name);
         if (!bytes) return bytes.error();
         if (shapeless_ > 0) notes_.push_back(fmt::format("cells without a shape are left out: {}", shapeless_));
-        if (deforming_ > 0) notes_.push_back(fmt::format("meshes that deform stand as they are at rest: {}", deforming_));
+        if (deforming_ > 0)
+            notes_.push_back(fmt::format("meshes that deform stand as they are at rest: {}", deforming_));
         return WrittenGltf{std::move(*bytes), std::move(notes_), false};
     }
 
@@ -171,9 +172,8 @@ private:
         const uint32_t mesh = glb_.add("meshes", {{"primitives", Json::array({primitive})}});
         glm::dmat4 place(1.0);
         place[3] = glm::dvec4(centre, 1);
-        roots_.push_back(glb_.add("nodes", {{"mesh", mesh},
-                                            {"matrix", matrixOf(place)},
-                                            {"extras", {{"sightline", std::move(mark)}}}}));
+        roots_.push_back(glb_.add(
+            "nodes", {{"mesh", mesh}, {"matrix", matrixOf(place)}, {"extras", {{"sightline", std::move(mark)}}}}));
     }
 
     void addBoxMark(Json mark, const Box3d& box) {
@@ -185,8 +185,7 @@ private:
         Json mark = {{"cell", cell.name}};
         const std::vector<glm::dvec4> sides = planesOfBox(cell.bounds);
         const bool is_box =
-            cell.planes.size() == sides.size() &&
-            std::all_of(sides.begin(), sides.end(), [&](const glm::dvec4& side) {
+            cell.planes.size() == sides.size() && std::all_of(sides.begin(), sides.end(), [&](const glm::dvec4& side) {
                 return std::find(cell.planes.begin(), cell.planes.end(), side) != cell.planes.end();
             });
         if (is_box) return addBoxMark(std::move(mark), cell.bounds);

@@ -70,7 +70,8 @@ std::vector<size_t> countsOf(const Scene& scene) {
 using Counts = std::vector<size_t>;
 
 /// A small box within a larger one.
-Counts boxInBox(Mesh outer, const glm::dmat4& of_outer = glm::dmat4(1.0), const glm::dmat4& of_inner = glm::dmat4(1.0)) {
+Counts boxInBox(Mesh outer, const glm::dmat4& of_outer = glm::dmat4(1.0),
+                const glm::dmat4& of_inner = glm::dmat4(1.0)) {
     Scene scene = emptyScene();
     addObject(scene, std::move(outer), of_outer);
     addObject(scene, boxMesh(1, kStone), of_inner);
@@ -128,7 +129,8 @@ TEST(Encased, BacksHideNothing) {
 
 TEST(Encased, WhatTouchesOrSticksOutIsNot) {
     EXPECT_EQ(boxInBox(boxMesh(2, kStone), at(0), at(4))[1], 0u) << "beside it";
-    EXPECT_EQ(boxInBox(boxMesh(2, kStone), at(0), at(1))[1], 2u) << "it touches: two triangles of the far side are within";
+    EXPECT_EQ(boxInBox(boxMesh(2, kStone), at(0), at(1))[1], 2u)
+        << "it touches: two triangles of the far side are within";
     EXPECT_EQ(boxInBox(boxMesh(2, kStone), at(0), at(1.5))[1], 2u) << "it sticks out";
     EXPECT_EQ(boxInBox(boxMesh(2, kStone), at(0), at(0.999))[1], 12u);
     EXPECT_EQ(boxInBox(boxMesh(1, kStone)), (Counts{0, 0})) << "one and the same box twice";

@@ -88,9 +88,7 @@ void expectRoundTrip(const Scene& scene) {
         EXPECT_EQ(a.fov_y, b.fov_y);
         EXPECT_EQ(a.orthographic_height, b.orthographic_height);
         EXPECT_EQ(a.z_near, b.z_near);
-        if (b.z_far) {
-            EXPECT_EQ(a.z_far, b.z_far);
-        }
+        if (b.z_far) { EXPECT_EQ(a.z_far, b.z_far); }
     }
 }
 
@@ -184,7 +182,8 @@ GltfBuilder texturedQuads() {
         normals.insert(normals.end(), {0, 0, 127, 0});
     }
     const uint32_t position = b.accessor<float>("VEC3", positions);
-    const uint32_t coordinate = b.accessor<float>("VEC2", coordinates), color = b.accessor<uint8_t>("VEC4", colors, true);
+    const uint32_t coordinate = b.accessor<float>("VEC2", coordinates),
+                   color = b.accessor<uint8_t>("VEC4", colors, true);
     const uint32_t normal = b.add("accessors", {{"bufferView", b.view(GltfBuilder::raw(normals), 4)},
                                                 {"componentType", 5120},
                                                 {"normalized", true},
@@ -193,12 +192,14 @@ GltfBuilder texturedQuads() {
     const uint32_t indices = b.accessor<uint16_t>("SCALAR", {0, 1, 2, 2, 1, 3, 4, 5, 6, 6, 5, 7});
     const Json attributes = {
         {"POSITION", position}, {"TEXCOORD_0", coordinate}, {"COLOR_0", color}, {"NORMAL", normal}};
-    b.json["materials"] = Json::array({{{"name", "brick"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
+    b.json["materials"] =
+        Json::array({{{"name", "brick"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
     b.json["textures"] = Json::array({{{"source", 0}}});
     const uint32_t image = b.view(std::string("\x89PNG an image of no size"));
     b.json["images"] = Json::array({{{"bufferView", image}, {"mimeType", "image/png"}}});
-    b.add("meshes", {{"name", "quads"},
-                     {"primitives", Json::array({{{"attributes", attributes}, {"indices", indices}, {"material", 0}}})}});
+    b.add("meshes",
+          {{"name", "quads"},
+           {"primitives", Json::array({{{"attributes", attributes}, {"indices", indices}, {"material", 0}}})}});
     b.node({{"name", "floor"}, {"mesh", 0}, {"translation", {0, 0, 3}}});
     return b;
 }
@@ -221,8 +222,8 @@ struct GlbParts {
         const std::map<std::string, size_t> counts = {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}};
         const std::map<int, size_t> sizes = {{5120, 1}, {5121, 1}, {5123, 2}, {5125, 4}, {5126, 4}};
         const size_t size = counts.at(a["type"].get<std::string>()) * sizes.at(a["componentType"].get<int>());
-        const size_t at = view["byteOffset"].get<size_t>() + a.value("byteOffset", size_t{0}) +
-                          i * view.value("byteStride", size);
+        const size_t at =
+            view["byteOffset"].get<size_t>() + a.value("byteOffset", size_t{0}) + i * view.value("byteStride", size);
         return binary.substr(at, size);
     }
 };
@@ -374,7 +375,8 @@ TEST(GltfCut, WritesWhateverIsRead) {
         ++cuts;
         const Result<Scene> again = parse(out->bytes);
         ASSERT_TRUE(again.ok()) << "seed " << seed << " on " << sample.name << ": " << again.error().message;
-        ASSERT_EQ(trianglesDrawn(*again).size(), trianglesDrawn(*scene).size()) << "seed " << seed << " on " << sample.name;
+        ASSERT_EQ(trianglesDrawn(*again).size(), trianglesDrawn(*scene).size())
+            << "seed " << seed << " on " << sample.name;
     }
     EXPECT_GT(cuts, 1000u);
 }
