@@ -6,6 +6,7 @@ import base64
 import json
 import os
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -74,6 +75,35 @@ WIDE = """(() => {
     if (at.getBoundingClientRect().right > innerWidth + 1 && !at.closest('.scroll, .unseen'))
       wide.push(at.tagName + '.' + at.className + '#' + at.id);
   return {wide: wide.slice(0, 8), page: document.documentElement.scrollWidth, window: innerWidth};
+})()"""
+
+# Cells of tables whose text reaches over their border, into the next column.
+COLLIDING = """(() => {
+  const bad = [];
+  for (const cell of document.querySelectorAll('th, td')) {
+    if (!cell.getClientRects().length || !cell.textContent.trim()) continue;
+    const range = document.createRange();
+    range.selectNodeContents(cell);
+    const text = range.getBoundingClientRect(), box = cell.getBoundingClientRect();
+    if (text.right > box.right + 1 || text.left < box.left - 1) bad.push(cell.textContent.trim().slice(0, 40));
+    if (box.height > 240) bad.push('tall: ' + cell.textContent.trim().slice(0, 40));
+  }
+  return bad;
+})()"""
+
+# A name as nobody means well with it: what ends lines, commands terminals or turns the direction of writing.
+UNFIT = "".join(map(chr, [0, 7, 0x1b, 0x9b, 0x200e, 0x200f, 0x202a, 0x202b, 0x202c, 0x202d, 0x202e, 0x2066, 0x2067, 0x2068,
+                          0x2069]))
+HOSTILE = "first" + UNFIT + "<img src=x onerror=alert(1)>" + "n" * 100000 + "last"
+UNFIT_SHOWN = """(() => {
+  const unfit = /[\\u0000-\\u0008\\u000e-\\u001f\\u007f-\\u009f\\u200e\\u200f\\u202a-\\u202e\\u2066-\\u2069]/;
+  const bad = [];
+  for (const at of document.querySelectorAll('body *:not(script):not(style)')) {
+    for (const node of at.childNodes) if (node.nodeType === 3 && unfit.test(node.data)) bad.push(at.tagName);
+    for (const {name, value} of at.attributes) if (unfit.test(value)) bad.push(at.tagName + ' ' + name);
+  }
+  if (unfit.test(document.title)) bad.push('title');
+  return bad;
 })()"""
 
 CONTROLS = """[...document.querySelectorAll('a[href], button, input, [tabindex="0"]')].filter((at) =>
@@ -211,13 +241,108 @@ class Pages(unittest.TestCase):
         stood = self.browser.evaluate("[+" + frame + ", new Promise((done) => setTimeout(() => done(0), 900))][0]")
         self.assertEqual(self.browser.evaluate("+" + frame), stood)
 
+    def test_shows_first_the_whole_scene_with_the_path_in_it(self):
+        self.open("a", at="#frame-1")
+        first = """(() => { const at = document.querySelector('main > *'), image = at.querySelector('img');
+            return [at.id, image.naturalWidth, at.getBoundingClientRect().top < innerHeight]; })()"""
+        self.assertEqual(self.browser.evaluate(first), ["overview", 960, True])
+        mark = "(({hidden, style}) => [hidden, style.left, style.top])(document.querySelector('.eye'))"
+        there = self.browser.evaluate(mark)
+        self.assertFalse(there[0])
+        self.browser.evaluate("goTo(2)")
+        self.assertNotEqual(self.browser.evaluate(mark), there)
+        self.open("again")  # of the files alone the eyes are not known
+        self.assertEqual(self.browser.evaluate(first)[:2], ["overview", 960])
+        self.assertTrue(self.browser.evaluate("document.querySelector('.eye').hidden"))
+
+    def test_tells_what_is_left_to_draw(self):
+        self.open("a", at="#frame-3")
+        with open(os.path.join(self.directory, "a", "cull.json"), encoding="utf-8") as file:
+            run = json.load(file)
+        frame, words = run["frames"][3], self.text("#overview")
+        for row, objects, triangles in (("everything", run["scene"]["objects"], run["scene"]["triangles"]),
+                                        ("frustum alone", frame["frustum_alone"]["objects"],
+                                         frame["frustum_alone"]["triangles"]),
+                                        ("all stages", len(frame["visible"]), frame["triangles"])):
+            told = self.browser.evaluate("[...document.querySelectorAll('#overview tbody:last-child tr')].map((row) => "
+                                         "row.textContent).find((text) => text.startsWith('" + row + "'))")
+            self.assertTrue(told.startswith(f"{row}{objects:,} "), told)
+            self.assertIn(f"%{triangles:,} ", told)
+        self.assertIn("mean over the frames", words)
+        self.assertIn("frame 3", words)
+        self.assertLess(len(frame["visible"]), frame["frustum_alone"]["objects"])
+
+        def old(data):  # a run of an earlier version
+            for one in data["run"]["frames"]:
+                del one["frustum_alone"]
+        self.change("a", old)
+        self.assertNotIn("frustum alone", self.text("#overview"))
+        self.assertIn("all stages", self.text("#overview"))
+
+    def test_columns_do_not_collide(self):
+        for name in PAGES:
+            for width in (390, 1400):
+                with self.subTest(page=name, width=width):
+                    self.open(name, width, 844)
+                    self.assertEqual(self.browser.evaluate(COLLIDING), [])
+
+    def test_no_name_does_harm(self):
+        def rename(data):
+            data["run"]["scene"]["file"] = HOSTILE
+            for row in data["table"]["rows"][:3]:
+                row[1] = row[2] = HOSTILE
+            data["table"]["rows"][0][2] = "a/" + HOSTILE
+            for rows in (data["occluders"]["most"], data["occluders"]["paying"], data["never"]["rows"]):
+                for row in rows[:2]:
+                    row["name"] = HOSTILE
+            if data["loosest"]:
+                data["loosest"]["unseen"], data["loosest"]["names"] = 1, [HOSTILE]
+            data["run"]["frames"][0]["notes"] = data["run"]["frames"][1]["notes"] = [HOSTILE]
+        self.change("a", rename)
+        for width in (390, 1400):
+            with self.subTest(width=width):
+                self.browser.size(width, 844)
+                self.assertEqual(self.browser.evaluate(UNFIT_SHOWN), [])
+                found = self.browser.evaluate(WIDE)
+                self.assertLessEqual(found["page"], found["window"], found["wide"])
+                self.assertEqual(self.browser.evaluate(COLLIDING), [])
+                self.assertLess(len(self.text("#rows")), 20000)
+                self.shot(f"hostile-{width}")
+        whole = self.browser.evaluate("document.querySelector('#rows td span').title")
+        self.assertEqual(len(whole), len(HOSTILE))
+        self.assertTrue(whole.startswith("first ") and whole.endswith("nlast"))
+        self.assertEqual(self.browser.evaluate("document.querySelectorAll('img[onerror]').length"), 0)
+        self.assertEqual(self.browser.complaints(), [])
+
+    def test_a_file_of_such_a_name_is_harmless_too(self):
+        corner = base64.b64encode(b"".join(struct.pack("<3f", *p) for p in ((0, 0, 0), (1, 0, 0), (0, 1, 0)))).decode()
+        scene = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+                 "nodes": [{"mesh": 0, "name": HOSTILE}, {"mesh": 0, "name": "plain", "translation": [2, 0, 0]}],
+                 "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+                 "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+                                "max": [1, 1, 0]}],
+                 "bufferViews": [{"buffer": 0, "byteLength": 36}],
+                 "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + corner}]}
+        with open(os.path.join(self.directory, "hostile.gltf"), "w", encoding="utf-8") as file:
+            json.dump(scene, file)
+        self.run_tool("cull", "hostile.gltf", "--frames", "2", "--size", "160x90", "--repeat", "1", "--report", "hostile")
+        self.run_tool("report", "hostile", "-o", "hostile-again")
+        for name in ("hostile", "hostile-again"):
+            with self.subTest(page=name):
+                self.open(name, 390, 844)
+                self.assertEqual(self.browser.complaints(), [])
+                self.assertEqual(self.browser.evaluate(UNFIT_SHOWN), [])
+                self.assertIn("last", self.text("#rows"))
+                self.assertEqual(self.browser.evaluate(COLLIDING), [])
+
     def test_switch_shows_what_was_culled_and_one_colour_an_object(self):
         self.open("a")
-        shown = "['objects', 'culled'].filter((id) => !document.getElementById(id).hidden).join()"
+        shown = "['objects', 'culled', 'outside'].filter((id) => !document.getElementById(id).hidden).join()"
         self.assertEqual(self.browser.evaluate(shown), "")
-        for look in ("culled", "objects"):
+        for look in ("culled", "objects", "outside"):
             self.browser.evaluate("document.querySelector('input[value=" + look + "]').click()")
             self.assertEqual(self.browser.evaluate(shown), look)
+        self.assertIn("What was drawn is solid", self.text("#look-text"))
 
     def test_search_finds_objects(self):
         self.open("a")
@@ -247,7 +372,7 @@ class Pages(unittest.TestCase):
 
     def test_tells_the_verdict_and_the_facts_of_a_cull(self):
         self.open("a")
-        for words in ("city:1:400", "culled objects were visible", "First witness", "Repeat it", "Who hides most",
+        for words in ("city:1:400", "cut at the height of the eye", "culled objects were visible", "First witness", "Repeat it", "Who hides most",
                       "Which occluders pay", "Never kept on this path",
                       "The slowest: frame", "the median", "Over-estimate",
                       "Without culling", "a pixel on average", "the same, sample by sample", "5 frames of 320 × 180"):

@@ -16,14 +16,34 @@ TEST_F(Report, LiesBesideItsNumbersPicturesAndTimeline) {
     cull("--report out --trace run.trace.json");
     EXPECT_EQ(json::parse(read(path("out/cull.json")))["schema"], "sightline.cull/1");
     EXPECT_EQ(json::parse(read(path("out/trace.json"))), json::parse(read(path("run.trace.json"))));
-    for (const char* what : {"frame", "culled", "plan", "section", "heat-all", "heat-kept"})
+    for (const char* what : {"frame", "culled", "outside", "plan", "section", "heat-all", "heat-kept"})
         for (const char* frame : {"0000", "0002"})
             EXPECT_EQ(read(path("out/frames/" + std::string(what) + "-" + frame + ".png")).substr(1, 3), "PNG") << what;
+    EXPECT_EQ(read(path("out/frames/overview.png")).substr(1, 3), "PNG");
     write("out/frames/frame-0099.png", "of an earlier run");
+    write("out/frames/outside-0099.png", "of an earlier run");
     write("out/frames/mine.txt", "the user's");
     cull("--report out");
     EXPECT_FALSE(std::filesystem::exists(path("out/frames/frame-0099.png")));
+    EXPECT_FALSE(std::filesystem::exists(path("out/frames/outside-0099.png")));
     EXPECT_TRUE(std::filesystem::exists(path("out/frames/mine.txt")));
+}
+
+TEST_F(Report, TellsWhatTheFrustumAloneWouldLeave) {
+    for (const std::string more : {"", "--stereo 0.065 "}) {
+        cull(more + "--json all.json");
+        cull(more + "--use frustum --json frustum.json");
+        const json all = json::parse(read(path("all.json"))), frustum = json::parse(read(path("frustum.json")));
+        size_t kept = 0, in_frustum = 0;
+        for (size_t i = 0; i < 3; ++i) {
+            const json &frame = all["frames"][i], &alone = frustum["frames"][i];
+            EXPECT_EQ(frame["frustum_alone"]["objects"], alone["visible"].size()) << more;
+            EXPECT_EQ(frame["frustum_alone"]["triangles"], alone["triangles"]) << more;
+            kept += frame["visible"].size();
+            in_frustum += alone["visible"].size();
+        }
+        EXPECT_LT(kept, in_frustum) << more << "occlusion culls something";
+    }
 }
 
 TEST_F(Report, ShowsARunFromItsFileAndFromItsDirectory) {
@@ -33,6 +53,8 @@ TEST_F(Report, ShowsARunFromItsFileAndFromItsDirectory) {
     EXPECT_NE(directory.out.find("city:1:200: 200 objects"), std::string::npos) << directory.out;
     const std::string page = read(path("again/index.html"));
     EXPECT_NE(page.find("data:image/png"), std::string::npos);
+    EXPECT_NE(page.find("\"overview\":{"), std::string::npos);
+    EXPECT_NE(page.find("\"outside\":\"data:image/png"), std::string::npos);
     const Outcome file = succeed("report alone.json -o bare");
     EXPECT_EQ(read(path("bare/index.html")).find("data:image"), std::string::npos);
     EXPECT_EQ(run("report deep/out alone.json").exit_code, 0);

@@ -4,8 +4,10 @@
 import importlib.machinery
 import importlib.util
 import json
+import os
 import pathlib
 import random
+import shutil
 import stat
 import struct
 import sys
@@ -15,9 +17,16 @@ import zlib
 
 sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-loader = importlib.machinery.SourceFileLoader("gallery", str(ROOT / "tools" / "gallery"))
-gallery = importlib.util.module_from_spec(importlib.util.spec_from_loader("gallery", loader))
-loader.exec_module(gallery)
+
+
+def script(name):
+    loader = importlib.machinery.SourceFileLoader(name, str(ROOT / "tools" / name))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
+    loader.exec_module(module)
+    return module
+
+
+gallery, film = script("gallery"), script("film")
 png = gallery.png_picture
 
 
@@ -137,7 +146,58 @@ class Choice(unittest.TestCase):
         self.assertLessEqual(gallery.liveliness(noise(320, 180, 3, 2)), 1)
 
 
-class Page(unittest.TestCase):
+class WithEncoder(unittest.TestCase):
+    def fake_encoder(self, root):
+        """An img2webp of our own, first in the path, that copies the last frame and tells its arguments."""
+        folder = root / "encoder"
+        folder.mkdir()
+        (folder / "img2webp").write_text(f'#!/bin/sh\necho "$@" > {root}/words\nfor last; do before=$frame; frame=$middle; '
+                                         'middle=$last; done\ncp "$before" "$last"\n')
+        (folder / "img2webp").chmod(0o755)
+        path = os.environ["PATH"]
+        self.addCleanup(os.environ.__setitem__, "PATH", path)
+        os.environ["PATH"] = f"{folder}:{path}"
+
+
+class Film(WithEncoder):
+    def report(self, root, frames):
+        (root / "frames").mkdir()
+        for i in range(frames):
+            (root / "frames" / f"frame-{i:04}.png").write_bytes(png.encode(noise(64, 36, 3, i)))
+            (root / "frames" / f"outside-{i:04}.png").write_bytes(png.encode(png.plain(64, 36, (i, 99, 7))))
+        return root
+
+    def test_spreads_its_frames(self):
+        self.assertEqual(film.spread([5, 6, 7], 3), [5, 6, 7])
+        self.assertEqual(film.spread(list(range(100)), 4), [0, 33, 66, 99])
+
+    def test_shows_what_is_seen_beside_what_is_culled(self):
+        with tempfile.TemporaryDirectory() as place:
+            root = self.report(pathlib.Path(place), 60)
+            self.fake_encoder(root)
+            self.assertEqual(film.main([str(root), "-o", str(root / "new" / "a.webp")]), 0)
+            last = png.decode((root / "new" / "a.webp").read_bytes())
+            self.assertEqual((last.width, last.height), (128 + film.GAP, 36))
+            self.assertEqual(last.pixel(3, 2), noise(64, 36, 3, 59).pixel(3, 2))
+            self.assertEqual(last.pixel(127 + film.GAP, 35), (59, 99, 7))
+            words = (root / "words").read_text().split()
+            self.assertEqual(sum(word.endswith(".png") for word in words), film.MOST_FRAMES)
+            (root / "frames" / "outside-0000.png").unlink()
+            self.assertEqual(film.main([str(root), "-o", str(root / "b.webp")]), 3)
+            self.assertEqual(film.main([str(root / "none"), "-o", str(root / "b.webp")]), 3)
+            self.assertFalse((root / "b.webp").exists())
+
+    @unittest.skipUnless(shutil.which("img2webp"), "there is no img2webp (Debian: webp)")
+    def test_is_an_animation(self):
+        with tempfile.TemporaryDirectory() as place:
+            root = self.report(pathlib.Path(place), 3)
+            self.assertEqual(film.main([str(root), "-o", str(root / "a.webp")]), 0)
+            data = (root / "a.webp").read_bytes()
+            self.assertEqual((data[:4], data[8:12], data[12:16]), (b"RIFF", b"WEBP", b"VP8X"))
+            self.assertEqual(data.count(b"ANMF"), 3)
+
+
+class Page(WithEncoder):
     def test_escapes_markdown(self):
         self.assertEqual(gallery.escape("a|b *c* _d_ [e](f) <g>\nh & `i`"),
                          "a\\|b \\*c\\* \\_d\\_ \\[e\\](f) \\<g\\> h &amp; \\`i\\`")
@@ -172,13 +232,16 @@ class Page(unittest.TestCase):
             for i, picture in enumerate((png.plain(64, 36, (9, 9, 9)), noise(64, 36, 3, 4))):
                 (root / f"frame-{i:04}.png").write_bytes(png.encode(picture))
                 (root / f"culled-{i:04}.png").write_bytes(png.encode(noise(64, 36, 4, i)))
+                (root / f"outside-{i:04}.png").write_bytes(png.encode(noise(48, 27, 3, i)))
             tool = root / "tool"
             tool.write_text(f'#!/bin/sh\nfor last; do :; done\nmkdir -p "$last/frames"\n'
                             f'cp {root}/*.png "$last/frames"; cp {root}/run.json "$last/cull.json"\n')
             tool.chmod(tool.stat().st_mode | stat.S_IXUSR)
             options = ["--tool", str(tool), "--shared", str(root / "none"), "--out", str(root / "out"), "--docs",
                        str(root / "docs"), "--frames", "2"]
+            self.fake_encoder(root)
             self.assertEqual(gallery.main(options), 0)
+            self.assertTrue((root / "docs" / "gallery" / "film.webp").exists())
             page = (root / "docs" / "gallery.md").read_text()
             for words in ("## building:1:10", "keeps 20 of 100 objects", "occlusion 70", "frame 1", "| **all** | | 8 |",
                           "| building:1:10 | seeded | 2 | 140 |", "gallery/terrain-culled.png"):

@@ -29,6 +29,7 @@
 #include "sightline/query/record/occlusion_recording.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/page/cull_page.h"
+#include "sightline/tools/report/pictures/canvas.h"
 #include "sightline/tools/report/pictures/depth_picture.h"
 #include "sightline/tools/report/pictures/png.h"
 #include "sightline/tools/report/pictures/window_picture.h"
@@ -83,17 +84,6 @@ private:
     glm::dmat3 from_planes_;
 };
 
-void cut(std::vector<glm::dvec2>& outline, const glm::dvec3& line) {
-    std::vector<glm::dvec2> left;
-    const auto at = [&](const glm::dvec2& p) { return line.x * p.x + line.y * p.y + line.z; };
-    for (size_t i = 0; i < outline.size(); ++i) {
-        const glm::dvec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
-        if (at(a) >= 0) left.push_back(a);
-        if ((at(a) >= 0) != (at(b) >= 0)) left.push_back(a + at(a) / (at(a) - at(b)) * (b - a));
-    }
-    outline.swap(left);
-}
-
 WindowOverlay::WindowOverlay(const RunOptions& options) : graph_(options.opened->file.cellSpace()) {
     const CellSpace space = options.opened->file.cellSpace();
     doors_.resize(space.doors.size());
@@ -119,7 +109,7 @@ std::vector<CellWindow> WindowOverlay::windows(const View& view, PortalWindows k
         window.outline = {
             {seen.left, seen.bottom}, {seen.right, seen.bottom}, {seen.right, seen.top}, {seen.left, seen.top}};
         for (uint32_t i = 0; i < seen.plane_count; ++i)
-            cut(window.outline, lines.line(flood.planes()[seen.first_plane + i]));
+            cutOutline(window.outline, lines.line(flood.planes()[seen.first_plane + i]));
         for (glm::dvec2& corner : window.outline)
             corner = {0.5 * (corner.x + 1) * view.width, 0.5 * (1 - corner.y) * view.height};
         out.push_back(std::move(window));
@@ -221,9 +211,10 @@ void removePictures(const std::string& directory) {
     for (const auto& entry : std::filesystem::directory_iterator(directory, ignored)) {
         const std::string name = entry.path().filename().string();
         for (const char* what :
-             {"frame-", "culled-", "plan-", "section-", "heat-all-", "heat-kept-", "buffer-", "windows-"})
+             {"frame-", "culled-", "outside-", "plan-", "section-", "heat-all-", "heat-kept-", "buffer-", "windows-"})
             if (isPictureOf(what, name)) old.push_back(entry.path());
     }
+    old.push_back(std::filesystem::path(directory) / "overview.png");
     for (const auto& file : old) std::filesystem::remove(file, ignored);
 }
 
@@ -254,6 +245,8 @@ Status writeCullPage(const Scene& scene, const Snapshot& now, const CullRun& run
             return overlay->windows(viewOf(run.frames[frame].camera, options), kind, options.settings.portal_depth);
         };
     }
+    std::optional<CellSpace> cells;
+    if (options.opened) settings.cells = &cells.emplace(options.opened->file.cellSpace());
     const std::string page = reportPage(scene, run, settings);
     if (!all) return all;
     return writeFileAside(options.report + "/index.html", page);

@@ -71,6 +71,17 @@ void cullFrame(const Snapshot& now, const CullRun& run, const CameraFrame* befor
     }
 }
 
+std::vector<uint8_t> reasonsOfFrustum(const Snapshot& now, const CullRun& run, const CameraFrame& camera,
+                                      Query& query) {
+    QuerySettings settings = run.settings;
+    settings.stages = stageBit(Stage::kFrustum);
+    settings.hysteresis = 0;
+    ask(now, run, camera, settings, query);
+    std::vector<uint8_t> reasons(now.objectCount());
+    query.reasons(reasons);
+    return reasons;
+}
+
 FrameVerdict judgeFrame(const Witness& witness, const CullRun& run, const FrameResult& frame,
                         const WitnessSettings& settings) {
     const View view = viewOf(frame.camera, run);

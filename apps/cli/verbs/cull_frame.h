@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "sightline/query/query.h"
 #include "sightline/tools/report/run/cull_run.h"
 #include "sightline/tools/truth/verify.h"
@@ -23,6 +26,9 @@ View viewOf(const CameraFrame& camera, const Run& run) {
 /// @param before  the frame before it, which the query answers first each time, with a memory: so the answer is
 ///                the same for any number of threads; null: there is none
 void cullFrame(const Snapshot& now, const CullRun& run, const CameraFrame* before, Query& query, FrameResult& frame);
+
+/// Per object 0 if the stage of the frustum alone would keep it in a frame.
+std::vector<uint8_t> reasonsOfFrustum(const Snapshot& now, const CullRun& run, const CameraFrame& camera, Query& query);
 
 /// What the witnesses say of a frame; of two eyes, each is held to its own answer, and what is said is of both.
 FrameVerdict judgeFrame(const Witness& witness, const CullRun& run, const FrameResult& frame,

@@ -41,6 +41,7 @@ struct Answerer {
 
     ThreadPool pool;  ///< that shares each query
     Query query{defaultMemory(), pool.workers() > 1 ? &pool : nullptr};
+    Query of_frustum;  ///< for what that stage alone would leave: it remembers nothing of `query`'s frames
     std::optional<CreditBook> book;  ///< if credits were asked for
 };
 
@@ -215,6 +216,10 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
             cullFrame(now, run, i > 0 ? &path.frames[i - 1] : nullptr, answerer->query, frame);
             countByKey(scene, key_order, run.settings.stages, frame);
             frame.end_microseconds = since();
+            FrameResult alone;
+            alone.reasons = reasonsOfFrustum(now, run, frame.camera, answerer->of_frustum);
+            countByKey(scene, key_order, stageBit(Stage::kFrustum), alone);
+            frame.frustum_alone = {alone.visible.size(), alone.triangles};
             if (answerer->book) creditFrame(run, *answerer->book, frame);
             progress.step();
         };

@@ -94,9 +94,9 @@ Result<int> show(const ReportOptions& options, const std::vector<RunFile>& files
         const RunFile& file = files.front();
         std::vector<size_t> frames(file.run.frames.size());
         for (size_t i = 0; i < frames.size(); ++i) frames[i] = i;
-        const Film film =
-            filmBeside(file, {"shaded", "culled", "buffer", "windows", "plan", "section", "heat-all", "heat-kept"},
-                       frames, kPictureBudget);
+        const Film film = filmBeside(
+            file, {"shaded", "culled", "outside", "buffer", "windows", "plan", "section", "heat-all", "heat-kept"},
+            frames, kPictureBudget);
         if (Status written = writeInto(options.directory, runPage(file.run, file.names, film)); !written)
             return written.error();
     }

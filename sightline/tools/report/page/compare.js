@@ -55,7 +55,8 @@ function sidesCard(c, runs) {
 
 const differencesCard = ({objects}) => objects.length > 0 && card('differ', 'Objects that differ',
   table('Objects that differ', ['object', 'path', 'key', 'frames, only A', 'frames, only B'], objects.map((row) =>
-    [row.name || 'object ' + row.key, h('span', {class: 'path'}, row.path === row.name ? '' : row.path), row.key,
+    [named(row.name || 'object ' + row.key),
+      h('span', {class: 'path'}, row.path === row.name ? '' : named(row.path)), row.key,
       row.frames_only_a, row.frames_only_b]), 'counts wide'),
   data.different > objects.length && note(`and ${grouped(data.different - objects.length)} more, in the JSON`));
 

@@ -34,7 +34,42 @@ function cullTiles({frames, scene, verification}) {
       'reported ÷ exactly visible objects']);
 }
 
-const kLooks = [['shaded', 'As seen'], ['culled', 'Culled objects drawn through'], ['objects', 'One colour an object'],
+/** What a renderer is left to draw: everything, by the frustum alone, by all stages; the mean, and the film's frame. */
+function leftTable({scene, frames}) {
+  const share = (value, whole) => [grouped(value), ' ', h('small', {class: 'soft'}, percent(value, whole)),
+    h('div', {class: 'share'}, h('div', {style: `width:${whole ? 100 * value / whole : 0}%`}))];
+  const row = (name, objects, triangles) =>
+    tableRow([name, share(objects, scene.objects), share(triangles, scene.triangles)]);
+  const rows = (of) => [row('everything', scene.objects, scene.triangles),
+    frames.every((frame) => frame.frustum_alone) && row('frustum alone',
+      of((frame) => frame.frustum_alone.objects), of((frame) => frame.frustum_alone.triangles)),
+    row('all stages', of((frame) => frame.kept), of((frame) => frame.triangles))].filter(Boolean);
+  const group = (name) => h('tr', {class: 'groups'}, h('th', {colspan: 3, scope: 'rowgroup'}, name));
+  const made = table('What is left to draw', ['', 'draw calls (objects)', 'triangles'], [], 'left');
+  made.querySelector('tbody').append(group('mean over the frames'), ...rows((value) => mean(frames.map(value))));
+  made.querySelector('table').append(
+    live(h('tbody'), (f) => [group('frame ' + f), rows((value) => value(frames[f]))]));
+  return made;
+}
+
+/** The whole scene with the path of the camera, and what is left to draw of it. */
+function overviewCard(run, {overview}) {
+  const left = leftTable(run);
+  if (!overview) return card('overview', 'What is left to draw', left);
+  const {image, eyes} = overview, mark = h('i', {class: 'eye', hidden: true});
+  follow((f) => {
+    mark.hidden = !eyes[f];
+    if (eyes[f]) [mark.style.left, mark.style.top] = eyes[f].map((part) => 100 * part + '%');
+  });
+  const whole = picture(image, 'The whole scene from outside, with the path of the camera', {id: 'overview-image'});
+  return card('overview', 'The scene, the path, and what is left to draw', h('div', {class: 'stage'},
+    figure(h('div', {class: 'over'}, whole, mark), 'The whole scene, and the path of the camera. It begins at the ' +
+      'dot, and is paler where it lies behind something.' +
+      (eyes.length ? ' The ring is the eye of the frame below.' : '')), left));
+}
+
+const kLooks = [['shaded', 'As seen'], ['culled', 'Culled objects drawn through'], ['outside', 'From outside'],
+  ['objects', 'One colour an object'],
   ['buffer', 'Occlusion buffer'], ['windows', 'Windows']];
 /** The picture, and the switch of what it shows. */
 function screen(run, film) {
@@ -42,6 +77,8 @@ function screen(run, film) {
     filmImage(film, 'shaded', 'The scene as the camera sees it'),
     filmImage(film, 'objects', 'The same picture, each object in a colour of its own', {hidden: true}),
     filmImage(film, 'culled', 'What was culled within the view, drawn through what hides it', {hidden: true}),
+    filmImage(film, 'outside', 'From behind and above the eye: what was drawn is solid, what was culled is wires',
+      {hidden: true}),
     filmImage(film, 'buffer', 'What the occlusion buffer claims: light is near, dark is far, blue is open',
       {hidden: true}),
     filmImage(film, 'windows', 'The windows through which cells are seen, over the picture', {hidden: true})];
@@ -54,6 +91,9 @@ function screen(run, film) {
       'farther than its grey, from light for the nearest claim to dark for the farthest. Blue hides nothing. The ' +
       `buffer’s longer side has at most ${run.occlusion_size} pixels.`;
     if (look === 'windows') return shot.windows;
+    if (look === 'outside') return 'From behind and above the eye, which is the dark dot; the lines are its frustum. ' +
+      'What was drawn is solid. What was culled is wires in the colour of its stage. A roof over the eye is cut ' +
+      'away, with all that lies above it.';
     if (shot.same === undefined) return '';
     return shot.same ? 'The picture with culling is the same, sample by sample.' : 'The picture with culling differs.';
   };
@@ -132,7 +172,7 @@ const kMeasures = [['nodes_visited', 'tree nodes visited'], ['occluder_triangles
 /** The slowest and the loosest frame, by what they did against the medians. */
 function outliers(run) {
   if (run.frames.length < 2) return null;
-  const notes = ({notes: said}) => said && h('ul', {}, said.map((text) => h('li', {}, text)));
+  const notes = ({notes: said}) => said && h('ul', {}, said.map((text) => h('li', {}, named(text, 600))));
   const times = run.frames.map((frame) => frame.query_microseconds), slow = largest(times), frame = run.frames[slow];
   const slowest = card('slowest', 'The slowest: frame ' + slow,
     h('p', {}, h('b', {}, readable(times[slow]) + ' µs'), `, ${against(times[slow], median(times))} the median.`,
@@ -151,7 +191,7 @@ function outliers(run) {
       median(run.frames.map(overEstimate).filter((value) => value !== null)).toFixed(2) + '×. ' +
       plural(doubt, 'object was', 'objects were') + ' kept in doubt.'), loose !== slow && notes(it),
     unseen > 0 && [h('p', {}, `Kept, though no witness saw ${unseen === 1 ? 'it' : 'them'}:`), h('ul', {class: 'names'},
-      names.map((name) => h('li', {}, name)),
+      names.map((name) => h('li', {}, named(name))),
       unseen > names.length && h('li', {}, `and ${grouped(unseen - names.length)} more`))], goButton(loose)));
 }
 
@@ -186,10 +226,10 @@ function occluderCards({count, triangles, most, paying, idle, idle_count: idlers
   const bar = (hidden) => h('span', {class: 'mini'}, h('i', {style: `width:${100 * hidden / (most[0].hidden || 1)}%`}));
   const worth = (label, rows) => rows.length > 0 && table(label,
     ['occluder', 'triangles rasterized', 'triangles hidden', 'hidden for one'], rows.map((row) =>
-      [row.name, grouped(row.triangles), grouped(row.hidden_triangles), shared(row.worth)]), 'counts wide');
+      [named(row.name), grouped(row.triangles), grouped(row.hidden_triangles), shared(row.worth)]), 'counts wide');
   return pair(card('hides', 'Who hides most',
     table('Who hides most', ['occluder', 'objects hidden', 'their triangles', 'own triangles', 'frames'],
-      most.map((row) => [row.name, [bar(row.hidden), shared(row.hidden)], grouped(row.hidden_triangles),
+      most.map((row) => [named(row.name), [bar(row.hidden), shared(row.hidden)], grouped(row.hidden_triangles),
         grouped(row.triangles), row.frames]), 'counts wide'), andMore(count, most.length, 'occluders'),
     note('Sums over the frames. An object that several occluders hide is shared among them.')),
   card('pays', 'Which occluders pay',
@@ -205,10 +245,10 @@ const insightCards = ({occluders, never, together}, frames) => [occluders && occ
     h('p', {}, `${grouped(never.count)} of ${grouped(never.of)} objects with ${grouped(never.triangles)} triangles ` +
       `are in none of the ${frames} frames: candidates for removal, as far as the path goes. The largest:`),
     table('Never kept on this path', ['object', 'triangles'],
-      never.rows.map((row) => [row.name, grouped(row.triangles)]), 'counts wide')),
+      never.rows.map((row) => [named(row.name), grouped(row.triangles)]), 'counts wide')),
   together.count > 0 && card('merge', 'Kept together: candidates for one draw',
     table('Kept together', ['group', 'objects', 'triangles', 'frames'], together.rows.map((row) =>
-      [`${row.name} and ${grouped(row.objects - 1)} more`, grouped(row.objects), grouped(row.triangles),
+      [[named(row.name), ` and ${grouped(row.objects - 1)} more`], grouped(row.objects), grouped(row.triangles),
         grouped(row.frames)]), 'counts wide'), andMore(together.count, together.rows.length, 'groups'),
     note('Small objects beside one another that appear and disappear in the same frames.')))];
 
@@ -222,8 +262,8 @@ function objectsCard({rows, stages, left_out: left}, frames) {
   if (!rows.some((row) => row[2] !== row[1])) made.querySelector('.objects').classList.add('no-paths');
   if (!rows.some((row) => row[3] > 0)) made.querySelector('.objects').classList.add('no-triangles');
   let shown = 20, sorted = null, rising = false;
-  const line = ([key, name, path, triangles, kept], digit) => h('tr', {}, h('td', {}, name || 'object ' + key),
-    h('td', {class: 'path'}, path === name ? '' : path), h('td', {}, key),
+  const line = ([key, name, path, triangles, kept], digit) => h('tr', {}, h('td', {}, named(name || 'object ' + key)),
+    h('td', {class: 'path'}, path === name ? '' : named(path)), h('td', {}, key),
     h('td', {class: 'count'}, grouped(triangles)), h('td', {}, `${kept} of ${frames}`),
     h('td', {}, h('i', {class: 'swatch stage-' + digit}), culledBy(digit)));
   const fill = () => {
@@ -280,9 +320,9 @@ function proofCard(run, film) {
 }
 
 /** The links at the top: to the sections that the page has. */
-const kSections = [['film', 'Film'], ['depth', 'Depth complexity'], ['time', 'Cost'], ['kept', 'Objects kept'],
-  ['slowest', 'Outliers'], ['stages', 'Stages'], ['hides', 'Occluders'], ['never', 'Never kept'], ['merge', 'Merging'],
-  ['objects', 'Objects'], ['how', 'Proof']];
+const kSections = [['overview', 'Overview'], ['film', 'Film'], ['depth', 'Depth complexity'], ['time', 'Cost'],
+  ['kept', 'Objects kept'], ['slowest', 'Outliers'], ['stages', 'Stages'], ['hides', 'Occluders'],
+  ['never', 'Never kept'], ['merge', 'Merging'], ['objects', 'Objects'], ['how', 'Proof']];
 const contents = () => h('nav', {'aria-label': 'Sections'}, kSections.filter(([id]) => at(id)).map(([id, name]) =>
   h('a', {href: '#' + id}, name)));
 
@@ -290,8 +330,9 @@ function cullPage() {
   const {run, film} = data, {frames, scene} = run;
   setHead(fileName(scene.file), `${grouped(scene.objects)} objects, ${grouped(scene.triangles)} triangles; ` +
     `${plural(frames.length, 'frame')} of ${run.width} × ${run.height}`, cullVerdict(run), interruption(run));
-  const body = frames.length ? [filmCard(run, film), cullTiles(run), depthCard(film), cullCharts(run), outliers(run),
-    stagesCard(run), insightCards(data, frames.length), objectsCard(data.table, frames.length)] : [];
+  const body = frames.length ? [overviewCard(run, film), filmCard(run, film), cullTiles(run), depthCard(film),
+    cullCharts(run), outliers(run), stagesCard(run), insightCards(data, frames.length),
+    objectsCard(data.table, frames.length)] : [];
   at('main').append(...[body, proofCard(run, film)].flat(9).filter(Boolean));
   at('head').append(contents());
   return frames.length ? frameWorthALook(frames, film) : null;

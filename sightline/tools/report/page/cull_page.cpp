@@ -15,6 +15,7 @@
 #include "sightline/tools/report/pictures/film.h"
 #include "sightline/tools/report/run/cull_run.h"
 #include "sightline/tools/report/run/insight.h"
+#include "sightline/tools/scene/one_line.h"
 
 namespace sightline::tools {
 namespace {
@@ -133,7 +134,7 @@ std::string reportPage(const Scene& scene, const CullRun& run, const PageSetting
 std::string runPage(const CullRun& run, const std::vector<KeyName>& names, const Film& film) {
     const Label label = [&](uint32_t object) {
         const KeyName& name = names[object];
-        return name.path.empty() ? fmt::format("object {}", name.key) : name.path;
+        return name.path.empty() ? fmt::format("object {}", name.key) : oneLine(name.path, kLongestPath);
     };
     return cullPage(run, film, objectTable(names, run), label, nullptr);
 }

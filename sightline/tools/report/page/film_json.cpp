@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/report/page/film_json.h"
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 #include "sightline/tools/report/pictures/png.h"
@@ -27,8 +29,15 @@ nlohmann::ordered_json filmJson(const Film& film) {
         }
         shots.push_back(std::move(entry));
     }
-    return {
+    Json out = {
         {"width", film.width}, {"height", film.height}, {"heat_scale", film.heat_scale}, {"shots", std::move(shots)}};
+    if (film.overview.empty()) return out;
+    Json eyes = Json::array();
+    for (const std::optional<glm::dvec2>& eye : film.eyes)
+        eyes.push_back(eye ? Json::array({std::round(1e4 * eye->x) / 1e4, std::round(1e4 * eye->y) / 1e4})
+                           : Json(nullptr));
+    out["overview"] = {{"image", dataUri(film.overview)}, {"eyes", std::move(eyes)}};
+    return out;
 }
 
 }  // namespace sightline::tools

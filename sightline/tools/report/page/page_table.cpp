@@ -6,6 +6,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "sightline/tools/scene/one_line.h"
+
 namespace sightline::tools {
 namespace {
 
@@ -51,7 +53,8 @@ NamedObjects objectTable(const Scene& scene, const CullRun& run, size_t most, si
     ranges.resize(room);
     for (const KeyRange& range : ranges) {
         const SceneObject& object = scene.objects[order[range.first]];
-        table.rows.push_back({object.key, object.name, objectPath(scene, object), range.triangles, range.kept});
+        table.rows.push_back({object.key, oneLine(object.name, kLongestPath),
+                              oneLine(objectPath(scene, object), kLongestPath), range.triangles, range.kept});
     }
     for (const FrameResult& frame : run.frames) {
         std::string digits;
@@ -87,7 +90,9 @@ NamedObjects objectTable(const std::vector<KeyName>& names, const CullRun& run, 
     const size_t room = roomFor(names.size(), run.frames.size(), most, most_cells);
     table.left_out = names.size() - room;
     order.resize(room);
-    for (const size_t i : order) table.rows.push_back({names[i].key, names[i].name, names[i].path, 0, kept[i]});
+    for (const size_t i : order)
+        table.rows.push_back(
+            {names[i].key, oneLine(names[i].name, kLongestPath), oneLine(names[i].path, kLongestPath), 0, kept[i]});
     for (const FrameResult& frame : run.frames) {
         std::string digits;
         for (const size_t i : order)

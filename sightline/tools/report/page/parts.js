@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: MIT
 'use strict';
 
-const data = JSON.parse(document.getElementById('data').textContent);
+// Texts of unknown origin: what ends a line, moves a cursor or turns the direction of writing is a space.
+const kUnfit = /[\u0000-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff]/g;
+const data = JSON.parse(document.getElementById('data').textContent, (key, value) =>
+  typeof value === 'string' && !value.startsWith('data:') ? value.replace(kUnfit, ' ') : value);
 const at = (id) => document.getElementById(id);
 const all = (selector, within = document) => [...within.querySelectorAll(selector)];
 
@@ -36,6 +39,12 @@ function median(values) {
 }
 /** The index of the largest value. */
 const largest = (values) => values.reduce((best, value, i) => value > values[best] ? i : best, 0);
+/** A name, or both ends of a long one; the whole of it shows when it is pointed at. */
+function named(name, most = 60) {
+  const letters = [...name], head = Math.floor(most / 3);
+  return letters.length <= most ? name : h('span', {title: name},
+    letters.slice(0, head).join('') + '…' + letters.slice(letters.length - (most - head - 1)).join(''));
+}
 const fileName = (path) => path.slice(path.lastIndexOf('/') + 1);
 
 function card(id, heading, ...body) {
@@ -75,7 +84,7 @@ function heatLegend(full) {
   return [h('div', {class: 'bar', role: 'img', 'aria-label': 'Colour scale'}), h('div', {class: 'scale'}, ticks)];
 }
 function setHead(title, subtitle, ...below) {
-  document.title = title + ' – Sightline';
-  at('head').append(h('h1', {}, title), note(subtitle), ...below.filter(Boolean));
+  document.title = title.slice(0, 200) + ' – Sightline';
+  at('head').append(h('h1', {}, named(title, 120)), note(subtitle), ...below.filter(Boolean));
 }
 const repeatRow = () => data.command && ['Repeat it', h('code', {}, data.command)];

@@ -84,4 +84,15 @@ std::vector<glm::dvec2> convexHull(std::vector<glm::dvec2> points) {
     return hull;
 }
 
+void cutOutline(std::vector<glm::dvec2>& outline, const glm::dvec3& line) {
+    std::vector<glm::dvec2> left;
+    const auto at = [&](const glm::dvec2& p) { return line.x * p.x + line.y * p.y + line.z; };
+    for (size_t i = 0; i < outline.size(); ++i) {
+        const glm::dvec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
+        if (at(a) >= 0) left.push_back(a);
+        if ((at(a) >= 0) != (at(b) >= 0)) left.push_back(a + at(a) / (at(a) - at(b)) * (b - a));
+    }
+    outline.swap(left);
+}
+
 }  // namespace sightline::tools

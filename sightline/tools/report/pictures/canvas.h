@@ -41,4 +41,7 @@ private:
 /// A. M. Andrew. Another Efficient Algorithm for Convex Hulls in Two Dimensions. 1979.
 std::vector<glm::dvec2> convexHull(std::vector<glm::dvec2> points);
 
+/// Leaves of a convex outline what is on one side of a line: line.x * x + line.y * y + line.z >= 0.
+void cutOutline(std::vector<glm::dvec2>& outline, const glm::dvec3& line);
+
 }  // namespace sightline::tools

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <unordered_map>
 
 #include "sightline/studies/hidden/render.h"
 #include "sightline/tools/report/pictures/render_list.h"
 #include "sightline/tools/report/pictures/render_pictures.h"
+#include "sightline/tools/report/pictures/world_lines.h"
 
 namespace sightline::tools {
 using namespace studies;
@@ -40,20 +42,13 @@ void drawLine(Image<Rgb>& image, const glm::dvec2& from, const glm::dvec2& to) {
 
 /// A line in clip space, cut at the near plane and at the picture's borders; false if nothing of it is in the picture.
 bool drawEdge(Image<Rgb>& image, const glm::dvec4& a, const glm::dvec4& b) {
-    double first = 0, last = 1;
-    const glm::dvec4 planes[6] = {{1, 0, 0, 1}, {-1, 0, 0, 1}, {0, 1, 0, 1}, {0, -1, 0, 1}, {0, 0, 1, 1}, {0, 0, 0, 1}};
-    for (const glm::dvec4& plane : planes) {
-        const double da = glm::dot(plane, a), db = glm::dot(plane, b);
-        if (da < 0 && db < 0) return false;
-        if (da < 0) first = std::max(first, da / (da - db));
-        if (db < 0) last = std::min(last, da / (da - db));
-    }
-    if (!(first < last)) return false;
+    const std::optional<glm::dvec2> part = partInView(a, b);
+    if (!part) return false;
     const auto place = [&](double t) {
         const glm::dvec4 p = a + (b - a) * t;
         return glm::dvec2(0.5 * (p.x / p.w + 1) * image.width, 0.5 * (1 - p.y / p.w) * image.height);
     };
-    const glm::dvec2 from = place(first), to = place(last);
+    const glm::dvec2 from = place(part->x), to = place(part->y);
     if (!(std::isfinite(from.x) && std::isfinite(from.y) && std::isfinite(to.x) && std::isfinite(to.y))) return false;
     drawLine(image, from, to);
     return true;

@@ -10,8 +10,10 @@
 #include <fmt/core.h>
 
 #include "sightline/tools/report/pictures/depth_picture.h"
+#include "sightline/tools/report/pictures/outside_picture.h"
 #include "sightline/tools/report/pictures/picture.h"
 #include "sightline/tools/report/pictures/plan.h"
+#include "sightline/tools/report/pictures/plan_section.h"
 
 namespace sightline::tools {
 
@@ -29,7 +31,10 @@ namespace {
 
 constexpr uint32_t kPlanWidth = 600, kSectionWidth = 720;  // [pixels]
 constexpr uint32_t kHeatWidth = 480;                       // [pixels] at most
+constexpr uint32_t kOverviewWidth = 960;                   // [pixels]
+constexpr double kOutsidePart = 2.0 / 3;                   // of the sides of the frame's other pictures
 constexpr int kJpegQuality = 84;
+const glm::u8vec4 kWallColour(20, 24, 31, 255), kCellColour(196, 18, 110, 120), kPortalLine(196, 18, 110, 255);
 
 double mean(const Image<float>& image) {
     double sum = 0;
@@ -37,12 +42,16 @@ double mean(const Image<float>& image) {
     return image.pixels.empty() ? 0 : sum / static_cast<double>(image.pixels.size());
 }
 
+View eyeOf(const CullRun& run, const FrameResult& frame) {
+    const View view = makeView(frame.camera, run.width, run.height);
+    return run.stereo > 0 ? shiftedEye(view, -0.5 * run.stereo) : view;  // a sight between the eyes is neither's
+}
+
 View pictureView(const CullRun& run, const FrameResult& frame, const PageSettings& settings, size_t pictures) {
     // Many pictures are drawn smaller, so that the page stays one that can be sent.
     const double wide = pictures > 32 ? std::min(720u, settings.picture_width) : settings.picture_width;
     const double scale = std::min(wide / run.width, double(settings.picture_limit) / run.height);
-    View view = makeView(frame.camera, run.width, run.height);       // the projection keeps the frame's aspect
-    if (run.stereo > 0) view = shiftedEye(view, -0.5 * run.stereo);  // a sight between the eyes is neither's
+    View view = eyeOf(run, frame);  // the projection keeps the frame's aspect
     view.width = std::max(1u, static_cast<uint32_t>(std::lround(run.width * scale)));
     view.height = std::max(1u, static_cast<uint32_t>(std::lround(run.height * scale)));
     return view;
@@ -66,14 +75,16 @@ public:
     Film draw();
 
 private:
+    void drawOverview();
     void drawShot(size_t i);
+    void addOutside(size_t i);
     void addPlans(size_t i);
     void addBuffer(size_t i);
     void addWindows(size_t i, const Image<Rgb>& shaded);
     void drawHeat(size_t i);
-    void each(const std::function<void(size_t)>& work) const {
-        if (settings_.for_each) return settings_.for_each(chosen_.size(), work);
-        for (size_t i = 0; i < chosen_.size(); ++i) work(i);
+    void each(size_t count, const std::function<void(size_t)>& work) const {
+        if (settings_.for_each) return settings_.for_each(count, work);
+        for (size_t i = 0; i < count; ++i) work(i);
     }
     void save(const char* what, size_t i, const std::string& png) const {
         if (settings_.save) settings_.save(fmt::format("frames/{}-{:04}.png", what, chosen_[i]), png);
@@ -97,6 +108,7 @@ private:
     std::vector<View> views_;
     std::vector<std::span<const uint8_t>> reasons_;
     PlanArea plan_;
+    PlanCells cells_;
     std::vector<Counts> counts_;
     std::atomic<size_t> done_{0};
     Film film_;
@@ -109,8 +121,18 @@ FilmMaker::FilmMaker(const Scene& scene, const CullRun& run, const PageSettings&
         reasons_.push_back(run.frames[frame].reasons);
     }
     plan_ = planArea(maker_.bounds(), reasons_, views_);
+    cells_ = settings.cells ? planCells(*settings.cells) : planCells(scene);
     film_.shots.resize(chosen_.size());
     counts_.resize(chosen_.size());
+}
+
+void FilmMaker::drawOverview() {
+    std::vector<glm::dvec3> eyes;
+    for (const FrameResult& frame : run_.frames) eyes.push_back(eyePosition(eyeOf(run_, frame)));
+    Overview overview = overviewPicture(maker_, eyes, kOverviewWidth);
+    film_.overview = encodeJpeg(overview.image, kJpegQuality);
+    film_.eyes = std::move(overview.eyes);
+    if (settings_.save && !film_.overview.empty()) settings_.save("frames/overview.png", encodePng(overview.image));
 }
 
 void FilmMaker::drawShot(size_t i) {
@@ -120,6 +142,7 @@ void FilmMaker::drawShot(size_t i) {
     addPhotograph("shaded", "frame", i, drawn.shaded);
     shot.images.push_back({"objects", encodeJpeg(drawn.objects, kJpegQuality)});
     addDrawing("culled", i, drawn.culled);
+    addOutside(i);
     addPlans(i);
     if (settings_.buffer) addBuffer(i);
     if (settings_.windows) addWindows(i, drawn.shaded);
@@ -132,15 +155,28 @@ void FilmMaker::drawShot(size_t i) {
     if (settings_.progress) settings_.progress(++done_, chosen_.size());
 }
 
+void FilmMaker::addOutside(size_t i) {
+    View view = views_[i];
+    view.width = std::max(1u, static_cast<uint32_t>(std::lround(kOutsidePart * view.width)));
+    view.height = std::max(1u, static_cast<uint32_t>(std::lround(kOutsidePart * view.height)));
+    addPhotograph("outside", "outside", i, outsidePicture(maker_, view, reasons_[i]));
+}
+
 void FilmMaker::addPlans(size_t i) {
     const std::vector<Box3d>& bounds = maker_.bounds();
     const glm::dvec3 eye = eyePosition(views_[i]);
     const PlanArea section = sectionArea(bounds, reasons_[i], views_[i], plan_);
     const PlanBand storey = storeyOf(bounds, eye);
-    addDrawing("plan", i, drawPlan(bounds, reasons_[i], views_[i], plan_, storey, kPlanWidth));
+    Image<glm::u8vec4> plan = drawPlan(bounds, reasons_[i], views_[i], plan_, storey, kPlanWidth);
+    drawOnPlan(plan, plan_, wallsAt(maker_.scene(), bounds, plan_, eye.y), kWallColour, 0);
+    drawOnPlan(plan, plan_, cellsAt(cells_, plan_, eye.y), kCellColour, 0);
+    drawOnPlan(plan, plan_, portalsAt(cells_, eye.y), kPortalLine, 1);
+    addDrawing("plan", i, plan);
     addDrawing("section", i, drawPlan(bounds, reasons_[i], views_[i], section, sliceOf(section, eye), kSectionWidth));
     Shot& shot = film_.shots[i];
-    shot.plan_text = storey.whole() ? "From above." : "From above; what lies off the eye’s storey is pale.";
+    shot.plan_text = std::string("From above, with walls as they are cut at the height of the eye") +
+                     (cells_.portals.empty() ? "" : ", cells and the portals between them") +
+                     (storey.whole() ? "." : "; what lies off the eye’s storey is pale.");
     shot.section_text = sectionText(section) + " What lies off the eye’s slice is pale.";
 }
 
@@ -164,7 +200,7 @@ void FilmMaker::drawHeat(size_t i) {
 }
 
 Film FilmMaker::draw() {
-    each([&](size_t i) { drawShot(i); });
+    if (!chosen_.empty()) each(chosen_.size() + 1, [&](size_t i) { i == 0 ? drawOverview() : drawShot(i - 1); });
     std::vector<float> values;
     for (const Counts& c : counts_) values.insert(values.end(), c.all.pixels.begin(), c.all.pixels.end());
     if (!values.empty()) {
@@ -172,7 +208,7 @@ Film FilmMaker::draw() {
         std::nth_element(values.begin(), place, values.end());
         film_.heat_scale = heatScaleAbove(*place);
     }
-    each([&](size_t i) { drawHeat(i); });
+    each(chosen_.size(), [&](size_t i) { drawHeat(i); });
     if (!views_.empty()) {
         film_.width = views_[0].width;
         film_.height = views_[0].height;

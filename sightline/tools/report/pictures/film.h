@@ -3,9 +3,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sightline/cells/cell_space.h"
 #include "sightline/tools/report/pictures/png.h"
 #include "sightline/tools/report/pictures/window_picture.h"
 #include "sightline/tools/report/run/cull_run.h"
@@ -27,6 +29,7 @@ struct PageSettings {
     std::function<Image<Rgb>(size_t frame)> buffer;
     /// Finds the windows through which a frame's cells are seen, on any of these threads; empty: the page has none.
     std::function<std::vector<CellWindow>(size_t frame, PortalWindows kind)> windows;
+    const CellSpace* cells = nullptr;  ///< of a visibility file, for the plans; null: those of the scene
 };
 
 /// A picture as the page holds it.
@@ -50,6 +53,8 @@ struct Film {
     std::vector<Shot> shots;
     uint32_t width = 0, height = 0;  ///< of the pictures
     double heat_scale = 8;           ///< what both heat maps of all shots show brightest; 0: not known, nor means
+    std::string overview;            ///< overviewPicture(), of a PNG or a JPEG; empty: there is none
+    std::vector<std::optional<glm::dvec2>> eyes;  ///< Overview::eyes, of all frames of the run; empty: not known
 };
 
 /// As many objects as would share a picture evenly for it to be as various as this one: 1 of a blank wall.

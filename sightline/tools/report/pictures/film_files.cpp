@@ -41,6 +41,13 @@ bool isPng(const std::string& bytes) {
     return width >= 1 && width <= kLargestSide && height >= 1 && height <= kLargestSide;
 }
 
+/// The bytes of a picture; empty if there is none.
+std::string pictureAt(const std::string& path) {
+    if (sizeOf(path) == 0) return {};
+    const Result<std::string> bytes = readTextFile(path, kLargestPicture);
+    return bytes && isPng(*bytes) ? *bytes : std::string();
+}
+
 }  // namespace
 
 Film filmBeside(const RunFile& file, const std::vector<std::string>& ids, const std::vector<size_t>& frames,
@@ -72,18 +79,17 @@ Film filmBeside(const RunFile& file, const std::vector<std::string>& ids, const 
         shot.plan_text = "From above.";
         shot.section_text = "From the side.";
         for (const std::string& id : ids) {
-            const std::string path = pathOf(file, id, frame);
-            if (sizeOf(path) == 0) continue;
-            const Result<std::string> bytes = readTextFile(path, kLargestPicture);
-            if (!bytes || !isPng(*bytes)) continue;
+            const std::string bytes = pictureAt(pathOf(file, id, frame));
+            if (bytes.empty()) continue;
             if (id == "shaded") {
-                film.width = bigEndian(*bytes, 16);
-                film.height = bigEndian(*bytes, 20);
+                film.width = bigEndian(bytes, 16);
+                film.height = bigEndian(bytes, 20);
             }
-            shot.images.push_back({id, *bytes});
+            shot.images.push_back({id, bytes});
         }
         if (!shot.images.empty()) film.shots.push_back(std::move(shot));
     }
+    if (!film.shots.empty()) film.overview = pictureAt(file.directory + "frames/overview.png");
     if (film.width == 0) {
         film.width = file.run.width;
         film.height = file.run.height;

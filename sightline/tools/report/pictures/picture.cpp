@@ -73,7 +73,8 @@ PictureMaker::Drawing PictureMaker::render(const View& view, const std::vector<u
 }
 
 /// Flat shading: the normal comes from the depths of neighbouring samples of the same part.
-void PictureMaker::shade(const View& view, const Drawing& drawing, Frame& frame) const {
+/// @param draft  a pixel that one part fills is shaded at one sample of it: its creases are not smooth
+void PictureMaker::shade(const View& view, const Drawing& drawing, bool draft, Frame& frame) const {
     const ZBufferImage& image = drawing.image;
     const uint32_t w = image.width, h = image.height;
     const Unprojection unprojection(view, w, h);
@@ -115,13 +116,20 @@ void PictureMaker::shade(const View& view, const Drawing& drawing, Frame& frame)
     for (uint32_t y = 0; y < frame.shaded.height; ++y)
         for (uint32_t x = 0; x < frame.shaded.width; ++x) {
             glm::dvec3 sum(0.0), by_object(0.0);
-            for (uint32_t k = 0; k < kSamples * kSamples; ++k) {
-                const auto [a, b] = sample(kSamples * x + k % kSamples, h - 1 - (kSamples * y + k / kSamples));
+            const auto placeOf = [&](uint32_t k) {
+                return glm::uvec2(kSamples * x + k % kSamples, h - 1 - (kSamples * y + k / kSamples));
+            };
+            const auto idOf = [&](uint32_t k) { return image.id[size_t{placeOf(k).y} * w + placeOf(k).x]; };
+            uint32_t samples = draft ? 1 : kSamples * kSamples;
+            for (uint32_t k = 1; draft && k < kSamples * kSamples; ++k)
+                if (idOf(k) != idOf(0)) samples = kSamples * kSamples;
+            for (uint32_t k = 0; k < samples; ++k) {
+                const auto [a, b] = sample(placeOf(k).x, placeOf(k).y);
                 sum += a;
                 by_object += b;
             }
-            frame.shaded.at(x, y) = toBytes(sum / double(kSamples * kSamples));
-            frame.objects.at(x, y) = toBytes(by_object / double(kSamples * kSamples));
+            frame.shaded.at(x, y) = toBytes(sum / double(samples));
+            frame.objects.at(x, y) = toBytes(by_object / double(samples));
         }
 }
 
@@ -170,13 +178,24 @@ PictureMaker::Frame PictureMaker::draw(const View& view, std::span<const uint8_t
     const Drawing drawn_all = render(view, all, kSamples);
     const Drawing drawn_kept = render(view, kept, kSamples);
     Frame frame;
-    shade(view, drawn_all, frame);
+    shade(view, drawn_all, false, frame);
     frame.culled = ghosts(view, culled, reasons);
     frame.all = countFragments(drawn_all.image);
     frame.kept = countFragments(drawn_kept.image);
     for (size_t i = 0; i < drawn_all.image.id.size() && frame.same; ++i)
         frame.same = drawn_all.objectAt(i) == drawn_kept.objectAt(i);
     return frame;
+}
+
+PictureMaker::Look PictureMaker::look(const View& view, const std::vector<uint32_t>& objects) const {
+    const glm::dmat4 clip = view.projection * view.view;
+    std::vector<uint32_t> in_view;
+    for (const uint32_t i : objects)
+        if (!bounds_[i].finite() || mayBeInView(clip, bounds_[i])) in_view.push_back(i);
+    Drawing drawn = render(view, in_view, kSamples);
+    Frame frame;
+    shade(view, drawn, true, frame);
+    return {std::move(frame.shaded), drawn.image.width, drawn.image.height, std::move(drawn.image.depth)};
 }
 
 Rgb heatColour(double part) {

@@ -35,6 +35,15 @@ public:
     /// @param reasons  per object: 0 visible, else culled  [size: objects]
     Frame draw(const View& view, std::span<const uint8_t> reasons) const;
 
+    /// What another eye sees of some objects, with 2x2 samples a pixel; shaded as a draft, in half of the time.
+    struct Look {
+        Image<Rgb> shaded;
+        uint32_t width = 0, height = 0;  ///< [samples]
+        std::vector<double> nearness;    ///< ZBufferImage::depth: per sample, rows from below
+    };
+    /// @param view  its sections are cut away
+    Look look(const View& view, const std::vector<uint32_t>& objects) const;
+
 private:
     /// A run of triangles of one material in one object.
     struct Part {
@@ -43,7 +52,7 @@ private:
 
     struct Drawing;
     Drawing render(const View& view, const std::vector<uint32_t>& objects, uint32_t samples) const;
-    void shade(const View& view, const Drawing& drawing, Frame& frame) const;
+    void shade(const View& view, const Drawing& drawing, bool draft, Frame& frame) const;
     Image<glm::u8vec4> ghosts(const View& view, const std::vector<uint32_t>& objects,
                               std::span<const uint8_t> reasons) const;
 

@@ -168,4 +168,10 @@ Image<glm::u8vec4> drawPlan(std::span<const Box3d> bounds, std::span<const uint8
     return image;
 }
 
+void drawOnPlan(Image<glm::u8vec4>& image, const PlanArea& area, std::span<const PlanLine> lines,
+                const glm::u8vec4& colour, int radius) {
+    const Paper paper(area, image.width);
+    for (const PlanLine& line : lines) drawLine(image, paper.at(line.from), paper.at(line.to), radius, colour);
+}
+
 }  // namespace sightline::tools

@@ -60,4 +60,14 @@ extern const glm::u8vec4 kPlanPalette[kPlanColours];
 Image<glm::u8vec4> drawPlan(std::span<const Box3d> bounds, std::span<const uint8_t> reasons, const View& view,
                             const PlanArea& area, const PlanBand& band, uint32_t width_pixels);
 
+/// A line of the world that is drawn on a plan or a section.
+struct PlanLine {
+    glm::dvec3 from{0.0}, to{0.0};
+};
+
+/// @param area    of the drawing
+/// @param radius  0: one pixel wide, 1: three
+void drawOnPlan(Image<glm::u8vec4>& image, const PlanArea& area, std::span<const PlanLine> lines,
+                const glm::u8vec4& colour, int radius);
+
 }  // namespace sightline::tools

@@ -57,6 +57,9 @@ Json frameJson(const FrameResult& frame, const CullRun& run, const Scene* scene)
     }
     if (frame.changed_pixels) out["changed_pixels"] = *frame.changed_pixels;
     out["triangles"] = frame.triangles;
+    if (frame.frustum_alone)
+        out["frustum_alone"] = {{"objects", frame.frustum_alone->objects},
+                                {"triangles", frame.frustum_alone->triangles}};
     if (frame.clusters) {
         const ClusterRow& row = *frame.clusters;
         out["clusters"] = {{"tested", row.tested}, {"back", row.back},   {"outside", row.outside},

@@ -89,6 +89,12 @@ struct CellRow {
     bool known = true;  ///< false: the eye was in no cell, or the work was spent
 };
 
+/// What a renderer would submit.
+struct LeftToDraw {
+    uint64_t objects = 0;  ///< keys
+    uint64_t triangles = 0;
+};
+
 struct FrameResult {
     CameraFrame camera;
     std::vector<uint64_t> visible;  ///< keys, ascending, each once
@@ -98,14 +104,15 @@ struct FrameResult {
     StageRow stages[kStageCount];
     uint64_t objects_visible = 0;  ///< objects, not keys
     uint64_t triangles = 0;        ///< of the visible objects, or of what is left of them: what a renderer would submit
-    std::optional<ClusterRow> clusters;   ///< with that stage, of one eye
-    std::optional<CellRow> cells;         ///< with the stage of portals, of one eye
-    QueryStats stats;                     ///< of both eyes together, where there are two
-    double query_microseconds = 0;        ///< median over the repeats
-    std::vector<OccluderCredit> credits;  ///< of all that were rasterized, by object; empty unless asked for
-    uint32_t thread = 0;                  ///< that answered, from 0
-    double begin_microseconds = 0;        ///< when it began with this frame, since the run began
-    double end_microseconds = 0;          ///< when it had done with it
+    std::optional<LeftToDraw> frustum_alone;  ///< what the stage of the frustum would leave if it were the only one
+    std::optional<ClusterRow> clusters;       ///< with that stage, of one eye
+    std::optional<CellRow> cells;             ///< with the stage of portals, of one eye
+    QueryStats stats;                         ///< of both eyes together, where there are two
+    double query_microseconds = 0;            ///< median over the repeats
+    std::vector<OccluderCredit> credits;      ///< of all that were rasterized, by object; empty unless asked for
+    uint32_t thread = 0;                      ///< that answered, from 0
+    double begin_microseconds = 0;            ///< when it began with this frame, since the run began
+    double end_microseconds = 0;              ///< when it had done with it
     std::optional<VerificationRow> verification;
     std::optional<uint64_t> changed_pixels;  ///< that show another object for distance and contribution culling
     std::vector<std::string> notes;          ///< for a reader: why this frame is the slowest or the loosest of its run

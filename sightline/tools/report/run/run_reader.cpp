@@ -230,6 +230,8 @@ void readFrame(const At& at, CullRun& run, uint32_t& stages, FrameResult& frame,
     }
     readStages(at.member("stages"), frame, stages);
     frame.triangles = at.member("triangles").whole();
+    if (const auto alone = at.maybe("frustum_alone"))
+        frame.frustum_alone = {alone->member("objects").whole(0, run.objects), alone->member("triangles").whole()};
     if (const auto clusters = at.maybe("clusters")) frame.clusters = clustersOf(*clusters);
     if (const auto cells = at.maybe("cells")) frame.cells = cellsOf(*cells);
     frame.query_microseconds = at.member("query_microseconds").positive();

@@ -61,10 +61,70 @@ TEST(Page, HoldsItsPictures) {
     const Scene scene = madeScene();
     const auto film = dataOf(reportPage(scene, madeRun(scene, 3)))["film"];
     ASSERT_EQ(film["shots"].size(), 3u);
-    for (const char* id : {"shaded", "objects", "culled", "heat-all", "heat-kept", "plan", "section"})
+    for (const char* id : {"shaded", "objects", "culled", "outside", "heat-all", "heat-kept", "plan", "section"})
         EXPECT_EQ(film["shots"][0]["images"][id].get<std::string>().substr(0, 11), "data:image/") << id;
     EXPECT_FALSE(film["shots"][0]["images"].contains("buffer"));
     EXPECT_GT(film["shots"][0]["variety"], 1);
+}
+
+TEST(Page, HoldsTheWholeSceneAndWhereEachEyeIsInIt) {
+    const Scene scene = madeScene();
+    PageSettings settings;
+    settings.most_pictures = 2;
+    const auto film = dataOf(reportPage(scene, madeRun(scene, 5), settings))["film"];
+    EXPECT_EQ(film["overview"]["image"].get<std::string>().substr(0, 11), "data:image/");
+    ASSERT_EQ(film["overview"]["eyes"].size(), 5u) << "of frames without pictures, too";
+    for (const auto& eye : film["overview"]["eyes"]) {
+        ASSERT_EQ(eye.size(), 2u);
+        for (const auto& part : eye) EXPECT_TRUE(part >= 0.0 && part <= 1.0);
+    }
+    EXPECT_FALSE(dataOf(reportPage(scene, madeRun(scene, 0)))["film"].contains("overview"));
+}
+
+TEST(Page, DrawsWallsCellsAndPortalsOnItsPlans) {
+    Scene scene = madeScene();
+    const CullRun run = madeRun(scene, 1);
+    const auto planOf = [&](const PageSettings& settings) {
+        const auto shot = dataOf(reportPage(scene, run, settings))["film"]["shots"][0];
+        return std::pair(shot["images"]["plan"].get<std::string>(), shot["plan"].get<std::string>());
+    };
+    const auto plain = planOf({});
+    EXPECT_TRUE(contains(plain.second, "cut at the height of the eye"));
+    EXPECT_FALSE(contains(plain.second, "portals"));
+    ScenePortal portal;
+    portal.polygon = {{-2, -1, -1}, {2, -1, -1}, {2, 1, -1}, {-2, 1, -1}};
+    scene.portals = {portal};
+    const auto marked = planOf({});
+    EXPECT_NE(marked.first, plain.first);
+    EXPECT_TRUE(contains(marked.second, "portals"));
+    CellSpace space;  // of a visibility file: it counts
+    space.graph.cells = 2;
+    const glm::dvec3 outline[] = {{-3, -1, 1}, {3, -1, 1}, {3, 1, 1}, {-3, 1, 1}};
+    ASSERT_TRUE(space.graph.addPortal(0, 1, outline));
+    PageSettings settings;
+    settings.cells = &space;
+    EXPECT_NE(planOf(settings).first, marked.first);
+    scene.portals.clear();
+    scene.meshes[0].indices.resize(3);  // half a wall of the same bounds
+    scene.meshes[0].primitives[0].triangle_count = 1;
+    EXPECT_NE(planOf({}).first, plain.first);
+}
+
+TEST(Page, BoundsAndCleansNames) {
+    std::string name("a\0b\x1b[2J\n\xe2\x80\xae", 11);
+    name += std::string(100000, 'n');
+    Scene scene = madeScene();
+    scene.objects[0].name = name;
+    const auto table = dataOf(reportPage(scene, madeRun(scene)))["table"];
+    const auto read = objectTable({{5, name, name}}, madeRun(scene));
+    for (const std::string& text : {table["rows"][1][1].get<std::string>(), table["rows"][1][2].get<std::string>(),
+                                    read.rows[0].name, read.rows[0].path}) {
+        EXPECT_LE(text.size(), kLongestPath);
+        EXPECT_GT(text.size(), 1000u);
+        for (const char c : text) EXPECT_GE(static_cast<unsigned char>(c), 0x20);
+    }
+    scene.objects[0].name = std::string("a\0b\x1b[2J\n\xe2\x80\xae", 11);
+    EXPECT_EQ(dataOf(reportPage(scene, madeRun(scene)))["table"]["rows"][1][1], "a b [2J  ");
 }
 
 TEST(Page, TellsABlankWallFromAPictureThatManyObjectsShare) {
@@ -151,9 +211,10 @@ TEST(Page, GivesItsPicturesAway) {
         names.insert(name);
     };
     (void)reportPage(scene, madeRun(scene, 2), settings);
-    for (const char* what : {"frame", "culled", "plan", "section", "heat-all", "heat-kept"})
+    for (const char* what : {"frame", "culled", "outside", "plan", "section", "heat-all", "heat-kept"})
         EXPECT_TRUE(names.count("frames/" + std::string(what) + "-0001.png")) << what;
-    EXPECT_EQ(names.size(), 12u);
+    EXPECT_EQ(names.count("frames/overview.png"), 1u);
+    EXPECT_EQ(names.size(), 15u);
 }
 
 TEST(Page, PicturesAreSpreadAndHoldTheWrongFrames) {

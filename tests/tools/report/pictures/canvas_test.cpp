@@ -65,6 +65,16 @@ TEST(Canvas, LaysOpacityOverWhatIsThere) {
     EXPECT_NEAR(canvas.image().at(5, 5).x, 64, 1);
 }
 
+TEST(Canvas, CutsOutlinesAtALine) {
+    std::vector<glm::dvec2> outline = {{0, 0}, {4, 0}, {4, 4}, {0, 4}};
+    cutOutline(outline, {1, 0, -1});  // x >= 1
+    EXPECT_EQ(outline, (std::vector<glm::dvec2>{{1, 0}, {4, 0}, {4, 4}, {1, 4}}));
+    cutOutline(outline, {0, 0, 1});
+    EXPECT_EQ(outline.size(), 4u);
+    cutOutline(outline, {0, 1, -9});
+    EXPECT_TRUE(outline.empty());
+}
+
 TEST(ConvexHull, HoldsAllPointsAndTurnsOneWay) {
     Random random(2);
     for (int i = 0; i < 500; ++i) {

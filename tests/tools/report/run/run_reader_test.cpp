@@ -31,6 +31,7 @@ TEST(RunReader, ReadsBackWhatWasWritten) {
     run.settings.occlusion_size = 96;
     run.frames[1].stats.nodes_visited = 77;
     run.frames[1].thread = 3;
+    run.frames[1].frustum_alone = {2, 6};
     run.frames[2].verification->kept_unseen = {0};
     run.frames[2].verification->rows.push_back({1, 3, 1.5, 2.5, "rays"});
     run.frames[2].verification->false_culls = 1;
@@ -54,6 +55,10 @@ TEST(RunReader, ReadsBackWhatWasWritten) {
         EXPECT_EQ(read->run.frames[i].query_microseconds, run.frames[i].query_microseconds);
         EXPECT_EQ(read->run.frames[i].verification->exactly_visible, 2u);
     }
+    EXPECT_FALSE(read->run.frames[0].frustum_alone);
+    ASSERT_TRUE(read->run.frames[1].frustum_alone);
+    EXPECT_EQ(read->run.frames[1].frustum_alone->objects, 2u);
+    EXPECT_EQ(read->run.frames[1].frustum_alone->triangles, 6u);
     EXPECT_EQ(read->run.stereo, 0.065);
     EXPECT_EQ(read->run.settings.hysteresis, 0.25);
     EXPECT_EQ(read->run.frames[1].eyes, run.frames[1].eyes);
