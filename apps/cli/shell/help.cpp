@@ -163,7 +163,9 @@ bool isFlag(const CLI::Option& option) { return option.get_items_expected_max() 
 
 std::string valueName(const CLI::Option& option) {
     const std::string type = option.get_type_name();
-    return type.substr(0, type.find(':'));
+    // Behind a colon stand the names of checks, but in "grid:N".
+    const size_t colon = type.find(':');
+    return colon != std::string::npos && type.substr(colon) == ":N" ? type : type.substr(0, colon);
 }
 
 std::vector<std::string> choicesOf(const CLI::Option& option) {

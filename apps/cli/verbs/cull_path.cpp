@@ -301,7 +301,7 @@ Status explainFalseCulls(const Scene& scene, const RunOptions& options, const Cu
         const auto& rows = frame.verification->rows;
         for (size_t k = 0; k < std::min(rows.size(), kMostLines); ++k)
             say("false cull: frame {}: object {} \"{}\" is seen at pixel ({:.3f}, {:.3f}) by {}\n", i, rows[k].key,
-                oneLine(scene.objects[rows[k].object].name, 200), rows[k].x, rows[k].y, rows[k].witness);
+                oneLine(objectPath(scene, scene.objects[rows[k].object]), 200), rows[k].x, rows[k].y, rows[k].witness);
         if (rows.size() > kMostLines) say("false cull: frame {}: and {} more\n", i, rows.size() - kMostLines);
         say("replay: {}\n", replayCommand(options, run, file));
     }

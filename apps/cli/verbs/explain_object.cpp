@@ -52,7 +52,8 @@ Error ambiguous(const Scene& scene, const std::string& word, const std::set<uint
                             oneLine(objectPath(scene, scene.objects[i]), kLongestCall));
     }
     if (keys.size() > kMost) list += ", ...";
-    return {Error::Kind::kUsage, fmt::format("--object {}: {} objects are called so: {}", word, keys.size(), list)};
+    return {Error::Kind::kUsage,
+            fmt::format("--object {}: {} objects are called so: {}; --at X,Y asks a pixel", word, keys.size(), list)};
 }
 
 /// The view through one pixel alone.
@@ -229,8 +230,9 @@ Result<std::vector<uint32_t>> findObjects(const Scene& scene, const std::string&
     if (keys.empty()) {
         std::vector<std::string> names;
         for (const SceneObject& object : scene.objects) names.push_back(object.name);
-        return Error{Error::Kind::kUsage, fmt::format("--object {}: {} has no object of that key, name or path{}",
-                                                      oneLine(word), scene.name, oneLine(suggestion(word, names)))};
+        return Error{Error::Kind::kUsage,
+                     fmt::format("--object {}: {} has no object of that key, name or path{}; info --objects lists them",
+                                 oneLine(word), scene.name, oneLine(suggestion(word, names)))};
     }
     if (found.empty()) return ambiguous(scene, word, keys);
     return found;

@@ -32,6 +32,7 @@ struct RayFrame {
 struct Crossing {
     bool surely = false, perhaps = false;
     bool front_surely = false, front_perhaps = false;
+    bool has_area = false;    ///< as the ray sees it, beyond rounding: else nothing of it is drawn
     double t = 0, t_low = 0;  ///< along the ray; t_low is the nearest that doubt about the facing allows
 };
 
@@ -69,6 +70,7 @@ Crossing cross(const RayFrame& frame, const glm::dvec3 (&corner)[3], double roun
     result.perhaps = edge_on ? off_longest <= 8 * rounding : inside >= -rounding;
     result.surely = !edge_on && inside > rounding;
     result.front_surely = area < 0 && !edge_on;
+    result.has_area = !edge_on;
     result.front_perhaps = area < 0 || edge_on;
     const glm::dvec3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
     const double t = glm::dot(normal, corner[0] - frame.ray.origin) / glm::dot(normal, frame.ray.direction);
@@ -203,12 +205,11 @@ bool ExactSight::seesObject(const glm::dvec2& place, uint32_t object) const {
 bool ExactSight::seesPoint(uint32_t object, uint32_t triangle, const glm::dvec3& point, glm::dvec2& place) const {
     if (!sight_.project(point, place)) return false;
     const SightRay ray = sight_.rayThrough(place);
-    if (!facts_.facts(object).double_sided[triangle]) {
-        const ObjectTriangles triangles(facts_, object, sight_.eye());
-        glm::dvec3 points[3];
-        triangles.corners(triangle, points);
-        if (!cross(RayFrame(ray), points, triangles.rounding()).front_surely) return false;
-    }
+    const ObjectTriangles triangles(facts_, object, sight_.eye());
+    glm::dvec3 points[3];
+    triangles.corners(triangle, points);
+    const Crossing met = cross(RayFrame(ray), points, triangles.rounding());
+    if (!met.has_area || !(met.front_surely || facts_.facts(object).double_sided[triangle])) return false;
     return !hidden(ray, glm::dot(point - ray.origin, ray.direction), object);
 }
 

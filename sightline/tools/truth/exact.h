@@ -23,7 +23,8 @@ public:
     /// hides the first place where it does.
     bool seesObject(const glm::dvec2& place, uint32_t object) const;
 
-    /// True if a point of a triangle of the object is in the frustum, faces the eye, and nothing hides it.
+    /// True if a point of a triangle of the object is in the frustum, faces the eye, and nothing hides it. A triangle that
+    /// the eye sees without area, from its edge or because it has none, is not drawn, and not seen.
     /// @param point  relative to the eye
     /// @param place  receives where it appears
     bool seesPoint(uint32_t object, uint32_t triangle, const glm::dvec3& point, glm::dvec2& place) const;
