@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "sightline/tools/scene/joined_sets.h"
+#include "sightline/tools/scene/welded.h"
 #include "sightline/tree/bvh.h"
 
 namespace sightline::tools {
@@ -23,17 +24,6 @@ struct Shell {
     std::vector<uint32_t> triangles;
     bool both_sides = true;  ///< each of them is drawn from both sides
 };
-
-/// Equal positions of a mesh as one number.
-std::vector<uint32_t> weldedPositions(const Mesh& mesh) {
-    std::map<std::array<float, 3>, uint32_t> places;
-    std::vector<uint32_t> out;
-    for (const glm::vec3& p : mesh.positions) {
-        const std::array<float, 3> key = {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};  // no zero has a sign
-        out.push_back(places.try_emplace(key, static_cast<uint32_t>(places.size())).first->second);
-    }
-    return out;
-}
 
 /// Whether each edge is run through as often one way as the other.
 bool isClosed(const Mesh& mesh, const std::vector<uint32_t>& welded, const std::vector<uint32_t>& triangles) {

@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "sightline/tools/scene/joined_sets.h"
+#include "sightline/tools/scene/welded.h"
 
 namespace sightline::tools {
 namespace {
@@ -43,13 +44,8 @@ Cut numbered(const std::vector<Key>& keys, Name&& name) {
 }
 
 Cut cutIntoParts(const Mesh& mesh) {
-    std::map<std::array<float, 3>, uint32_t> places;
-    std::vector<uint32_t> place_of;
-    for (const glm::vec3& p : mesh.positions) {
-        const std::array<float, 3> key = {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};  // no zero has a sign
-        place_of.push_back(places.try_emplace(key, static_cast<uint32_t>(places.size())).first->second);
-    }
-    JoinedSets sets(places.size());
+    const std::vector<uint32_t> place_of = weldedPositions(mesh);
+    JoinedSets sets(place_of.size());
     const auto& indices = mesh.indices;
     for (size_t i = 0; i < indices.size(); i += 3)
         for (const size_t k : {i + 1, i + 2}) sets.join(place_of[indices[i]], place_of[indices[k]]);
