@@ -269,7 +269,9 @@ TEST_P(EncasedScenes, AreReachedByNoRayFromOutside) {
     const Encased encased = encasedTriangles(*scene);
     size_t total = 0;
     for (const auto& triangles : encased.triangles) total += triangles.size();
-    if (total == 0) GTEST_SKIP() << "nothing is encased";
+    // A robot's shells hold its works: that nothing is found there would be a fault, and no reason to skip.
+    if (GetParam() == std::string("gazebo-pr2")) { EXPECT_GT(total, 1000u); }
+    if (total == 0) GTEST_SKIP() << "no closed surface of this scene has anything within";
     const RayProbe probe(*scene);
     const Box3d box = worldBounds(*scene);
     const double reach = glm::length(box.size());
