@@ -64,7 +64,45 @@ TEST_F(Comfort, SlipsAreToldWhatIsNearest) {
     EXPECT_EQ(run("xyzzy").err.find("did you mean"), std::string::npos);
 }
 
+TEST_F(Comfort, OptionsOfOtherVerbsAreToldWhose) {
+    expectError("cull city:1:10 --object 3", 2, "--object; it belongs to explain (see");
+    expectError("info city:1:10 --report out", 2, "--report; it belongs to cull, render, ");
+}
+
+TEST_F(Comfort, ScenesAreNoVerbs) {
+    write("a model.glb", "");
+    expectError("'a model.glb'", 2, "sightline cull 'a model.glb', or sightline info 'a model.glb'");
+    expectError("city:1:10", 2, "for a scene: sightline cull city:1:10, or ");
+    expectError("cull city", 2, "city: not a procedural scene (there are city:SEED:OBJECTS, ");
+    expectError("cull made", 2, "made:NAME");
+    expectError("vis city:1:10", 2, "city:1:10: vis takes maps");
+    write("city", "");
+    expectError("cull city", 3, "city: ");
+}
+
+TEST_F(Comfort, MissingFilesAndDirectoriesAreNamed) {
+    expectError("cull city:1:10 --cameras no.json", 3, "no.json: no such file");
+    expectError("cull city:1:10 --visibility no.vis", 3, "no.vis: no such file");
+    expectError("report nosuch", 3, "nosuch: no such file");
+    write("model.glb", "glTF\2\0\0\0");
+    expectError("report model.glb", 3, "model.glb: is no run: `sightline cull --json FILE` writes one");
+    expectError("cull city:1:10 --frames 1 --json no/way/x.json", 4,
+                "no/way/x.json: cannot be written: there is no directory no/way");
+}
+
+TEST_F(Comfort, CountsAreWords) {
+    const std::string one = succeed("cull city:1:1 --frames 1 --size 16x16").out;
+    EXPECT_NE(one.find("1 object, "), std::string::npos) << one;
+    EXPECT_NE(one.find("; 1 frame of 16x16"), std::string::npos) << one;
+    const std::string judged = succeed("verify city:1:50 --frames 1 --size 64x36 --rays 1000").out;
+    EXPECT_NE(judged.find("exactly visible, over 1 frame\n"), std::string::npos) << judged;
+    const std::string drawn = succeed("render city:1:50 --frames 2 --frame 1 --size 64x36").out;
+    EXPECT_NE(drawn.find("; frame 1 (0 to 1), 64x36: "), std::string::npos) << drawn;
+}
+
 TEST_F(Comfort, ValuesThatMeanNothingAreRefused) {
+    expectError("cull city:1:10 --repeat many", 2, "--repeat: many is not a number");
+    expectError("cull city:1:10 --repeat 0", 2, "--repeat: Value 0 not in range");
     expectError("cull city:1:10 --cameras ''", 2, "--cameras: its value is empty");
     expectError("cull city:1:10 --report ''", 2, "--report: its value is empty");
     expectError("cull city:1:10 --seed -1", 2, "--seed: -1 is below 0");
@@ -82,7 +120,7 @@ TEST_F(Comfort, ObjectsAndMapsAreToldWhatIsNearest) {
     write("house.map", map);
     write("house.txt", map);
     for (const char* file : {"house.map", "house.txt"})
-        expectError(std::string("cull ") + file, 3, "is the source of a game map, which vis reads");
+        expectError(std::string("cull ") + file, 3, "is the source of a game map, which vis and bake read");
     write("not.json", "{\"classname\": \"worldspawn\"}");
     expectError("cull not.json", 3, "is JSON, but not glTF");
 }

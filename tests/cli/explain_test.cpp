@@ -32,6 +32,35 @@ TEST_F(ExplainVerb, TellsWhatStandsBeforeWhat) {
     EXPECT_EQ(run("explain made:walls --object 0").out, hidden.out);
 }
 
+TEST_F(ExplainVerb, SaysWhoseFrameItIs) {
+    for (const auto& [words, said] : std::initializer_list<std::pair<std::string, std::string>>{
+             {"made:walls --object 7", "the only frame of the scene's own cameras: the eye at ("},
+             {"made:walls --at 640,360", "the only frame of the scene's own cameras: the eye at ("},
+             {"city:1:50 --frames 3 --frame 1 --object 7",
+              "frame 1 (0 to 2) of a walk along the streets: the eye at ("},
+             {"city:1:50 --frame 15 --object 7", "frame 15 (0 to 15) of a tour: the eye at ("},
+             {"city:1:50 --path orbit --object 7", "frame 0 (0 to 15) of --path orbit: the eye at ("}}) {
+        const Outcome outcome = succeed("explain --rays 1000 " + words);
+        EXPECT_TRUE(outcome.out.starts_with(said)) << outcome.out;
+        expectNarrow(outcome.out);
+    }
+    write("one.json", R"({"frames": [{"eye": [0, 1.5, 0], "target": [0, 1.5, -4]}]})");
+    const std::string said = succeed("explain city:1:50 --cameras one.json --rays 1000 --object 7").out;
+    EXPECT_TRUE(said.starts_with("the only frame of one.json: the eye at (0, 1.5, 0), looking along (")) << said;
+    EXPECT_NE(said.find("0, -1)"), std::string::npos) << said;
+}
+
+TEST_F(ExplainVerb, LetsWitnessesLookForWhatIsCulled) {
+    const json culled = answersOf("made:walls --object 3 --rays 1000")[0];
+    EXPECT_EQ(culled["witness"]["seen"], false);
+    EXPECT_GE(culled["witness"]["rays"], 1000);
+    EXPECT_NE(run("explain made:walls --object 3").out.find("rays meets it, and no sample"), std::string::npos);
+    // What may be visible and was left out as asked is not called false.
+    const json left_out = answersOf("made:walls --object 7 --distance 0.001 --rays 1000")[0];
+    EXPECT_EQ(left_out["verdict"], "too far");
+    EXPECT_FALSE(left_out.contains("witness"));
+}
+
 TEST_F(ExplainVerb, WritesTheSchema) {
     const json answers = answersOf("made:walls --object 3");
     ASSERT_EQ(answers.size(), 1u);
@@ -116,6 +145,13 @@ TEST_F(ExplainVerb, TellsOfAWholePath) {
         for (const json& frame : run_json["frames"])
             EXPECT_EQ(std::find(frame["visible"].begin(), frame["visible"].end(), row["key"]), frame["visible"].end());
     EXPECT_EQ(run("explain city:1:1000 --frames 4 --top 3 --threads 3").out, outcome.out);
+    const std::string first = std::to_string(path["never_kept"][0]["key"].get<uint64_t>());
+    EXPECT_NE(outcome.out.find(" triangles  " + std::string(6 - first.size(), ' ') + first), std::string::npos)
+        << "rows have keys\n"
+        << outcome.out;
+    const std::string named = succeed("explain building:1:1 --frames 2 --top 3").out;
+    expectNarrow(named);
+    EXPECT_NE(named.find(" 'Floor 0/"), std::string::npos) << named;
 }
 
 TEST_F(ExplainVerb, DrawsTheFrame) {
@@ -129,7 +165,8 @@ TEST_F(ExplainVerb, RefusesWhatItCannotAnswer) {
     expectError("explain made:walls --object door", 2, "--object door");
     expectError("explain made:walls --object ''", 2, "--object");
     expectError("explain made:walls --object 99", 2, "99");
-    expectError("explain made:walls --object 1 --frame 7", 2, "1 frames");
+    expectError("explain made:walls --object 1 --frame 7", 2, "--frame 7: the path has 1 frame, from 0");
+    expectError("explain city:1:50 --frames 3 --object 1 --frame 7", 2, "--frame 7: the path has 3 frames, from 0");
     expectError("explain made:walls --object 1 --frame soon", 2, "soon");
     expectError("explain made:walls --frame 0", 2, "--frame");
     expectError("explain made:walls --at 5", 2, "--at 5");

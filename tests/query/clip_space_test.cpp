@@ -123,8 +123,10 @@ TEST(ClipSpace, TellsWhatIsCertain) {
             EXPECT_EQ(told.left_handed, space.left_handed) << named.name << " camera " << i;
             EXPECT_EQ(told.y_down, space.y_down) << named.name << " camera " << i;
             EXPECT_EQ(told.reversed, space.reversed) << named.name << " camera " << i;
-            if (space.reversed && !camera.parallel) EXPECT_EQ(told.depth, space.depth) << named.name << " camera " << i;
-            if (!space.reversed) EXPECT_EQ(told.depth, ClipDepth::kMinusOneToOne) << named.name << " camera " << i;
+            if (space.reversed && !camera.parallel) {
+                EXPECT_EQ(told.depth, space.depth) << named.name << " camera " << i;
+            }
+            if (!space.reversed) { EXPECT_EQ(told.depth, ClipDepth::kMinusOneToOne) << named.name << " camera " << i; }
         }
         // Reversed from 1 to -1, which nobody names: near is told right, far may be taken for farther.
         camera.parallel = false;

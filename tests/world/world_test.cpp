@@ -39,6 +39,10 @@ void* operator new(size_t size, const std::nothrow_t&) noexcept {
     ++global_allocations;
     return std::malloc(size);
 }
+// Hardly optimised, GCC does not see that all of these take from malloc.
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+#endif
 void operator delete(void* place) noexcept { std::free(place); }
 void operator delete(void* place, const std::nothrow_t&) noexcept { std::free(place); }
 void operator delete(void* place, size_t) noexcept { std::free(place); }

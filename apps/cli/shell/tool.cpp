@@ -154,6 +154,32 @@ std::string verbOf(const CLI::App& tool) {
     return "sightline" + (chosen.empty() ? std::string() : " " + chosen.front()->get_name());
 }
 
+std::vector<std::string> longOptions(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+/// Of an option that a verb has not: which have it, or which of its own may have been meant.
+std::string meantOption(const CLI::App& tool, const CLI::App& verb, const std::string& option) {
+    Words owners;
+    for (const CLI::App* other : tool.get_subcommands({}))
+        if (other != &verb && other->get_option_no_throw(option)) owners.push_back(other->get_name());
+    if (owners.empty()) return suggestion(option, longOptions(verb));
+    return fmt::format("; it belongs to {}", fmt::join(owners, ", "));
+}
+
+/// A number that is none is not told by its range.
+std::string withoutRange(const std::string& what) {
+    const std::string_view kValue = "Value ", kRange = " not in range";
+    const size_t value = what.find(kValue), range = what.find(kRange);
+    if (value == std::string::npos || range == std::string::npos) return what;
+    const std::string word = what.substr(value + kValue.size(), range - value - kValue.size());
+    double number = 0;
+    return CLI::detail::lexical_cast(word, number) ? what : what.substr(0, value) + word + " is not a number";
+}
+
 /// What the parser found wrong, with a word that may have been meant.
 std::string explained(const CLI::App& tool, const CLI::ParseError& error) {
     std::string what = error.what(), meant;
@@ -163,13 +189,10 @@ std::string explained(const CLI::App& tool, const CLI::ParseError& error) {
         const auto chosen = tool.get_subcommands();
         const CLI::App& app = chosen.empty() ? tool : *chosen.front();
         const std::vector<std::string> extras = app.remaining();
-        std::vector<std::string> names;
-        for (const CLI::Option* option : app.get_options())
-            for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-        if (!extras.empty() && extras[0].substr(0, 2) == "--")
-            meant = suggestion(extras[0].substr(0, extras[0].find('=')), names);
+        if (!extras.empty() && extras[0].starts_with("--"))
+            meant = meantOption(tool, app, extras[0].substr(0, extras[0].find('=')));
     }
-    return fmt::format("{}{} (see {} --help)", what, meant, verbOf(tool));
+    return fmt::format("{}{} (see {} --help)", withoutRange(what), meant, verbOf(tool));
 }
 
 /// Refuses what no option means: values of nothing, numbers below zero where only others count, and pictures by the
@@ -223,6 +246,13 @@ void addVerbs(CLI::App& tool, const BenchVerb& bench, SessionOptions& session, i
     dressHelp(tool);
 }
 
+/// Of a word that is no verb, but a scene: what may be done with that.
+std::string meantVerb(const std::string& word, const std::vector<std::string>& names) {
+    std::error_code ignored;
+    if (!isProcedural(word) && !std::filesystem::exists(word, ignored)) return suggestion(word, names);
+    return fmt::format("; for a scene: sightline cull {0}, or sightline info {0}", quoted(word));
+}
+
 /// Whether the words are about the verb `bench`, or its completions or help.
 bool isAboutBench(const std::vector<std::string>& words) {
     size_t at = 0;
@@ -260,7 +290,7 @@ int runTool(std::vector<std::string> words, const BenchVerb& bench) {
     const std::vector<std::string> names = verbNames(tool);
     if (!words[0].starts_with('-') && std::find(names.begin(), names.end(), words[0]) == names.end())
         return report({Error::Kind::kUsage, fmt::format("there is no verb \"{}\"{} (see sightline --help)", words[0],
-                                                        suggestion(words[0], names))});
+                                                        meantVerb(words[0], names))});
     Result<std::vector<std::string>> known = visWords(words);
     if (!known) return report(known.error());
     words = std::move(*known);

@@ -60,11 +60,13 @@ Result<uint32_t> readStages(const std::string& option, const std::vector<std::st
     return bits;
 }
 
-/// The city's seed in `city:SEED:OBJECTS`, which has been checked by making the city.
-bool isCity(const std::string& scene, uint64_t& seed) {
-    const std::string_view text = scene;
-    if (text.substr(0, 5) != "city:") return false;
-    return readWhole(text.substr(5, text.find(':', 5) - 5), seed);
+/// Whether a city is walked along its streets, and the seed in its `city:SEED:OBJECTS`, which has been checked by making
+/// it.
+bool walksStreets(const RunOptions& options, uint64_t& seed) {
+    const PathChoice& choice = options.choice;
+    if (!choice.file.empty() || choice.kind != PathKind::kAny || choice.walk.frames == 0 || choice.seeded) return false;
+    const std::string scene = options.scene.procedural();
+    return scene.starts_with("city:") && readWhole(std::string_view(scene).substr(5, scene.find(':', 5) - 5), seed);
 }
 
 }  // namespace
@@ -99,10 +101,12 @@ void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& sh
     verb.add_option("--seed", walk.seed, "of the path")->type_name("S")->capture_default_str()->group("Cameras");
     verb.add_option("--fps", walk.fps, "frames a second of a walk")
         ->check(CLI::Range(1.0, 10000.0))
+        ->type_name("N")
         ->capture_default_str()
         ->group("Cameras");
     verb.add_option("--speed", walk.speed, "of a walk [world units a second]")
         ->check(CLI::Range(0.0, 1e9))
+        ->type_name("N")
         ->capture_default_str()
         ->group("Cameras");
     verb.add_option("--size", options.size, "of the viewport [pixels]")
@@ -217,12 +221,26 @@ Status finish(const CLI::App& verb, RunOptions& options) {
 }
 
 Result<CameraPath> loadPath(const Scene& scene, const RunOptions& options) {
-    const PathChoice& choice = options.choice;
     uint64_t city_seed = 0;
-    if (choice.file.empty() && choice.kind == PathKind::kAny && choice.walk.frames > 0 && !choice.seeded &&
-        isCity(options.scene.procedural(), city_seed))
-        return cityStreetPath(city_seed, choice.walk.frames);
-    return choosePath(scene, choice);
+    if (walksStreets(options, city_seed)) return cityStreetPath(city_seed, options.choice.walk.frames);
+    return choosePath(scene, options.choice);
+}
+
+std::string ownerOfPath(const Scene& scene, const RunOptions& options) {
+    uint64_t city_seed = 0;
+    if (!options.choice.file.empty()) return oneLine(options.choice.file);
+    if (!options.path.empty()) return "--path " + options.path;
+    if (walksStreets(options, city_seed)) return "a walk along the streets";
+    return takesOwnCameras(scene, options.choice) ? "the scene's own cameras" : "a tour";
+}
+
+std::string frameOf(size_t frame, size_t frames) {
+    return frames == 1 ? "the only frame" : fmt::format("frame {} (0 to {})", frame, frames - 1);
+}
+
+Status checkFrame(size_t frame, size_t frames) {
+    if (frame < frames) return success();
+    return usageError(fmt::format("--frame {}: the path has {}, from 0", frame, counted(frames, "frame")));
 }
 
 Status writeText(const std::string& file, const std::string& text) {

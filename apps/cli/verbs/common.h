@@ -39,6 +39,14 @@ Status readSize(const std::string& option, const std::string& text, uint32_t& wi
 /// Which path: --cameras; --path, --frames and --seed; a city's streets for --frames alone; the scene's own; 16 seeded.
 Result<CameraPath> loadPath(const Scene& scene, const RunOptions& options);
 
+/// "frame 3 (0 to 15)", or "the only frame".
+std::string frameOf(size_t frame, size_t frames);
+/// Error (kUsage): a --frame that the path has not.
+Status checkFrame(size_t frame, size_t frames);
+
+/// Whose cameras a path has: "a tour", "the scene's own cameras".
+std::string ownerOfPath(const Scene& scene, const RunOptions& options);
+
 /// Writes text to a file aside and renames it, or to standard output for `-`.
 Status writeText(const std::string& file, const std::string& text);
 

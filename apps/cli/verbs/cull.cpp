@@ -291,9 +291,7 @@ Result<int> runCull(const CLI::App& verb, CullOptions& options) {
     if (Status opened = openVisibility(*scene, options); !opened) return opened.error();
     const Result<CameraPath> path = loadPath(*scene, options);
     if (!path) return path.error();
-    if (options.frame >= path->frames.size())
-        return Error{Error::Kind::kUsage,
-                     fmt::format("--frame {}: the path has {} frames, from 0", options.frame, path->frames.size())};
+    if (Status there = checkFrame(options.frame, path->frames.size()); !there) return there.error();
     if (Status writable = checkCullOutputs(options); !writable) return writable.error();
 
     options.credits = !options.report.empty();

@@ -56,11 +56,6 @@ Status readQuestion(const CLI::App& verb, ExplainOptions& options) {
     return success();
 }
 
-Status checkFrame(const ExplainOptions& options, const CameraPath& path) {
-    if (options.all_frames || options.first_frame < path.frames.size()) return success();
-    return usageError(fmt::format("--frame {}: the path has {} frames, from 0", options.frame, path.frames.size()));
-}
-
 Status checkExplainOutputs(const ExplainOptions& options) {
     ApartFiles files;
     for (const std::string& name : options.scene.names) files.read("SCENE", name);
@@ -105,6 +100,12 @@ Status writePicture(const ExplainOptions& options, const AskedScene& asked, cons
     return writeFileAside(options.picture, encodePng(explainPicture(asked.scene, view, emphasis)));
 }
 
+/// Whether witnesses have a say: not of what lies outside, nor of what was left out although it may be seen.
+bool saysMore(Verdict verdict) {
+    return verdict != Verdict::kNoSuchObject && verdict != Verdict::kOutsideLayers &&
+           verdict != Verdict::kOutsideFrustum && verdict != Verdict::kTooFar && verdict != Verdict::kTooSmall;
+}
+
 /// The object, or those that share its key, in one frame.
 Status explainInFrame(const ExplainOptions& options, const AskedScene& asked, const CameraFrame& camera,
                       const std::vector<uint32_t>& objects, Json& body) {
@@ -114,7 +115,7 @@ Status explainInFrame(const ExplainOptions& options, const AskedScene& asked, co
         for (size_t i = 0; i < std::min(objects.size(), kMost); ++i) {
             const uint32_t object = objects[i];
             ObjectAnswer answer{options.first_frame, object, explainer.explain(asked.loaded.ids[object]), {}, eye.eye};
-            if (answer.why.verdict == Verdict::kVisible && isUsable(eye.view))
+            if (isUsable(eye.view) && saysMore(answer.why.verdict))
                 answer.sighting = lookFor(asked.scene, eye.view, object, options);
             fmt::print(readerOf(options), "{}", answerText(asked, answer));
             body["answers"].push_back(answerJson(asked, answer));
@@ -197,6 +198,9 @@ Status explainObjects(const ExplainOptions& options, const Scene& scene, const C
         exit_code = explainInAll(options, asked, path, *objects, body);
     } else {
         const CameraFrame& camera = path.frames[options.first_frame];
+        const View view = viewOf(camera, options);
+        fmt::print(readerOf(options), "{}", frameLine(scene, options, path.frames.size(), view));
+        body["camera"] = cameraJson(scene, options, view);
         Status done = options.has_pixel ? explainPixel(options, asked, camera, body)
                                         : explainInFrame(options, asked, camera, *objects, body);
         if (!done) return done;
@@ -212,7 +216,8 @@ Status runExplain(const CLI::App& verb, ExplainOptions& options, int& exit_code)
     if (Status opened = openVisibility(*scene, options); !opened) return opened;
     const Result<CameraPath> path = loadPath(*scene, options);
     if (!path) return path.error();
-    if (Status good = checkFrame(options, *path); !good) return good;
+    if (!options.all_frames)
+        if (Status there = checkFrame(options.first_frame, path->frames.size()); !there) return there;
     if (Status writable = checkExplainOutputs(options); !writable) return writable;
     options.credits = true;
     if (verb.count("--object") == 0 && !options.has_pixel) return explainPath(options, *scene, *path, exit_code);

@@ -8,6 +8,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <glm/gtc/matrix_access.hpp>
 #include <nlohmann/json.hpp>
 
 #include "apps/cli/shell/progress.h"
@@ -137,9 +138,14 @@ Json keptJson(const AskedScene& asked, const VisibleReason& reason) {
     return out;
 }
 
-/// What the witnesses say of what was kept, as the end of a sentence about it.
+/// What the witnesses say: of what was kept, as the end of a sentence about it; of what was culled, as a sentence.
 std::string sightingText(const ObjectAnswer& answer) {
     const Sighting& sighting = *answer.sighting;
+    if (answer.why.verdict != Verdict::kVisible)
+        return sighting.seen
+                   ? fmt::format("The {} sees it all the same at pixel ({:.1f}, {:.1f}): a false cull!",
+                                 sighting.witness == "rays" ? "witness of rays" : "id-buffer", sighting.x, sighting.y)
+                   : fmt::format("None of {} rays meets it, and no sample of an id-buffer.", grouped(sighting.rays));
     if (sighting.seen)
         return fmt::format("is seen: {} at pixel ({:.1f}, {:.1f}).",
                            sighting.witness == "rays" ? "a ray meets it" : "the id-buffer has it", sighting.x,
@@ -201,6 +207,10 @@ Json cellsJson(const AskedScene& asked, const CellsReason& reason) {
 std::string eyeText(const ObjectAnswer& answer) {
     return answer.eye == 0 ? "" : answer.eye == kLeftEye ? "left eye:  " : "right eye: ";
 }
+
+// Without zeros below 0.
+glm::dvec3 standingAt(const View& view) { return eyePosition(view) + 0.0; }
+glm::dvec3 lookingAlong(const View& view) { return 0.0 - glm::dvec3(glm::row(view.view, 2)); }
 
 }  // namespace
 
@@ -306,10 +316,30 @@ Sighting lookFor(const Scene& scene, const View& view, uint32_t object, const Ru
     return sighting;
 }
 
+std::string frameLine(const Scene& scene, const ExplainOptions& options, size_t frames, const View& view) {
+    const glm::dvec3 eye = standingAt(view), along = lookingAlong(view);
+    return wrapped(fmt::format("{} of {}: the eye at ({:.6g}, {:.6g}, {:.6g}), looking along ({:.3g}, {:.3g}, {:.3g})",
+                               frameOf(options.first_frame, frames), ownerOfPath(scene, options), eye.x, eye.y, eye.z,
+                               along.x, along.y, along.z),
+                   kColumns, "  ") +
+           "\n";
+}
+
+Json cameraJson(const Scene& scene, const ExplainOptions& options, const View& view) {
+    const glm::dvec3 eye = standingAt(view), along = lookingAlong(view);
+    return {{"frame", options.first_frame},
+            {"of", ownerOfPath(scene, options)},
+            {"eye", {eye.x, eye.y, eye.z}},
+            {"along", {along.x, along.y, along.z}}};
+}
+
 std::string answerText(const AskedScene& asked, const ObjectAnswer& answer) {
     const auto name = [&](ObjectId id) { return asked.nameOf(id); };
+    const std::string sighting = answer.sighting ? sightingText(answer) : std::string();
+    const bool kept = answer.why.verdict == Verdict::kVisible;
     std::string text = eyeText(answer) + explanationText(answer.why, titleOf(asked.scene, answer.object), name,
-                                                         answer.sighting ? sightingText(answer) : std::string());
+                                                         kept ? sighting : std::string());
+    if (!kept && !sighting.empty()) text += " " + sighting;
     if (isByCells(answer.why)) text += cellsText(asked, answer.why.cells);
     return wrapped(text, kColumns, "  ") + "\n";
 }

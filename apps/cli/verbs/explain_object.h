@@ -51,7 +51,7 @@ struct ExplainOptions : RunOptions {
     uint32_t top = 10;
 };
 
-/// What the witnesses say of an object that is kept.
+/// What the witnesses say of an object.
 struct Sighting {
     bool seen = false;
     double x = 0, y = 0;  ///< [pixels from the left and the top]
@@ -91,11 +91,14 @@ struct EyeView {
 /// Both eyes', the left one's first; or the only one's.
 std::vector<EyeView> eyesOfFrame(const CameraFrame& camera, const RunOptions& options);
 
-/// Lets the witnesses look for an object that is kept.
+/// Lets the witnesses look for an object, kept or culled.
 Sighting lookFor(const Scene& scene, const View& view, uint32_t object, const RunOptions& options);
 
 /// The answer in sentences, at most 100 characters a line.
 std::string answerText(const AskedScene& asked, const ObjectAnswer& answer);
+/// Whose frame it is and where its eye stands, at most 100 characters a line.
+std::string frameLine(const Scene& scene, const ExplainOptions& options, size_t frames, const View& view);
+nlohmann::ordered_json cameraJson(const Scene& scene, const ExplainOptions& options, const View& view);
 /// The answer in one line of at most 100 characters.
 std::string answerLine(const AskedScene& asked, const ObjectAnswer& answer);
 nlohmann::ordered_json answerJson(const AskedScene& asked, const ObjectAnswer& answer);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/cli/verbs/explain_object.h"
+#include "sightline/tools/report/readable.h"
 #include "sightline/tools/report/run/insight.h"
 #include "sightline/tools/scene/one_line.h"
 
@@ -16,8 +17,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A name that fits: of a long one the end, which tells most.
-std::string fitted(const Scene& scene, uint32_t object, size_t width) { return oneLine(callOf(scene, object), width); }
+/// The object's key, and its path, of a long one both ends.
+std::string fitted(const Scene& scene, uint32_t object, size_t width) {
+    const std::string key = fmt::format("{:>6}", scene.objects[object].key);
+    const std::string path = objectPath(scene, scene.objects[object]);
+    if (path.empty()) return key;
+    return fmt::format("{} '{}'", key, withoutMiddle(path, width - std::min(key.size() + 3, width - 3)));
+}
 
 uint64_t trianglesOf(const Scene& scene, uint32_t object) {
     return scene.meshes[scene.objects[object].mesh].triangles();
@@ -25,8 +31,9 @@ uint64_t trianglesOf(const Scene& scene, uint32_t object) {
 
 std::string occluderTable(const Scene& scene, const std::vector<OccluderRow>& rows, size_t top) {
     std::string text = fmt::format("{:>9} {:>9} {:>12} {:>14} {:>8}  {}\n", "hidden", "frames", "rasterized", "hidden",
-                                   "hidden", "occluder");
-    text += fmt::format("{:>9} {:>9} {:>12} {:>14} {:>8}\n", "objects", "", "triangles", "triangles", "for one");
+                                   "hidden", "the occluder's");
+    text += fmt::format("{:>9} {:>9} {:>12} {:>14} {:>8}  {}\n", "objects", "", "triangles", "triangles", "for one",
+                        "   key  name");
     for (size_t i = 0; i < std::min(rows.size(), top); ++i) {
         const OccluderRow& row = rows[i];
         text += fmt::format("{:>9.1f} {:>9} {:>12} {:>14} {:>8.1f}  {}\n", row.hidden, row.frames,
@@ -94,8 +101,8 @@ std::string pathText(const Scene& scene, const CullRun& run, uint32_t top) {
     double hidden = 0;
     for (const OccluderRow& row : rows) hidden += row.hidden;
     std::string text = fmt::format(
-        "{}: {} objects, {} triangles; {} frames\nOcclusion hid {} objects, {:.1f} a frame.\n\nWho hides most\n",
-        oneLine(run.scene), grouped(run.instances), grouped(run.triangles), run.frames.size(),
+        "{}: {}, {} triangles; {}\nOcclusion hid {} objects, {:.1f} a frame.\n\nWho hides most\n", oneLine(run.scene),
+        counted(run.instances, "object"), grouped(run.triangles), counted(run.frames.size(), "frame"),
         grouped(static_cast<uint64_t>(hidden + 0.5)), hidden / static_cast<double>(run.frames.size()));
     text += occluderTable(scene, rows, top);
     text +=

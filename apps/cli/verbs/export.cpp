@@ -23,6 +23,7 @@
 #include "sightline/tools/export/gltf_scene.h"
 #include "sightline/tools/import/scene_kind.h"
 #include "sightline/tools/report/output_file.h"
+#include "sightline/tools/report/readable.h"
 
 namespace sightline::cli {
 using namespace tools;
@@ -98,18 +99,16 @@ void printExported(std::FILE* out, const ExportOptions& options, const Exported&
     tell(out, fmt::format("{}: {} objects, where there were {}; {} of {} triangles; {}\n", options.output,
                           grouped(e.objects_written), grouped(e.objects), grouped(e.written), grouped(e.triangles),
                           e.keeps_textures ? "materials and textures as they were" : "materials without textures"));
-    if (options.outside)
-        tell(out,
-             fmt::format("left out: {} triangles ({:.1f} %) within {}: no eye outside of these can see them, which "
-                         "is proved\n",
-                         grouped(e.encased), percentOf(e.encased, e.triangles),
-                         e.shells == 1 ? "1 closed surface" : grouped(e.shells) + " closed surfaces"));
+    if (options.outside && e.shells == 0) tell(out, "left out: nothing; no closed surface was found\n");
+    if (options.outside && e.shells > 0)
+        tell(out, fmt::format("left out: {} ({:.1f} %) within {}; it is proved that no eye outside of these sees any\n",
+                              counted(e.encased, "triangle"), percentOf(e.encased, e.triangles),
+                              counted(e.shells, "closed surface")));
     if (options.from_path)
         tell(out,
-             fmt::format("left out: {} triangles ({:.1f} %) of objects that {} cannot see, which is proved; of what "
-                         "lies between the frames nothing is\n",
-                         grouped(e.unseen), percentOf(e.unseen, e.triangles),
-                         e.frames == 1 ? "the one frame" : fmt::format("the {} frames", e.frames)));
+             fmt::format("left out: {} ({:.1f} %) of objects; it is proved that none of {} sees any, and nothing "
+                         "is said of eyes between them\n",
+                         counted(e.unseen, "triangle"), percentOf(e.unseen, e.triangles), counted(e.frames, "frame")));
 }
 
 std::string exportJson(const ExportOptions& options, const Exported& e) {

@@ -118,17 +118,29 @@ std::vector<FileFacts> countFiles(const Scene& scene) {
     return out;
 }
 
+/// A mesh, and its name, or else that of the first object that shows it.
+struct LargeMesh {
+    const Mesh* mesh;
+    std::string name;
+};
+
 /// The meshes with the most triangles, the largest first.
-std::vector<const Mesh*> largestMeshes(const Scene& scene) {
+std::vector<LargeMesh> largestMeshes(const Scene& scene) {
     constexpr size_t kMost = 5;
-    std::vector<const Mesh*> out;
-    for (const Mesh& mesh : scene.meshes) out.push_back(&mesh);
+    std::vector<LargeMesh> out;
+    for (const Mesh& mesh : scene.meshes) out.push_back({&mesh, {}});
     const size_t count = std::min(kMost, out.size());
     std::partial_sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count), out.end(),
-                      [](const Mesh* a, const Mesh* b) {
-                          return a->triangles() != b->triangles() ? a->triangles() > b->triangles() : a < b;
+                      [](const LargeMesh& a, const LargeMesh& b) {
+                          const size_t of_a = a.mesh->triangles(), of_b = b.mesh->triangles();
+                          return of_a != of_b ? of_a > of_b : a.mesh < b.mesh;
                       });
     out.resize(count);
+    for (LargeMesh& large : out) {
+        large.name = large.mesh->name;
+        for (size_t i = 0; i < scene.objects.size() && large.name.empty(); ++i)
+            if (&scene.meshes[scene.objects[i].mesh] == large.mesh) large.name = objectPath(scene, scene.objects[i]);
+    }
     return out;
 }
 
@@ -175,8 +187,8 @@ Json infoJson(const SceneReport& report) {
                         {"transmissive", facts.transmissive},
                         {"double_sided", facts.double_sided}};
     out["largest_meshes"] = Json::array();
-    for (const Mesh* mesh : largestMeshes(scene))
-        out["largest_meshes"].push_back({{"name", mesh->name}, {"triangles", mesh->triangles()}});
+    for (const LargeMesh& large : largestMeshes(scene))
+        out["largest_meshes"].push_back({{"name", large.name}, {"triangles", large.mesh->triangles()}});
     const Box3d& bounds = report.bounds;
     if (bounds.empty()) return out;
     out["bounds"] = {{"min", {bounds.min.x, bounds.min.y, bounds.min.z}},
@@ -224,11 +236,13 @@ void printInfo(std::FILE* out, const SceneReport& report) {
     if (!bounds.empty())
         fmt::print(out, "  bounds              ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", bounds.min.x,
                    bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z);
-    const std::vector<const Mesh*> largest = largestMeshes(scene);
-    if (largest.size() < 2) return;
+    const std::vector<LargeMesh> largest = largestMeshes(scene);
+    const auto named = [](const LargeMesh& large) { return !large.name.empty(); };
+    if (largest.size() < 2 || std::none_of(largest.begin(), largest.end(), named)) return;
     fmt::print(out, "  largest meshes\n");
-    for (const Mesh* mesh : largest)
-        fmt::print(out, "  {:>34}  {}\n", grouped(mesh->triangles()), mesh->name.empty() ? "-" : oneLine(mesh->name));
+    for (const LargeMesh& large : largest)
+        fmt::print(out, "  {:>34}  {}\n", grouped(large.mesh->triangles()),
+                   large.name.empty() ? "-" : oneLine(large.name));
 }
 
 /// A line each: key, triangles, path; separated by tabs, in the order of keys.

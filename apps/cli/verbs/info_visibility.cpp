@@ -110,9 +110,9 @@ Status infoOfVisibility(const std::string& file, const std::string& json) {
         fmt::print("  format              visibility file, {}\n", packed ? "packed" : "in place");
         fmt::print("  map                 {} (hash {})\n", map.empty() ? "-" : oneLine(map), hash);
         row("cells", rows.cells(), grouped(rows.classes()) + " different rows");
-        row("leaves", opened->leaves(), grouped(facts.leaves_with_cells) + " in cells");
+        if (opened->leaves() > 0) row("leaves", opened->leaves(), grouped(facts.leaves_with_cells) + " in cells");
         row("visible cell pairs", facts.cell_pairs);
-        row("visible leaf pairs", facts.leaf_pairs);
+        if (opened->leaves() > 0) row("visible leaf pairs", facts.leaf_pairs);
         if (opened->hasCells()) {
             row("cells as places", places.cells,
                 std::string(places.cells_are) + (places.outside ? ", and the outside" : ""));

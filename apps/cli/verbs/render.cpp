@@ -22,6 +22,7 @@
 #include "sightline/tools/report/page/render_page.h"
 #include "sightline/tools/report/pictures/picture.h"
 #include "sightline/tools/report/pictures/render_pictures.h"
+#include "sightline/tools/report/readable.h"
 #include "sightline/tools/report/run/cull_run.h"
 #include "sightline/tools/report/run/render_run.h"
 #include "sightline/tools/scene/one_line.h"
@@ -105,10 +106,10 @@ void drawMethods(const RenderList& scene, const View& view, const RenderOptions&
 
 void printRun(std::FILE* out, const RenderRun& run) {
     std::string text;
-    fmt::format_to(std::back_inserter(text),
-                   "{}: {} objects, {} triangles; frame {} of {}, {}x{}: {} objects, {} polygons in view\n",
-                   oneLine(run.scene), grouped(run.objects), grouped(run.triangles), run.frame, run.frames, run.width,
-                   run.height, grouped(run.objects_in_view), grouped(run.polygons_in_view));
+    fmt::format_to(std::back_inserter(text), "{}: {}, {}; {}, {}x{}: {}, {} in view\n", oneLine(run.scene),
+                   counted(run.objects, "object"), counted(run.triangles, "triangle"), frameOf(run.frame, run.frames),
+                   run.width, run.height, counted(run.objects_in_view, "object"),
+                   counted(run.polygons_in_view, "polygon"));
     for (const MethodResult& result : run.methods) {
         const Agreement& agreement = result.agreement;
         std::string verdict = "as the plain z-buffer";
@@ -167,9 +168,7 @@ Status runRender(const CLI::App& verb, RenderOptions& options) {
     if (!scene) return scene.error();
     const Result<CameraPath> path = loadPath(*scene, options);
     if (!path) return path.error();
-    if (options.frame >= path->frames.size())
-        return Error{Error::Kind::kUsage, fmt::format("--frame {}: the camera path has {} frames, counted from 0",
-                                                      options.frame, path->frames.size())};
+    if (Status there = checkFrame(options.frame, path->frames.size()); !there) return there;
     const View view = makeView(path->frames[options.frame], options.width, options.height);
     if (!isUsable(view))
         return Error{

@@ -18,6 +18,7 @@
 #include "sightline/tools/report/page/cull_page.h"
 #include "sightline/tools/report/pictures/film_files.h"
 #include "sightline/tools/report/run/compare_runs.h"
+#include "sightline/tools/report/readable.h"
 #include "sightline/tools/report/run/trace_json.h"
 #include "sightline/tools/scene/one_line.h"
 
@@ -37,10 +38,11 @@ struct ReportOptions {
 };
 
 void printComparison(std::FILE* out, const RunComparison& c, const RunFile& a, const RunFile& b) {
-    fmt::print(out, "A {}: {}, {} frames\nB {}: {}, {} frames\n", oneLine(a.file), oneLine(a.run.scene),
-               a.run.frames.size(), oneLine(b.file), oneLine(b.run.scene), b.run.frames.size());
-    fmt::print(out, "paired       {} frames; without a partner {} of A, {} of B\n", c.pairs.size(), c.unpaired_a,
-               c.unpaired_b);
+    fmt::print(out, "A {}: {}, {}\nB {}: {}, {}\n", oneLine(a.file), oneLine(a.run.scene),
+               counted(a.run.frames.size(), "frame"), oneLine(b.file), oneLine(b.run.scene),
+               counted(b.run.frames.size(), "frame"));
+    fmt::print(out, "paired       {}; without a partner {} of A, {} of B\n", counted(c.pairs.size(), "frame"),
+               c.unpaired_a, c.unpaired_b);
     fmt::print(out, "query        {:.1f} us in A, {:.1f} us in B, medians; B / A {:.3f} ({:.3f} to {:.3f})\n",
                c.median_a, c.median_b, c.ratio, c.ratio_low, c.ratio_high);
     fmt::print(out, "kept         {} in A, {} in B; only A {}, only B {}\n", grouped(c.kept_a), grouped(c.kept_b),
@@ -51,8 +53,8 @@ void printComparison(std::FILE* out, const RunComparison& c, const RunFile& a, c
                grouped(c.new_false));
     for (size_t i = 0; i < std::min(c.differences.size(), kMostLines); ++i) {
         const RunComparison::Difference& row = c.differences[i];
-        fmt::print(out, "  object {} \"{}\": {} frames only in A, {} only in B\n", row.id & ~(uint64_t{1} << 63),
-                   oneLine(row.path.empty() ? row.name : row.path, 200), row.only_a, row.only_b);
+        fmt::print(out, "  object {} \"{}\": {} only in A, {} only in B\n", row.id & ~(uint64_t{1} << 63),
+                   oneLine(row.path.empty() ? row.name : row.path, 200), counted(row.only_a, "frame"), row.only_b);
     }
     if (c.differences.size() > kMostLines) fmt::print(out, "  and {} more\n", c.differences.size() - kMostLines);
     for (const std::string& sentence : c.verdict) fmt::print(out, "{}\n", oneLine(sentence));

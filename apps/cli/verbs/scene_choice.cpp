@@ -112,8 +112,15 @@ std::vector<std::pair<std::string, std::string>> optionsOf(const SceneChoice& ch
     return out;
 }
 
+/// Whether a word begins a procedural scene, and no file is called so.
+bool isBegun(const std::string& word) {
+    std::error_code ignored;
+    return isProcedural(word + ":") && !std::filesystem::exists(word, ignored);
+}
+
 Result<Scene> loadOne(const std::string& name, ImportSettings settings) {
     if (isProcedural(name)) return makeProcedural(name);
+    if (isBegun(name)) return makeProcedural(name);  // which says what there is
     Progress progress("reading " + std::filesystem::path(name).filename().string(), "parts", 0);
     settings.progress = [&](size_t done, size_t total) { progress.set(done, total); };
     settings.note = [](const std::string& text) { note(text); };
@@ -133,7 +140,7 @@ void tellOfWideObjects(const Scene& scene) {
         ++objects;
     }
     if (wide < kMany || wide < all / 2) return;
-    note(fmt::format("{} {:.0f} % of the triangles: more may be culled with --split grid:8",
+    note(fmt::format("{} {:.0f} % of the triangles: --split grid:8 may cull more of them, in a longer query",
                      objects == 1 ? "one object through half the scene holds"
                                   : fmt::format("{} objects through half the scene hold", objects),
                      100.0 * static_cast<double>(wide) / static_cast<double>(all)));

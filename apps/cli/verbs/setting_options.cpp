@@ -181,8 +181,8 @@ void addClusterOptions(CLI::App& verb, RunOptions& options) {
                     throw CLI::ValidationError("--cluster-test", "wants a number above 0");
                 options.cluster_test = test;
             },
-            fmt::format("what a cluster's test costs, in triangles: for the stage clusters [{}]",
-                        RunOptions().cluster_test))
+            "what a cluster's test costs, in triangles: for the stage clusters")
+        ->default_str(fmt::format("{}", RunOptions().cluster_test))
         ->type_name("T")
         ->group("Culling");
     verb.add_option("--calibration", options.calibration, "takes that from a file of calibrate")

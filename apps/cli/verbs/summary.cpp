@@ -16,6 +16,7 @@
 #include "apps/cli/verbs/cull_path.h"
 #include "apps/cli/verbs/explain_object.h"
 #include "apps/cli/verbs/setting_options.h"
+#include "sightline/tools/report/readable.h"
 #include "sightline/tools/scene/one_line.h"
 
 namespace sightline::cli {
@@ -110,8 +111,8 @@ std::vector<std::string> looseNotes(const Scene& scene, const RunOptions& option
     }
     std::vector<std::pair<size_t, std::string>> lines;
     for (const auto& [reason, objects] : groups) {
-        std::string line = fmt::format("{} object{}: {}; as {}", grouped(objects.size()),
-                                       objects.size() == 1 ? "" : "s", reason, titleOf(scene, objects.front()));
+        std::string line =
+            fmt::format("{}: {}; as {}", counted(objects.size(), "object"), reason, titleOf(scene, objects.front()));
         if (objects.size() > 1) line += " and " + titleOf(scene, objects[1]);
         lines.emplace_back(objects.size(), line + ".");
     }
@@ -147,8 +148,8 @@ void addSums(std::string& text, const Verification& sum, const CullRun& run) {
                    "verified     {} of {} culled objects were visible, by {} rays and {} id samples\n",
                    grouped(sum.false_culls), grouped(sum.culled), rounded(static_cast<double>(sum.rays)),
                    rounded(static_cast<double>(sum.id_samples)));
-    fmt::format_to(std::back_inserter(text), "over-estimate {:.3f}: {} reported, {} exactly visible, over {} frames\n",
-                   sum.overEstimate(), grouped(sum.reported), grouped(sum.exactly_visible), judged);
+    fmt::format_to(std::back_inserter(text), "over-estimate {:.3f}: {} reported, {} exactly visible, over {}\n",
+                   sum.overEstimate(), grouped(sum.reported), grouped(sum.exactly_visible), counted(judged, "frame"));
     if (sum.lossy_seen > 0)
         fmt::format_to(std::back_inserter(text),
                        "not proved   {} objects that were culled by distance, contribution or depth were seen: so they "
@@ -209,12 +210,13 @@ void noteFrames(const Scene& scene, const RunOptions& options, std::optional<Loa
 
 void printSummary(std::FILE* out, const CullRun& run) {
     const auto frames = static_cast<double>(run.frames.size());
-    double visible = 0, triangles = 0, slowest = 0;
+    double visible = 0, triangles = 0, time = 0, slowest = 0;
     StageRow sums[kStageCount];
     bool budget_spent = false;
     for (const FrameResult& frame : run.frames) {
         visible += static_cast<double>(frame.visible.size());
         triangles += static_cast<double>(frame.triangles);
+        time += frame.query_microseconds;
         slowest = std::max(slowest, frame.query_microseconds);
         budget_spent |= frame.stats.budget_spent;
         for (int stage = 0; stage < kStageCount; ++stage) {
@@ -223,10 +225,9 @@ void printSummary(std::FILE* out, const CullRun& run) {
         }
     }
     std::string text;
-    fmt::format_to(std::back_inserter(text),
-                   "{}: {} object{}, {} triangles; {} frame{} of {}x{}, means over the frames\n", oneLine(run.scene),
-                   grouped(run.objects), run.objects == 1 ? "" : "s", grouped(run.triangles), run.frames.size(),
-                   run.frames.size() == 1 ? "" : "s", run.width, run.height);
+    fmt::format_to(std::back_inserter(text), "{}: {}, {}; {} of {}x{}, means over the frames\n", oneLine(run.scene),
+                   counted(run.objects, "object"), counted(run.triangles, "triangle"),
+                   counted(run.frames.size(), "frame"), run.width, run.height);
     fmt::format_to(std::back_inserter(text), "visible      {:>10} {:<8} {:7.3f} %\n", rounded(visible / frames),
                    visible == frames ? "object" : "objects",
                    percentOf(visible / frames, static_cast<double>(run.objects)));
@@ -240,8 +241,8 @@ void printSummary(std::FILE* out, const CullRun& run) {
     fmt::format_to(std::back_inserter(text), "triangles    {:>10} submitted {:6.3f} % of the scene's\n",
                    rounded(triangles / frames), percentOf(triangles / frames, static_cast<double>(run.triangles)));
     addClusters(text, run);
-    fmt::format_to(std::back_inserter(text), "query        {:>10.1f} us median, {:.1f} us at most\n", medianQuery(run),
-                   slowest);
+    fmt::format_to(std::back_inserter(text), "query        {:>10.1f} us mean, {:.1f} us median, {:.1f} us at most\n",
+                   time / frames, medianQuery(run), slowest);
     if (budget_spent)
         fmt::format_to(std::back_inserter(text),
                        "the work budget was spent in some frames: more was kept than need be\n");

@@ -21,6 +21,7 @@
 #include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/import/quake/prt.h"
 #include "sightline/tools/import/quake/quake_map.h"
+#include "sightline/tools/scene/procedural.h"
 #include "sightline/tools/scene/text_file.h"
 
 namespace sightline::cli {
@@ -230,6 +231,8 @@ Result<VisMap> loadVisMap(const VisMapChoice& choice) {
         return usageError(
             "a .map has no lump to write: name an output that does not end in .bsp, or give the compiled map");
     if (!is_prt && !choice.bsp.empty()) return usageError("--bsp goes with a .prt");
+    if (isProcedural(choice.name))
+        return usageError(choice.name + ": vis takes maps; for the cells of a scene that is made: sightline bake");
     VisMap out;
     if (is_prt || is_source) {
         Result<VisMap> map = is_prt ? loadPortalFile(choice) : loadSource(choice);

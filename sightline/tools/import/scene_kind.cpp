@@ -129,7 +129,7 @@ constexpr std::array kRefused = std::to_array<Refused>({
      "is a CAD model, which is not read: export it as glTF or IFC"},
     {"nwd nwc nwf", "is a Navisworks file, which is not read: export it as IFC or FBX"},
     {"ifcxml", "is IFC as XML, which is not read: export it as .ifc"},
-    {"map", "is the source of a game map, which vis reads, and is no scene: name the .bsp"},
+    {"map", "is the source of a game map, which vis and bake read, and is no scene: name the .bsp"},
     {"prt", "holds a map's portals, which vis and info read, and is no scene: name the .bsp"},
     {"wad", "is an archive of a game's textures, which is not read"},
     {"md2 md3 mdl mdc smd vta 3d",

@@ -8,12 +8,16 @@
 
 namespace sightline::tools {
 
+bool takesOwnCameras(const Scene& scene, const PathChoice& choice) {
+    return choice.file.empty() && choice.kind == PathKind::kAny && choice.walk.frames == 0 && !choice.seeded &&
+           !scene.cameras.empty();
+}
+
 Result<CameraPath> choosePath(const Scene& scene, const PathChoice& choice) {
     constexpr uint32_t kFrames = 16;
     if (!choice.file.empty()) return readCameraPath(choice.file);
+    if (takesOwnCameras(scene, choice)) return sceneCameras(scene);
     WalkSettings walk = choice.walk;
-    if (choice.kind == PathKind::kAny && walk.frames == 0 && !choice.seeded && !scene.cameras.empty())
-        return sceneCameras(scene);
     const auto framesOr = [&](uint32_t usual) { return walk.frames > 0 ? walk.frames : usual; };
     switch (choice.kind) {
         case PathKind::kWalk:

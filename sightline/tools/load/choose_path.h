@@ -27,6 +27,9 @@ struct PathChoice {
     WalkSettings walk{.frames = 0};  ///< frames and seed are any kind's; 0 frames: not asked for
 };
 
+/// Whether nothing else was asked for and the scene has cameras, so that choosePath() takes those.
+bool takesOwnCameras(const Scene& scene, const PathChoice& choice);
+
 /// The file's cameras; else those of a kind; else, if neither frames nor a seed were asked for, the scene's own; else a
 /// tour. If nothing says how many: 600 of a walk, one overview, 16 of the others. Errors: of readCameraPath().
 Result<CameraPath> choosePath(const Scene& scene, const PathChoice& choice);

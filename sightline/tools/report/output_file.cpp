@@ -20,7 +20,14 @@ Error failure(const std::string& file, const std::string& what) {
     return {Error::Kind::kOutput, file + ": cannot be written: " + what};
 }
 
-Error failure(const std::string& file, int error) { return failure(file, std::strerror(error)); }
+/// What the system says; where the directory is missing, which.
+Error failure(const std::string& file, int error) {
+    const std::filesystem::path directory = std::filesystem::path(file).parent_path();
+    std::error_code ignored;
+    if (error == ENOENT && !directory.empty() && !std::filesystem::exists(directory, ignored))
+        return failure(file, "there is no directory " + directory.string());
+    return failure(file, std::strerror(error));
+}
 
 bool writeAll(int descriptor, std::string_view bytes) {
     while (!bytes.empty()) {

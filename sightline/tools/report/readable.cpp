@@ -17,4 +17,8 @@ std::string readable(double value) {
     return text;
 }
 
+std::string counted(uint64_t count, const char* what) {
+    return fmt::format("{} {}{}", readable(static_cast<double>(count)), what, count == 1 ? "" : "s");
+}
+
 }  // namespace sightline::tools

@@ -54,6 +54,13 @@ std::string oneLine(std::string_view text, size_t most) {
     return out;
 }
 
+std::string withoutMiddle(std::string_view text, size_t most) {
+    if (text.size() <= most) return oneLine(text);
+    size_t begin = (most - 3) / 3;
+    while (begin > 0 && follows(text[begin])) --begin;
+    return oneLine(text.substr(0, begin)) + oneLine(text.substr(begin), most - begin);
+}
+
 std::string shortened(std::string_view text, size_t most) {
     if (text.size() <= most) return std::string(text);
     size_t end = most - 3;

@@ -13,6 +13,9 @@ namespace sightline::tools {
 /// @param most  of a longer text only the end is left, behind "..."; never half a character  [bytes] [>= 3]
 std::string oneLine(std::string_view text, size_t most = std::string_view::npos);
 
+/// The same, but of a longer text the beginning and the end are left, with "..." between them.
+std::string withoutMiddle(std::string_view text, size_t most);
+
 /// The beginning of a text of one line, with "..." behind it if anything is left out; never half a character.
 /// @param most  [bytes] [>= 3]
 std::string shortened(std::string_view text, size_t most);

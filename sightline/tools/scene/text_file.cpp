@@ -27,6 +27,7 @@ Result<std::string> readTextFile(const std::string& file, size_t limit) {
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored)) return error("is a directory");
     const std::unique_ptr<std::FILE, CloseFile> stream(std::fopen(file.c_str(), "rb"));
+    if (!stream && errno == ENOENT) return error("no such file");
     if (!stream) return error(fmt::format("cannot be opened: {}", std::strerror(errno)));
     std::string text;
     char block[1 << 16];

@@ -132,7 +132,7 @@ TEST_F(MapSource, FindsMapsInFilesAndArchives) {
     const std::string none = write("none.pk3", pk3Bytes({{"readme", "x"}}));
     expectLine(none, none + ": has no map");
     expectLine(none + ":readme", none + ":readme: is no compiled map of Quake, Half-Life, Quake 2 or Quake 3");
-    expectLine("/nowhere.pk3:a.bsp", "/nowhere.pk3: cannot be opened: No such file or directory");
+    expectLine("/nowhere.pk3:a.bsp", "/nowhere.pk3: no such file");
 }
 
 TEST(GameArchiveMutation, SurvivesTwentyThousandMutations) {

@@ -135,7 +135,7 @@ TEST(Prt, EachCutOfItIsRefused) {
 
 TEST(Prt, FilesAreReadAndMissedByName) {
     EXPECT_FALSE(readPrt("/nowhere/x.prt").ok());
-    EXPECT_EQ(readPrt("/nowhere/x.prt").error().message, "/nowhere/x.prt: cannot be opened: No such file or directory");
+    EXPECT_EQ(readPrt("/nowhere/x.prt").error().message, "/nowhere/x.prt: no such file");
 }
 
 /// Cells are convex: all portals of a cell lie on its side of each of them. An outline read the wrong way round would

@@ -59,15 +59,28 @@ TEST(OneLine, KeepsTheEndOfALongText) {
     EXPECT_EQ(shortened("abcd", 8), "abcd");
 }
 
+TEST(OneLine, LeavesBothEndsOfALongText) {
+    EXPECT_EQ(withoutMiddle("abcdefghi", 9), "abcdefghi");
+    EXPECT_EQ(withoutMiddle("abcdefghijkl", 9), "ab...ijkl");
+    EXPECT_EQ(withoutMiddle("a\xc3\xbc"
+                            "cdefghijk",
+                            9),
+              "a...ghijk")
+        << "never half a character";
+    EXPECT_EQ(withoutMiddle("a\nbcdefghijkl", 9), "a ...ijkl");
+    EXPECT_EQ(withoutMiddle("abcdef", 3), "...");
+}
+
 TEST(OneLine, IsFitForATerminalWhateverComes) {
     Random random(7);
     for (int i = 0; i < 20000; ++i) {
         std::string text;
         for (uint64_t n = random.below(12); n > 0; --n) text += static_cast<char>(random.below(256));
-        const std::string line = oneLine(text, 8);
-        EXPECT_LE(line.size(), 8u);
-        EXPECT_EQ(oneLine(line), line) << "what is fit stays";
-        for (const char c : line) EXPECT_TRUE(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);
+        for (const std::string& line : {oneLine(text, 8), withoutMiddle(text, 8)}) {
+            EXPECT_LE(line.size(), 8u);
+            EXPECT_EQ(oneLine(line), line) << "what is fit stays";
+            for (const char c : line) EXPECT_TRUE(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);
+        }
     }
 }
 

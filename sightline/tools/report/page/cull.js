@@ -120,7 +120,7 @@ function filmCard(run, film) {
       ['triangles submitted', grouped(triangles)], ['query, µs', readable(time)]].filter(Boolean).map(([term, text]) =>
       h('div', {}, h('dt', {}, term), h('dd', {}, text)));
   });
-  const bar = controls(run.frames.length, (f) => `frame ${f} of ${run.frames.length}`);
+  const bar = controls(run.frames.length, (f) => `frame ${f} (0 to ${run.frames.length - 1})`);
   if (!film.shots.length) return card('film', 'Frame by frame', bar, facts);
   const map = (id, alt) => hasImage(film, id) && figure(filmImage(film, id, alt),
     live(h('span'), (f) => shotOf(film, f)[id]), 'plan');

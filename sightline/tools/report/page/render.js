@@ -152,7 +152,7 @@ function fightsCard({settings: {depth_format: own}, z_fighting: formats}) {
 function madeCard({camera, frame, settings}) {
   const place = (v) => `(${v.map((value) => +value.toPrecision(6)).join(', ')})`;
   return card('how', 'How it was made', definitions([
-    ['Camera', `frame ${frame} of ${data.frames}: from ${place(camera.eye)} to ${place(camera.target)}`],
+    ['Camera', `frame ${frame} (0 to ${data.frames - 1}): from ${place(camera.eye)} to ${place(camera.target)}`],
     ['Samples', 'one a pixel, at its centre'],
     ['Surfaces', 'single-sided back faces are dropped; masked surfaces are drawn whole; blended and transmissive ' +
       'ones are not drawn'],

@@ -200,8 +200,7 @@ void judge(RunComparison& out, std::optional<double> most_ratio) {
     }
     if (out.new_false > 0) {
         out.ok = false;
-        out.verdict.push_back(
-            fmt::format("B has {} false cull{} that A has not.", number(out.new_false), out.new_false == 1 ? "" : "s"));
+        out.verdict.push_back(fmt::format("B has {} that A has not.", counted(out.new_false, "false cull")));
     }
     if (most_ratio && !out.pairs.empty() && out.ratio > *most_ratio) {
         out.ok = false;

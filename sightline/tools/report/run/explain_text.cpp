@@ -40,8 +40,7 @@ std::string listOf(const Array<Hider>& hiders, const NameOfObject& name, size_t 
         rest -= hiders[i].share;
     }
     if (shown < hiders.size())
-        parts.push_back(fmt::format("{} other{} ({})", hiders.size() - shown, hiders.size() - shown == 1 ? "" : "s",
-                                    percent(std::max(rest, 0.0))));
+        parts.push_back(fmt::format("{} ({})", counted(hiders.size() - shown, "other"), percent(std::max(rest, 0.0))));
     std::string text;
     for (size_t i = 0; i < parts.size(); ++i) text += (i == 0 ? "" : i + 1 < parts.size() ? ", " : " and ") + parts[i];
     return text;
@@ -50,10 +49,9 @@ std::string listOf(const Array<Hider>& hiders, const NameOfObject& name, size_t 
 const char* pronoun(size_t count) { return count == 1 ? "that one" : count == 2 ? "these two" : "these"; }
 
 std::string clustersText(const ClustersReason& found) {
-    return fmt::format("of {} cluster{}, {} seen from the back, {} outside of the view, {} hidden",
-                       readable(static_cast<double>(found.clusters)), found.clusters == 1 ? "" : "s",
-                       readable(static_cast<double>(found.back)), readable(static_cast<double>(found.outside)),
-                       readable(static_cast<double>(found.hidden)));
+    return fmt::format("of {}, {} seen from the back, {} outside of the view, {} hidden",
+                       counted(found.clusters, "cluster"), readable(static_cast<double>(found.back)),
+                       readable(static_cast<double>(found.outside)), readable(static_cast<double>(found.hidden)));
 }
 
 std::string drawnText(const ClustersReason& found) {
@@ -199,21 +197,17 @@ std::string keptText(const Explanation& why, const NameOfObject& name) {
                                                    : "its rectangle");
 }
 
-std::string countOf(size_t count, const char* what) {
-    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
-
 /// "it stands in 2 cells, of which 1 is seen through 3 portals, beside it".
 std::string cellsText(const CellsReason& cells) {
-    const std::string stands = "it stands in " + countOf(cells.object.size(), "cell");
+    const std::string stands = "it stands in " + counted(cells.object.size(), "cell");
     if (cells.reached == 0) return stands + ", into which no window leads";
     return fmt::format("{}, of which {} {} seen, through {}, but it lies beside all windows", stands, cells.reached,
-                       cells.reached == 1 ? "is" : "are", countOf(cells.portals.size(), "portal"));
+                       cells.reached == 1 ? "is" : "are", counted(cells.portals.size(), "portal"));
 }
 
 std::string rowsText(const CellsReason& cells) {
     return fmt::format("it stands in {}, none of which is seen from {} that the eye may be in",
-                       countOf(cells.object.size(), "cell"), countOf(cells.eye.size(), "cell"));
+                       counted(cells.object.size(), "cell"), counted(cells.eye.size(), "cell"));
 }
 
 }  // namespace

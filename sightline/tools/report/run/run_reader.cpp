@@ -353,6 +353,9 @@ Result<RunFile> parseRun(std::string_view text, const std::string& file) {
     } catch (const Fault& fault) {
         return Error{Error::Kind::kInput, file + ": " + fault.what};
     } catch (const json::exception& error) {
+        const size_t first = text.find_first_not_of(" \t\r\n");
+        if (first == std::string_view::npos || text[first] != '{')
+            return Error{Error::Kind::kInput, file + ": is no run: `sightline cull --json FILE` writes one"};
         return Error{Error::Kind::kInput, file + ": not JSON: " + parseFault(error.what())};
     }
 }

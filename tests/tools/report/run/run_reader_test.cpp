@@ -145,7 +145,10 @@ TEST(RunReader, NamesThePlaceOfAFault) {
               "run.json: frames[1].query_microseconds: too large");
     EXPECT_EQ(faultOf([](json& run) { run["frames"][0]["visible"] = {uint64_t{1} << 63}; }),
               "run.json: frames[0].visible[0]: not between 0 and 9223372036854775807");
-    EXPECT_EQ(parseRun("1e999", "run.json").error().message, "run.json: not JSON: number overflow parsing '1e999'");
+    EXPECT_EQ(parseRun(R"({"a": 1e999})", "run.json").error().message,
+              "run.json: not JSON: number overflow parsing '1e999'");
+    EXPECT_EQ(parseRun("glTF", "model.glb").error().message,
+              "model.glb: is no run: `sightline cull --json FILE` writes one");
     EXPECT_EQ(faultOf([](json& run) { run["frames"][1]["eyes"] = {1, 2, 3, 1, 2, 3, 1, 2, 3}; }),
               "run.json: frames[1].eyes: not one for each that is visible");
     EXPECT_EQ(faultOf([](json& run) { run["hysteresis"] = -1; }), "run.json: hysteresis: negative");
