@@ -91,6 +91,18 @@ BakeCells sceneToBake(const Scene& scene, const std::string& name, SceneCellSett
     return out;
 }
 
+BakeCells soupToBake(const Scene& scene, const std::string& name, const SoupCellSettings& settings,
+                     SoupCellReport* report) {
+    SoupCells cells = cellsOfSoup(scene, settings);
+    BakeCells out;
+    out.name = name;
+    out.hash = hashOf(scene);
+    out.space = std::move(cells.space);
+    out.placing.walls = cells.report.walls;
+    if (report) *report = std::move(cells.report);
+    return out;
+}
+
 BakeCells mapToBake(CellSpace leaves, CellGraph rows) {
     BakeCells out;
     out.space = std::move(leaves);

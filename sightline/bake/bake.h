@@ -17,6 +17,7 @@
 #include "sightline/bake/marked/scene_cells.h"
 #include "sightline/bake/objects/box_visibility.h"
 #include "sightline/bake/objects/object_cells.h"
+#include "sightline/bake/soup/soup_cells.h"
 #include "sightline/base/jobs.h"
 #include "sightline/base/memory.h"
 #include "sightline/base/result.h"
@@ -78,6 +79,11 @@ struct BakeCells {
 /// @param name      BakeCells::name
 /// @param settings  SceneCellSettings::movable gets the doors in addition
 BakeCells sceneToBake(const Scene& scene, const std::string& name, SceneCellSettings settings = {});
+
+/// Step 1, of a scene without marks: cells of its own walls, by cellsOfSoup(). They have no rows.
+/// @param report  receives what became of the scene, if there is one
+BakeCells soupToBake(const Scene& scene, const std::string& name, const SoupCellSettings& settings = {},
+                     SoupCellReport* report = nullptr);
 
 /// Step 1, of a map: the leaves of its tree as places, and its rows.
 /// @param leaves  tree, tolerance, and the graph whose cell_of_leaf says which cell a leaf is

@@ -45,11 +45,12 @@ public:
     Portalizer(const LeafTree& tree, const TreePortalSettings& settings)
         : tree_(tree), settings_(settings), parent_(tree.nodes.size(), kNone) {}
 
-    CellGraph run(TreePortalCounts& counts) {
+    CellGraph run(TreePortalCounts& counts, std::vector<uint32_t>& node_of_portal) {
         numberCells();
         measure();
         for (uint32_t node = 0; node < tree_.nodes.size(); ++node) joinSides(node);
         counts = counts_;
+        node_of_portal = std::move(node_of_portal_);
         return std::move(graph_);
     }
 
@@ -267,6 +268,7 @@ private:
         dropDoubles();
         graph_.addPortal(graph_.cell_of_leaf[front_leaf], graph_.cell_of_leaf[back_leaf], outline_,
                          plane_ / length_[node]);
+        node_of_portal_.push_back(node);
     }
 
     /// Corners that are one but for rounding: the outline shrinks by less than the room that it has.
@@ -285,6 +287,7 @@ private:
     const TreePortalSettings& settings_;
     CellGraph graph_;
     TreePortalCounts counts_;
+    std::vector<uint32_t> node_of_portal_;
     std::vector<uint32_t> parent_;  // per node: parent << 1 | side
     std::vector<bool> open_;        // per node: some leaf below can be passed
     std::vector<double> length_;    // per node: of the normal
@@ -304,11 +307,14 @@ private:
 
 }  // namespace
 
-CellGraph cellsOfTree(const LeafTree& tree, const TreePortalSettings& settings, TreePortalCounts* counts) {
+CellGraph cellsOfTree(const LeafTree& tree, const TreePortalSettings& settings, TreePortalCounts* counts,
+                      std::vector<uint32_t>* node_of_portal) {
     SIGHTLINE_ASSERT(tree.bounds.empty() || tree.bounds.finite());
     TreePortalCounts found;
-    CellGraph graph = Portalizer(tree, settings).run(found);
+    std::vector<uint32_t> nodes;
+    CellGraph graph = Portalizer(tree, settings).run(found, nodes);
     if (counts) *counts = found;
+    if (node_of_portal) *node_of_portal = std::move(nodes);
     return graph;
 }
 

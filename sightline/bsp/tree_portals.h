@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "sightline/cells/cells.h"
 #include "sightline/geom/leaf_tree.h"
@@ -39,7 +40,8 @@ struct TreePortalCounts {
 /// O(nodes * depth + faces), as trees of maps are.
 /// @param tree    finite; its bounds, too
 /// @param counts  receives what became of the faces, if there is one
-CellGraph cellsOfTree(const LeafTree& tree, const TreePortalSettings& settings = {},
-                      TreePortalCounts* counts = nullptr);
+/// @param node_of_portal  receives in which node's plane each portal lies, if there is one
+CellGraph cellsOfTree(const LeafTree& tree, const TreePortalSettings& settings = {}, TreePortalCounts* counts = nullptr,
+                      std::vector<uint32_t>* node_of_portal = nullptr);
 
 }  // namespace sightline

@@ -22,6 +22,7 @@ struct CellPortal {
     glm::dvec4 plane{0.0};          ///< of the outline; the unit normal points from cells[1] into cells[0]
     double thickness = 0;           ///< no point of the outline lies farther from the plane [world units]
     uint32_t door = kNone;          ///< the number of what may shut it; kNone: nothing does
+    bool one_way = false;           ///< light comes through to an eye in cells[0] alone: cells[1] sees a wall there
 };
 
 /// A graph of cells. Cells have numbers and no shape of their own: a cell is the room that its portals and walls

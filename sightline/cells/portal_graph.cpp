@@ -16,6 +16,9 @@ double farOf(const glm::dvec3& point) {
     return std::max({far.x, far.y, far.z});
 }
 
+/// From how many of its cells a portal is seen through: the first ones.
+uint32_t waysOf(const CellPortal& portal) { return portal.one_way ? 1 : 2; }
+
 /// Which cell each leaf of the tree is.
 std::vector<uint32_t> cellsOfLeaves(const CellSpace& space) {
     if (!space.graph.cell_of_leaf.empty()) return space.graph.cell_of_leaf;
@@ -58,14 +61,15 @@ PortalGraph::PortalGraph(const CellSpace& space, Memory* memory)
 void PortalGraph::layPortals(const CellSpace& space) {
     const CellGraph& graph = space.graph;
     first_.assign(cells_ + 1, 0);
+    size_t ways = 0;
     for (const CellPortal& portal : graph.portals)
-        for (const uint32_t cell : portal.cells) ++first_[cell + 1];
+        for (uint32_t side = 0; side < waysOf(portal); ++side, ++ways) ++first_[portal.cells[side] + 1];
     for (uint32_t cell = 0; cell < cells_; ++cell) first_[cell + 1] += first_[cell];
-    directed_.resize(2 * graph.portals.size());
+    directed_.resize(ways);
     std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
     for (uint32_t i = 0; i < graph.portals.size(); ++i) {
         const CellPortal& from = graph.portals[i];
-        for (uint32_t side = 0; side < 2; ++side) {
+        for (uint32_t side = 0; side < waysOf(from); ++side) {
             DirectedPortal& portal = directed_[next[from.cells[side]]++];
             portal.plane = side == 0 ? from.plane : -from.plane;
             portal.count = from.count;

@@ -13,6 +13,7 @@ using namespace visibility_file;
 namespace {
 
 constexpr uint64_t kPortalBytes = 56, kPortalsAt = 16, kDoorBytes = 32, kDoorsAt = 8;
+constexpr uint32_t kOneWay = 1u << 31;  // in the place of a portal's number of points
 
 /// Null, or what is wrong with it.
 const char* faultOf(const CellPortal& portal, uint32_t cells, uint32_t doors) {
@@ -42,7 +43,8 @@ Status addPortalSections(const CellSpace& space, SectionWriter& writer, Memory* 
         if (const char* fault = faultOf(portal, graph.cells, static_cast<uint32_t>(space.doors.size())))
             return wrong(fault);
         if (uint64_t{portal.first} + portal.count > graph.points.size()) return wrong("a portal without its points");
-        for (const uint32_t number : {portal.cells[0], portal.cells[1], portal.count, portal.door}) out.put(number);
+        const uint32_t count = portal.count | (portal.one_way ? kOneWay : 0);
+        for (const uint32_t number : {portal.cells[0], portal.cells[1], count, portal.door}) out.put(number);
         out.put(portal.thickness);
         for (int k = 0; k < 4; ++k) out.put(portal.plane[k]);
     }
@@ -78,6 +80,8 @@ CellPortal PlacedPortals::portal(uint32_t i) const {
     CellPortal out;
     for (uint32_t& cell : out.cells) cell = from.take<uint32_t>();
     out.count = from.take<uint32_t>();
+    out.one_way = (out.count & kOneWay) != 0;
+    out.count &= ~kOneWay;
     out.door = from.take<uint32_t>();
     out.thickness = from.take<double>();
     for (int k = 0; k < 4; ++k) out.plane[k] = from.take<double>();

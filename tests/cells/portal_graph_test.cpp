@@ -167,5 +167,20 @@ TEST(PortalGraph, LaysPortalsSideBySide) {
     EXPECT_EQ(portals, 2 * graph.portals());
 }
 
+TEST(PortalGraph, OneWayPortalsLeaveTheirFirstCellAlone) {
+    CellSpace space = gridSpace(2, {.rooms = {3, 3, 2}});
+    for (size_t i = 0; i < space.graph.portals.size(); i += 2) space.graph.portals[i].one_way = true;
+    const PortalGraph graph(space);
+    std::vector<int> left(space.graph.portals.size(), 0);
+    for (uint32_t cell = 0; cell < graph.cells(); ++cell)
+        for (const DirectedPortal& portal : graph.portalsFrom(cell)) {
+            ++left[portal.portal];
+            if (!space.graph.portals[portal.portal].one_way) continue;
+            EXPECT_EQ(space.graph.portals[portal.portal].cells[0], cell);
+            EXPECT_EQ(space.graph.portals[portal.portal].cells[1], portal.to);
+        }
+    for (size_t i = 0; i < left.size(); ++i) EXPECT_EQ(left[i], space.graph.portals[i].one_way ? 1 : 2) << i;
+}
+
 }  // namespace
 }  // namespace sightline::test

@@ -33,6 +33,36 @@ protected:
     json info(const std::string& file) const { return answer("info " + file); }
 };
 
+// A building whose marks are not looked at, and a city that never had any.
+TEST_F(Bake, AScenesOwnWallsAreCells) {
+    for (const std::string scene : {"building:1:1", "city:1:300"}) {
+        const std::string walls = scene[0] == 'b' ? " --cells walls" : "";
+        const json out = bake(scene + walls + " -o own.see --threads 1");
+        EXPECT_EQ(out["cells_are"], "of its own walls") << scene;
+        EXPECT_GT(out["cells"], 100) << scene;
+        EXPECT_GT(out["walls"]["one_way"], 100) << scene;
+        EXPECT_EQ(out["rows"], 0) << scene;
+        const std::string bytes = read(path("own.see"));
+        bake(scene + walls + " -o again.see --threads 3");
+        EXPECT_EQ(read(path("again.see")), bytes) << "the same bytes for any number of threads";
+        const json told = info("own.see");
+        EXPECT_EQ(told["places"]["cells"], out["cells"]) << scene;
+        EXPECT_EQ(told["places"]["cells_are"], "leaves of a tree") << scene;
+        EXPECT_EQ(told["places"]["portals"], out["portals"]) << scene;
+        const std::string views = "verify " + scene + " --path scatter --frames 12 --rays 200000";
+        const json plain = answer(views), divided = answer(views + " --visibility own.see");
+        EXPECT_EQ(divided["verification"]["false_culls"], 0) << scene;
+        EXPECT_LE(divided["verification"]["reported"], plain["verification"]["reported"]) << scene;
+        uint64_t culled = 0;
+        for (const json& frame : divided["frames"])
+            for (const json& stage : frame["stages"])
+                if (stage["name"] == "portals") culled += stage["culled"].get<uint64_t>();
+        EXPECT_GT(culled, 100u) << scene;
+    }
+    const Outcome text = succeed("bake building:1:1 --cells walls");
+    EXPECT_NE(text.out.find("faces between cells are shut"), std::string::npos) << text.out;
+}
+
 TEST_F(Bake, ABuildingBecomesAFileThatHoldsItsCells) {
     const json out = bake("building:1:1 -o b.see --objects");
     EXPECT_EQ(out["schema"], "sightline.bake/1");
@@ -216,7 +246,12 @@ TEST_F(Bake, ASourceHasTheCellsOfItsBrushes) {
 }
 
 TEST_F(Bake, WhatCannotBeBakedIsALine) {
-    expectError("bake city:1:10", 3, "city:1:10");
+    expectError("bake city:1:10 --smallest-occluder 1e6", 3, "city:1:10: has no cells, and no opaque surface");
+    expectError("bake city:1:10 --objects", 2, "--objects: cells of a scene's own walls have no rows");
+    expectError("bake building:1:1 --smallest-hole 0.001", 2, "the scene has marked cells");
+    expectError("bake room.map --cells walls", 2, "room.map: a map has cells of its own");
+    expectError("bake m.bsp --smallest-occluder 4", 2, "m.bsp: a map has cells of its own");
+    expectError("vis room.map --cells walls", 2, "--cells");
     expectError("bake no-such.bsp", 3, "no-such.bsp");
     expectError("bake no-such.glb", 3, "no-such.glb");
     write("rooms.prt", "PRT1\n2\n1\n4 0 1 (64 16 0) (64 16 16) (64 0 16) (64 0 0)\n");

@@ -31,6 +31,8 @@ Made madeOf(uint64_t seed, uint32_t size, size_t rows, size_t objects) {
     Made made;
     made.visible = randomRows(rows, 0.3, seed);
     made.places = seed % 2 == 0 ? boxesInARow(seed, size, rows, objects) : leavesOfATree(seed, size, rows, objects);
+    std::vector<CellPortal>& portals = made.places.space.graph.portals;
+    for (size_t i = 0; i < portals.size(); i += 3) portals[i].one_way = true;
     for (const uint32_t cell : made.places.space.graph.cell_of_leaf)
         made.leaves.push_back(cell == CellGraph::kNoCell ? cell : made.places.space.row_of_cell[cell]);
     return made;
@@ -49,7 +51,7 @@ void expectSame(const CellSpace& a, const CellSpace& b) {
     for (size_t i = 0; i < a.graph.portals.size(); ++i) {
         const CellPortal &p = a.graph.portals[i], &q = b.graph.portals[i];
         EXPECT_TRUE(p.cells[0] == q.cells[0] && p.cells[1] == q.cells[1] && p.first == q.first && p.count == q.count);
-        EXPECT_TRUE(p.plane == q.plane && p.thickness == q.thickness && p.door == q.door);
+        EXPECT_TRUE(p.plane == q.plane && p.thickness == q.thickness && p.door == q.door && p.one_way == q.one_way);
     }
     ASSERT_EQ(a.regions.size(), b.regions.size());
     for (size_t i = 0; i < a.regions.size(); ++i) {

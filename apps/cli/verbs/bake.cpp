@@ -30,6 +30,7 @@ double secondsSince(Clock::time_point then) { return std::chrono::duration<doubl
 
 struct SceneBakeOptions : BakeOptions {
     SceneChoice scene;
+    BakeSourceChoice source;
 };
 
 /// The page has the rows alone.
@@ -44,12 +45,19 @@ Result<int> runBake(SceneBakeOptions& options) {
     for (const std::string& name : options.scene.names) files.read("SCENE", splitMapName(name).file);
     if (Status good = finishBakeOptions(options, files); !good) return good.error();
     const std::string title = options.scene.title();
-    Result<BakeSource> source = loadBakeSource(options.scene, options.visCells(), !options.cells.empty());
+    BakeRun run(options);
+    options.source.cells = options.cells;
+    options.source.jobs = &run.jobs();
+    Result<BakeSource> source = loadBakeSource(options.scene, options.source);
     if (!source) return source.error();
+    if (source->walls && (options.objects || !options.report.empty()))
+        return usageError(
+            std::string(options.objects ? "--objects" : "--report") +
+            ": cells of a scene's own walls have no rows of visibility, which it tells of; cull --visibility FILE "
+            "--report DIR shows such cells");
     if (Status fits = checkSize(source->cells.rows, title, source->of_bsp); !fits) return fits.error();
     const double cells_seconds = secondsSince(begin);
 
-    BakeRun run(options);
     const Result<BakeSettings> settings = run.begin(source->cells.rows);
     if (!settings) return settings.error();
     const Result<Baked> baked = bake::bake(std::move(source->cells), source->scene, *settings);
@@ -81,8 +89,21 @@ void addBake(CLI::App& tool, int& exit_code) {
     CLI::App* verb = tool.add_subcommand("bake", "cells, portals and visible sets of a scene as a file");
     const auto options = std::make_shared<SceneBakeOptions>();
     addSceneChoice(*verb, options->scene);
-    addBakeOptions(*verb, *options, "write the visibility file");
-    verb->callback([options, &exit_code] {
+    addBakeOptions(*verb, *options, "write the visibility file", true);
+    verb->add_option("--smallest-occluder", options->source.smallest_occluder,
+                     "of a scene without marked cells: the side of the smallest square of opaque surface that divides "
+                     "space [world "
+                     "units] (default: a 128th of the scene's diagonal)")
+        ->check(CLI::Range(0.0, 1e9))
+        ->type_name("L");
+    verb->add_option(
+            "--smallest-hole", options->source.smallest_hole,
+            "and how wide a hole must be to be one [world units]; larger than coordinates are exact it shuts "
+            "holes that can be seen through, so that a cull may be false (default: 2^-23 of the scene's diagonal)")
+        ->check(CLI::Range(0.0, 1e9))
+        ->type_name("L");
+    verb->callback([verb, options, &exit_code] {
+        options->source.of_walls = verb->count("--smallest-occluder") + verb->count("--smallest-hole") > 0;
         const Result<int> done = runBake(*options);
         exit_code = done ? *done : report(done.error());
     });

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -45,18 +46,21 @@ Result<std::optional<CellVisibilityState>> stateLeft(const CellGraph& rows, cons
 
 }  // namespace
 
-VisCells BakeOptions::visCells() const {
-    if (cells == "leaves") return VisCells::kLeaves;
-    return cells == "groups" ? VisCells::kGroups : VisCells::kClusters;
+VisCells visCellsOf(const std::string& word) {
+    if (word == "leaves") return VisCells::kLeaves;
+    return word == "groups" ? VisCells::kGroups : VisCells::kClusters;
 }
 
-void addBakeOptions(CLI::App& verb, BakeOptions& options, const std::string& output) {
+void addBakeOptions(CLI::App& verb, BakeOptions& options, const std::string& output, bool of_scenes) {
+    std::vector<std::string> cells = {"clusters", "leaves", "groups"};
+    if (of_scenes) cells.emplace_back("walls");
     verb.add_option("-o,--output", options.output, output)->type_name("FILE");
     verb.add_option("--cells", options.cells,
                     "what of a .bsp has a row: clusters, as the map's compiler made them; leaves, each its own, which "
                     "is tighter and takes far longer; groups, of leaves that are open to one another (default: "
-                    "clusters)")
-        ->check(CLI::IsMember({"clusters", "leaves", "groups"}));
+                    "clusters)" +
+                        std::string(of_scenes ? "; of a scene: walls, its own, although cells are marked" : ""))
+        ->check(CLI::IsMember(cells));
     verb.add_flag("--objects", options.objects,
                   "tell also which objects each cell sees, of a .bsp its faces: takes longer than the cells do");
     verb.add_option("--threads", options.threads, "share the portals among so many threads (default: one a core)")
@@ -97,11 +101,10 @@ Status finishBakeOptions(BakeOptions& options, ApartFiles& files) {
 BakeRun::BakeRun(const BakeOptions& options)
     : options_(options),
       threads_(options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency())),
-      pool_(threads_) {
-    stopGently();
-}
+      pool_(threads_) {}
 
 Result<BakeSettings> BakeRun::begin(const CellGraph& rows) {
+    stopGently();
     Result<std::optional<CellVisibilityState>> left = stateLeft(rows, options_);
     if (!left) return left.error();
     left_ = std::move(*left);

@@ -29,18 +29,20 @@ struct BakeOptions {
     uint64_t budget = 0;               ///< BakeSettings
     double time_limit = 0;             ///< BakeSettings  [s]
     bool in_place = false, objects = false;
-
-    VisCells visCells() const;
 };
 
-/// @param output  what `-o` writes
-void addBakeOptions(CLI::App& verb, BakeOptions& options, const std::string& output);
+/// What --cells says of a .bsp.
+VisCells visCellsOf(const std::string& word);
+
+/// @param output     what `-o` writes
+/// @param of_scenes  scenes are baked as well as maps
+void addBakeOptions(CLI::App& verb, BakeOptions& options, const std::string& output, bool of_scenes = false);
 
 /// Names the state, and checks that what is written is apart from what is read and can be written.
 /// @param files  what is read, and what else the verb writes. Errors: kUsage, kOutput.
 Status finishBakeOptions(BakeOptions& options, ApartFiles& files);
 
-/// From here on Ctrl-C stops the bake gently, and the state is there for the next time.
+/// A bake on threads. From begin() on Ctrl-C stops it gently, and the state is there for the next time.
 class BakeRun {
 public:
     /// @param options  must outlive this

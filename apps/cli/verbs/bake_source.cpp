@@ -8,7 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
+#include "apps/cli/verbs/bake_run.h"
 #include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/import/quake/quake_scene.h"
 #include "sightline/tools/scene/procedural.h"
@@ -26,14 +28,18 @@ bool isMap(const std::string& name) {
     return kind == ".bsp" || kind == ".map" || kind == ".prt" || kind == ".pak" || kind == ".pk3";
 }
 
-Result<BakeSource> loadMapSource(const std::string& name, VisCells cells, bool cells_given) {
+Result<BakeSource> loadMapSource(const std::string& name, const BakeSourceChoice& asked) {
     const auto usage = [&](const char* what) { return Error{Error::Kind::kUsage, name + ": " + what}; };
     const std::string kind = mapKind(name);
+    if (asked.of_walls || asked.cells == "walls")
+        return usage(
+            "a map has cells of its own: --cells walls, --smallest-occluder and --smallest-hole are for scenes");
     if (kind == ".prt") return usage("a portal file has no tree to find an eye in: bake its .bsp or .map");
-    if (kind == ".map" && cells_given) return usage("a .map has the cells of its brushes: --cells goes with a .bsp");
+    if (kind == ".map" && !asked.cells.empty())
+        return usage("a .map has the cells of its brushes: --cells goes with a .bsp");
     VisMapChoice choice;
     choice.name = name;
-    choice.cells = cells;
+    choice.cells = visCellsOf(asked.cells);
     choice.keep_leaves = true;
     Result<VisMap> map = loadVisMap(choice);
     if (!map) return map.error();
@@ -62,17 +68,37 @@ Result<BakeSource> loadMapSource(const std::string& name, VisCells cells, bool c
     return out;
 }
 
-Result<BakeSource> loadMarkedScene(const SceneChoice& choice) {
-    Result<Scene> scene = loadScene(choice);
+Result<BakeSource> loadScene(const SceneChoice& names, const BakeSourceChoice& choice) {
+    Result<Scene> scene = loadScene(names);
     if (!scene) return scene.error();
-    if (scene->cells.empty())
-        return Error{Error::Kind::kInput, choice.title() +
-                                              ": has no cells: they are marked by hand, or the scene is a "
-                                              "map or a building"};
-    SceneCellSettings settings;
-    settings.trusted = !choice.procedural().empty();
+    const std::string name = std::filesystem::path(names.title()).filename().string();
     BakeSource out;
-    out.cells = sceneToBake(*scene, std::filesystem::path(choice.title()).filename().string(), settings);
+    if (scene->cells.empty() || choice.cells == "walls") {
+        SoupCellSettings settings;
+        settings.smallest_occluder = choice.smallest_occluder;
+        settings.smallest_hole = choice.smallest_hole;
+        settings.jobs = choice.jobs;
+        for (const ScenePortal& portal : scene->portals)
+            if (portal.door < scene->objects.size()) settings.movable.push_back(portal.door);
+        Progress progress("finding portals", "faces", 0);
+        settings.progress = [&](size_t done, size_t total) { progress.set(done, total); };
+        out.cells = soupToBake(*scene, name, settings, &out.walls.emplace());
+        if (out.cells.space.graph.cells == 0)
+            return Error{Error::Kind::kInput, names.title() +
+                                                  ": has no cells, and no opaque surface that is large "
+                                                  "enough to divide it (see --smallest-occluder)"};
+        out.cells_are = "of its own walls";
+        out.rows_are = "none";
+        out.scene = std::move(*scene);
+        return out;
+    }
+    if (choice.of_walls)
+        return Error{Error::Kind::kUsage,
+                     "--smallest-occluder, --smallest-hole: the scene has marked cells, which they "
+                     "say nothing of; --cells walls takes its walls instead"};
+    SceneCellSettings settings;
+    settings.trusted = !names.procedural().empty();
+    out.cells = sceneToBake(*scene, name, settings);
     out.cells_are = "marked";
     out.rows_are = "cells";
     out.scene = std::move(*scene);
@@ -81,18 +107,18 @@ Result<BakeSource> loadMarkedScene(const SceneChoice& choice) {
 
 }  // namespace
 
-Result<BakeSource> loadBakeSource(const SceneChoice& scene, VisCells cells, bool cells_given) {
+Result<BakeSource> loadBakeSource(const SceneChoice& scene, const BakeSourceChoice& choice) {
     const auto map = std::find_if(scene.names.begin(), scene.names.end(),
                                   [](const std::string& name) { return !isProcedural(name) && isMap(name); });
     if (map == scene.names.end()) {
-        if (cells_given)
-            return Error{Error::Kind::kUsage, "--cells goes with a .bsp: scenes have the cells of their makers"};
-        return loadMarkedScene(scene);
+        if (!choice.cells.empty() && choice.cells != "walls")
+            return Error{Error::Kind::kUsage, "--cells " + choice.cells + " goes with a .bsp"};
+        return loadScene(scene, choice);
     }
     if (scene.names.size() > 1) return Error{Error::Kind::kUsage, *map + ": a map is baked alone"};
     if (!scene.up.empty() || !scene.unit.empty() || !scene.sides.empty())
         return Error{Error::Kind::kUsage, *map + ": --up, --unit and --sides do not go with a map"};
-    return loadMapSource(*map, cells, cells_given);
+    return loadMapSource(*map, choice);
 }
 
 }  // namespace sightline::cli

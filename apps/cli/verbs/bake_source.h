@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "apps/cli/verbs/scene_choice.h"
@@ -20,12 +21,22 @@ struct BakeSource {
     std::string cells_are;  ///< where the cells come from, for people
     std::string rows_are;   ///< what has a row
     bool of_bsp = false;
-    bool leaks = false;  ///< of a .map
+    bool leaks = false;                   ///< of a .map
+    std::optional<SoupCellReport> walls;  ///< of cells of a scene's own walls
 };
 
-/// Errors: of the readers; a scene without cells, a map that cannot be baked (kInput); options that a file of its kind
-/// does not have (kUsage).
-/// @param cells  of a .bsp: what has a row
-Result<BakeSource> loadBakeSource(const SceneChoice& scene, VisCells cells, bool cells_given);
+/// What of a scene is baked, and how its own walls divide it.
+struct BakeSourceChoice {
+    std::string cells;              ///< of --cells; empty: not given
+    double smallest_occluder = -1;  ///< SoupCellSettings
+    double smallest_hole = -1;      ///< SoupCellSettings
+    bool of_walls = false;          ///< one of these two was given
+    Jobs* jobs = nullptr;
+};
+
+/// The cells of a map, those that a scene's maker marked, or where there are none those of its own walls.
+/// Errors: of the readers; a scene with nothing that could divide it, a map that cannot be baked (kInput); options that a file of
+/// its kind does not have (kUsage).
+Result<BakeSource> loadBakeSource(const SceneChoice& scene, const BakeSourceChoice& choice);
 
 }  // namespace sightline::cli

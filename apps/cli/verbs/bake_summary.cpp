@@ -39,6 +39,17 @@ void printFindings(std::FILE* out, const SceneCellReport& report) {
         tell(out, fmt::format("  and {} more (--json lists them)\n", grouped(report.findings.size() - kMost)));
 }
 
+void printWalls(std::FILE* out, const SoupCellReport& report) {
+    tell(out,
+         fmt::format("walls: {} of {} faces between cells are shut, {} portals are seen through from one side alone\n",
+                     grouped(report.closed), grouped(report.faces), grouped(report.one_way)));
+    tell(out, fmt::format("  {} planes with surfaces from {:.3g} x {:.3g} on; holes narrower than {:.2g} are shut; the "
+                          "tree is {} deep\n",
+                          grouped(report.sheets), report.smallest_occluder, report.smallest_occluder,
+                          report.smallest_hole, report.depth));
+    if (report.full) tell(out, "  there are too many cells: what is left undivided is looser\n");
+}
+
 }  // namespace
 
 VisSummary rowFigures(const CellGraph& rows, const CellVisibility& visibility) {
@@ -114,10 +125,12 @@ void printBakeSummary(std::FILE* out, const BakeSource& source, const Baked& bak
                           source.cells_are, grouped(space.graph.portals.size()), grouped(space.doors.size())));
     if (baked.cells.report) printFindings(out, *baked.cells.report);
     if (source.leaks) tell(out, "leaks: the outside is a place like any other (vis --leak writes the way)\n");
-    tell(out, fmt::format("rows: {} ({}); a row sees {:.1f} of them ({}), {} unresolved\n", grouped(s.clusters),
-                          s.cells_are, ratio(s.visible_cluster_pairs, s.clusters),
-                          percentText(s.visible_cluster_pairs, s.clusters * s.clusters),
-                          percentText(s.unresolved_pairs, s.visible_cluster_pairs)));
+    if (source.walls) printWalls(out, *source.walls);
+    else
+        tell(out, fmt::format("rows: {} ({}); a row sees {:.1f} of them ({}), {} unresolved\n", grouped(s.clusters),
+                              s.cells_are, ratio(s.visible_cluster_pairs, s.clusters),
+                              percentText(s.visible_cluster_pairs, s.clusters * s.clusters),
+                              percentText(s.unresolved_pairs, s.visible_cluster_pairs)));
     printLimits(out, s);
     tell(out,
          fmt::format("objects: {}, each in {:.2f} cells; {} seen from everywhere, {} outside, {} moving and not in "
@@ -174,6 +187,20 @@ std::string bakeJson(const BakeSource& source, const Baked& baked, const BakeSum
         out["holes"] = baked.cells.report->holes;
         out["hole_area"] = baked.cells.report->hole_area;
         out["findings"] = findings;
+    }
+    if (source.walls) {
+        const SoupCellReport& walls = *source.walls;
+        out["walls"] = {{"smallest_occluder", walls.smallest_occluder},
+                        {"smallest_hole", walls.smallest_hole},
+                        {"triangles", walls.triangles},
+                        {"planes", walls.sheets},
+                        {"faces", walls.faces},
+                        {"shut", walls.closed},
+                        {"one_way", walls.one_way},
+                        {"merged", walls.merged},
+                        {"depth", walls.depth},
+                        {"full", walls.full},
+                        {"objects", walls.walls.size()}};
     }
     out["bytes"] = s.pvs_bytes;
     out["resident_bytes"] = s.resident_bytes;

@@ -211,7 +211,7 @@ VisSummary summaryOf(const VisMap& map, const CellVisibility& visibility, const 
 }
 
 Result<VisMap> loadCheckedMap(VisOptions& options) {
-    options.map.cells = options.visCells();
+    options.map.cells = visCellsOf(options.cells);
     options.map.needs_bsp = writesMap(options);
     if (Status good = checkVisFiles(options); !good) return good.error();
     Result<VisMap> map = loadVisMap(options.map);

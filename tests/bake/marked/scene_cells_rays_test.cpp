@@ -15,7 +15,8 @@
 #include "sightline/tools/import/scene_file.h"
 #include "sightline/tools/scene/procedural.h"
 #include "sightline/tools/truth/rays.h"
-#include "tests/bake/marked/made_rooms.h"
+#include "tests/bake/marked/random_rooms.h"
+#include "tests/bake/opaque_triangles.h"
 
 namespace sightline {
 using namespace bake;
@@ -25,51 +26,6 @@ namespace {
 using namespace test;
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
-
-/// All triangles of a scene, tried one by one.
-class Triangles {
-public:
-    explicit Triangles(const Scene& scene) {
-        for (const SceneObject& object : scene.objects) {
-            const Mesh& mesh = scene.meshes[object.mesh];
-            for (size_t t = 0; t < mesh.triangles(); ++t) {
-                Triangle triangle;
-                triangle.both = scene.materials[mesh.primitives[0].material].double_sided;
-                if (!scene.materials[mesh.primitives[0].material].hides()) continue;
-                for (size_t c = 0; c < 3; ++c)
-                    triangle.corners[c] = glm::dvec3(
-                        object.transform * glm::dvec4(glm::dvec3(mesh.positions[mesh.indices[3 * t + c]]), 1));
-                all_.push_back(triangle);
-            }
-        }
-    }
-
-    /// Whether an opaque front, grown by `room`, is met between two distances.
-    bool meets(const glm::dvec3& from, const glm::dvec3& along, double first, double last, double room) const {
-        return std::any_of(all_.begin(), all_.end(), [&](const Triangle& triangle) {
-            const auto& [a, b, c] = triangle.corners;
-            const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
-            const double towards = glm::dot(normal, along);
-            if (towards == 0 || (towards > 0 && !triangle.both)) return false;
-            const double t = glm::dot(normal, a - from) / towards;
-            if (t < first || t > last) return false;
-            const glm::dvec3 point = from + t * along;
-            for (int i = 0; i < 3; ++i) {
-                const glm::dvec3 edge = triangle.corners[(i + 1) % 3] - triangle.corners[i];
-                if (glm::dot(glm::cross(normal, edge), point - triangle.corners[i]) < -room * glm::length(edge))
-                    return false;
-            }
-            return true;
-        });
-    }
-
-private:
-    struct Triangle {
-        glm::dvec3 corners[3];
-        bool both = false;
-    };
-    std::vector<Triangle> all_;
-};
 
 double insideBy(const CellSpace& space, uint32_t cell, const glm::dvec3& point) {
     double least = cell == space.outside ? -kFar : kFar;
@@ -137,61 +93,6 @@ std::string follow(const SceneCells& cells, const Meets& meets, uint32_t cell, c
     return "";
 }
 
-FlatRect randomRect(Random& random, const FlatRect& within) {
-    const double size = std::pow(10, random.uniform(-3, 0));
-    const glm::dvec2 room = within.max - within.min,
-                     low = within.min + glm::dvec2(random.uniform(0.05, 0.5), random.uniform(0.05, 0.5)) * room;
-    return {low, glm::min(low + size * glm::dvec2(random.uniform(0.5, 1), random.uniform(0.5, 1)),
-                          within.max - 0.02 * room)};
-}
-
-/// A row of rooms with walls of some thickness between them, with doors, some of them marked, holes, things in the
-/// walls' planes, and cells drawn carelessly.
-MarkedRooms randomRooms(Random& random, int round) {
-    MarkedRooms made;
-    made.place = round % 3 == 0 ? glm::dmat4(1.0) : randomPlace(random, round % 3 == 1 ? 0 : 1000);
-    const double care = round % 2 ? 0 : 0.1;
-    double x = 0;
-    struct Way {
-        double from, to;
-        FlatRect rect;
-        bool marked;
-    };
-    std::vector<Way> ways;
-    const FlatRect section{{0, 0}, {3, 4}};
-    for (int i = 0; i < 4; ++i) {
-        const double end = x + 0.25 * double(8 + random.below(16));
-        const bool first = i == 0, last = i == 3;
-        const double thick = random.below(3) == 0 ? 0 : 0.25;
-        made.room({{x, 0, 0}, {end, 3, 4}}, 3 | (random.below(4) == 0 ? 12 : 0));
-        if (first) made.wall(0, x, section, 1);
-        else made.wall(0, x, section, 1, {ways.back().rect});
-        if (last) {
-            made.wall(0, end, section, -1, {randomRect(random, section)});
-        } else {
-            ways.push_back({end, end + thick, randomRect(random, section), random.below(3) != 0});
-            made.wall(0, end, section, -1, {ways.back().rect});
-            const FlatRect& rect = ways.back().rect;
-            if (thick > 0 && random.below(4) != 0)
-                made.room({{end, rect.min.x, rect.min.y}, {end + thick, rect.max.x, rect.max.y}}, 3);
-        }
-        // Shelves, and boards on the walls.
-        for (int k = 0; k < 3; ++k)
-            made.wall(0, x + random.uniform(0, 0.1), randomRect(random, section), random.below(2) ? 1 : -1);
-        Box3d drawn{{x, 0, 0}, {end, 3, 4}};
-        for (int axis = 0; axis < 3; ++axis) {
-            drawn.min[axis] += random.uniform(-care, care);
-            drawn.max[axis] += random.uniform(-care, care);
-        }
-        made.cell("room " + std::to_string(i), drawn);
-        x = end + thick;
-    }
-    for (uint32_t i = 0; i < ways.size(); ++i)
-        if (ways[i].marked)
-            made.portal(i, i + 1, 0, random.uniform(ways[i].from - care / 2, ways[i].to + care / 2), ways[i].rect);
-    return made;
-}
-
 /// Rays out of all cells, half of them aimed: at the edges of portals and a little beside them.
 /// @param surely  is asked where something seems wrong; empty: `meets` is sure
 void shoot(const SceneCells& cells, const Meets& meets, const Meets& surely, int rays, Random& random, Counts& counts) {
@@ -232,7 +133,7 @@ TEST(SceneCellRays, LeaveByPortalsOrMeetWalls) {
         SCOPED_TRACE("round " + std::to_string(round));
         const MarkedRooms made = randomRooms(random, round);
         const SceneCells cells = cellsOfScene(made.scene);
-        const Triangles truth(made.scene);
+        const OpaqueTriangles truth(made.scene);
         const auto meets = [&](const glm::dvec3& from, const glm::dvec3& along, double first, double last) {
             // What closes a slit narrower than the declared one counts as a wall.
             return truth.meets(from, along, first, last, cells.report.slit);
@@ -270,7 +171,7 @@ void judgeScene(const Scene& scene, int rays, uint64_t seed, SceneCellSettings s
     });
     const SceneFacts facts(without);
     const RayScene truth(facts);
-    const Triangles triangles(without);
+    const OpaqueTriangles triangles(without);
     const double rounding = 4 * truth.rounding();
     const auto meets = [&](const glm::dvec3& from, const glm::dvec3& along, double, double last) {
         RaySighting sighting;

@@ -1,0 +1,260 @@
+// Takes the walls away from the faces of a tree's leaves: what is left are portals, each for the side that sees it open.
+// SPDX-License-Identifier: MIT
+#include "sightline/bake/soup/soup_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "sightline/bake/marked/checked_cells.h"
+#include "sightline/bake/soup/soup_tree.h"
+#include "sightline/bake/soup/soup_walls.h"
+#include "sightline/bsp/tree_portals.h"
+
+namespace sightline::bake {
+using namespace tools;
+namespace {
+
+/// A triangle in the frame of its sheet.
+struct SheetTriangle {
+    FlatPiece piece;  // counter-clockwise as seen from the tip of the sheet's normal, grown
+    glm::dvec2 min, max;
+    uint32_t triangle = 0;
+    uint8_t sides = 0;  // 1: hides from where the normal points, 2: from behind
+};
+
+/// The triangles of a sheet, from left to right.
+struct FlatSheet {
+    FlatFrame frame{glm::dvec3(0), glm::dvec3(0, 0, 1)};
+    std::vector<SheetTriangle> triangles;
+    std::vector<double> right;  // per triangle: the farthest right of it and of all before
+
+    FlatSheet() = default;
+    FlatSheet(const SoupWalls& walls, const WallSheet& sheet, double grow)
+        : frame(-sheet.plane.w * glm::dvec3(sheet.plane), glm::dvec3(sheet.plane)) {
+        for (const uint32_t t : sheet.triangles) {
+            const WallTriangle& triangle = walls.triangles[t];
+            SheetTriangle flat;
+            FlatPiece piece = frame.to(triangle.corners);
+            const double area = areaOf(piece);
+            if (area == 0) continue;
+            flat.sides = triangle.both ? 3 : area > 0 ? 1 : 2;
+            if (area < 0) std::swap(piece[1], piece[2]);
+            flat.piece = grownBy(piece, grow);
+            if (flat.piece.empty()) continue;
+            flat.min = flat.max = flat.piece[0];
+            for (const glm::dvec2& point : flat.piece) {
+                flat.min = glm::min(flat.min, point);
+                flat.max = glm::max(flat.max, point);
+            }
+            flat.triangle = t;
+            triangles.push_back(std::move(flat));
+        }
+        std::stable_sort(triangles.begin(), triangles.end(),
+                         [](const SheetTriangle& a, const SheetTriangle& b) { return a.min.x < b.min.x; });
+        double farthest = -std::numeric_limits<double>::infinity();
+        for (const SheetTriangle& triangle : triangles) right.push_back(farthest = std::max(farthest, triangle.max.x));
+    }
+};
+
+/// What is found of one face.
+struct FaceAnswer {
+    struct Hole {
+        std::vector<glm::dvec3> outline;
+        uint8_t ways;  // 1: from cells[0], 2: from cells[1]
+    };
+    std::vector<Hole> holes;
+    std::vector<uint32_t> walls;  // triangles
+    bool merged = false;
+};
+
+class Faces {
+public:
+    Faces(const SoupWalls& walls, const SoupTree& tree, const CellGraph& graph, const std::vector<uint32_t>& node_of_portal,
+          double hole, uint32_t most_holes)
+        : walls_(walls),
+          tree_(tree),
+          graph_(graph),
+          node_of_portal_(node_of_portal),
+          hole_(hole),
+          most_holes_(most_holes),
+          sheets_(walls.sheets.size()) {
+        std::vector<bool> used(walls.sheets.size(), false);
+        for (const uint32_t sheet : tree.sheet_of_node)
+            if (sheet != SoupTree::kNoSheet) used[sheet] = true;
+        for (size_t i = 0; i < sheets_.size(); ++i)
+            if (used[i]) sheets_[i] = FlatSheet(walls, walls.sheets[i], hole / 3);
+    }
+
+    FaceAnswer answer(uint32_t portal) const {
+        FaceAnswer out;
+        const CellPortal& face = graph_.portals[portal];
+        const uint32_t sheet_number = tree_.sheet_of_node[node_of_portal_[portal]];
+        const auto outline = graph_.outline(face);
+        if (sheet_number == SoupTree::kNoSheet) {
+            out.holes.push_back({{outline.begin(), outline.end()}, 3});
+            return out;
+        }
+        const FlatSheet& sheet = sheets_[sheet_number];
+        // The portal's plane is the sheet's, or its other side.
+        const bool along = glm::dot(glm::dvec3(face.plane), glm::dvec3(walls_.sheets[sheet_number].plane)) > 0;
+        const FlatPiece whole = sheet.frame.to(outline);
+        const FlatPiece piece = areaOf(whole) < 0 ? FlatPiece(whole.rbegin(), whole.rend()) : whole;
+        // A strip along another plane may belong to the wall in that.
+        const FlatPiece inner = shrunk(piece, hole_);
+        std::vector<const SheetTriangle*> near[2];
+        gather(sheet, inner.empty() ? piece : inner, near);
+        if (near[0].empty() && near[1].empty()) {
+            out.holes.push_back({{outline.begin(), outline.end()}, 3});
+            return out;
+        }
+        if (inner.empty()) return out;
+        const auto isOfBoth = [](const SheetTriangle* triangle) { return triangle->sides == 3; };
+        const bool alike = std::all_of(near[0].begin(), near[0].end(), isOfBoth) &&
+                           std::all_of(near[1].begin(), near[1].end(), isOfBoth);
+        for (int side = 0; side < (alike ? 1 : 2); ++side) {
+            // cells[0] is where the portal's normal points.
+            const uint8_t way = alike ? 3 : (side == 0) == along ? 1 : 2;
+            if (near[side].empty()) {
+                out.holes.push_back({{outline.begin(), outline.end()}, way});
+                continue;
+            }
+            FlatRest rest(inner);
+            for (const SheetTriangle* triangle : near[side]) {
+                if (rest.empty()) break;
+                rest.take(triangle->piece);
+                out.walls.push_back(triangle->triangle);
+            }
+            if (rest.empty()) continue;
+            for (const FlatHole& hole : holesOf(rest.pieces(), hole_, most_holes_)) {
+                out.merged |= hole.merged;
+                for (const FlatPiece& part : hole.pieces) out.holes.push_back({sheet.frame.from(widened(part, hole_)), way});
+            }
+        }
+        return out;
+    }
+
+private:
+    /// The triangles that meet a piece: [0] those that hide from where the sheet's normal points, [1] from behind.
+    static void gather(const FlatSheet& sheet, const FlatPiece& piece, std::vector<const SheetTriangle*> near[2]) {
+        glm::dvec2 min = piece[0], max = piece[0];
+        for (const glm::dvec2& point : piece) {
+            min = glm::min(min, point);
+            max = glm::max(max, point);
+        }
+        const auto first = std::lower_bound(sheet.right.begin(), sheet.right.end(), min.x) - sheet.right.begin();
+        for (auto i = static_cast<size_t>(first); i < sheet.triangles.size(); ++i) {
+            const SheetTriangle& triangle = sheet.triangles[i];
+            if (triangle.min.x > max.x) break;
+            if (triangle.max.x < min.x || triangle.max.y < min.y || triangle.min.y > max.y) continue;
+            if (sharedBy(triangle.piece, piece).empty()) continue;
+            if ((triangle.sides & 1) != 0) near[0].push_back(&triangle);
+            if ((triangle.sides & 2) != 0) near[1].push_back(&triangle);
+        }
+    }
+
+    static FlatPiece shrunk(const FlatPiece& piece, double by) {
+        FlatPiece inner = piece;
+        for (size_t i = 0; i < piece.size() && !inner.empty(); ++i) {
+            const glm::dvec2 along = piece[(i + 1) % piece.size()] - piece[i];
+            const double length = glm::length(along);
+            if (!(length > 0)) continue;
+            const glm::dvec2 normal(-along.y / length, along.x / length);
+            inner = clipPiece(inner, {normal, -glm::dot(normal, piece[i]) - by});
+        }
+        return inner;
+    }
+
+    const SoupWalls& walls_;
+    const SoupTree& tree_;
+    const CellGraph& graph_;
+    const std::vector<uint32_t>& node_of_portal_;
+    double hole_;
+    uint32_t most_holes_;
+    std::vector<FlatSheet> sheets_;
+};
+
+/// Adds what is left of a face to the graph.
+void addHoles(const CellPortal& face, const FaceAnswer& answer, double hole, CellGraph& graph, SoupCellReport& report) {
+    for (const FaceAnswer::Hole& part : answer.holes) {
+        const bool turned = part.ways == 2;
+        std::vector<glm::dvec3> outline = part.outline;
+        const glm::dvec4 plane = turned ? -face.plane : face.plane;
+        if (glm::dot(areaVector(outline), glm::dvec3(plane)) < 0) std::reverse(outline.begin(), outline.end());
+        graph.addPortal(face.cells[turned ? 1 : 0], face.cells[turned ? 0 : 1], outline, plane);
+        CellPortal& added = graph.portals.back();
+        added.one_way = part.ways != 3;
+        added.thickness = std::max(added.thickness, hole);
+        report.one_way += added.one_way;
+    }
+}
+
+}  // namespace
+
+SoupCells cellsOfSoup(const Scene& scene, const SoupCellSettings& settings) {
+    SoupCells out;
+    SoupCellReport& report = out.report;
+    const OpaqueWalls opaque(scene, settings.movable);
+    std::vector<WallTriangle> triangles;
+    Box3d all{glm::dvec3(-std::numeric_limits<double>::infinity()), glm::dvec3(std::numeric_limits<double>::infinity())};
+    opaque.gather(all, triangles);
+    report.triangles = triangles.size();
+    Box3d bounds = worldBounds(scene);
+    const double diagonal = bounds.empty() ? 0 : glm::length(bounds.size());
+    if (triangles.empty() || !(diagonal > 0) || !std::isfinite(diagonal)) return out;
+    report.smallest_occluder = settings.smallest_occluder >= 0 ? settings.smallest_occluder : diagonal / 128;
+    report.smallest_hole = settings.smallest_hole >= 0 ? settings.smallest_hole : diagonal * 0x1p-23;
+    const double hole = std::max(report.smallest_hole, diagonal * 0x1p-30);
+    const double least_area = std::max(report.smallest_occluder * report.smallest_occluder, hole * hole);
+
+    const SoupWalls walls = sheetsOf(std::move(triangles), hole, least_area);
+    report.sheets = walls.sheets.size();
+    if (walls.sheets.empty()) return out;
+    // Eyes outside of the scene are in cells, too.
+    bounds.min -= glm::dvec3(diagonal);
+    bounds.max += glm::dvec3(diagonal);
+    SoupTreeSettings dividing;
+    dividing.bend = hole;
+    dividing.least_area = least_area;
+    dividing.most_leaves = settings.most_cells;
+    SoupTree tree = treeOfSheets(walls, bounds, dividing);
+    report.depth = tree.depth;
+    report.full = tree.full;
+
+    TreePortalCounts counts;
+    std::vector<uint32_t> node_of_portal;
+    const CellGraph faces = cellsOfTree(tree.tree, {}, &counts, &node_of_portal);
+    report.faces = faces.portals.size();
+    const Faces walls_of(walls, tree, faces, node_of_portal, hole, settings.most_holes);
+    std::vector<FaceAnswer> answers(faces.portals.size());
+    constexpr size_t kTask = 256;
+    const size_t tasks = (answers.size() + kTask - 1) / kTask, batch = 64;
+    for (size_t begin = 0; begin < tasks; begin += batch) {
+        runJobs(settings.jobs, static_cast<uint32_t>(std::min(batch, tasks - begin)), [&](uint32_t task) {
+            const size_t first = (begin + task) * kTask;
+            for (size_t i = first; i < std::min(first + kTask, answers.size()); ++i)
+                answers[i] = walls_of.answer(static_cast<uint32_t>(i));
+        });
+        if (const size_t done = (begin + batch) * kTask; settings.progress && done < answers.size())
+            settings.progress(done, answers.size());
+    }
+
+    CellGraph& graph = out.space.graph;
+    graph.cells = faces.cells;
+    graph.cell_of_leaf = faces.cell_of_leaf;
+    std::vector<bool> is_wall(scene.objects.size(), false);
+    for (size_t i = 0; i < answers.size(); ++i) {
+        addHoles(faces.portals[i], answers[i], hole, graph, report);
+        report.closed += answers[i].holes.empty();
+        report.merged += answers[i].merged;
+        for (const uint32_t t : answers[i].walls) is_wall[walls.triangles[t].object] = true;
+    }
+    for (uint32_t object = 0; object < is_wall.size(); ++object)
+        if (is_wall[object]) report.walls.push_back(object);
+    out.space.tree = std::move(tree.tree);
+    out.space.tolerance = std::max(2 * hole, counts.tolerance);
+    return out;
+}
+
+}  // namespace sightline::bake

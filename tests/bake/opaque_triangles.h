@@ -1,0 +1,59 @@
+// The opaque triangles of a scene, tried one by one: what a ray meets.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "sightline/tools/scene/scene.h"
+
+namespace sightline::test {
+using namespace tools;
+
+class OpaqueTriangles {
+public:
+    explicit OpaqueTriangles(const Scene& scene) {
+        for (const SceneObject& object : scene.objects) {
+            const Mesh& mesh = scene.meshes[object.mesh];
+            for (size_t t = 0; t < mesh.triangles(); ++t) {
+                Triangle triangle;
+                triangle.both = scene.materials[mesh.primitives[0].material].double_sided;
+                if (!scene.materials[mesh.primitives[0].material].hides()) continue;
+                for (size_t c = 0; c < 3; ++c)
+                    triangle.corners[c] = glm::dvec3(
+                        object.transform * glm::dvec4(glm::dvec3(mesh.positions[mesh.indices[3 * t + c]]), 1));
+                all_.push_back(triangle);
+            }
+        }
+    }
+
+    /// Whether an opaque front, grown by `room`, is met between two distances.
+    bool meets(const glm::dvec3& from, const glm::dvec3& along, double first, double last, double room) const {
+        return std::any_of(all_.begin(), all_.end(), [&](const Triangle& triangle) {
+            const auto& [a, b, c] = triangle.corners;
+            const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
+            const double towards = glm::dot(normal, along);
+            if (towards == 0 || (towards > 0 && !triangle.both)) return false;
+            const double t = glm::dot(normal, a - from) / towards;
+            if (t < first || t > last) return false;
+            const glm::dvec3 point = from + t * along;
+            for (int i = 0; i < 3; ++i) {
+                const glm::dvec3 edge = triangle.corners[(i + 1) % 3] - triangle.corners[i];
+                if (glm::dot(glm::cross(normal, edge), point - triangle.corners[i]) < -room * glm::length(edge))
+                    return false;
+            }
+            return true;
+        });
+    }
+
+private:
+    struct Triangle {
+        glm::dvec3 corners[3];
+        bool both = false;
+    };
+    std::vector<Triangle> all_;
+};
+
+}  // namespace sightline::test

@@ -1,0 +1,325 @@
+// Cells of any polygons: a sight line that meets no front goes from leaf to leaf by portals, and slits are seen through.
+// SPDX-License-Identifier: MIT
+#include "sightline/bake/soup/soup_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sightline/base/random.h"
+#include "sightline/cells/portal_graph.h"
+#include "sightline/tools/import/scene_file.h"
+#include "sightline/tools/scene/procedural.h"
+#include "sightline/tools/truth/rays.h"
+#include "tests/bake/marked/random_rooms.h"
+#include "tests/bake/opaque_triangles.h"
+
+namespace sightline {
+using namespace bake;
+using namespace tools;
+namespace {
+
+using namespace test;
+
+/// Where a line goes from one leaf into another.
+struct Crossing {
+    uint32_t from = 0, to = 0;
+    double at = 0;       ///< along the line
+    double grazing = 0;  ///< the cosine between the line and the plane's normal
+};
+
+/// The leaves that a line passes, by the tree's planes alone.
+class LineWalk {
+public:
+    LineWalk(const CellSpace& space, const glm::dvec3& from, const glm::dvec3& along, double length)
+        : space_(space), from_(from), along_(along) {
+        down(0, 0, length, 1);
+    }
+    const std::vector<Crossing>& crossings() const { return crossings_; }
+
+private:
+    void down(uint32_t child, double begin, double end, double grazing) {
+        if ((child & LeafTreeNode::kLeaf) != 0) {
+            const uint32_t leaf = child & ~LeafTreeNode::kLeaf;
+            if (any_ && leaf != leaf_) crossings_.push_back({leaf_, leaf, begin, grazing_});
+            leaf_ = leaf;
+            any_ = true;
+            return;
+        }
+        const LeafTreeNode& node = space_.tree.nodes[child];
+        const double height = glm::dot(glm::dvec3(node.plane), from_) + node.plane.w;
+        const double rises = glm::dot(glm::dvec3(node.plane), along_);
+        const double at = rises != 0 ? -height / rises : -1;
+        const bool front = height + rises * (begin + end) / 2 >= 0;
+        if (rises == 0 || at <= begin || at >= end) return down(node.child[front], begin, end, grazing);
+        down(node.child[rises < 0], begin, at, grazing);
+        grazing_ = std::abs(rises);
+        down(node.child[rises > 0], at, end, grazing);
+    }
+
+    const CellSpace& space_;
+    glm::dvec3 from_, along_;
+    std::vector<Crossing> crossings_;
+    uint32_t leaf_ = 0;
+    double grazing_ = 1;
+    bool any_ = false;
+};
+
+bool holds(const CellGraph& graph, const CellPortal& portal, const glm::dvec3& point, double room) {
+    const auto outline = graph.outline(portal);
+    const glm::dvec3 normal(portal.plane);
+    if (std::abs(glm::dot(normal, point) + portal.plane.w) > room) return false;
+    for (size_t i = 0; i < outline.size(); ++i) {
+        const glm::dvec3 edge = outline[(i + 1) % outline.size()] - outline[i];
+        if (glm::dot(glm::cross(normal, edge), point - outline[i]) < -room * glm::length(edge)) return false;
+    }
+    return true;
+}
+
+/// A portal, widened as a walk widens it, leads on there.
+bool leads(const CellSpace& space, const Crossing& crossing, const glm::dvec3& point) {
+    const auto cellOf = [&](uint32_t leaf) { return space.graph.cell_of_leaf[leaf]; };
+    return std::any_of(space.graph.portals.begin(), space.graph.portals.end(), [&](const CellPortal& portal) {
+        const bool there = portal.cells[0] == cellOf(crossing.from) && portal.cells[1] == cellOf(crossing.to);
+        const bool back = portal.cells[1] == cellOf(crossing.from) && portal.cells[0] == cellOf(crossing.to);
+        return (there || (back && !portal.one_way)) && holds(space.graph, portal, point, space.tolerance);
+    });
+}
+
+/// How near a point is to the planes of the tree, but for the nearest.
+double secondPlane(const LeafTree& tree, const glm::dvec3& point) {
+    double nearest = INFINITY, second = INFINITY;
+    for (const LeafTreeNode& node : tree.nodes) {
+        const double height = std::abs(glm::dot(glm::dvec3(node.plane), point) + node.plane.w);
+        if (height < nearest) second = nearest, nearest = height;
+        else second = std::min(second, height);
+    }
+    return second;
+}
+
+bool contains(const Box3d& box, const glm::dvec3& point) {
+    return glm::all(glm::lessThanEqual(box.min, point)) && glm::all(glm::lessThanEqual(point, box.max));
+}
+
+struct Counts {
+    uint64_t lines = 0, crossings = 0, walls = 0;
+};
+
+/// Shoots lines from anywhere to anywhere, half of them aimed: at the edges of portals and a little beside them.
+void shoot(const Scene& scene, const SoupCells& cells, int lines, Random& random, Counts& counts) {
+    const OpaqueTriangles truth(scene);
+    const CellSpace& space = cells.space;
+    Box3d box = worldBounds(scene);
+    const double hole = cells.report.smallest_hole;
+    for (int i = 0; i < lines; ++i) {
+        glm::dvec3 from, target;
+        for (int axis = 0; axis < 3; ++axis) {
+            from[axis] = random.uniform(box.min[axis], box.max[axis]);
+            target[axis] = random.uniform(box.min[axis], box.max[axis]);
+        }
+        if (i % 2 && !space.graph.portals.empty()) {
+            const CellPortal& portal = space.graph.portals[random.below(space.graph.portals.size())];
+            const auto outline = space.graph.outline(portal);
+            const size_t k = random.below(outline.size());
+            const double off = std::pow(10, random.uniform(-7, 0)) * (random.below(2) ? 1 : -1);
+            const glm::dvec3 aim = glm::mix(outline[k], outline[(k + 1) % outline.size()], random.uniform()) +
+                                   off * (outline[(k + 2) % outline.size()] - outline[k]);
+            target = from + 2.0 * (aim - from);
+        }
+        const double length = glm::distance(from, target);
+        if (!(length > 1e-6) || !std::isfinite(length)) continue;
+        const glm::dvec3 along = (target - from) / length;
+        ++counts.lines;
+        const LineWalk walk(space, from, along, length);
+        for (const Crossing& crossing : walk.crossings()) {
+            const glm::dvec3 point = from + crossing.at * along;
+            if (!contains(space.tree.bounds, point)) break;  // beyond them nothing is drawn
+            if (crossing.grazing < 0.05) break;              // along a wall: within its thickness nothing is said
+            const double reach = 2 * hole / crossing.grazing;
+            if (truth.meets(from, along, 0, crossing.at + reach, hole)) {
+                ++counts.walls;
+                break;
+            }
+            ++counts.crossings;
+            // What is near a second plane may belong to its other side.
+            if (secondPlane(space.tree, point) < 8 * hole) continue;
+            ASSERT_TRUE(leads(space, crossing, point))
+                << "from (" << from.x << ", " << from.y << ", " << from.z << ") to (" << target.x << ", " << target.y
+                << ", " << target.z << "): no portal at " << crossing.at << " of " << length;
+        }
+    }
+}
+
+TEST(SoupCells, LinesThatMeetNoFrontPassByPortals) {
+    Random random(1);
+    Counts counts;
+    uint64_t one_way = 0, closed = 0, cells_made = 0;
+    for (int round = 0; round < 40; ++round) {
+        SCOPED_TRACE("round " + std::to_string(round));
+        const MarkedRooms made = randomRooms(random, round);
+        SoupCellSettings settings;
+        settings.smallest_occluder = round % 4 == 0 ? 0.1 : -1;
+        const SoupCells cells = cellsOfSoup(made.scene, settings);
+        ASSERT_GT(cells.space.graph.cells, 1u);
+        one_way += cells.report.one_way;
+        closed += cells.report.closed;
+        cells_made += cells.space.graph.cells;
+        shoot(made.scene, cells, 4000, random, counts);
+        if (HasFatalFailure()) return;
+    }
+    // None of it is there for nothing.
+    EXPECT_GT(counts.lines, 100000u);
+    EXPECT_GT(counts.crossings, 100000u);
+    EXPECT_GT(counts.walls, 30000u);
+    EXPECT_GT(one_way, 1000u);
+    EXPECT_GT(closed, 10u);
+    EXPECT_GT(cells_made, 400u);
+}
+
+// Triangles anywhere: through one another, turned round, one-sided or not, large and small.
+TEST(SoupCells, HoldsOfAnyTriangles) {
+    Random random(2);
+    Counts counts;
+    for (int round = 0; round < 40; ++round) {
+        SCOPED_TRACE("round " + std::to_string(round));
+        MarkedRooms made;
+        made.scene.materials.emplace_back().double_sided = true;
+        const auto count = 4 + random.below(40);
+        for (uint64_t i = 0; i < count; ++i) {
+            Mesh mesh;
+            const double size = std::pow(10, random.uniform(-1, 1));
+            glm::dvec3 middle;
+            for (int axis = 0; axis < 3; ++axis) middle[axis] = random.uniform(-4, 4);
+            for (int corner = 0; corner < 3; ++corner) {
+                glm::dvec3 point = middle;
+                for (int axis = 0; axis < 3; ++axis) point[axis] += random.uniform(-size, size);
+                if (i % 3 == 0) point[int(i) % 3] = std::round(middle[int(i) % 3]);  // many share a plane
+                mesh.positions.emplace_back(point);
+            }
+            mesh.indices = {0, 1, 2};
+            made.add(std::move(mesh), uint32_t(random.below(2)));
+        }
+        SoupCellSettings settings;
+        settings.smallest_occluder = std::pow(10, random.uniform(-2, 0.5));
+        const SoupCells cells = cellsOfSoup(made.scene, settings);
+        if (cells.space.graph.cells == 0) continue;
+        shoot(made.scene, cells, 2000, random, counts);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(counts.crossings, 50000u);
+    EXPECT_GT(counts.walls, 10000u);
+}
+
+/// Two halls, 50 units long, and a wall with a slit between them.
+MarkedRooms slitRoom(Random& random, double width, double turn) {
+    MarkedRooms made;
+    made.room({{0, 0, 0}, {25, 3, 20}}, 2);
+    made.room({{25, 0, 0}, {50, 3, 20}}, 1);
+    // Four triangles around a thin, turned rectangle: two halves of the wall, apart by the slit.
+    const glm::dvec2 middle(random.uniform(0.5, 2.5), random.uniform(2, 18));
+    const glm::dvec2 along(std::sin(turn), std::cos(turn)), across(along.y, -along.x);
+    for (const double side : {-1.0, 1.0})
+        for (const bool front : {false, true}) {
+            Mesh mesh;
+            const glm::dvec2 edge = middle + side * width / 2 * across;
+            for (const glm::dvec2& at : {edge - 40.0 * along, edge + 40.0 * along, edge + 40.0 * along + side * 40.0 * across,
+                                         edge - 40.0 * along + side * 40.0 * across})
+                mesh.positions.emplace_back(25, at.x, at.y);
+            mesh.indices = (side > 0) == front ? std::vector<uint32_t>{0, 1, 2, 0, 2, 3}
+                                               : std::vector<uint32_t>{0, 2, 1, 0, 3, 2};
+            made.add(std::move(mesh), 0);
+        }
+    return made;
+}
+
+TEST(SoupCells, SlitsOf10And1AndATenthOfAMillimetreAreSeenThrough) {
+    Random random(3);
+    for (const double width : {1e-2, 1e-3, 1e-4})
+        for (int round = 0; round < 12; ++round) {
+            SCOPED_TRACE("slit of " + std::to_string(width) + ", round " + std::to_string(round));
+            const MarkedRooms made = slitRoom(random, width, round % 2 ? random.uniform(0, 3.1) : 0);
+            const SoupCells cells = cellsOfSoup(made.scene);
+            const PortalGraph graph(cells.space);
+            // A line through the middle of the slit, from hall to hall, both ways.
+            const OpaqueTriangles truth(made.scene);
+            int seen = 0;
+            for (int line = 0; line < 2000; ++line) {
+                glm::dvec3 from(random.uniform(1, 24), random.uniform(0.2, 2.8), random.uniform(1, 19));
+                glm::dvec3 to(random.uniform(26, 49), random.uniform(0.2, 2.8), random.uniform(1, 19));
+                if (line % 2) std::swap(from, to);
+                const Mesh& half = made.scene.meshes[made.scene.meshes.size() - 1];
+                const Mesh& other = made.scene.meshes[made.scene.meshes.size() - 3];
+                const double part = random.uniform(0.3, 0.7);
+                const glm::dvec3 aim = glm::mix(0.5 * (glm::dvec3(half.positions[0]) + glm::dvec3(other.positions[0])),
+                                                0.5 * (glm::dvec3(half.positions[1]) + glm::dvec3(other.positions[1])), part);
+                const glm::dvec3 along = glm::normalize(aim - from);
+                const double length = glm::distance(from, aim) * 1.5;
+                if (truth.meets(from, along, 0, glm::distance(from, aim) + 0.1, 0)) continue;
+                const LineWalk walk(cells.space, from, along, length);
+                for (const Crossing& crossing : walk.crossings()) {
+                    const glm::dvec3 point = from + crossing.at * along;
+                    if (std::abs(point.x - 25) > 1e-6) continue;
+                    ++seen;
+                    ASSERT_TRUE(leads(cells.space, crossing, point));
+                }
+            }
+            EXPECT_GT(seen, 20);
+        }
+}
+
+// A room whose walls are drawn from inside alone is shut from there, and open from outside.
+TEST(SoupCells, AWallIsShutForThoseWhoSeeItsFront) {
+    MarkedRooms made;
+    made.room({{0, 0, 0}, {6, 3, 4}});
+    const SoupCells cells = cellsOfSoup(made.scene);
+    const CellSpace& space = cells.space;
+    EXPECT_EQ(space.graph.cells, 7u);
+    EXPECT_EQ(cells.report.walls.size(), 6u);
+    const PortalGraph graph(space);
+    Array<uint32_t> inside;
+    const glm::dvec3 middle(3, 1.5, 2);
+    ASSERT_TRUE(graph.cellsAround({&middle, 1}, 0, inside));
+    ASSERT_EQ(inside.size(), 1u);
+    EXPECT_TRUE(graph.portalsFrom(inside[0]).empty()) << "nothing leads out";
+    size_t into = 0;
+    for (uint32_t cell = 0; cell < graph.cells(); ++cell)
+        for (const DirectedPortal& portal : graph.portalsFrom(cell)) into += portal.to == inside[0];
+    EXPECT_EQ(into, 6u) << "from outside its walls are not drawn";
+    EXPECT_EQ(cells.report.one_way, 6u);
+}
+
+TEST(SoupCells, OfNothingThereAreNoCells) {
+    EXPECT_EQ(cellsOfSoup(Scene()).space.graph.cells, 0u);
+    MarkedRooms made;
+    made.wall(0, 0, {{0, 0}, {1, 1}}, 1);
+    SoupCellSettings settings;
+    settings.smallest_occluder = 10;
+    EXPECT_EQ(cellsOfSoup(made.scene, settings).space.graph.cells, 0u) << "nothing is large enough";
+    settings.smallest_occluder = 0;
+    EXPECT_EQ(cellsOfSoup(made.scene, settings).space.graph.cells, 2u);
+    settings.movable = {0};
+    EXPECT_EQ(cellsOfSoup(made.scene, settings).space.graph.cells, 0u) << "what moves hides nothing";
+    made.scene.objects[0].transform[3][0] = INFINITY;
+    EXPECT_EQ(cellsOfSoup(made.scene).space.graph.cells, 0u);
+}
+
+TEST(SoupCells, MostCellsEndTheDivision) {
+    Random random(4);
+    const MarkedRooms made = randomRooms(random, 0);
+    SoupCellSettings settings;
+    const SoupCells all = cellsOfSoup(made.scene, settings);
+    EXPECT_FALSE(all.report.full);
+    settings.most_cells = 5;
+    const SoupCells few = cellsOfSoup(made.scene, settings);
+    EXPECT_TRUE(few.report.full);
+    EXPECT_EQ(few.space.graph.cells, 5u);
+    Counts counts;
+    shoot(made.scene, few, 2000, random, counts);
+}
+
+}  // namespace
+}  // namespace sightline
