@@ -318,7 +318,7 @@ Sighting lookFor(const Scene& scene, const View& view, uint32_t object, const Ru
 
 std::string frameLine(const Scene& scene, const ExplainOptions& options, size_t frames, const View& view) {
     const glm::dvec3 eye = standingAt(view), along = lookingAlong(view);
-    return wrapped(fmt::format("{} of {}: the eye at ({:.6g}, {:.6g}, {:.6g}), looking along ({:.3g}, {:.3g}, {:.3g})",
+    return wrapped(fmt::format("{} of {}: the eye at ({:.5g}, {:.5g}, {:.5g}), looking along ({:.2g}, {:.2g}, {:.2g})",
                                frameOf(options.first_frame, frames), ownerOfPath(scene, options), eye.x, eye.y, eye.z,
                                along.x, along.y, along.z),
                    kColumns, "  ") +
