@@ -90,10 +90,11 @@ void addBake(CLI::App& tool, int& exit_code) {
     const auto options = std::make_shared<SceneBakeOptions>();
     addSceneChoice(*verb, options->scene);
     addBakeOptions(*verb, *options, "write the visibility file", true);
-    verb->add_option("--smallest-occluder", options->source.smallest_occluder,
-                     "of a scene without marked cells: the side of the smallest square of opaque surface that divides "
-                     "space [world "
-                     "units] (default: a 128th of the scene's diagonal)")
+    verb->add_option(
+            "--smallest-occluder", options->source.smallest_occluder,
+            "of a scene without marked cells: the side of the smallest square of opaque surface that divides "
+            "space [world "
+            "units] (default: a 128th of the scene's diagonal, or a little more if hardly less is hidden then)")
         ->check(CLI::Range(0.0, 1e9))
         ->type_name("L");
     verb->add_option(

@@ -13,6 +13,7 @@
 #include "apps/cli/verbs/bake_run.h"
 #include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/import/quake/quake_scene.h"
+#include "sightline/tools/load/seeded_cameras.h"
 #include "sightline/tools/scene/procedural.h"
 
 namespace sightline::cli {
@@ -78,6 +79,10 @@ Result<BakeSource> loadScene(const SceneChoice& names, const BakeSourceChoice& c
         settings.smallest_occluder = choice.smallest_occluder;
         settings.smallest_hole = choice.smallest_hole;
         settings.jobs = choice.jobs;
+        constexpr uint32_t kPlaces = 32;
+        if (choice.smallest_occluder < 0)
+            for (const CameraFrame& frame : seededCameras(*scene, kPlaces, 1).frames)
+                settings.eyes.push_back(frame.eye);
         for (const ScenePortal& portal : scene->portals)
             if (portal.door < scene->objects.size()) settings.movable.push_back(portal.door);
         Progress progress("finding portals", "faces", 0);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/cli/verbs/bake_summary.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -47,6 +49,16 @@ void printWalls(std::FILE* out, const SoupCellReport& report) {
                           "tree is {} deep\n",
                           grouped(report.sheets), report.smallest_occluder, report.smallest_occluder,
                           report.smallest_hole, report.depth));
+    if (!report.trials.empty()) tell(out, "  smallest occluder      cells    portals  objects seen from a place\n");
+    for (const SoupTrial& trial : report.trials)
+        tell(out, fmt::format("  {:>17.3g} {:>10} {:>10} {:>10.1f} of {}{}\n", trial.smallest_occluder,
+                              grouped(trial.cells), grouped(trial.portals), trial.objects_seen, grouped(report.objects),
+                              trial.smallest_occluder == report.smallest_occluder ? ", taken" : ""));
+    const auto taken = std::find_if(report.trials.begin(), report.trials.end(), [&](const SoupTrial& trial) {
+        return trial.smallest_occluder == report.smallest_occluder;
+    });
+    if (taken != report.trials.end() && taken->objects_seen > 0.25 * static_cast<double>(report.objects))
+        tell(out, "  it has hardly an inside: such cells may cost a query more than they save\n");
     if (report.full) tell(out, "  there are too many cells: what is left undivided is looser\n");
 }
 
@@ -200,7 +212,14 @@ std::string bakeJson(const BakeSource& source, const Baked& baked, const BakeSum
                         {"merged", walls.merged},
                         {"depth", walls.depth},
                         {"full", walls.full},
+                        {"trials", Json::array()},
                         {"objects", walls.walls.size()}};
+        for (const SoupTrial& trial : walls.trials)
+            out["walls"]["trials"].push_back({{"smallest_occluder", trial.smallest_occluder},
+                                              {"cells", trial.cells},
+                                              {"portals", trial.portals},
+                                              {"objects_seen", trial.objects_seen},
+                                              {"portals_tried", trial.portals_tried}});
     }
     out["bytes"] = s.pvs_bytes;
     out["resident_bytes"] = s.resident_bytes;

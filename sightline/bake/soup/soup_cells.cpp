@@ -9,6 +9,7 @@
 
 #include "sightline/bake/marked/checked_cells.h"
 #include "sightline/bake/soup/soup_tree.h"
+#include "sightline/bake/soup/soup_trial.h"
 #include "sightline/bake/soup/soup_walls.h"
 #include "sightline/bsp/tree_portals.h"
 
@@ -71,8 +72,8 @@ struct FaceAnswer {
 
 class Faces {
 public:
-    Faces(const SoupWalls& walls, const SoupTree& tree, const CellGraph& graph, const std::vector<uint32_t>& node_of_portal,
-          double hole, uint32_t most_holes)
+    Faces(const SoupWalls& walls, const SoupTree& tree, const CellGraph& graph,
+          const std::vector<uint32_t>& node_of_portal, double hole, uint32_t most_holes)
         : walls_(walls),
           tree_(tree),
           graph_(graph),
@@ -129,7 +130,8 @@ public:
             if (rest.empty()) continue;
             for (const FlatHole& hole : holesOf(rest.pieces(), hole_, most_holes_)) {
                 out.merged |= hole.merged;
-                for (const FlatPiece& part : hole.pieces) out.holes.push_back({sheet.frame.from(widened(part, hole_)), way});
+                for (const FlatPiece& part : hole.pieces)
+                    out.holes.push_back({sheet.frame.from(widened(part, hole_)), way});
             }
         }
         return out;
@@ -190,35 +192,25 @@ void addHoles(const CellPortal& face, const FaceAnswer& answer, double hole, Cel
     }
 }
 
-}  // namespace
+/// The walls of a scene, as fine as the smallest that may divide.
+struct Soup {
+    SoupWalls walls;
+    Box3d bounds;  // of the tree
+    double hole = 0;
+};
 
-SoupCells cellsOfSoup(const Scene& scene, const SoupCellSettings& settings) {
+/// Divides by walls from a size on.
+SoupCells divide(const Scene& scene, const Soup& soup, double smallest_occluder, const SoupCellSettings& settings) {
     SoupCells out;
     SoupCellReport& report = out.report;
-    const OpaqueWalls opaque(scene, settings.movable);
-    std::vector<WallTriangle> triangles;
-    Box3d all{glm::dvec3(-std::numeric_limits<double>::infinity()), glm::dvec3(std::numeric_limits<double>::infinity())};
-    opaque.gather(all, triangles);
-    report.triangles = triangles.size();
-    Box3d bounds = worldBounds(scene);
-    const double diagonal = bounds.empty() ? 0 : glm::length(bounds.size());
-    if (triangles.empty() || !(diagonal > 0) || !std::isfinite(diagonal)) return out;
-    report.smallest_occluder = settings.smallest_occluder >= 0 ? settings.smallest_occluder : diagonal / 128;
-    report.smallest_hole = settings.smallest_hole >= 0 ? settings.smallest_hole : diagonal * 0x1p-23;
-    const double hole = std::max(report.smallest_hole, diagonal * 0x1p-30);
-    const double least_area = std::max(report.smallest_occluder * report.smallest_occluder, hole * hole);
-
-    const SoupWalls walls = sheetsOf(std::move(triangles), hole, least_area);
-    report.sheets = walls.sheets.size();
-    if (walls.sheets.empty()) return out;
-    // Eyes outside of the scene are in cells, too.
-    bounds.min -= glm::dvec3(diagonal);
-    bounds.max += glm::dvec3(diagonal);
+    report.smallest_occluder = smallest_occluder;
     SoupTreeSettings dividing;
-    dividing.bend = hole;
-    dividing.least_area = least_area;
+    dividing.bend = soup.hole;
+    dividing.least_area = std::max(smallest_occluder * smallest_occluder, soup.hole * soup.hole);
     dividing.most_leaves = settings.most_cells;
-    SoupTree tree = treeOfSheets(walls, bounds, dividing);
+    for (const WallSheet& sheet : soup.walls.sheets) report.sheets += sheet.largest >= dividing.least_area;
+    if (report.sheets == 0) return out;
+    SoupTree tree = treeOfSheets(soup.walls, soup.bounds, dividing);
     report.depth = tree.depth;
     report.full = tree.full;
 
@@ -226,17 +218,17 @@ SoupCells cellsOfSoup(const Scene& scene, const SoupCellSettings& settings) {
     std::vector<uint32_t> node_of_portal;
     const CellGraph faces = cellsOfTree(tree.tree, {}, &counts, &node_of_portal);
     report.faces = faces.portals.size();
-    const Faces walls_of(walls, tree, faces, node_of_portal, hole, settings.most_holes);
+    const Faces walls_of(soup.walls, tree, faces, node_of_portal, soup.hole, settings.most_holes);
     std::vector<FaceAnswer> answers(faces.portals.size());
-    constexpr size_t kTask = 256;
-    const size_t tasks = (answers.size() + kTask - 1) / kTask, batch = 64;
-    for (size_t begin = 0; begin < tasks; begin += batch) {
-        runJobs(settings.jobs, static_cast<uint32_t>(std::min(batch, tasks - begin)), [&](uint32_t task) {
+    constexpr size_t kTask = 256, kBatch = 64;
+    const size_t tasks = (answers.size() + kTask - 1) / kTask;
+    for (size_t begin = 0; begin < tasks; begin += kBatch) {
+        runJobs(settings.jobs, static_cast<uint32_t>(std::min(kBatch, tasks - begin)), [&](uint32_t task) {
             const size_t first = (begin + task) * kTask;
             for (size_t i = first; i < std::min(first + kTask, answers.size()); ++i)
                 answers[i] = walls_of.answer(static_cast<uint32_t>(i));
         });
-        if (const size_t done = (begin + batch) * kTask; settings.progress && done < answers.size())
+        if (const size_t done = (begin + kBatch) * kTask; settings.progress && done < answers.size())
             settings.progress(done, answers.size());
     }
 
@@ -245,16 +237,56 @@ SoupCells cellsOfSoup(const Scene& scene, const SoupCellSettings& settings) {
     graph.cell_of_leaf = faces.cell_of_leaf;
     std::vector<bool> is_wall(scene.objects.size(), false);
     for (size_t i = 0; i < answers.size(); ++i) {
-        addHoles(faces.portals[i], answers[i], hole, graph, report);
+        addHoles(faces.portals[i], answers[i], soup.hole, graph, report);
         report.closed += answers[i].holes.empty();
         report.merged += answers[i].merged;
-        for (const uint32_t t : answers[i].walls) is_wall[walls.triangles[t].object] = true;
+        for (const uint32_t t : answers[i].walls) is_wall[soup.walls.triangles[t].object] = true;
     }
     for (uint32_t object = 0; object < is_wall.size(); ++object)
         if (is_wall[object]) report.walls.push_back(object);
     out.space.tree = std::move(tree.tree);
-    out.space.tolerance = std::max(2 * hole, counts.tolerance);
+    out.space.tolerance = std::max(2 * soup.hole, counts.tolerance);
     return out;
+}
+
+}  // namespace
+
+SoupCells cellsOfSoup(const Scene& scene, const SoupCellSettings& settings) {
+    std::vector<WallTriangle> triangles;
+    const Box3d everywhere{glm::dvec3(-std::numeric_limits<double>::infinity()),
+                           glm::dvec3(std::numeric_limits<double>::infinity())};
+    OpaqueWalls(scene, settings.movable).gather(everywhere, triangles);
+    Soup soup;
+    soup.bounds = worldBounds(scene);
+    const double diagonal = soup.bounds.empty() ? 0 : glm::length(soup.bounds.size());
+    if (triangles.empty() || !(diagonal > 0) || !std::isfinite(diagonal)) return {};
+    const uint64_t opaque = triangles.size();
+    const double smallest_hole = settings.smallest_hole >= 0 ? settings.smallest_hole : diagonal * 0x1p-23;
+    soup.hole = std::max(smallest_hole, diagonal * 0x1p-30);
+    const double finest = settings.smallest_occluder >= 0 ? settings.smallest_occluder : diagonal / 128;
+    soup.walls = sheetsOf(std::move(triangles), soup.hole, std::max(finest * finest, soup.hole * soup.hole));
+    // Eyes outside of the scene are in cells, too.
+    soup.bounds.min -= glm::dvec3(diagonal);
+    soup.bounds.max += glm::dvec3(diagonal);
+
+    SoupCells best = divide(scene, soup, finest, settings);
+    std::vector<SoupTrial> trials;
+    if (settings.smallest_occluder < 0 && !settings.eyes.empty() && best.space.graph.cells > 0) {
+        constexpr double kMuchMore = 1.2;
+        trials.push_back(trialOf(scene, best, settings));
+        for (const double times : {2.0, 4.0, 8.0}) {
+            SoupCells coarser = divide(scene, soup, times * finest, settings);
+            if (coarser.space.graph.cells == 0) break;
+            trials.push_back(trialOf(scene, coarser, settings));
+            if (trials.back().objects_seen > kMuchMore * trials.front().objects_seen) break;
+            best = std::move(coarser);
+        }
+    }
+    best.report.trials = std::move(trials);
+    best.report.objects = scene.objects.size();
+    best.report.triangles = opaque;
+    best.report.smallest_hole = smallest_hole;
+    return best;
 }
 
 }  // namespace sightline::bake

@@ -32,8 +32,7 @@ void cutOutline(Outline& outline, const glm::dvec4& plane) {
 
 double areaOfOutline(const Outline& outline) {
     glm::dvec3 sum(0.0);
-    for (size_t i = 2; i < outline.size(); ++i)
-        sum += glm::cross(outline[i - 1] - outline[0], outline[i] - outline[0]);
+    for (size_t i = 2; i < outline.size(); ++i) sum += glm::cross(outline[i - 1] - outline[0], outline[i] - outline[0]);
     return glm::length(sum) / 2;
 }
 
@@ -102,12 +101,13 @@ private:
         std::vector<Fragment> all;
         for (uint32_t sheet = 0; sheet < walls_.sheets.size(); ++sheet)
             for (const uint32_t t : walls_.sheets[sheet].triangles) {
-                if (!walls_.divides[t]) continue;
+                if (walls_.part[t] < settings_.least_area) continue;
                 const WallTriangle& triangle = walls_.triangles[t];
                 Fragment fragment{sheet, 3, Outline(triangle.corners, triangle.corners + 3), 0};
-                const glm::dvec3 normal = glm::cross(triangle.corners[1] - triangle.corners[0],
-                                                     triangle.corners[2] - triangle.corners[0]);
-                if (!triangle.both) fragment.sides = glm::dot(normal, glm::dvec3(walls_.sheets[sheet].plane)) > 0 ? 1 : 2;
+                const glm::dvec3 normal =
+                    glm::cross(triangle.corners[1] - triangle.corners[0], triangle.corners[2] - triangle.corners[0]);
+                if (!triangle.both)
+                    fragment.sides = glm::dot(normal, glm::dvec3(walls_.sheets[sheet].plane)) > 0 ? 1 : 2;
                 fragment.area = glm::length(normal) / 2;
                 all.push_back(std::move(fragment));
             }
@@ -158,7 +158,7 @@ private:
                 low = std::min(low, heightOf(plane, point));
                 high = std::max(high, heightOf(plane, point));
             }
-            const bool behind = low < -settings_.bend, before = high > settings_.bend;
+            const bool behind = low<-settings_.bend, before = high> settings_.bend;
             split += behind && before;
             sides[0] += behind && !before;
             sides[1] += before && !behind;

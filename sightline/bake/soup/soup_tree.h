@@ -14,18 +14,18 @@
 namespace sightline::bake {
 
 struct SoupTreeSettings {
-    double bend = 0;               ///< what is no farther from a plane lies in it  [world units] [> 0]
-    double least_area = 0;         ///< sheets divide a cell in which they have as much  [world units^2] [> 0]
+    double bend = 0;                  ///< what is no farther from a plane lies in it  [world units] [> 0]
+    double least_area = 0;            ///< sheets divide a cell in which they have as much  [world units^2] [> 0]
     uint32_t most_leaves = 1u << 15;  ///< [limit: >= 1]
 };
 
 struct SoupTree {
     static constexpr uint32_t kNoSheet = ~0u;
 
-    LeafTree tree;                         ///< all its leaves are empty
-    std::vector<uint32_t> sheet_of_node;   ///< of SoupWalls::sheets; kNoSheet: the plane is no sheet's
-    uint32_t depth = 0;                    ///< nodes on the longest way down
-    bool full = false;                     ///< it was stopped by `most_leaves`
+    LeafTree tree;                        ///< all its leaves are empty
+    std::vector<uint32_t> sheet_of_node;  ///< of SoupWalls::sheets; kNoSheet: the plane is no sheet's
+    uint32_t depth = 0;                   ///< nodes on the longest way down
+    bool full = false;                    ///< it was stopped by `most_leaves`
 };
 
 /// Which planes divide what costs tightness and time alone, never an answer. Each node takes the sheet with the most opaque share of

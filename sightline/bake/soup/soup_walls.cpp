@@ -46,8 +46,8 @@ public:
             for (int b = 0; b < counts[1]; ++b)
                 for (int c = 0; c < counts[2]; ++c)
                     for (int d = 0; d < counts[3]; ++d) {
-                        const auto found = table_.find(keyOf({cells[0][size_t(a)], cells[1][size_t(b)],
-                                                              cells[2][size_t(c)], cells[3][size_t(d)]}));
+                        const auto found = table_.find(keyOf(
+                            {cells[0][size_t(a)], cells[1][size_t(b)], cells[2][size_t(c)], cells[3][size_t(d)]}));
                         if (found == table_.end()) continue;
                         for (const uint32_t number : found->second)
                             if (test(number)) return true;
@@ -71,8 +71,7 @@ private:
         const int largest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         const double sign = plane[largest] < 0 ? -1 : 1;
         const double height = glm::dot(glm::dvec3(plane), middle_) + plane.w;
-        return {kNormals * sign * plane.x, kNormals * sign * plane.y, kNormals * sign * plane.z,
-                sign * height / step_};
+        return {kNormals * sign * plane.x, kNormals * sign * plane.y, kNormals * sign * plane.z, sign * height / step_};
     }
     static uint64_t keyOf(const std::array<int64_t, 4>& cell) {
         uint64_t key = 0;
@@ -120,8 +119,8 @@ private:
     std::vector<uint32_t> parent_;
 };
 
-/// Marks the triangles of a sheet that belong to large parts of one of its sides; fills WallSheet::largest.
-void measureParts(SoupWalls& walls, WallSheet& sheet, double step, double least_area) {
+/// Fills SoupWalls::part of a sheet's triangles, and WallSheet::largest.
+void measureParts(SoupWalls& walls, WallSheet& sheet, double step) {
     for (const double side : {1.0, -1.0}) {
         CornerNumbers corners(step);
         Groups groups;
@@ -140,7 +139,7 @@ void measureParts(SoupWalls& walls, WallSheet& sheet, double step, double least_
         for (const auto& [corner, t] : members) {
             const double whole = area[groups.rootOf(corner)];
             sheet.largest = std::max(sheet.largest, whole);
-            if (whole >= least_area) walls.divides[t] = 1;
+            walls.part[t] = std::max(walls.part[t], whole);
         }
     }
 }
@@ -150,19 +149,20 @@ void measureParts(SoupWalls& walls, WallSheet& sheet, double step, double least_
 SoupWalls sheetsOf(std::vector<WallTriangle> triangles, double bend, double least_area) {
     SoupWalls out;
     out.triangles = std::move(triangles);
-    out.divides.assign(out.triangles.size(), 0);
+    out.part.assign(out.triangles.size(), 0);
     std::vector<double> areas(out.triangles.size());
+    Box3d bounds;
     for (size_t i = 0; i < areas.size(); ++i) {
         areas[i] = glm::length(areaVectorOf(out.triangles[i]));
-        for (const glm::dvec3& corner : out.triangles[i].corners) out.bounds.grow(corner);
+        for (const glm::dvec3& corner : out.triangles[i].corners) bounds.grow(corner);
     }
-    if (out.bounds.empty()) return out;
+    if (bounds.empty()) return out;
     // The largest first: their planes are known best.
     std::vector<uint32_t> order(areas.size());
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return areas[a] > areas[b]; });
 
-    PlaneTable table(out.bounds.center(), std::max(glm::length(out.bounds.size()) / 4096, 4 * bend));
+    PlaneTable table(bounds.center(), std::max(glm::length(bounds.size()) / 4096, 4 * bend));
     std::vector<WallSheet> sheets;
     for (const uint32_t t : order) {
         const WallTriangle& triangle = out.triangles[t];
@@ -181,9 +181,13 @@ SoupWalls sheetsOf(std::vector<WallTriangle> triangles, double bend, double leas
     for (WallSheet& sheet : sheets) {
         double all = 0;
         for (const uint32_t t : sheet.triangles) all += areas[t] / 2;
-        if (all >= least_area) measureParts(out, sheet, 2 * bend, least_area);
-        if (sheet.largest >= least_area) out.sheets.push_back(std::move(sheet));
-        else out.small_triangles += sheet.triangles.size();
+        if (all >= least_area) measureParts(out, sheet, 2 * bend);
+        if (sheet.largest >= least_area) {
+            out.sheets.push_back(std::move(sheet));
+            continue;
+        }
+        for (const uint32_t t : sheet.triangles) out.part[t] = 0;
+        out.small_triangles += sheet.triangles.size();
     }
     std::stable_sort(out.sheets.begin(), out.sheets.end(),
                      [](const WallSheet& a, const WallSheet& b) { return a.largest > b.largest; });

@@ -19,15 +19,15 @@ using namespace tools;
 struct WallSheet {
     glm::dvec4 plane{0.0};            ///< its normal has length 1
     std::vector<uint32_t> triangles;  ///< of SoupWalls::triangles
-    double largest = 0;  ///< area of the largest part of one side that hangs together  [world units^2]
+    double largest = 0;               ///< area of the largest part of one side that hangs together  [world units^2]
 };
 
 struct SoupWalls {
     std::vector<WallTriangle> triangles;
-    std::vector<WallSheet> sheets;     ///< by `largest`, the largest first
-    std::vector<uint8_t> divides;      ///< per triangle: it belongs to a part that is large enough
-    Box3d bounds;                      ///< of the triangles
-    uint64_t small_triangles = 0;      ///< of sheets that were left out: nothing of them is large enough
+    std::vector<WallSheet> sheets;  ///< by `largest`, the largest first
+    std::vector<double>
+        part;  ///< per triangle: area of the part of its sheet's side that it belongs to; 0: of no sheet
+    uint64_t small_triangles = 0;  ///< of sheets that were left out: nothing of them is large enough
 };
 
 /// Sorts triangles into planes. A triangle whose corners lie within half the bend of a plane that is nearly parallel to it

@@ -226,11 +226,12 @@ MarkedRooms slitRoom(Random& random, double width, double turn) {
         for (const bool front : {false, true}) {
             Mesh mesh;
             const glm::dvec2 edge = middle + side * width / 2 * across;
-            for (const glm::dvec2& at : {edge - 40.0 * along, edge + 40.0 * along, edge + 40.0 * along + side * 40.0 * across,
-                                         edge - 40.0 * along + side * 40.0 * across})
+            for (const glm::dvec2& at :
+                 {edge - 40.0 * along, edge + 40.0 * along, edge + 40.0 * along + side * 40.0 * across,
+                  edge - 40.0 * along + side * 40.0 * across})
                 mesh.positions.emplace_back(25, at.x, at.y);
-            mesh.indices = (side > 0) == front ? std::vector<uint32_t>{0, 1, 2, 0, 2, 3}
-                                               : std::vector<uint32_t>{0, 2, 1, 0, 3, 2};
+            mesh.indices =
+                (side > 0) == front ? std::vector<uint32_t>{0, 1, 2, 0, 2, 3} : std::vector<uint32_t>{0, 2, 1, 0, 3, 2};
             made.add(std::move(mesh), 0);
         }
     return made;
@@ -254,8 +255,9 @@ TEST(SoupCells, SlitsOf10And1AndATenthOfAMillimetreAreSeenThrough) {
                 const Mesh& half = made.scene.meshes[made.scene.meshes.size() - 1];
                 const Mesh& other = made.scene.meshes[made.scene.meshes.size() - 3];
                 const double part = random.uniform(0.3, 0.7);
-                const glm::dvec3 aim = glm::mix(0.5 * (glm::dvec3(half.positions[0]) + glm::dvec3(other.positions[0])),
-                                                0.5 * (glm::dvec3(half.positions[1]) + glm::dvec3(other.positions[1])), part);
+                const glm::dvec3 aim =
+                    glm::mix(0.5 * (glm::dvec3(half.positions[0]) + glm::dvec3(other.positions[0])),
+                             0.5 * (glm::dvec3(half.positions[1]) + glm::dvec3(other.positions[1])), part);
                 const glm::dvec3 along = glm::normalize(aim - from);
                 const double length = glm::distance(from, aim) * 1.5;
                 if (truth.meets(from, along, 0, glm::distance(from, aim) + 0.1, 0)) continue;
@@ -305,6 +307,40 @@ TEST(SoupCells, OfNothingThereAreNoCells) {
     EXPECT_EQ(cellsOfSoup(made.scene, settings).space.graph.cells, 0u) << "what moves hides nothing";
     made.scene.objects[0].transform[3][0] = INFINITY;
     EXPECT_EQ(cellsOfSoup(made.scene).space.graph.cells, 0u);
+}
+
+// With places to look from, walls are taken as large as they may be.
+TEST(SoupCells, TakesLargerWallsIfHardlyMoreIsSeen) {
+    Random random(5);
+    size_t coarser = 0;
+    for (int round = 0; round < 12; ++round) {
+        SCOPED_TRACE("round " + std::to_string(round));
+        const MarkedRooms made = randomRooms(random, 3 * round);  // where they were made
+        SoupCellSettings settings;
+        settings.eyes = {{1, 1.5, 2}, {4, 1.5, 2}, {9, 2, 1}};
+        const SoupCells cells = cellsOfSoup(made.scene, settings);
+        const std::vector<SoupTrial>& trials = cells.report.trials;
+        ASSERT_FALSE(trials.empty());
+        EXPECT_EQ(cells.report.objects, made.scene.objects.size());
+        size_t taken = trials.size();
+        for (size_t i = 0; i < trials.size(); ++i) {
+            EXPECT_EQ(trials[i].smallest_occluder, std::ldexp(trials[0].smallest_occluder, int(i)));
+            EXPECT_LE(trials[i].objects_seen, double(made.scene.objects.size()));
+            EXPECT_GT(trials[i].objects_seen, 0);
+            if (trials[i].smallest_occluder == cells.report.smallest_occluder) taken = i;
+        }
+        ASSERT_LT(taken, trials.size());
+        EXPECT_EQ(trials[taken].cells, cells.space.graph.cells);
+        EXPECT_EQ(trials[taken].portals, cells.space.graph.portals.size());
+        EXPECT_LE(trials[taken].objects_seen, 1.2 * trials[0].objects_seen);
+        for (size_t i = taken + 1; i < trials.size(); ++i)
+            EXPECT_GT(trials[i].objects_seen, 1.2 * trials[0].objects_seen);
+        coarser += taken > 0;
+        SoupCellSettings same;
+        same.smallest_occluder = cells.report.smallest_occluder;
+        EXPECT_EQ(cellsOfSoup(made.scene, same).space.graph.points, cells.space.graph.points);
+    }
+    EXPECT_GT(coarser, 0u);
 }
 
 TEST(SoupCells, MostCellsEndTheDivision) {

@@ -1,0 +1,61 @@
+// How a scene's own walls divide it, and what is told of that.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "sightline/base/jobs.h"
+#include "sightline/cells/cell_space.h"
+
+namespace sightline::bake {
+
+struct SoupCellSettings {
+    /// What divides space: opaque sheets that hang together and are at least as large as a square of this side. Smaller
+    /// ones hide as occluders alone. Negative: a 128th of the scene's diagonal or, if there are `eyes`, two, four or eight
+    /// times as much, as long as they see at most a fifth more.  [world units]
+    double smallest_occluder = -1;
+    std::vector<glm::dvec3> eyes;  ///< places that are asked how much is seen from them
+    /// Holes that are narrower are no holes: as much as coordinates of the scene may be off. A larger one closes
+    /// holes that light passes, which is not conservative. Negative: 2^-23 of the scene's diagonal.  [world units]
+    double smallest_hole = -1;
+    uint32_t most_cells = 1u << 15;  ///< [limit: >= 1]
+    uint32_t most_holes = 32;        ///< pieces of the holes of one face; more become their hull  [limit: >= 1]
+    std::vector<uint32_t> movable;   ///< objects that may be elsewhere at run time: they hide nothing  [Scene::objects]
+    Jobs* jobs = nullptr;            ///< threads to share the faces out to; the answer is the same with any
+    std::function<void(size_t, size_t)> progress;  ///< called with (done, total) faces now and then; may be empty
+};
+
+/// What a size of `smallest_occluder` gives.
+struct SoupTrial {
+    double smallest_occluder = 0;
+    uint64_t cells = 0, portals = 0;
+    double objects_seen = 0;   ///< in cells that a place sees, all round; the mean of the places
+    double portals_tried = 0;  ///< by the walks of a place
+};
+
+struct SoupCellReport {
+    std::vector<SoupTrial> trials;                    ///< the finest first; none without `eyes`
+    uint64_t objects = 0;                             ///< of the scene, that trials speak of
+    double smallest_occluder = 0, smallest_hole = 0;  ///< as used  [world units]
+    uint64_t triangles = 0;                           ///< opaque ones
+    uint64_t sheets = 0;                              ///< planes that may divide
+    uint64_t faces = 0;                               ///< between leaves
+    uint64_t closed = 0;                              ///< faces that walls cover wholly, from both sides
+    uint64_t one_way = 0;                             ///< portals that are seen through from one side alone
+    uint64_t merged = 0;                              ///< faces whose holes became their hull
+    uint32_t depth = 0;                               ///< of the tree
+    bool full = false;                                ///< `most_cells` ended the division
+    std::vector<uint32_t> walls;  ///< objects that the answer rests on: while they stand, are drawn and are opaque it
+                                  ///< holds  [Scene::objects] rising
+};
+
+struct SoupCells {
+    CellSpace space;  ///< of a tree; without cells if nothing of the scene is opaque and large enough
+    SoupCellReport report;
+};
+
+}  // namespace sightline::bake
