@@ -67,6 +67,7 @@ TEST_F(Comfort, SlipsAreToldWhatIsNearest) {
 TEST_F(Comfort, OptionsOfOtherVerbsAreToldWhose) {
     expectError("cull city:1:10 --object 3", 2, "--object; it belongs to explain (see");
     expectError("info city:1:10 --report out", 2, "--report; it belongs to cull, render, ");
+    expectError("cull city:1:10 -o x.json", 2, "-o; it belongs to render, explain, ");
 }
 
 TEST_F(Comfort, ScenesAreNoVerbs) {
@@ -80,11 +81,28 @@ TEST_F(Comfort, ScenesAreNoVerbs) {
     expectError("cull city", 3, "city: ");
 }
 
+TEST_F(Comfort, PagesSayWhereTheyAre) {
+    for (const char* command : {"cull city:1:50 --frames 1 --size 64x36 --report page",
+                                "render city:1:50 --size 64x36 --report page", "bake building:1:1 --report page"})
+        EXPECT_NE(run(command).out.find("report       page/index.html\n"), std::string::npos) << command;
+}
+
+TEST_F(Comfort, RunsWithoutACommonCameraAreNotCompared) {
+    succeed("cull city:1:50 --frames 1 --size 64x36 --json a.json");
+    succeed("cull city:1:50 --frames 1 --seed 9 --size 64x36 --json b.json");
+    const Outcome compared = run("report --compare a.json b.json --fail-if-slower 2");
+    EXPECT_EQ(compared.exit_code, 1) << "a gate that compares nothing does not open";
+    EXPECT_NE(compared.out.find("there is nothing to compare"), std::string::npos) << compared.out;
+    EXPECT_EQ(compared.out.find("query "), std::string::npos) << compared.out;
+}
+
 TEST_F(Comfort, MissingFilesAndDirectoriesAreNamed) {
     expectError("cull city:1:10 --cameras no.json", 3, "no.json: no such file");
     expectError("cull city:1:10 --visibility no.vis", 3, "no.vis: no such file");
     expectError("report nosuch", 3, "nosuch: no such file");
     write("model.glb", "glTF\2\0\0\0");
+    succeed("bake building:1:1 -o house.vis");
+    expectError("cull house.vis", 3, "house.vis: is a visibility file, not a scene: give it with --visibility");
     expectError("report model.glb", 3, "model.glb: is no run: `sightline cull --json FILE` writes one");
     expectError("cull city:1:10 --frames 1 --json no/way/x.json", 4,
                 "no/way/x.json: cannot be written: there is no directory no/way");
@@ -102,6 +120,11 @@ TEST_F(Comfort, CountsAreWords) {
 
 TEST_F(Comfort, ValuesThatMeanNothingAreRefused) {
     expectError("cull city:1:10 --repeat many", 2, "--repeat: many is not a number");
+    expectError("render city:1:10 --frame all", 2, "--frame: all is not a number");
+    expectError("cull city:1:10 --frames 2 --frames 3", 2, "--frames is given more than once");
+    expectError("cull city:1:10 --section 0,0,0,1", 2, "A, B and C are all 0");
+    expectError("bake city:1:10 --time-limit -1", 2, "--time-limit: -1 is no number of seconds above 0");
+    expectError("cull city:1:10 --use frustum,portals", 2, "--use portals: goes with --visibility");
     expectError("cull city:1:10 --repeat 0", 2, "--repeat: Value 0 not in range");
     expectError("cull city:1:10 --cameras ''", 2, "--cameras: its value is empty");
     expectError("cull city:1:10 --report ''", 2, "--report: its value is empty");

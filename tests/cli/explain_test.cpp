@@ -128,6 +128,22 @@ TEST_F(ExplainVerb, LooksThroughAPixel) {
     EXPECT_NE(run("explain made:eye --at 0,0").out.find("pixel (0, 0)"), std::string::npos);
 }
 
+// A window pane before a room: the reference renderer draws no blended surface, and yet it is there.
+TEST_F(ExplainVerb, TellsWhatShinesThroughAtAPixel) {
+    const std::string house = SIGHTLINE_SHARED_DIR "/scenes/bsi-duplex.glb";
+    if (!std::filesystem::exists(house)) GTEST_SKIP() << "the shared scenes are not there: " << house;
+    const std::string words = "explain '" + house + "' --frames 12 --frame 4 --rays 20000 --at 640,360 ";
+    const json answers = answer(words)["answers"];
+    ASSERT_FALSE(answers.empty());
+    EXPECT_EQ(answers[0]["key"], 281) << "a pane of glass";
+    EXPECT_EQ(answers[0]["verdict"], "visible");
+    const Outcome told = succeed(words + "-o pane.png");
+    EXPECT_NE(told.out.find("what is in front shines through"), std::string::npos) << told.out;
+    EXPECT_TRUE(std::filesystem::exists(path("pane.png")));
+    const Outcome sky = succeed("explain made:cycle --at 0,0 -o none.png");
+    EXPECT_NE(sky.out.find("pixel (0, 0): nothing, so that no picture is written"), std::string::npos) << sky.out;
+}
+
 TEST_F(ExplainVerb, TellsOfAWholePath) {
     const Outcome outcome = succeed("explain city:1:1000 --frames 4 --top 3 --json path.json");
     expectNarrow(outcome.out);

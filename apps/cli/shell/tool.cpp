@@ -180,19 +180,30 @@ std::string withoutRange(const std::string& what) {
     return CLI::detail::lexical_cast(word, number) ? what : what.substr(0, value) + word + " is not a number";
 }
 
+/// The parser's words in ours.
+std::string inOurWords(std::string what) {
+    if (const size_t at = what.find(" was given a disallowed flag override"); at != std::string::npos)
+        return "--" + what.substr(0, at) + " takes no value";
+    if (const std::string_view kConvert = "Could not convert: "; what.starts_with(kConvert))
+        if (const size_t equals = what.find(" = "); equals != std::string::npos)
+            return what.substr(kConvert.size(), equals - kConvert.size()) + ": " + what.substr(equals + 3) +
+                   " is not a number";
+    if (const size_t at = what.find(": At Most 1 required but received"); at != std::string::npos)
+        return what.substr(0, at) + " is given more than once";
+    return withoutRange(what);
+}
+
 /// What the parser found wrong, with a word that may have been meant.
 std::string explained(const CLI::App& tool, const CLI::ParseError& error) {
-    std::string what = error.what(), meant;
-    if (const size_t at = what.find(" was given a disallowed flag override"); at != std::string::npos)
-        what = "--" + what.substr(0, at) + " takes no value";
+    std::string meant;
     if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
         const auto chosen = tool.get_subcommands();
         const CLI::App& app = chosen.empty() ? tool : *chosen.front();
         const std::vector<std::string> extras = app.remaining();
-        if (!extras.empty() && extras[0].starts_with("--"))
+        if (!extras.empty() && extras[0].size() > 1 && extras[0].starts_with('-'))
             meant = meantOption(tool, app, extras[0].substr(0, extras[0].find('=')));
     }
-    return fmt::format("{}{} (see {} --help)", withoutRange(what), meant, verbOf(tool));
+    return fmt::format("{}{} (see {} --help)", inOurWords(error.what()), meant, verbOf(tool));
 }
 
 /// Refuses what no option means: values of nothing, numbers below zero where only others count, and pictures by the

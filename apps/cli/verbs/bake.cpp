@@ -77,6 +77,7 @@ Result<int> runBake(SceneBakeOptions& options) {
     if (!options.report.empty())
         if (Status written = writeRowsPage(*baked, summary.rows, options.report); !written) return written.error();
     printBakeSummary(options.json == "-" ? stderr : stdout, *source, *baked, summary);
+    if (!options.report.empty()) tellPage(options.json == "-" ? stderr : stdout, options.report);
     if (!options.json.empty())
         if (Status written = writeText(options.json, bakeJson(*source, *baked, summary)); !written)
             return written.error();

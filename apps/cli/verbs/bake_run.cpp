@@ -71,7 +71,13 @@ void addBakeOptions(CLI::App& verb, BakeOptions& options, const std::string& out
         ->type_name("WORK");
     verb.add_option("--time-limit", options.time_limit,
                     "stop after so many seconds; what is not settled by then is visible")
-        ->check(CLI::PositiveNumber)
+        ->check(CLI::Validator(
+            [](const std::string& text) -> std::string {
+                double seconds = 0;
+                const bool good = CLI::detail::lexical_cast(text, seconds) && seconds > 0;
+                return good ? "" : text + " is no number of seconds above 0";
+            },
+            "", "seconds"))
         ->type_name("S");
     verb.add_option("--state", options.state,
                     "where a long bake writes down how far it is, to go on after its end (default: the output's name "

@@ -111,8 +111,7 @@ void printVisSummary(std::FILE* out, const VisSummary& s) {
     for (const VisSummary::Leak& leak : s.leaks)
         tell(out,
              fmt::format("leaks: from {} at {:g} {:g} {:g} there is a way of {} points to the outside, which stays in "
-                         "the rows (--leak "
-                         "writes it)\n",
+                         "the rows (--leak FILE.pts writes it, as dots)\n",
                          leak.from, leak.path.front().x + 0.0, 0.0 - leak.path.front().z, leak.path.front().y + 0.0,
                          leak.path.size()));
     if (s.objects)
@@ -121,8 +120,8 @@ void printVisSummary(std::FILE* out, const VisSummary& s) {
                          grouped(s.objects->visible_pairs),
                          percentText(s.objects->visible_pairs, s.objects->pairs_by_cells), s.objects->cpu_seconds));
     if (s.pvs_bytes)
-        tell(out, fmt::format("bytes: {} packed, {} resident; run-length lump {}\n", grouped(s.pvs_bytes),
-                              grouped(s.resident_bytes), grouped(s.lump_bytes)));
+        tell(out, fmt::format("bytes: {} packed, {} resident{}\n", grouped(s.pvs_bytes), grouped(s.resident_bytes),
+                              s.lump_bytes ? "; run-length lump " + grouped(s.lump_bytes) : ""));
     tell(out, fmt::format("{:.2f} s of CPU, {:.2f} s\n", s.cpu_seconds, s.wall_seconds));
     if (s.verification)
         tell(out, fmt::format("verified: {} segments, {} false negatives\n", grouped(s.verification->segments),

@@ -249,6 +249,10 @@ Status writeText(const std::string& file, const std::string& text) {
     return Error{Error::Kind::kOutput, "standard output: cannot be written"};
 }
 
+void tellPage(std::FILE* out, const std::string& directory) {
+    tell(out, fmt::format("report       {}/index.html\n", directory));
+}
+
 std::string lower(std::string text) {
     for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return text;

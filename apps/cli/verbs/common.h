@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <string>
 
 #include "apps/cli/shell/session.h"
@@ -49,6 +50,9 @@ std::string ownerOfPath(const Scene& scene, const RunOptions& options);
 
 /// Writes text to a file aside and renames it, or to standard output for `-`.
 Status writeText(const std::string& file, const std::string& text);
+
+/// Says where a page was written.
+void tellPage(std::FILE* out, const std::string& directory);
 
 /// With small letters for capitals.
 std::string lower(std::string text);

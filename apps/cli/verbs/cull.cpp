@@ -309,8 +309,7 @@ Result<int> runCull(const CLI::App& verb, CullOptions& options) {
     printSummary(options.json == "-" ? stderr : stdout, run);
     if (Status explained = explainFalseCulls(*scene, options, run); !explained) return explained.error();
     if (Status written = writeCullOutputs(*scene, now, run, options); !written) return written.error();
-    if (!options.report.empty())
-        tell(options.json == "-" ? stderr : stdout, fmt::format("report       {}/index.html\n", options.report));
+    if (!options.report.empty()) tellPage(options.json == "-" ? stderr : stdout, options.report);
     return exitCodeOf(run, path->frames.size(), options.verify);
 }
 

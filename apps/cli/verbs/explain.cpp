@@ -159,9 +159,12 @@ Status explainPixel(const ExplainOptions& options, const AskedScene& asked, cons
     std::FILE* const out = readerOf(options);
     body["pixel"] = {options.x, options.y};
     if (layers.empty()) {
-        fmt::print(out, "pixel ({}, {}): nothing\n", options.x, options.y);
+        fmt::print(out, "pixel ({}, {}): nothing{}\n", options.x, options.y,
+                   options.picture.empty() ? "" : ", so that no picture is written");
         return success();
     }
+    if (layers.front().shines_through)
+        fmt::print(out, "pixel ({}, {}): what is in front shines through\n", options.x, options.y);
     if (Status done = explainInFrame(options, asked, camera, {layers.front().object}, body); !done) return done;
     Explainer explainer(asked.now, view, options.settings);
     if (layers.size() > 1) fmt::print(out, "behind it, at pixel ({}, {}):\n", options.x, options.y);
@@ -170,9 +173,9 @@ Status explainPixel(const ExplainOptions& options, const AskedScene& asked, cons
         const ObjectAnswer answer{
             options.first_frame, object, explainer.explain(asked.loaded.ids[object], {true, false}), {}, 0};
         const std::string line =
-            fmt::format("{:>10.4g} units  {:<10} {}", layers[i].depth,
+            fmt::format("{:>10.4g} units  {:<10} {}{}", layers[i].depth,
                         answer.why.verdict == Verdict::kVisible ? "kept" : verdictName(answer.why.verdict),
-                        titleOf(asked.scene, object));
+                        layers[i].shines_through ? "see-through: " : "", titleOf(asked.scene, object));
         fmt::print(out, "{}\n", shortened(line, 100));
         body["answers"].push_back(answerJson(asked, answer));
     }

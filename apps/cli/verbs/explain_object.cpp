@@ -16,6 +16,7 @@
 #include "apps/cli/verbs/visibility_choice.h"
 #include "sightline/query/query.h"
 #include "sightline/studies/hidden/zbuffer/zbuffer.h"
+#include "sightline/tools/load/seeded_cameras.h"
 #include "sightline/tools/report/pictures/render_list.h"
 #include "sightline/tools/report/run/explain_text.h"
 #include "sightline/tools/scene/one_line.h"
@@ -70,6 +71,38 @@ View throughPixel(const View& view, uint32_t x, uint32_t y) {
     pixel.width = pixel.height = 1;
     pixel.jitter = 0;
     return pixel;
+}
+
+/// The material of a triangle.
+const Material& materialOf(const Scene& scene, const ProbeHit& hit) {
+    const Mesh& mesh = scene.meshes[scene.objects[hit.object].mesh];
+    for (const Primitive& part : mesh.primitives)
+        if (hit.triangle >= part.first_triangle && hit.triangle - part.first_triangle < part.triangle_count)
+            return scene.materials[part.material];
+    return scene.materials[mesh.primitives.front().material];
+}
+
+/// Adds what shines through at the middle of a pixel: objects that are not yet among the layers.
+void addClear(const Scene& scene, const View& pixel, std::vector<Layer>& layers) {
+    constexpr int kMostHits = 4096;
+    const glm::dmat4 back = glm::inverse(pixel.projection * pixel.view);
+    const glm::dvec4 begin = back * glm::dvec4(0, 0, -1, 1), end = back * glm::dvec4(0, 0, 0.5, 1);
+    const glm::dvec3 from = glm::dvec3(begin) / begin.w, to = glm::dvec3(end) / end.w;
+    const glm::dvec3 along = -glm::dvec3(glm::row(pixel.view, 2));
+    const ProbeRay ray{from, glm::normalize(to - from)};
+    const glm::dvec3 eye = eyePosition(pixel);
+    const RayProbe probe(scene);
+    double at = 0;
+    for (int i = 0; i < kMostHits; ++i) {
+        const std::optional<ProbeHit> hit = probe.nearest(ray, at);
+        if (!hit) return;
+        at = hit->t;
+        const Material& material = materialOf(scene, *hit);
+        if (material.hides() || (!hit->front && !material.double_sided)) continue;
+        const double depth = glm::dot(along, ray.origin + at * ray.direction - eye);
+        const auto known = [&](const Layer& layer) { return layer.object == hit->object; };
+        if (std::none_of(layers.begin(), layers.end(), known)) layers.push_back({hit->object, depth, true});
+    }
 }
 
 using Json = nlohmann::ordered_json;
@@ -261,6 +294,9 @@ std::vector<Layer> layersAt(const Scene& scene, const View& view, uint32_t x, ui
         layers.push_back({object, parallel ? -image.depth.front() : 1.0 / image.depth.front()});
         std::erase_if(items, [&](const DrawItem& item) { return item.id == object; });
     }
+    addClear(scene, pixel, layers);
+    std::stable_sort(layers.begin(), layers.end(), [](const Layer& a, const Layer& b) { return a.depth < b.depth; });
+    if (layers.size() > most) layers.resize(most);
     return layers;
 }
 

@@ -26,13 +26,15 @@ using namespace tools;
 /// the first ten are named.
 Result<std::vector<uint32_t>> findObjects(const Scene& scene, const std::string& word);
 
-/// What a pixel shows, by the reference renderer.
+/// What a pixel shows.
 struct Layer {
-    uint32_t object = 0;  ///< index into Scene::objects
-    double depth = 0;     ///< along the direction of view  [world units]
+    uint32_t object = 0;          ///< index into Scene::objects
+    double depth = 0;             ///< along the direction of view  [world units]
+    bool shines_through = false;  ///< a surface that hides nothing: blended, masked or transmissive
 };
 
-/// The surfaces at the middle of a pixel, front to back, each object once; at most so many.
+/// The surfaces at the middle of a pixel, front to back, each object once; at most so many. Opaque ones are the reference
+/// renderer's, and end nothing; those that shine through are a ray's.
 /// @param x,y  whole pixels from the left and the top, inside the viewport
 std::vector<Layer> layersAt(const Scene& scene, const View& view, uint32_t x, uint32_t y, size_t most);
 

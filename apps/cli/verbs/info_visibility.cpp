@@ -109,9 +109,10 @@ Status infoOfVisibility(const std::string& file, const std::string& json) {
         fmt::print("{}\n", oneLine(file));
         fmt::print("  format              visibility file, {}\n", packed ? "packed" : "in place");
         fmt::print("  map                 {} (hash {})\n", map.empty() ? "-" : oneLine(map), hash);
-        row("cells", rows.cells(), grouped(rows.classes()) + " different rows");
+        if (rows.cells() == 0) fmt::print("  rows of visibility            none\n");
+        else row("cells", rows.cells(), grouped(rows.classes()) + " different rows");
         if (opened->leaves() > 0) row("leaves", opened->leaves(), grouped(facts.leaves_with_cells) + " in cells");
-        row("visible cell pairs", facts.cell_pairs);
+        if (rows.cells() > 0) row("visible cell pairs", facts.cell_pairs);
         if (opened->leaves() > 0) row("visible leaf pairs", facts.leaf_pairs);
         if (opened->hasCells()) {
             row("cells as places", places.cells,

@@ -159,7 +159,9 @@ Status writeRenderOutputs(const RenderList& scene, const View& view, const Rende
     };
     const std::string page = renderPage(scene, view, run, pictures, save);
     if (!saved) return saved;
-    return writeFileAside(options.report + "/index.html", page);
+    if (Status written = writeFileAside(options.report + "/index.html", page); !written) return written;
+    tellPage(options.json == "-" ? stderr : stdout, options.report);
+    return success();
 }
 
 Status runRender(const CLI::App& verb, RenderOptions& options) {

@@ -43,6 +43,10 @@ void printComparison(std::FILE* out, const RunComparison& c, const RunFile& a, c
                counted(b.run.frames.size(), "frame"));
     fmt::print(out, "paired       {}; without a partner {} of A, {} of B\n", counted(c.pairs.size(), "frame"),
                c.unpaired_a, c.unpaired_b);
+    if (c.pairs.empty()) {
+        for (const std::string& sentence : c.verdict) fmt::print(out, "{}\n", oneLine(sentence));
+        return;
+    }
     fmt::print(out, "query        {:.1f} us in A, {:.1f} us in B, medians; B / A {:.3f} ({:.3f} to {:.3f})\n",
                c.median_a, c.median_b, c.ratio, c.ratio_low, c.ratio_high);
     fmt::print(out, "kept         {} in A, {} in B; only A {}, only B {}\n", grouped(c.kept_a), grouped(c.kept_b),
@@ -77,6 +81,7 @@ Result<int> compare(const ReportOptions& options, const RunFile& a, const RunFil
             return written.error();
         if (Status written = writeInto(options.directory, comparePage(comparison, a, b)); !written)
             return written.error();
+        tellPage(options.json == "-" ? stderr : stdout, options.directory);
     }
     return comparison.ok ? kDone : kAnswerIsNo;
 }
@@ -101,6 +106,7 @@ Result<int> show(const ReportOptions& options, const std::vector<RunFile>& files
             frames, kPictureBudget);
         if (Status written = writeInto(options.directory, runPage(file.run, file.names, film)); !written)
             return written.error();
+        tellPage(stdout, options.directory);
     }
     return sound ? kDone : kAnswerIsNo;
 }
@@ -148,7 +154,9 @@ void addReport(CLI::App& tool, int& exit_code) {
     CLI::App* verb = tool.add_subcommand("report", "what cull's JSON holds, as a page; and two runs compared");
     const auto options = std::make_shared<ReportOptions>();
     verb->add_option("RUN", options->runs, "files of cull --json, or directories of cull --report")->required();
-    verb->add_flag("--compare", options->compare, "two runs, A and B; exit code 1 if B has false culls that A has not");
+    verb->add_flag(
+        "--compare", options->compare,
+        "two runs, A and B; exit code 1 if B has false culls that A has not, or if no frames have the same camera");
     verb->add_option("-o,--output", options->directory, "write DIR/index.html")->type_name("DIR");
     verb->add_option("--json", options->json, "write the comparison as JSON (-: standard output)")->type_name("FILE");
     verb->add_option("--fail-if-slower", options->fail_if_slower,

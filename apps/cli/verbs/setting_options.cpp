@@ -47,7 +47,8 @@ glm::dvec4 readPlane(const std::string& text) {
     for (int i = 0; i < 4; ++i)
         if (!CLI::detail::lexical_cast(parts[static_cast<size_t>(i)], plane[i]) || !std::isfinite(plane[i]))
             throw wrongPlane(text);
-    if (glm::dvec3(plane) == glm::dvec3(0.0)) throw wrongPlane(text);
+    if (glm::dvec3(plane) == glm::dvec3(0.0))
+        throw CLI::ValidationError("--section", "A, B and C are all 0 in '" + text + "': that is no plane");
     return plane;
 }
 
@@ -161,6 +162,9 @@ Status finishVisibilityOptions(RunOptions& options) {
     if (!asked.file.empty()) return success();
     if (options.settings.portal_depth > 0) return usageError("--portal-depth goes with --visibility");
     if (!asked.doors.empty()) return usageError("--door goes with --visibility");
+    for (const Stage stage : {Stage::kPvs, Stage::kPortals})
+        if (names(options.use, stage))
+            return usageError(fmt::format("--use {}: goes with --visibility", kStageNames[static_cast<int>(stage)]));
     options.settings.stages &= ~kCellStages;
     return success();
 }

@@ -256,7 +256,10 @@ Result<int> runVis(VisOptions& options) {
             !written)
             return written.error();
     printVisSummary(options.json == "-" ? stderr : stdout, summary);
-    if (options.output.empty() && options.json.empty() && options.report.empty())
+    if (!options.report.empty()) tellPage(options.json == "-" ? stderr : stdout, options.report);
+    if (!options.leak.empty() && !summary.leaks.empty())
+        tell(options.json == "-" ? stderr : stdout, fmt::format("leak         {}\n", options.leak));
+    if (options.output.empty() && options.json.empty() && options.report.empty() && options.leak.empty())
         note("nothing was written: -o writes the map with its lump, or a visibility file");
     if (!options.json.empty())
         if (Status written = writeText(options.json, visJson(summary)); !written) return written.error();

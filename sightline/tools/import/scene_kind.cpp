@@ -99,6 +99,7 @@ constexpr std::array kMagics = std::to_array<Magic>({
     {"VBSP"sv, "", "is a map of Source, which is not read"},
     {"PRT1"sv, "", "holds a map's portals, which vis and info read, and is no scene: name the .bsp"},
     {"PRT2"sv, "", "holds a map's portals, which vis and info read, and is no scene: name the .bsp"},
+    {"sightline cells\n"sv, "", "is a visibility file, not a scene: give it with --visibility"},
     {"LASF"sv, "", "is a point cloud: it has no surfaces that could hide anything"},
     {"# .PCD"sv, "", "is a point cloud: it has no surfaces that could hide anything"},
     {"\x89PNG"sv, "", "is a picture, not a scene"},

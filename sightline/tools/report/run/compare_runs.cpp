@@ -190,6 +190,7 @@ std::string sentenceOfTimes(const RunComparison& out) {
 
 void judge(RunComparison& out, std::optional<double> most_ratio) {
     if (out.pairs.empty()) {
+        out.ok = out.unpaired_a + out.unpaired_b == 0;  // of runs without frames nothing is wrong
         out.verdict.push_back("No frame of B has the camera of a frame of A: there is nothing to compare.");
     } else {
         if (!out.same_scene) out.verdict.push_back("The scenes are not the same: their objects or triangles differ.");
