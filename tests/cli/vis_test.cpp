@@ -90,11 +90,10 @@ TEST_F(Vis, AMapIsWrittenInItsPlaceAsCompilersDo) {
               std::string::npos);
     EXPECT_EQ(read(path("m.bsp")), read(path("out.bsp")));
     // As a profile of an editor calls it.
-    const Outcome outcome = run("vis -threads 2 -level 4 -fast -v -noambientsky n -o ./n.bsp");
+    const Outcome outcome = run("vis -threads 2 -level 4 -fast -v n -o ./n.bsp");
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_EQ(read(path("n.bsp")), read(path("out.bsp")));
     EXPECT_NE(outcome.err.find("-level has no effect: rows are always as tight"), std::string::npos);
-    EXPECT_NE(outcome.err.find("-noambientsky has no effect"), std::string::npos);
     expectError("vis -visdist 512 n.bsp", 2, "-visdist: nothing is cut off at a distance");
     expectError("vis n.bsp -threads", 2, "-threads: its value is missing");
     expectError("vis n.bsp -threads many", 2, "--threads");
@@ -103,6 +102,26 @@ TEST_F(Vis, AMapIsWrittenInItsPlaceAsCompilersDo) {
     expectError("vis n.bsp -o n.bsp --json n.bsp", 2, "is taken by");
     expectError("vis none -o none.bsp", 3, "none");
     EXPECT_EQ(read(path("n.bsp")), read(path("out.bsp")));
+}
+
+TEST_F(Vis, AmbientSoundsAreWrittenAsOfOld) {
+    MadeMap made;
+    for (MadeFace& face : made.faces) face.texture = 0;
+    made.faces[6].texture = 1;  // the sheet of water
+    madeVisibility(QuakeFormat::kQuake, true, made);
+    write("pool.bsp", mapBytes(QuakeFormat::kQuake, made));
+    EXPECT_NE(succeed("vis pool.bsp -o heard.bsp").out.find("ambient sounds are heard in "), std::string::npos);
+    const std::string heard = read(path("heard.bsp"));
+    for (const char* silent : {"-noambient", "-noambientwater", "--no-ambient sky,water", "--no-ambient all"}) {
+        const Outcome outcome = succeed(std::string("vis pool.bsp ") + silent + " -o silent.bsp");
+        EXPECT_EQ(outcome.out.find("ambient"), std::string::npos) << silent;
+        EXPECT_NE(read(path("silent.bsp")), heard) << silent;
+    }
+    for (const char* other : {"-noambientsky", "-noambientlava", "--no-ambient slime"}) {
+        succeed(std::string("vis pool.bsp ") + other + " -o same.bsp");
+        EXPECT_EQ(read(path("same.bsp")), heard) << other;
+    }
+    expectError("vis pool.bsp -o x.bsp --no-ambient wind", 2, "--no-ambient");
 }
 
 TEST_F(Vis, ASourceWithoutBrushesIsAnError) {

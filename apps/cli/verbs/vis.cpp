@@ -27,6 +27,7 @@
 #include "sightline/bake/brushes/outside.h"
 #include "sightline/base/jobs.h"
 #include "sightline/tools/import/quake/map_source.h"
+#include "sightline/tools/import/quake/quake_ambient.h"
 #include "sightline/tools/import/quake/quake_visibility.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/page/vis_page.h"
@@ -79,7 +80,8 @@ using Clock = std::chrono::steady_clock;
 
 struct VisOptions : BakeOptions {
     VisMapChoice map;
-    std::string leak;  ///< file, or empty
+    std::string leak;                     ///< file, or empty
+    std::vector<std::string> no_ambient;  ///< sounds; "all"
     bool verify = false;
     uint64_t rays = 1000000;
 };
@@ -150,8 +152,16 @@ std::optional<VisSummary::Before> compareWithLump(const VisMap& map, const BitMa
 struct VisOutputs {
     BakedFile rows;
     std::vector<unsigned char> map;  ///< with its new lump; empty: not asked for
-    uint64_t lump_bytes = 0;
+    uint64_t lump_bytes = 0, leaves_with_sounds = 0;
 };
+
+AmbientSounds soundsOf(const VisOptions& options) {
+    const auto sounds = [&](const char* name) {
+        return std::none_of(options.no_ambient.begin(), options.no_ambient.end(),
+                            [&](const std::string& silent) { return silent == name || silent == "all"; });
+    };
+    return {sounds("water"), sounds("sky"), sounds("slime"), sounds("lava")};
+}
 
 Result<VisOutputs> makeOutputs(const VisOptions& options, const VisMap& map, const CellVisibility& visibility) {
     VisOutputs out;
@@ -171,6 +181,9 @@ Result<VisOutputs> makeOutputs(const VisOptions& options, const VisMap& map, con
             Result<std::vector<unsigned char>> bytes = replaceQuakeVisibility(map.map_bytes, map.map_name, rows);
             if (!bytes) return bytes.error();
             out.map = std::move(*bytes);
+            const Result<uint64_t> heard = writeAmbientLevels(out.map, map.map_name, rows, soundsOf(options));
+            if (!heard) return heard.error();
+            out.leaves_with_sounds = *heard;
         }
     }
     return out;
@@ -256,6 +269,9 @@ Result<int> runVis(VisOptions& options) {
             !written)
             return written.error();
     printVisSummary(options.json == "-" ? stderr : stdout, summary);
+    if (outputs->leaves_with_sounds > 0)
+        tell(options.json == "-" ? stderr : stdout,
+             fmt::format("ambient sounds are heard in {} leaves\n", grouped(outputs->leaves_with_sounds)));
     if (!options.report.empty()) tellPage(options.json == "-" ? stderr : stdout, options.report);
     if (!options.leak.empty() && !summary.leaks.empty())
         tell(options.json == "-" ? stderr : stdout, fmt::format("leak         {}\n", options.leak));
@@ -289,6 +305,11 @@ void addVis(CLI::App& tool, int& exit_code) {
                    "nothing is seen from one kind of contents into another");
     verb->add_option("--leak", options->leak, "write the way by which a .map leaks, as engines draw it (.pts)")
         ->type_name("FILE");
+    verb->add_option("--no-ambient", options->no_ambient,
+                     "of a Quake map that is written: these ambient sounds are heard nowhere, separated by commas")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"all", "water", "sky", "slime", "lava"}))
+        ->type_name("LIST");
     verb->add_flag("--verify", options->verify, "hold the rows against rays through the map, and through its portals");
     verb->add_option("--rays", options->rays, "of --verify")
         ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
