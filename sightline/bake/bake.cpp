@@ -54,7 +54,7 @@ Result<Baked> bake(BakeCells cells, const Scene& objects, const BakeSettings& se
     if (has_places) out.objects = placeObjects(out.cells, objects, settings);
 
     // Step 6. The objects that each row sees.
-    if (has_places && settings.object_rows) {
+    if (has_places && settings.object_rows && out.cells.rows.cells > 0) {
         const CellBoxes boxes = boxesInRows(out.cells, out.objects.places);
         out.object_rows = bakeObjectRows(out.cells.rows, out.rows, boxes, settings);
         seeAllObjects(open_rows, out.object_rows->visible);

@@ -45,8 +45,9 @@ struct BakeSettings {
     Jobs* jobs = nullptr;  ///< threads to share the work out to
     /// Work limit: portals that are clipped for one portal and direction. What is left then stays visible. 0: none.
     uint64_t budget = 0;
-    double time_limit = 0;     ///< for the rows of cells; what is not settled by then stays visible; 0: none  [s]
-    bool object_rows = false;  ///< find also which objects each row sees: takes longer than the cells do
+    double time_limit = 0;  ///< for the rows of cells; what is not settled by then stays visible; 0: none  [s]
+    bool object_rows =
+        false;  ///< find also which objects each row sees, if there are rows: takes longer than the cells do
     VisibilityForm form = VisibilityForm::kPacked;  ///< of the file
 
     /// Asked between pieces of work, on the thread of the caller; true ends the bake without a file.

@@ -52,6 +52,23 @@ TEST(Bake, MakesAFileThatOpens) {
     EXPECT_GT(file->objects().size(), 500u);
 }
 
+// Of a scene's own walls there are no rows, whoever asks for them.
+TEST(Bake, OfOwnWallsHasCellsWithoutRows) {
+    SoupCellReport report;
+    const std::string bytes = bytesOf(bake::bake(soupToBake(house(), "house", {}, &report), house(), withObjects()));
+    EXPECT_GT(report.closed, 10u);
+    const Result<VisibilityFile> file = VisibilityFile::open(bytes, "house");
+    ASSERT_TRUE(file.ok()) << file.error().message;
+    EXPECT_EQ(file->rows().cells(), 0u);
+    EXPECT_FALSE(file->hasObjectRows());
+    ASSERT_TRUE(file->hasCells() && file->hasObjects());
+    EXPECT_GT(file->cells().cells(), 200u);
+    EXPECT_GT(file->objects().size(), 500u);
+    uint64_t walls = 0;
+    for (size_t i = 0; i < file->objects().size(); ++i) walls += file->objects().isWall(i);
+    EXPECT_EQ(walls, report.walls.size());
+}
+
 TEST(Bake, MakesTheSameBytesWithAnyThreadsAndInPlace) {
     for (const uint32_t threads : {1u, 3u}) {
         ThreadPool pool(threads);
