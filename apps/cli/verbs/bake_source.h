@@ -35,8 +35,8 @@ struct BakeSourceChoice {
 };
 
 /// The cells of a map, those that a scene's maker marked, or where there are none those of its own walls.
-/// Errors: of the readers; a scene with nothing that could divide it, a map that cannot be baked (kInput); options that a file of
-/// its kind does not have (kUsage).
+/// Errors: of the readers; a scene with nothing that could divide it, a map that cannot be baked (kInput); options that a
+/// file of its kind does not have (kUsage).
 Result<BakeSource> loadBakeSource(const SceneChoice& scene, const BakeSourceChoice& choice);
 
 }  // namespace sightline::cli

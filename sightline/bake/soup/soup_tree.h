@@ -28,8 +28,9 @@ struct SoupTree {
     bool full = false;                    ///< it was stopped by `most_leaves`
 };
 
-/// Which planes divide what costs tightness and time alone, never an answer. Each node takes the sheet with the most opaque share of
-/// the cell's section less half the share of what it would split, of the largest sheets in the cell. O(pieces * depth). Deterministic.
+/// Which planes divide what costs tightness and time alone, never an answer. Of the largest sheets in a cell, its node
+/// takes the one with the largest opaque share of the cell's section, less half of the share of what it would split.
+/// O(pieces * depth). Deterministic.
 /// @param bounds  of the tree; the walls lie within
 SoupTree treeOfSheets(const SoupWalls& walls, const Box3d& bounds, const SoupTreeSettings& settings);
 

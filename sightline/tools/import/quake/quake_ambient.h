@@ -19,9 +19,9 @@ struct AmbientSounds {
     bool lava = true;   ///< "*lava"
 };
 
-/// Sets the levels in all leaves, as the tool of the game's makers does: of a sound 255 if a leaf that is seen, or the leaf itself, has
-/// a face of such a texture, else 0; the level of slime is always 0. Quake alone (version 29, BSP2, 2PSB): other maps stay as
-/// they are.
+/// Sets the levels in all leaves, as the tool of the game's makers does: of a sound 255 if a leaf that is seen, or the
+/// leaf itself, has a face of such a texture, else 0; the level of slime is always 0. Quake alone (version 29, BSP2,
+/// 2PSB): other maps stay as they are.
 /// @param bytes  of a `.bsp`
 /// @param seen   [clusters x clusters]
 /// @returns how many leaves have some. Errors: of parseQuakeBsp(); rows of another size (kInput).
