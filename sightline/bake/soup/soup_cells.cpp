@@ -262,7 +262,9 @@ SoupCells cellsOfSoup(const Scene& scene, const SoupCellSettings& settings) {
     if (triangles.empty() || !(diagonal > 0) || !std::isfinite(diagonal)) return {};
     const uint64_t opaque = triangles.size();
     const double smallest_hole = settings.smallest_hole >= 0 ? settings.smallest_hole : diagonal * 0x1p-23;
-    soup.hole = std::max(smallest_hole, diagonal * 0x1p-30);
+    // Far from the origin rounding moves planes by more than what the scene's size says.
+    const glm::dvec3 far = glm::max(glm::abs(soup.bounds.min), glm::abs(soup.bounds.max));
+    soup.hole = std::max({smallest_hole, diagonal * 0x1p-30, std::max({far.x, far.y, far.z}) * 0x1p-40});
     const double finest = settings.smallest_occluder >= 0 ? settings.smallest_occluder : diagonal / 128;
     soup.walls = sheetsOf(std::move(triangles), soup.hole, std::max(finest * finest, soup.hole * soup.hole));
     // Eyes outside of the scene are in cells, too.
@@ -285,7 +287,7 @@ SoupCells cellsOfSoup(const Scene& scene, const SoupCellSettings& settings) {
     best.report.trials = std::move(trials);
     best.report.objects = scene.objects.size();
     best.report.triangles = opaque;
-    best.report.smallest_hole = smallest_hole;
+    best.report.smallest_hole = soup.hole;
     return best;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "sightline/base/random.h"
+#include "sightline/tools/scene/joined_sets.h"
 
 namespace sightline::bake {
 using namespace tools;
@@ -102,44 +103,32 @@ private:
     std::unordered_map<uint64_t, uint32_t> numbers_;
 };
 
-/// Groups of numbers.
-class Groups {
-public:
-    uint32_t rootOf(uint32_t i) {
-        while (i >= parent_.size()) parent_.push_back(static_cast<uint32_t>(parent_.size()));
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(uint32_t a, uint32_t b) {
-        const uint32_t root_a = rootOf(a), root_b = rootOf(b);
-        parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
-    }
-
-private:
-    std::vector<uint32_t> parent_;
-};
-
 /// Fills SoupWalls::part of a sheet's triangles, and WallSheet::largest.
 void measureParts(SoupWalls& walls, WallSheet& sheet, double step) {
     for (const double side : {1.0, -1.0}) {
         CornerNumbers corners(step);
-        Groups groups;
-        std::vector<std::pair<uint32_t, uint32_t>> members;  // a corner's number, a triangle's
+        struct Member {
+            uint32_t triangle;
+            uint32_t corners[3];
+        };
+        std::vector<Member> members;
         for (const uint32_t t : sheet.triangles) {
             const WallTriangle& triangle = walls.triangles[t];
             if (!triangle.both && side * glm::dot(areaVectorOf(triangle), glm::dvec3(sheet.plane)) <= 0) continue;
-            const uint32_t first = corners.of(triangle.corners[0]);
-            for (int c = 1; c < 3; ++c) groups.join(first, corners.of(triangle.corners[c]));
-            members.emplace_back(first, t);
+            Member& member = members.emplace_back(Member{t, {}});
+            for (int c = 0; c < 3; ++c) member.corners[c] = corners.of(triangle.corners[c]);
         }
+        JoinedSets parts(corners.count());
+        for (const Member& member : members)
+            for (int c = 1; c < 3; ++c) parts.join(member.corners[0], member.corners[c]);
         std::vector<double> area(corners.count(), 0);
-        for (const auto& [corner, t] : members)
-            area[groups.rootOf(corner)] +=
-                std::abs(glm::dot(areaVectorOf(walls.triangles[t]), glm::dvec3(sheet.plane))) / 2;
-        for (const auto& [corner, t] : members) {
-            const double whole = area[groups.rootOf(corner)];
+        for (const Member& member : members)
+            area[parts.find(member.corners[0])] +=
+                std::abs(glm::dot(areaVectorOf(walls.triangles[member.triangle]), glm::dvec3(sheet.plane))) / 2;
+        for (const Member& member : members) {
+            const double whole = area[parts.find(member.corners[0])];
             sheet.largest = std::max(sheet.largest, whole);
-            walls.part[t] = std::max(walls.part[t], whole);
+            walls.part[member.triangle] = std::max(walls.part[member.triangle], whole);
         }
     }
 }

@@ -15,6 +15,7 @@
 #include "sightline/tools/import/scene_file.h"
 #include "sightline/tools/scene/procedural.h"
 #include "sightline/tools/truth/rays.h"
+#include "tests/bake/aimed_points.h"
 #include "tests/bake/marked/random_rooms.h"
 #include "tests/bake/opaque_triangles.h"
 
@@ -107,14 +108,7 @@ void shoot(const SceneCells& cells, const Meets& meets, const Meets& surely, int
                 target[axis] = random.uniform(bounds.min[axis], bounds.max[axis]);
             }
             if (insideBy(space, cell, from) < 4 * cells.report.bend) continue;
-            if (ray % 2 && !space.graph.portals.empty()) {
-                const CellPortal& portal = space.graph.portals[random.below(space.graph.portals.size())];
-                const auto outline = space.graph.outline(portal);
-                const size_t i = random.below(outline.size());
-                const double off = std::pow(10, random.uniform(-7, 0)) * (random.below(2) ? 1 : -1);
-                target = glm::mix(outline[i], outline[(i + 1) % outline.size()], random.uniform()) +
-                         off * (outline[(i + 2) % outline.size()] - outline[i]);
-            }
+            if (ray % 2 && !space.graph.portals.empty()) target = pointAtPortal(space.graph, random);
             const glm::dvec3 along = target - from;
             if (!(glm::length(along) > 1e-6)) continue;
             std::string wrong = follow(cells, meets, cell, from, glm::normalize(along), counts);

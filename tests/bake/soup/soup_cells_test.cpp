@@ -15,6 +15,7 @@
 #include "sightline/tools/import/scene_file.h"
 #include "sightline/tools/scene/procedural.h"
 #include "sightline/tools/truth/rays.h"
+#include "tests/bake/aimed_points.h"
 #include "tests/bake/marked/random_rooms.h"
 #include "tests/bake/opaque_triangles.h"
 
@@ -121,15 +122,7 @@ void shoot(const Scene& scene, const SoupCells& cells, int lines, Random& random
             from[axis] = random.uniform(box.min[axis], box.max[axis]);
             target[axis] = random.uniform(box.min[axis], box.max[axis]);
         }
-        if (i % 2 && !space.graph.portals.empty()) {
-            const CellPortal& portal = space.graph.portals[random.below(space.graph.portals.size())];
-            const auto outline = space.graph.outline(portal);
-            const size_t k = random.below(outline.size());
-            const double off = std::pow(10, random.uniform(-7, 0)) * (random.below(2) ? 1 : -1);
-            const glm::dvec3 aim = glm::mix(outline[k], outline[(k + 1) % outline.size()], random.uniform()) +
-                                   off * (outline[(k + 2) % outline.size()] - outline[k]);
-            target = from + 2.0 * (aim - from);
-        }
+        if (i % 2 && !space.graph.portals.empty()) target = from + 2.0 * (pointAtPortal(space.graph, random) - from);
         const double length = glm::distance(from, target);
         if (!(length > 1e-6) || !std::isfinite(length)) continue;
         const glm::dvec3 along = (target - from) / length;
@@ -178,6 +171,23 @@ TEST(SoupCells, LinesThatMeetNoFrontPassByPortals) {
     EXPECT_GT(one_way, 1000u);
     EXPECT_GT(closed, 10u);
     EXPECT_GT(cells_made, 400u);
+}
+
+TEST(SoupCells, HoldsFarFromTheOrigin) {
+    Random random(6);
+    Counts counts;
+    for (int round = 0; round < 12; ++round) {
+        SCOPED_TRACE("round " + std::to_string(round));
+        MarkedRooms made = randomRooms(random, 0);
+        const glm::dmat4 place = randomPlace(random, std::pow(10, 3 + round % 6));
+        for (SceneObject& object : made.scene.objects) object.transform = place;
+        const SoupCells cells = cellsOfSoup(made.scene);
+        ASSERT_GT(cells.space.graph.cells, 1u);
+        shoot(made.scene, cells, 2000, random, counts);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(counts.crossings, 20000u);
+    EXPECT_GT(counts.walls, 5000u);
 }
 
 // Triangles anywhere: through one another, turned round, one-sided or not, large and small.

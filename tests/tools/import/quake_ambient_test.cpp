@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/import/quake/quake_ambient.h"
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -52,16 +49,15 @@ TEST(QuakeAmbient, IsHeardWhereItIsSeen) {
     for (const QuakeFormat format : kQuakeFormats) {
         SCOPED_TRACE(quakeFormatName(format));
         MadeMap map;
-        for (MadeFace& face : map.faces) face.texture = 0;
-        const auto with = [&](const char* texture, size_t face, bool open, const AmbientSounds& sounds) {
+        const auto with = [&](const char* texture, size_t face, bool open) {
             map.textures[1] = texture;
             for (MadeFace& each : map.faces) each.texture = 0;
             map.faces[face].texture = 1;
             madeVisibility(format, open, map);
-            return std::pair(bytesOf(mapBytes(format, map)), sounds);
+            return bytesOf(mapBytes(format, map));
         };
         if (!isOfQuake(format)) {
-            auto [bytes, sounds] = with("*water", 6, true, {});
+            std::vector<unsigned char> bytes = with("*water", 6, true);
             const std::vector<unsigned char> before = bytes;
             const Result<uint64_t> heard = writeAmbientLevels(bytes, "made.bsp", rowsOfTwo(true));
             ASSERT_TRUE(heard.ok()) << heard.error().message;
@@ -80,7 +76,7 @@ TEST(QuakeAmbient, IsHeardWhereItIsSeen) {
             for (size_t face = 0; face < 7; ++face)
                 for (const bool open : {false, true}) {
                     SCOPED_TRACE(testing::Message() << each.texture << ", face " << face << ", open " << open);
-                    auto [bytes, sounds] = with(each.texture, face, open, {});
+                    std::vector<unsigned char> bytes = with(each.texture, face, open);
                     const std::vector<unsigned char> before = bytes;
                     const Result<uint64_t> heard = writeAmbientLevels(bytes, "made.bsp", rowsOfTwo(open));
                     ASSERT_TRUE(heard.ok()) << heard.error().message;
