@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Sets up, builds build/release and passes all tests; --full adds the format, clang, the fuzzers, debug and sanitizers.
+# Sets up, builds build/release and passes all tests; --full adds the format, clang, the fuzzers and the sanitizers.
 # SPDX-License-Identifier: MIT
 set -euo pipefail
 
@@ -32,7 +32,7 @@ if [ -n "$full" ]; then
     build fuzz
     tests/fuzz/run 30
 
-    for preset in debug asan tsan; do
+    for preset in asan tsan; do
         step "$preset"
         build "$preset"
         ctest --preset "$preset" --output-log "build/$preset/test.log"
