@@ -16,7 +16,8 @@
 #include "sightline/geom/view_limits.h"    // sections and windows of a view, from boxes and rectangles
 #include "sightline/query/query.h"         // Query: what can be seen
 #include "sightline/query/shadow_query.h"  // ShadowQuery: which objects can darken what a view shows
-#include "sightline/world/world.h"         // World: objects that change; Snapshot: one state of them
+#include "sightline/query/sight_query.h"  // SightQuery: whether two points see each other, and what is seen from a region
+#include "sightline/world/world.h"        // World: objects that change; Snapshot: one state of them
 
 // Preparing: once a mesh, when it is made or loaded.
 #include "sightline/prepare/facing/draw_clusters.h"  // clusters that a renderer draws one by one

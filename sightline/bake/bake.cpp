@@ -20,6 +20,15 @@ double secondsSince(Clock::time_point then) { return std::chrono::duration<doubl
 
 bool asksToStop(const BakeSettings& settings) { return settings.stop && settings.stop(); }
 
+/// The rows of view cells with a column for each placed object instead of each of the scene.
+BitMatrix rowsOfPlaced(const BitMatrix& visible, const std::vector<uint32_t>& object_of) {
+    BitMatrix rows(visible.rows(), object_of.size());
+    for (size_t row = 0; row < rows.rows(); ++row)
+        for (size_t place = 0; place < object_of.size(); ++place)
+            if (visible.at(row, object_of[place])) rows.set(row, place);
+    return rows;
+}
+
 void seeAllObjects(const std::vector<uint32_t>& rows, BitMatrix& visible) {
     for (const uint32_t row : rows)
         for (size_t object = 0; object < visible.columns(); ++object) visible.set(row, object);
@@ -59,6 +68,8 @@ Result<Baked> bake(BakeCells cells, const Scene& objects, const BakeSettings& se
         out.object_rows = bakeObjectRows(out.cells.rows, out.rows, boxes, settings);
         seeAllObjects(open_rows, out.object_rows->visible);
     }
+    const bool has_views = has_places && out.cells.views && !out.cells.views->tree.contents.empty();
+    if (has_views) out.view_rows = rowsOfPlaced(out.cells.views->visible, out.objects.object_of);
     out.interrupted = asksToStop(settings);
     if (out.interrupted) return out;
     out.objects_seconds = secondsSince(objects_begin);
@@ -68,6 +79,10 @@ Result<Baked> bake(BakeCells cells, const Scene& objects, const BakeSettings& se
     if (has_places) content.space = &space;
     if (has_places) content.objects = &out.objects.places;
     if (out.object_rows) content.object_rows = &out.object_rows->visible;
+    if (has_views) {
+        content.view_tree = &out.cells.views->tree;
+        content.view_rows = &out.view_rows;
+    }
     Result<BakedFile> file = bakedFile(content, settings.form == VisibilityForm::kPacked);
     if (!file) return file.error();
     out.file = std::move(*file);
@@ -101,6 +116,25 @@ BakeCells soupToBake(const Scene& scene, const std::string& name, const SoupCell
     out.placing.walls = cells.report.walls;
     if (report) *report = std::move(cells.report);
     return out;
+}
+
+BakeCells openToBake(const Scene& scene, const std::string& name) {
+    BakeCells out;
+    out.name = name;
+    out.hash = hashOf(scene);
+    out.space.graph.cells = 1;
+    out.space.graph.cell_of_leaf = {0};
+    out.space.tree.contents = {LeafContents::kEmpty};
+    out.space.tree.bounds = worldBounds(scene);
+    return out;
+}
+
+void addViewCells(BakeCells& cells, const Scene& scene, const ViewCellSettings& settings) {
+    cells.views = viewCellsOf(scene, settings);
+    std::vector<uint32_t>& walls = cells.placing.walls;
+    walls.insert(walls.end(), cells.views->walls.begin(), cells.views->walls.end());
+    std::sort(walls.begin(), walls.end());
+    walls.erase(std::unique(walls.begin(), walls.end()), walls.end());
 }
 
 BakeCells mapToBake(CellSpace leaves, CellGraph rows) {

@@ -18,6 +18,7 @@
 #include "sightline/bake/objects/box_visibility.h"
 #include "sightline/bake/objects/object_cells.h"
 #include "sightline/bake/soup/soup_cells.h"
+#include "sightline/bake/view_cells/view_cells.h"
 #include "sightline/base/jobs.h"
 #include "sightline/base/memory.h"
 #include "sightline/base/result.h"
@@ -74,6 +75,7 @@ struct BakeCells {
     std::vector<uint32_t> row_of_leaf;      ///< of a map: per leaf its row; CellGraph::kNoCell: none; may be empty
     ObjectCellSettings placing;             ///< how objects are placed in the cells of `space`
     std::optional<SceneCellReport> report;  ///< of marked cells: what is odd about them
+    std::optional<ViewCells> views;         ///< of the scene whose objects are placed
 };
 
 /// Step 1, of a scene: its marked cells, checked against its walls. Doors count as open, and hide nothing.
@@ -85,6 +87,14 @@ BakeCells sceneToBake(const Scene& scene, const std::string& name, SceneCellSett
 /// @param report  receives what became of the scene, if there is one
 BakeCells soupToBake(const Scene& scene, const std::string& name, const SoupCellSettings& settings = {},
                      SoupCellReport* report = nullptr);
+
+/// The cells of a scene that has none: one that is all of space.
+/// @param name  BakeCells::name
+BakeCells openToBake(const Scene& scene, const std::string& name);
+
+/// After Step 1, of a scene: view cells, by viewCellsOf(). What they rest on becomes a wall, too.
+/// @param scene  whose objects are placed
+void addViewCells(BakeCells& cells, const Scene& scene, const ViewCellSettings& settings = {});
 
 /// Step 1, of a map: the leaves of its tree as places, and its rows.
 /// @param leaves  tree, tolerance, and the graph whose cell_of_leaf says which cell a leaf is
@@ -133,6 +143,7 @@ struct Baked {
     CellVisibility rows;
     ObjectCells objects;
     std::optional<BoxVisibility> object_rows;  ///< if they were asked for
+    BitMatrix view_rows;                       ///< [leaves of the view cells x placed objects], if there are view cells
     BakedFile file;
     bool interrupted = false;                      ///< by BakeSettings::stop: there is no file
     double rows_seconds = 0, objects_seconds = 0;  ///< of Steps 3 and 4, and of Steps 5 and 6

@@ -35,7 +35,7 @@ void PotentiallyVisible::clear() {
 
 bool PotentiallyVisible::update(const PortalGraph& graph, const RowSource& source, std::span<const uint32_t> start) {
     if (known_ && std::equal(start.begin(), start.end(), start_.begin(), start_.end())) return false;
-    const size_t words = (source.rows() + 63) / 64;
+    const size_t words = (source.columns() + 63) / 64;
     start_.assign(start.begin(), start.end());
     row_.resize(words);
     union_.assign(words, 0);

@@ -19,9 +19,10 @@ namespace sightline {
 class RowSource {
 public:
     virtual ~RowSource() = default;
-    virtual uint32_t rows() const = 0;
-    /// Writes a row: bit i % 64 of word i / 64 is whether it sees row i.
-    /// @param out  [size: (rows() + 63) / 64]
+    /// Bits of a row: what may be seen, other rows or objects.
+    virtual uint32_t columns() const = 0;
+    /// Writes a row: bit i % 64 of word i / 64 is whether it sees i.
+    /// @param out  [size: (columns() + 63) / 64]
     virtual void row(uint32_t row, std::span<uint64_t> out) const = 0;
 };
 
@@ -46,7 +47,7 @@ public:
 
     /// False if nothing is known: the eye is in no cell, or in a cell without a row.
     bool known() const { return known_; }
-    /// A bit for each row that is seen.
+    /// A bit for each of RowSource::columns() that is seen.
     std::span<const uint64_t> rows() const { return union_; }
 
 private:

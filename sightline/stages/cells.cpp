@@ -7,6 +7,7 @@ namespace sightline::detail {
 void CellMemory::begin(const Frame& frame) {
     for (const int stage : {0, 1}) doubt_[stage] = 0;
     start_.clear();
+    view_start_.clear();
     stages_ = 0;
     flooded_ = false;
     portal_stats_ = {};
@@ -18,15 +19,16 @@ void CellMemory::begin(const Frame& frame) {
     if (!now_ || !frame.usable || !now_.state().cell_state.cells) return;
     const CellState& cells = now_.state().cell_state;
     stages_ = frame.stages & kCellStages;
-    if (!cells.cells->hasRows()) stages_ &= ~stageBit(Stage::kPvs);
+    if (!cells.cells->hasRows() && !cells.cells->views) stages_ &= ~stageBit(Stage::kPvs);
+    if (cells.cells->graph.cells() == 1) stages_ &= ~stageBit(Stage::kPortals);  // there is no other cell to cull
     if (!stages_) return;
     // A bake holds only while its walls stand where they stood, and are drawn.
-    const bool drawn = !cells.has_walls || frame.every_layer;
-    if (!cells.walls_stand || !drawn || !startCells(cells.cells->graph, frame.view, start_)) {
-        start_.clear();
-        giveUp(Stage::kPvs, frame);
-        giveUp(Stage::kPortals, frame);
-    }
+    const bool stands = cells.walls_stand && (!cells.has_walls || frame.every_layer);
+    if (stands && startCells(cells.cells->graph, frame.view, start_)) return;
+    start_.clear();
+    giveUp(Stage::kPortals, frame);
+    // View cells fill all of space.
+    if (!stands || !cells.cells->views) giveUp(Stage::kPvs, frame);
 }
 
 /// Keeps everything, and counts it as doubt.

@@ -32,9 +32,13 @@ void CellMemory::findWindows(const Frame& frame) {
         const CellState& cells = frame.world->cell_state;
         const PortalSettings settings{frame.settings.windows, frame.settings.portal_work, frame.settings.portal_depth};
         flooded_ = flood_.run(cells.cells->graph, frame.view, settings, *cells.doors,
-                              rows ? pvs_.rows() : std::span<const uint64_t>());
+                              rows && pvs_.known() ? pvs_.rows() : std::span<const uint64_t>());
         portal_stats_ = flood_.stats();
         if (!flooded_) giveUp(Stage::kPortals, frame);
+        else if (showMost()) {
+            flooded_ = false;
+            stages_ &= ~stageBit(Stage::kPortals);
+        }
     }
     if (!stages_) return;
     if (!rows) {
@@ -46,6 +50,16 @@ void CellMemory::findWindows(const Frame& frame) {
         fillWindows(eyePosition(frame.view));
     }
     candidates_.finish(stages_);
+}
+
+/// Whether the cells in sight hold so much that to admit it costs more than the rest would: the walk then goes from the
+/// root, as if there were no portals.
+bool CellMemory::showMost() const {
+    constexpr uint64_t kFew = 1024;
+    const CellLists& lists = now_.state().cell_state.lists;
+    uint64_t stands = 0;
+    for (const SeenCell& seen : flood_.cells()) stands += lists.count[seen.cell];
+    return stands > kFew && 2 * stands > lists.stands;
 }
 
 /// Admits all that reaches into a window of a cell that it stands in.

@@ -6,31 +6,36 @@
 #include "sightline/cells/pvs.h"
 
 #include "sightline/stages/pipeline.h"
+#include "sightline/world/seen_objects.h"
 
 namespace sightline::detail {
 
 void CellMemory::findRows(const Frame& frame) {
     if (!uses(Stage::kPvs)) return;
     const CellState& cells = frame.world->cell_state;
-    if (pvs_of_ != cells.cells) pvs_.clear();
+    if (pvs_of_ != cells.cells) {
+        pvs_.clear();
+        seen_objects_.clear();
+        rows_filled_ = false;
+    }
     pvs_of_ = cells.cells;
-    if (pvs_.update(cells.cells->graph, cells.cells->rows, start_)) rows_filled_ = false;
-    if (!pvs_.known()) stages_ &= ~stageBit(Stage::kPvs);
+    const auto& views = cells.cells->views;
+    bool changed = cells.cells->hasRows() && pvs_.update(cells.cells->graph, cells.cells->rows, start_);
+    if (views) {
+        startCells(views->graph, frame.view, view_start_);
+        changed = seen_objects_.update(views->graph, *views, view_start_);
+    }
+    if (changed) rows_filled_ = false;
+    if (!(views ? seen_objects_ : pvs_).known()) stages_ &= ~stageBit(Stage::kPvs);
     else if (!rows_filled_) fillRows();
 }
 
-/// Admits all that stands in cells that the rows show.
+/// Admits all that the rows of the view cells show or, without these, what stands in cells that the rows of cells show.
 void CellMemory::fillRows() {
     const CellState& cells = now_.state().cell_state;
     candidates_.begin(now_.state(), layers_);
     candidates_.beginPvs();
-    cells.cells->forEachCell(pvs_.rows(), [&](uint32_t cell) {
-        for (uint32_t at = cells.lists.first[cell]; at != CellBlock::kNone;) {
-            const CellBlock& block = cells.lists.blocks[at];
-            for (uint32_t lane = 0; lane < block.used; ++lane) candidates_.admitByPvs(block.row[lane]);
-            at = block.next;
-        }
-    });
+    forEachSeenObject(cells, pvs_, seen_objects_, [&](uint32_t row) { candidates_.admitByPvs(row); });
     rows_filled_ = true;
 }
 

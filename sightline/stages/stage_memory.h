@@ -28,11 +28,18 @@ namespace sightline::detail {
 /// snapshot stays the same. begin(), then findRows(), then findWindows(), for each view.
 class CellMemory {
 public:
-    explicit CellMemory(Memory* memory) : start_(memory), pvs_(memory), flood_(memory), candidates_(memory) {}
+    explicit CellMemory(Memory* memory)
+        : start_(memory),
+          view_start_(memory),
+          pvs_(memory),
+          seen_objects_(memory),
+          flood_(memory),
+          candidates_(memory) {}
 
     /// Takes up a view: finds the cells that the eye may be in.
     void begin(const Frame& frame);
-    /// Stage::kPvs: the candidates are the objects in cells that the rows show.  O(objects in these cells).
+    /// Stage::kPvs: the candidates are the objects that the rows of the eye's view cells show or, without these, the
+    /// objects in cells that the rows of its cells show.  O(these objects), when the eye comes into other cells.
     void findRows(const Frame& frame);
     /// Stage::kPortals: the candidates are those of the rows' candidates that reach into windows.
     void findWindows(const Frame& frame);
@@ -43,6 +50,8 @@ public:
     uint64_t doubt(Stage stage) const { return doubt_[static_cast<int>(stage)]; }
     /// The cells that the eye may be in; empty if it is in none, or if the stages are off.
     std::span<const uint32_t> start() const { return start_; }
+    /// The view cells that the eye may be in; empty if their rows decided nothing.
+    std::span<const uint32_t> viewStart() const { return view_start_; }
     /// Null unless Stage::kPortals decided something.
     const PortalFlood* flood() const { return flooded_ ? &flood_ : nullptr; }
     const PortalStats& portalStats() const { return portal_stats_; }
@@ -51,14 +60,16 @@ private:
     bool uses(Stage stage) const { return stages_ & stageBit(stage); }
     void giveUp(Stage stage, const Frame& frame);
     void fillRows();
+    bool showMost() const;
     void fillWindows(const glm::dvec3& eye);
 
     Snapshot now_;  ///< the snapshot of `candidates_`
     uint32_t layers_ = 0;
     uint32_t stages_ = 0;  ///< those of the two stages that decide
     bool rows_filled_ = false;
-    Array<uint32_t> start_;
-    PotentiallyVisible pvs_;
+    Array<uint32_t> start_, view_start_;
+    PotentiallyVisible pvs_;           ///< rows of cells
+    PotentiallyVisible seen_objects_;  ///< rows of view cells: objects of the file
     std::shared_ptr<const AttachedCells> pvs_of_;
     PortalFlood flood_;
     Candidates candidates_;

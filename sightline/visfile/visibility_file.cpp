@@ -17,7 +17,8 @@ namespace {
 constexpr size_t kMapBytes = 16;  // before the name
 
 /// The sections of places: the same in both forms.
-constexpr uint32_t kPlaces[] = {kCells, kCellNames, kRegions, kTree, kPortals, kDoors, kObjects, kObjectRows};
+constexpr uint32_t kPlaces[] = {kCells, kCellNames, kRegions,    kTree,     kPortals,
+                                kDoors, kObjects,   kObjectRows, kViewTree, kViewRows};
 
 Array<char> mapSection(size_t leaves, uint64_t hash, std::string_view name, Memory* memory) {
     Array<char> bytes(memory);
@@ -51,7 +52,9 @@ Result<Section> eitherForm(const SectionFile& sections, uint32_t in_place, uint3
 Status addPlaces(const VisibilityContent& content, SectionWriter& writer, Memory* memory) {
     const auto wrong = [](const char* what) { return Error{Error::Kind::kUsage, what}; };
     const CellSpace* space = content.space;
-    if (!space) return content.objects || content.object_rows ? wrong("objects without cells") : success();
+    if (!content.view_tree != !content.view_rows) return wrong("view cells without rows, or rows without view cells");
+    if ((content.object_rows || content.view_rows) && !content.objects) return wrong("rows of objects without objects");
+    if (!space) return content.objects ? wrong("objects without cells") : success();
     if (Status added = addCellSections(*space, static_cast<uint32_t>(content.visible.rows()), writer, memory); !added)
         return added;
     if (space->ofTree()) {
@@ -61,15 +64,25 @@ Status addPlaces(const VisibilityContent& content, SectionWriter& writer, Memory
         writer.add(kTree, std::move(*tree));
     }
     if (Status added = addPortalSections(*space, writer, memory); !added) return added;
-    if (!content.objects) return content.object_rows ? wrong("rows of objects without objects") : success();
+    if (!content.objects) return success();
     Result<Array<char>> objects = objectSection(*content.objects, space->graph.cells, memory);
     if (!objects) return objects.error();
     writer.add(kObjects, std::move(*objects));
-    if (!content.object_rows) return success();
-    if (content.object_rows->rows() != content.visible.rows() ||
-        content.object_rows->columns() != content.objects->size())
-        return wrong("rows of objects that are not rows of these cells and objects");
-    writer.add(kObjectRows, objectRowsSection(*content.object_rows, memory));
+    const auto fits = [&](const BitMatrix& matrix, size_t rows) {
+        return matrix.rows() == rows && matrix.columns() == content.objects->size();
+    };
+    if (content.object_rows) {
+        if (!fits(*content.object_rows, content.visible.rows()))
+            return wrong("rows of objects that are not rows of these cells and objects");
+        writer.add(kObjectRows, objectRowsSection(*content.object_rows, memory));
+    }
+    if (!content.view_tree) return success();
+    if (!fits(*content.view_rows, content.view_tree->contents.size()))
+        return wrong("rows of view cells that are not rows of these cells and objects");
+    Result<Array<char>> view_tree = treeSection(*content.view_tree, memory);
+    if (!view_tree) return view_tree.error();
+    writer.add(kViewTree, std::move(*view_tree));
+    writer.add(kViewRows, objectRowsSection(*content.view_rows, memory));
     return success();
 }
 
@@ -154,11 +167,26 @@ Status VisibilityFile::openPlaces(const SectionFile& sections, std::string_view 
         if (!objects) return objects.error();
         objects_ = *objects;
     }
-    if (!has_object_rows_) return success();
+    if (has_object_rows_) {
+        const Result<PlacedObjectRows> rows =
+            PlacedObjectRows::open(sections.find(kObjectRows), rows_.cells(), objects_.size(), file, at(kObjectRows));
+        if (!rows) return rows.error();
+        object_rows_ = *rows;
+    }
+    const std::span<const char> view_tree = sections.find(kViewTree), view_rows = sections.find(kViewRows);
+    has_view_cells_ = !view_tree.empty();
+    if (has_view_cells_ != !view_rows.empty())
+        return faultAt(file, "view cells without rows, or rows without view cells",
+                       at(has_view_cells_ ? kViewTree : kViewRows));
+    if (!has_view_cells_) return success();
+    const Result<PlacedTree> tree =
+        PlacedTree::open(view_tree, file, at(kViewTree), unpacked_rows_.get_allocator().resource());
+    if (!tree) return tree.error();
+    view_tree_ = *tree;
     const Result<PlacedObjectRows> rows =
-        PlacedObjectRows::open(sections.find(kObjectRows), rows_.cells(), objects_.size(), file, at(kObjectRows));
+        PlacedObjectRows::open(view_rows, view_tree_.leaves(), objects_.size(), file, at(kViewRows));
     if (!rows) return rows.error();
-    object_rows_ = *rows;
+    view_rows_ = *rows;
     return success();
 }
 

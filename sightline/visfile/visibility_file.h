@@ -28,7 +28,10 @@ inline constexpr uint32_t kRows = section_file::tagOf("rows");        ///< as ti
 inline constexpr uint32_t kPackedRows = section_file::tagOf("prow");  ///< as packedRows() does; instead of kRows
 inline constexpr uint32_t kLeaves = section_file::tagOf("leaf");      ///< as leafCells() does
 inline constexpr uint32_t kPackedLeaves =
-    section_file::tagOf("plef");  ///< as packedLeafCells() does; instead of kLeaves
+    section_file::tagOf("plef");                                    ///< as packedLeafCells() does; instead of kLeaves
+inline constexpr uint32_t kViewTree = section_file::tagOf("vtre");  ///< as treeSection() does: leaves are view cells
+inline constexpr uint32_t kViewRows =
+    section_file::tagOf("vrow");  ///< as objectRowsSection() does: a row for each of its leaves
 
 }  // namespace visibility_file
 
@@ -42,6 +45,9 @@ struct VisibilityContent {
     const CellSpace* space = nullptr;
     const ObjectPlaces* objects = nullptr;   ///< in cells of the space; or null
     const BitMatrix* object_rows = nullptr;  ///< [rows of `visible` x objects]; or null
+    /// View cells, and the objects that may be seen from each, whatever the other cells are. Both or neither.
+    const LeafTree* view_tree = nullptr;
+    const BitMatrix* view_rows = nullptr;  ///< [leaves of `view_tree` x objects]
 };
 
 enum class VisibilityForm {
@@ -98,6 +104,13 @@ public:
     /// @param out  [size: (objects().size() + 63) / 64]
     void objectRow(uint32_t row, std::span<uint64_t> out) const { object_rows_.row(row, out); }
 
+    /// Whether it holds view cells; then hasObjects().
+    bool hasViewCells() const { return has_view_cells_; }
+    /// A copy of their tree: leaf i is row i of viewRows().
+    /// @pre hasViewCells()
+    LeafTree viewTree() const { return view_tree_.tree(); }
+    const PlacedObjectRows& viewRows() const { return view_rows_; }
+
     VisibilityFile(VisibilityFile&&) = default;
     VisibilityFile& operator=(VisibilityFile&&) = delete;
 
@@ -113,12 +126,14 @@ private:
     uint64_t map_hash_ = 0;
 
     SectionFile sections_;
-    bool has_cells_ = false, has_objects_ = false, has_object_rows_ = false;
+    bool has_cells_ = false, has_objects_ = false, has_object_rows_ = false, has_view_cells_ = false;
     PlacedCells cells_;
     PlacedPortals portals_;
     PlacedTree tree_;
     PlacedObjects objects_;
     PlacedObjectRows object_rows_;
+    PlacedTree view_tree_;
+    PlacedObjectRows view_rows_;
 };
 
 /// The packed form of an opened file: the bytes that visibilityFile() writes of the same content, without putting its

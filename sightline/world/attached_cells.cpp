@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sightline::detail {
 namespace {
@@ -72,7 +73,24 @@ Status checkRegions(const CellSpace& space) {
     return success();
 }
 
+/// A space whose cells are a tree's leaves, and their rows, too.
+CellSpace spaceOfViews(LeafTree tree) {
+    CellSpace space;
+    space.graph.cells = static_cast<uint32_t>(tree.contents.size());
+    for (uint32_t leaf = 0; leaf < space.graph.cells; ++leaf) {
+        space.graph.cell_of_leaf.push_back(leaf);
+        space.row_of_cell.push_back(leaf);
+    }
+    space.tree = std::move(tree);
+    return space;
+}
+
 }  // namespace
+
+AttachedViews::AttachedViews(const VisibilityFile& file, Memory* memory)
+    : graph(spaceOfViews(file.viewTree()), memory),
+      from(file.viewRows()),
+      objects(static_cast<uint32_t>(file.objects().size())) {}
 
 Status checkSpace(const CellSpace& space, const VisibleRows* visible) {
     if (space.graph.cells == 0) return wrong("there are none");

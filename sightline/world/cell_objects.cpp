@@ -29,6 +29,9 @@ CellObjects::CellObjects(Memory* memory)
 void CellObjects::reset(uint32_t cells) {
     now_.first.clear();
     now_.blocks.clear();
+    now_.count.clear();
+    now_.count.resize(cells);
+    now_.stands = 0;
     now_.first.resize(cells);
     for (uint32_t cell = 0; cell < cells; ++cell) now_.first.set(cell, CellBlock::kNone);
     first_of_.clear();
@@ -87,6 +90,8 @@ void CellObjects::add(uint32_t row, const Box3f& box, uint32_t cell) {
         }
         now_.first.set(cell, block);
     }
+    ++now_.count.change(cell);
+    ++now_.stands;
     CellBlock& in = now_.blocks.change(block);
     const uint32_t lane = in.used++;
     in.row[lane] = row;
@@ -103,6 +108,8 @@ void CellObjects::add(uint32_t row, const Box3f& box, uint32_t cell) {
 
 /// Fills a place with the last one of the cell's first block.
 void CellObjects::removeAt(uint32_t cell, uint32_t at) {
+    --now_.count.change(cell);
+    --now_.stands;
     const uint32_t first = now_.first[cell];
     CellBlock& from = now_.blocks.change(first);
     const uint32_t lane = --from.used;
@@ -135,6 +142,8 @@ CellLists CellObjects::share() {
     CellLists shared(memory_);
     shared.first = now_.first.share();
     shared.blocks = now_.blocks.share();
+    shared.count = now_.count.share();
+    shared.stands = now_.stands;
     return shared;
 }
 

@@ -25,8 +25,10 @@ struct CellBlock {
 struct CellLists {
     Paged<uint32_t, 256> first;
     Paged<CellBlock, 8> blocks;
+    Paged<uint32_t, 256> count;  ///< per cell how many stand in it
+    uint64_t stands = 0;         ///< in all cells together
 
-    explicit CellLists(Memory* memory) : first(memory), blocks(memory) {}
+    explicit CellLists(Memory* memory) : first(memory), blocks(memory), count(memory) {}
 };
 
 /// The lists as they change. An object stands in any number of cells.

@@ -41,6 +41,7 @@ Status World::attach(const VisibilityFile& file) {
     if (Status status = detail::checkSpace(space, &file.rows()); !status) return status;
     auto cells = makeShared<detail::AttachedCells>(state_->memory, space, &file.rows(), state_->memory);
     if (file.hasObjects()) cells->objects = file.objects();
+    if (file.hasViewCells()) cells->views.emplace(file, state_->memory);
     state_->attach(std::move(cells));
     return success();
 }

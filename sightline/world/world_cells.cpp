@@ -23,14 +23,19 @@ bool WorldCells::setDoor(uint32_t door, float open) {
 void WorldCells::begin() {
     if (!all_) return;
     objects_.reset(cells_ ? cells_->graph.cells() : 0);
+    strangers_.reset(1);
     free_.clear();
     places_ = 0;
     free_rows_.clear();
     free_count_ = 0;
-    claims_.assign(cells_ ? cells_->objects.size() : 0, kNobody);
+    claims_.clear();
+    claims_.resize(cells_ ? static_cast<uint32_t>(cells_->objects.size()) : 0);
     claimed_.clear();
     walls_ = claimed_walls_ = 0;
-    for (size_t i = 0; i < claims_.size(); ++i) walls_ += cells_->objects.isWall(i);
+    for (uint32_t i = 0; i < claims_.size(); ++i) {
+        claims_.set(i, kNobody);
+        walls_ += cells_->objects.isWall(i);
+    }
 }
 
 void WorldCells::setFree(uint32_t row, bool free) {
@@ -53,6 +58,15 @@ void WorldCells::putByBox(uint32_t row, const Box3d& box) {
     if (any) objects_.put(row, roundOutward(box, cells_->origin), cells_scratch_);
     else objects_.take(row);
     setFree(row, !any);
+    putAmongStrangers(row, box, any);
+}
+
+/// Has no use without view cells: only their rows name objects.
+void WorldCells::putAmongStrangers(uint32_t row, const Box3d& box, bool is_one) {
+    constexpr uint32_t kAll = 0;
+    if (!cells_->views) return;
+    if (is_one) strangers_.put(row, roundOutward(box, cells_->origin), {&kAll, 1});
+    else strangers_.take(row);
 }
 
 /// Puts an object into the cells that it was baked into; false if it is not known to be what was baked.
@@ -63,13 +77,13 @@ bool WorldCells::putAsBaked(uint32_t row, const ObjectRecord& object, const Box3
         // Two objects have this key and these bounds: nobody knows which of them was baked.
         const uint32_t other = claims_[baked];
         unclaim(other);
-        claims_[baked] = kMany;
+        claims_.set(baked, kMany);
         Box3d either = cells_->objects.bounds(baked);
         either.grow(box);
         putByBox(other, either);
         return false;
     }
-    claims_[baked] = row;
+    claims_.set(baked, row);
     claimed_walls_ += cells_->objects.isWall(baked);
     if (claimed_.size() <= row) claimed_.resize(row + 1, kNobody);
     claimed_[row] = baked;
@@ -80,13 +94,14 @@ bool WorldCells::putAsBaked(uint32_t row, const ObjectRecord& object, const Box3
     if (everywhere) objects_.take(row);
     else objects_.put(row, roundOutward(box, cells_->origin), cells_scratch_);
     setFree(row, everywhere);
+    putAmongStrangers(row, box, false);
     return true;
 }
 
 /// Notes that an object is no longer the one of the file that it stood for.
 void WorldCells::unclaim(uint32_t row) {
     if (row >= claimed_.size() || claimed_[row] == kNobody) return;
-    claims_[claimed_[row]] = kNobody;
+    claims_.set(claimed_[row], kNobody);
     claimed_walls_ -= cells_->objects.isWall(claimed_[row]);
     claimed_[row] = kNobody;
 }
@@ -94,6 +109,7 @@ void WorldCells::unclaim(uint32_t row) {
 void WorldCells::take(uint32_t row) {
     unclaim(row);
     objects_.take(row);
+    if (cells_->views) strangers_.take(row);
     setFree(row, false);
 }
 
@@ -130,6 +146,10 @@ void WorldCells::share(CellState& state) {
     state.lists = objects_.share();
     state.free = free_.share();
     state.free_count = free_count_;
+    if (cells_->views) {
+        state.claims = claims_.share();
+        state.strangers = strangers_.share();
+    }
     state.has_walls = walls_ > 0;
     state.walls_stand = claimed_walls_ == walls_;
 }

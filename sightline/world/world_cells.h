@@ -16,6 +16,7 @@ public:
     explicit WorldCells(Memory* memory)
         : memory_(memory),
           objects_(memory),
+          strangers_(memory),
           free_(memory),
           free_rows_(memory),
           claims_(memory),
@@ -52,18 +53,20 @@ private:
     void setFree(uint32_t row, bool free);
     bool putAsBaked(uint32_t row, const ObjectRecord& object, const Box3d& box);
     void putByBox(uint32_t row, const Box3d& box);
+    void putAmongStrangers(uint32_t row, const Box3d& box, bool is_one);
     void unclaim(uint32_t row);
 
     Memory* const memory_;
     std::shared_ptr<const AttachedCells> cells_;
     CellObjects objects_;
+    CellObjects strangers_;      ///< CellState::strangers
     PagedBits free_;             ///< CellState::free
     uint32_t places_ = 0;        ///< that it has
     Array<uint64_t> free_rows_;  ///< a bit per row: it has bounds, and is in no cell
     uint32_t free_count_ = 0;
     /// Per object of the file: the row of the object that stands for it; kMany: there were several.
-    static constexpr uint32_t kNobody = ~0u, kMany = ~0u - 1;
-    Array<uint32_t> claims_;
+    static constexpr uint32_t kNobody = ~0u, kMany = CellState::kNoRow;
+    Paged<uint32_t, 256> claims_;
     uint32_t walls_ = 0, claimed_walls_ = 0;  ///< objects of the file that are walls; those of them that stand
     Array<uint32_t> claimed_;                 ///< per row: the object that it stands for; kNobody: none
     Array<DoorState> doors_;

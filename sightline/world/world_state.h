@@ -89,10 +89,15 @@ struct CellState {
     CellLists lists;                                ///< of rows
     PagedBits free;                                 ///< per place of the hierarchy: an object in no cell
     uint32_t free_count = 0;
+    Paged<uint32_t, 256>
+        claims;  ///< with view cells: per object of the file the row that stands for it, or none from kNoRow on
+    CellLists strangers;      ///< with view cells: in one cell all rows in cells that stand for no object of the file
     bool has_walls = false;   ///< the file names objects that its rows and portals rest on
     bool walls_stand = true;  ///< and all of them are where they were baked
 
-    explicit CellState(Memory* memory) : lists(memory), free(memory) {}
+    static constexpr uint32_t kNoRow = ~0u - 1;
+
+    explicit CellState(Memory* memory) : lists(memory), free(memory), claims(memory), strangers(memory) {}
 };
 
 /// An immutable state of a world. Items are the living objects in the order of World::add; the hierarchy's are rows.

@@ -15,10 +15,12 @@ using namespace tools;
 class OpaqueTriangles {
 public:
     explicit OpaqueTriangles(const Scene& scene) {
-        for (const SceneObject& object : scene.objects) {
+        for (uint32_t i = 0; i < scene.objects.size(); ++i) {
+            const SceneObject& object = scene.objects[i];
             const Mesh& mesh = scene.meshes[object.mesh];
             for (size_t t = 0; t < mesh.triangles(); ++t) {
                 Triangle triangle;
+                triangle.object = i;
                 triangle.both = scene.materials[mesh.primitives[0].material].double_sided;
                 if (!scene.materials[mesh.primitives[0].material].hides()) continue;
                 for (size_t c = 0; c < 3; ++c)
@@ -30,8 +32,11 @@ public:
     }
 
     /// Whether an opaque front, grown by `room`, is met between two distances.
-    bool meets(const glm::dvec3& from, const glm::dvec3& along, double first, double last, double room) const {
+    /// @param except  an object that does not count
+    bool meets(const glm::dvec3& from, const glm::dvec3& along, double first, double last, double room,
+               uint32_t except = ~0u) const {
         return std::any_of(all_.begin(), all_.end(), [&](const Triangle& triangle) {
+            if (triangle.object == except) return false;
             const auto& [a, b, c] = triangle.corners;
             const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
             const double towards = glm::dot(normal, along);
@@ -51,6 +56,7 @@ public:
 private:
     struct Triangle {
         glm::dvec3 corners[3];
+        uint32_t object = 0;
         bool both = false;
     };
     std::vector<Triangle> all_;

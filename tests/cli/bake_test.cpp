@@ -66,6 +66,34 @@ TEST_F(Bake, AScenesOwnWallsAreCells) {
     EXPECT_EQ(bake("building:1:1 --cells walls --smallest-occluder 2")["walls"]["smallest_occluder"], 2);
 }
 
+// All of space as one cell, and boxes of it with a row each.
+TEST_F(Bake, ViewCellsHaveRowsOfObjects) {
+    const json out = bake("building:1:1 --cells none --view-cells 256 -o views.see --threads 1");
+    EXPECT_EQ(out["cells"], 1);
+    EXPECT_EQ(out["portals"], 0);
+    EXPECT_EQ(out["cells_are"], "all of space");
+    EXPECT_EQ(out["view_cells"]["count"], 256);
+    EXPECT_GT(out["view_cells"]["used"], 50);
+    EXPECT_GT(out["view_cells"]["hidden"], 0.25);
+    const std::string bytes = read(path("views.see"));
+    bake("building:1:1 --cells none --view-cells 256 -o again.see --threads 3");
+    EXPECT_EQ(read(path("again.see")), bytes) << "the same bytes for any number of threads";
+    EXPECT_EQ(info("views.see")["places"]["view_cells"], 256);
+    const json judged =
+        answer("verify building:1:1 --path scatter --frames 6 --size 640x360 --rays 20000 --visibility views.see");
+    EXPECT_EQ(judged["verification"]["false_culls"], 0);
+    uint64_t culled = 0;
+    for (const json& frame : judged["frames"])
+        for (const json& stage : frame["stages"])
+            if (stage["name"] == "pvs") culled += stage["culled"].get<uint64_t>();
+    EXPECT_GT(culled, 100u);
+    const Outcome text = succeed("bake building:1:1 --view-cells 64");
+    EXPECT_NE(text.out.find("view cells: "), std::string::npos) << text.out;
+    const json few = bake("city:1:50 --view-cells 8 -o city.see");
+    EXPECT_EQ(few["view_cells"]["count"], 0) << "from so much room too little is hidden";
+    EXPECT_EQ(info("city.see")["places"]["view_cells"], 0);
+}
+
 TEST_F(Bake, ABuildingBecomesAFileThatHoldsItsCells) {
     const json out = bake("building:1:1 -o b.see --objects");
     EXPECT_EQ(out["schema"], "sightline.bake/1");
@@ -253,6 +281,7 @@ TEST_F(Bake, WhatCannotBeBakedIsALine) {
     expectError("bake city:1:10 --objects", 2, "--objects: cells of a scene's own walls have no rows");
     expectError("bake building:1:1 --smallest-hole 0.001", 2, "the scene has marked cells");
     expectError("bake room.map --cells walls", 2, "room.map: a map has cells of its own");
+    expectError("bake room.map --view-cells 8", 2, "room.map: a map has cells of its own");
     expectError("bake m.bsp --smallest-occluder 4", 2, "m.bsp: a map has cells of its own");
     expectError("vis room.map --cells walls", 2, "--cells");
     expectError("bake no-such.bsp", 3, "no-such.bsp");

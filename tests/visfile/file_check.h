@@ -12,6 +12,26 @@
 
 namespace sightline::test {
 
+/// Empty, or what is wrong with view cells: a child or an object that there is not.
+inline std::string faultOfViews(const VisibilityFile& file) {
+    if (!file.hasViewCells()) return {};
+    if (!file.hasObjects()) return "view cells without objects";
+    const LeafTree tree = file.viewTree();
+    if (file.viewRows().rows() != tree.contents.size()) return "not a row for each view cell";
+    for (size_t i = 0; i < tree.nodes.size(); ++i)
+        for (const uint32_t child : tree.nodes[i].child)
+            if ((child & LeafTreeNode::kLeaf) != 0 ? (child ^ LeafTreeNode::kLeaf) >= tree.contents.size()
+                                                   : child <= i || child >= tree.nodes.size())
+                return "a child of view cells that there is not";
+    const size_t objects = file.objects().size();
+    std::vector<uint64_t> seen((objects + 63) / 64);
+    for (uint32_t row = 0; row < file.viewRows().rows(); ++row) {
+        file.viewRows().row(row, seen);
+        if (objects % 64 != 0 && seen.back() >> objects % 64 != 0) return "an object behind the last, from a view cell";
+    }
+    return {};
+}
+
 /// Empty, or what is wrong with cells as places: a number of what there is not, what is not finite.
 inline std::string faultOfPlaces(const VisibilityFile& file) {
     if (!file.hasCells()) return file.hasObjects() || file.hasObjectRows() ? "objects without cells" : "";
@@ -68,7 +88,7 @@ inline std::string faultOfPlaces(const VisibilityFile& file) {
         file.objectRow(row, seen);
         if (objects.size() % 64 != 0 && seen.back() >> objects.size() % 64 != 0) return "an object behind the last";
     }
-    return {};
+    return faultOfViews(file);
 }
 
 /// Empty, or what is wrong with the answers: a pair that is not as its rows say, a leaf of no cell that there is.

@@ -18,7 +18,22 @@ struct MadePlaces {
     CellSpace space;
     ObjectPlaces objects;
     BitMatrix object_rows;
+    LeafTree view_tree;  ///< one leaf on each side of some planes, and a row of objects for each
+    BitMatrix view_rows;
 
+    /// @pre objects
+    void addViews(uint32_t planes, Random& random) {
+        view_tree.bounds = {glm::dvec3(0), glm::dvec3(1)};
+        view_tree.contents.assign(planes + 1, LeafContents::kEmpty);
+        for (uint32_t i = 0; i < planes; ++i)
+            view_tree.nodes.push_back(
+                {{1, 0, 0, -random.uniform()},
+                 {LeafTreeNode::kLeaf | i, i + 1 < planes ? i + 1 : LeafTreeNode::kLeaf | planes}});
+        view_rows = BitMatrix(planes + 1, objects.size());
+        for (size_t row = 0; row <= planes; ++row)
+            for (size_t i = 0; i < objects.size(); ++i)
+                if (random.below(3) == 0) view_rows.set(row, i);
+    }
     void addObjects(size_t count, size_t rows, Random& random) {
         for (size_t i = 0; i < count; ++i) {
             std::vector<uint32_t> in;

@@ -21,21 +21,37 @@ struct Made {
 
     Result<Array<char>> bytes(VisibilityForm form) const {
         return visibilityFile({visible, places.space.graph.cell_of_leaf.empty() ? std::span<const uint32_t>() : leaves,
-                               "house", 5, &places.space, &places.objects, &places.object_rows},
+                               "house", 5, &places.space, &places.objects, &places.object_rows,
+                               views ? &places.view_tree : nullptr, views ? &places.view_rows : nullptr},
                               form);
     }
     std::vector<uint32_t> leaves;
+    bool views = false;
 };
 
 Made madeOf(uint64_t seed, uint32_t size, size_t rows, size_t objects) {
     Made made;
     made.visible = randomRows(rows, 0.3, seed);
     made.places = seed % 2 == 0 ? boxesInARow(seed, size, rows, objects) : leavesOfATree(seed, size, rows, objects);
+    Random random(seed);
+    made.places.addViews(size % 5, random);
+    made.views = objects % 2 == 0;
     std::vector<CellPortal>& portals = made.places.space.graph.portals;
     for (size_t i = 0; i < portals.size(); i += 3) portals[i].one_way = true;
     for (const uint32_t cell : made.places.space.graph.cell_of_leaf)
         made.leaves.push_back(cell == CellGraph::kNoCell ? cell : made.places.space.row_of_cell[cell]);
     return made;
+}
+
+void expectSame(const LeafTree& a, const LeafTree& b) {
+    EXPECT_EQ(a.contents, b.contents);
+    EXPECT_EQ(a.bounds.min, b.bounds.min);
+    EXPECT_EQ(a.bounds.max, b.bounds.max);
+    ASSERT_EQ(a.nodes.size(), b.nodes.size());
+    for (size_t i = 0; i < a.nodes.size(); ++i) {
+        const LeafTreeNode &p = a.nodes[i], &q = b.nodes[i];
+        EXPECT_TRUE(p.plane == q.plane && p.child[0] == q.child[0] && p.child[1] == q.child[1]);
+    }
 }
 
 void expectSame(const CellSpace& a, const CellSpace& b) {
@@ -64,13 +80,17 @@ void expectSame(const CellSpace& a, const CellSpace& b) {
         const CellDoor &p = a.doors[i], &q = b.doors[i];
         EXPECT_TRUE(p.name == q.name && p.key == q.key && p.slide == q.slide);
     }
-    EXPECT_EQ(a.tree.contents, b.tree.contents);
-    EXPECT_EQ(a.tree.bounds.min, b.tree.bounds.min);
-    EXPECT_EQ(a.tree.bounds.max, b.tree.bounds.max);
-    ASSERT_EQ(a.tree.nodes.size(), b.tree.nodes.size());
-    for (size_t i = 0; i < a.tree.nodes.size(); ++i) {
-        const LeafTreeNode &p = a.tree.nodes[i], &q = b.tree.nodes[i];
-        EXPECT_TRUE(p.plane == q.plane && p.child[0] == q.child[0] && p.child[1] == q.child[1]);
+    expectSame(a.tree, b.tree);
+}
+
+void expectSameViews(const VisibilityFile& file, const MadePlaces& made) {
+    ASSERT_TRUE(file.hasViewCells());
+    expectSame(file.viewTree(), made.view_tree);
+    ASSERT_EQ(file.viewRows().rows(), made.view_rows.rows());
+    std::vector<uint64_t> row((file.objects().size() + 63) / 64, ~uint64_t{0});
+    for (uint32_t r = 0; r < file.viewRows().rows(); ++r) {
+        file.viewRows().row(r, row);
+        EXPECT_TRUE(std::ranges::equal(row, made.view_rows.row(r))) << r;
     }
 }
 
@@ -114,6 +134,8 @@ TEST(VisibilityPlaces, ComeOutAsTheyWentIn) {
                     const Result<VisibilityFile> file = VisibilityFile::open(*bytes, "f");
                     ASSERT_TRUE(file.ok()) << file.error().message;
                     expectSame(*file, made.places);
+                    EXPECT_EQ(file->hasViewCells(), made.views);
+                    if (made.views) expectSameViews(*file, made.places);
                     EXPECT_EQ(packedFile(*file), *made.bytes(VisibilityForm::kPacked));
                     EXPECT_EQ(faultOfAnswers(*file), "");
                     EXPECT_GT(file->residentBytes(), file->rows().bytes());
@@ -123,13 +145,14 @@ TEST(VisibilityPlaces, ComeOutAsTheyWentIn) {
 
 TEST(VisibilityPlaces, AreOptionalOneByOne) {
     const Made made = madeOf(2, 9, 6, 20);
-    const auto opened = [&](const CellSpace* space, const ObjectPlaces* objects, const BitMatrix* rows) {
+    const auto opened = [&](const CellSpace* space, const ObjectPlaces* objects, const BitMatrix* rows,
+                            const LeafTree* tree = nullptr, const BitMatrix* seen = nullptr) {
         const Result<Array<char>> bytes =
-            visibilityFile({made.visible, {}, "", 0, space, objects, rows}, VisibilityForm::kInPlace);
+            visibilityFile({made.visible, {}, "", 0, space, objects, rows, tree, seen}, VisibilityForm::kInPlace);
         if (!bytes.ok()) return bytes.error().message;
         const VisibilityFile file = std::move(*VisibilityFile::open(*bytes, "f"));
         return std::string(file.hasCells() ? "cells " : "") + (file.hasObjects() ? "objects " : "") +
-               (file.hasObjectRows() ? "rows" : "");
+               (file.hasObjectRows() ? "rows" : "") + (file.hasViewCells() ? "views" : "");
     };
     const MadePlaces& places = made.places;
     EXPECT_EQ(opened(nullptr, nullptr, nullptr), "");
@@ -138,6 +161,14 @@ TEST(VisibilityPlaces, AreOptionalOneByOne) {
     EXPECT_EQ(opened(&places.space, &places.objects, &places.object_rows), "cells objects rows");
     EXPECT_EQ(opened(nullptr, &places.objects, nullptr), "objects without cells");
     EXPECT_EQ(opened(&places.space, nullptr, &places.object_rows), "rows of objects without objects");
+    const LeafTree* tree = &places.view_tree;
+    const BitMatrix* seen = &places.view_rows;
+    EXPECT_EQ(opened(&places.space, &places.objects, nullptr, tree, seen), "cells objects views");
+    EXPECT_EQ(opened(&places.space, nullptr, nullptr, tree, seen), "rows of objects without objects");
+    for (const bool rows_alone : {false, true})
+        EXPECT_EQ(
+            opened(&places.space, &places.objects, nullptr, rows_alone ? nullptr : tree, rows_alone ? seen : nullptr),
+            "view cells without rows, or rows without view cells");
 }
 
 TEST(VisibilityPlaces, AreNotWrittenOfWhatAReaderWouldRefuse) {
@@ -169,6 +200,10 @@ TEST(VisibilityPlaces, AreNotWrittenOfWhatAReaderWouldRefuse) {
     EXPECT_EQ(refused([](Made& m) { m.places.space.doors[0].slide.z = kNan; }), "a door whose slide is not finite");
     EXPECT_EQ(refused([](Made& m) { m.places.object_rows = BitMatrix(6, 21); }),
               "rows of objects that are not rows of these cells and objects");
+    EXPECT_EQ(refused([](Made& m) { m.places.view_rows = BitMatrix(4, 20); }),
+              "rows of view cells that are not rows of these cells and objects");
+    EXPECT_EQ(refused([](Made& m) { m.places.view_tree.bounds = Box3d(); }).substr(0, 27),
+              "tree: a tree without bounds");
     const auto objectFault = [&](const std::function<void(ObjectPlaces&)>& spoil) {
         const std::string line = refused([&](Made& m) { spoil(m.places.objects); });
         return line.substr(0, line.find(" at byte"));

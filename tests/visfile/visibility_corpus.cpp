@@ -8,10 +8,18 @@
 namespace sightline::test {
 namespace {
 
-/// With all sections of places.
-Array<char> withPlaces(const MadePlaces& places) {
+/// With all sections of places, and view cells on request.
+Array<char> withPlaces(const MadePlaces& places, bool views = false) {
     const MadeFile rows(5, places.object_rows.rows());
-    return *visibilityFile({rows.visible, {}, "house", 5, &places.space, &places.objects, &places.object_rows},
+    return *visibilityFile({rows.visible,
+                            {},
+                            "house",
+                            5,
+                            &places.space,
+                            &places.objects,
+                            &places.object_rows,
+                            views ? &places.view_tree : nullptr,
+                            views ? &places.view_rows : nullptr},
                            VisibilityForm::kInPlace);
 }
 
@@ -33,12 +41,17 @@ void makeAll(Seed seed) {
     for (const uint64_t at : {coded, coded + 1, coded + 4, coded + 5}) many_cells[at] = '\xff';
     seal(many_cells);
     const Array<char> boxes = withPlaces(boxesInARow(1, 5, 6, 20)), tree = withPlaces(leavesOfATree(2, 9, 6, 70));
+    MadePlaces seen_from = boxesInARow(3, 4, 5, 40);
+    Random random(3);
+    seen_from.addViews(5, random);
+    const Array<char> views = withPlaces(seen_from, true);
     Array<char> loose_child = tree;
     const SectionFile tree_sections = *SectionFile::open(tree, "");
     loose_child[tree_sections.placeOf(tree_sections.find(visibility_file::kTree)) + 56 + 32] = 0;
     seal(loose_child);
     seed("boxes.see", boxes);
     seed("tree.see", tree);
+    seed("views.see", views);
     seed("loose_child.see", loose_child);
     seed("in_place.see", plain);
     seed("packed.see", packed);

@@ -104,6 +104,11 @@ void addBake(CLI::App& tool, int& exit_code) {
             "holes that can be seen through, so that a cull may be false (default: 2^-23 of the scene's diagonal)")
         ->check(CLI::Range(0.0, 1e9))
         ->type_name("L");
+    verb->add_option("--view-cells", options->source.view_cells,
+                     "divide space into so many boxes and tell which objects may be seen from each, as 2048 (default: "
+                     "none)")
+        ->check(CLI::Range(0u, 1u << 16))
+        ->type_name("COUNT");
     verb->callback([verb, options, &exit_code] {
         options->source.of_walls = verb->count("--smallest-occluder") + verb->count("--smallest-hole") > 0;
         const Result<int> done = runBake(*options);

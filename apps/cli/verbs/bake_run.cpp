@@ -53,13 +53,15 @@ VisCells visCellsOf(const std::string& word) {
 
 void addBakeOptions(CLI::App& verb, BakeOptions& options, const std::string& output, bool of_scenes) {
     std::vector<std::string> cells = {"clusters", "leaves", "groups"};
-    if (of_scenes) cells.emplace_back("walls");
+    if (of_scenes) cells.insert(cells.end(), {"walls", "none"});
     verb.add_option("-o,--output", options.output, output)->type_name("FILE");
-    verb.add_option("--cells", options.cells,
-                    "what of a .bsp has a row: clusters, as the map's compiler made them; leaves, each its own, which "
-                    "is tighter and takes far longer; groups, of leaves that are open to one another (default: "
-                    "clusters)" +
-                        std::string(of_scenes ? "; of a scene: walls, its own, although cells are marked" : ""))
+    verb.add_option(
+            "--cells", options.cells,
+            "what of a .bsp has a row: clusters, as the map's compiler made them; leaves, each its own, which "
+            "is tighter and takes far longer; groups, of leaves that are open to one another (default: "
+            "clusters)" +
+                std::string(
+                    of_scenes ? "; of a scene: walls, its own, although cells are marked; none, view cells alone" : ""))
         ->check(CLI::IsMember(cells));
     verb.add_flag("--objects", options.objects,
                   "tell also which objects each cell sees, of a .bsp its faces: takes longer than the cells do");

@@ -32,9 +32,10 @@ bool isMap(const std::string& name) {
 Result<BakeSource> loadMapSource(const std::string& name, const BakeSourceChoice& asked) {
     const auto usage = [&](const char* what) { return Error{Error::Kind::kUsage, name + ": " + what}; };
     const std::string kind = mapKind(name);
-    if (asked.of_walls || asked.cells == "walls")
+    if (asked.of_walls || asked.view_cells > 0 || asked.cells == "walls" || asked.cells == "none")
         return usage(
-            "a map has cells of its own: --cells walls, --smallest-occluder and --smallest-hole are for scenes");
+            "a map has cells of its own: --cells walls, --cells none, --smallest-occluder, --smallest-hole and "
+            "--view-cells are for scenes");
     if (kind == ".prt") return usage("a portal file has no tree to find an eye in: bake its .bsp or .map");
     if (kind == ".map" && !asked.cells.empty())
         return usage("a .map has the cells of its brushes: --cells goes with a .bsp");
@@ -69,41 +70,77 @@ Result<BakeSource> loadMapSource(const std::string& name, const BakeSourceChoice
     return out;
 }
 
-Result<BakeSource> loadScene(const SceneChoice& names, const BakeSourceChoice& choice) {
-    Result<Scene> scene = loadScene(names);
-    if (!scene) return scene.error();
-    const std::string name = std::filesystem::path(names.title()).filename().string();
+std::vector<uint32_t> doorsOf(const Scene& scene) {
+    std::vector<uint32_t> doors;
+    for (const ScenePortal& portal : scene.portals)
+        if (portal.door < scene.objects.size()) doors.push_back(portal.door);
+    return doors;
+}
+
+/// Adds view cells, if they are wanted.
+void addViews(const BakeSourceChoice& choice, const Scene& scene, BakeCells& cells) {
+    if (choice.view_cells < 2) return;
+    ViewCellSettings settings;
+    settings.most_cells = choice.view_cells;
+    settings.smallest_hole = choice.smallest_hole;
+    settings.movable = doorsOf(scene);
+    settings.jobs = choice.jobs;
+    Progress progress("dividing space", "view cells", 0);
+    settings.progress = [&](size_t done, size_t total) { progress.set(done, total); };
+    addViewCells(cells, scene, settings);
+}
+
+/// Cells of a scene's own walls. Where they leave most of it in sight, they are not worth their portals: then space is
+/// one cell.
+Result<BakeSource> wallsOf(const Scene& scene, const SceneChoice& names, const std::string& name,
+                           const BakeSourceChoice& choice) {
     BakeSource out;
-    if (scene->cells.empty() || choice.cells == "walls") {
-        SoupCellSettings settings;
-        settings.smallest_occluder = choice.smallest_occluder;
-        settings.smallest_hole = choice.smallest_hole;
-        settings.jobs = choice.jobs;
-        constexpr uint32_t kPlaces = 32;
-        if (choice.smallest_occluder < 0)
-            for (const CameraFrame& frame : seededCameras(*scene, kPlaces, 1).frames)
-                settings.eyes.push_back(frame.eye);
-        for (const ScenePortal& portal : scene->portals)
-            if (portal.door < scene->objects.size()) settings.movable.push_back(portal.door);
-        Progress progress("finding portals", "faces", 0);
-        settings.progress = [&](size_t done, size_t total) { progress.set(done, total); };
-        out.cells = soupToBake(*scene, name, settings, &out.walls.emplace());
+    SoupCellSettings settings;
+    settings.smallest_occluder = choice.smallest_occluder;
+    settings.smallest_hole = choice.smallest_hole;
+    settings.jobs = choice.jobs;
+    constexpr uint32_t kPlaces = 32;
+    if (choice.smallest_occluder < 0)
+        for (const CameraFrame& frame : seededCameras(scene, kPlaces, 1).frames) settings.eyes.push_back(frame.eye);
+    settings.movable = doorsOf(scene);
+    Progress progress("finding portals", "faces", 0);
+    settings.progress = [&](size_t done, size_t total) { progress.set(done, total); };
+    if (choice.cells != "none") out.cells = soupToBake(scene, name, settings, &out.walls.emplace());
+    const bool open = choice.cells.empty() && out.walls && out.walls->hardlyAnInside();
+    if (choice.cells == "none" || open) {
+        out.cells = openToBake(scene, name);
+        out.cells_are = "all of space";
+    } else {
         if (out.cells.space.graph.cells == 0)
             return Error{Error::Kind::kInput, names.title() +
                                                   ": has no cells, and no opaque surface that is large "
                                                   "enough to divide it (see --smallest-occluder)"};
         out.cells_are = "of its own walls";
-        out.rows_are = "none";
-        out.scene = std::move(*scene);
+    }
+    out.rows_are = "none";
+    return out;
+}
+
+Result<BakeSource> loadScene(const SceneChoice& names, const BakeSourceChoice& choice) {
+    Result<Scene> scene = loadScene(names);
+    if (!scene) return scene.error();
+    const std::string name = std::filesystem::path(names.title()).filename().string();
+    if (scene->cells.empty() || choice.cells == "walls" || choice.cells == "none") {
+        Result<BakeSource> out = wallsOf(*scene, names, name, choice);
+        if (!out) return out.error();
+        addViews(choice, *scene, out->cells);
+        out->scene = std::move(*scene);
         return out;
     }
     if (choice.of_walls)
         return Error{Error::Kind::kUsage,
                      "--smallest-occluder, --smallest-hole: the scene has marked cells, which they "
                      "say nothing of; --cells walls takes its walls instead"};
+    BakeSource out;
     SceneCellSettings settings;
     settings.trusted = !names.procedural().empty();
     out.cells = sceneToBake(*scene, name, settings);
+    addViews(choice, *scene, out.cells);
     out.cells_are = "marked";
     out.rows_are = "cells";
     out.scene = std::move(*scene);
@@ -116,7 +153,7 @@ Result<BakeSource> loadBakeSource(const SceneChoice& scene, const BakeSourceChoi
     const auto map = std::find_if(scene.names.begin(), scene.names.end(),
                                   [](const std::string& name) { return !isProcedural(name) && isMap(name); });
     if (map == scene.names.end()) {
-        if (!choice.cells.empty() && choice.cells != "walls")
+        if (!choice.cells.empty() && choice.cells != "walls" && choice.cells != "none")
             return Error{Error::Kind::kUsage, "--cells " + choice.cells + " goes with a .bsp"};
         return loadScene(scene, choice);
     }

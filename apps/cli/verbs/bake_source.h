@@ -31,6 +31,7 @@ struct BakeSourceChoice {
     double smallest_occluder = -1;  ///< SoupCellSettings
     double smallest_hole = -1;      ///< SoupCellSettings
     bool of_walls = false;          ///< one of these two was given
+    uint32_t view_cells = 0;        ///< ViewCellSettings::most_cells; below 2: none
     Jobs* jobs = nullptr;
 };
 

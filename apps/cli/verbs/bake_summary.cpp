@@ -54,12 +54,27 @@ void printWalls(std::FILE* out, const SoupCellReport& report) {
         tell(out, fmt::format("  {:>17.3g} {:>10} {:>10} {:>10.1f} of {}{}\n", trial.smallest_occluder,
                               grouped(trial.cells), grouped(trial.portals), trial.objects_seen, grouped(report.objects),
                               trial.smallest_occluder == report.smallest_occluder ? ", taken" : ""));
-    const auto taken = std::find_if(report.trials.begin(), report.trials.end(), [&](const SoupTrial& trial) {
-        return trial.smallest_occluder == report.smallest_occluder;
-    });
-    if (taken != report.trials.end() && taken->objects_seen > 0.25 * static_cast<double>(report.objects))
-        tell(out, "  it has hardly an inside: such cells may cost a query more than they save\n");
+    if (report.hardlyAnInside())
+        tell(out, "  it has hardly an inside: portals would cost a query more than they save\n");
     if (report.full) tell(out, "  there are too many cells: what is left undivided is looser\n");
+}
+
+void printViews(std::FILE* out, const Baked& baked) {
+    if (!baked.cells.views) return;
+    const ViewCells& views = *baked.cells.views;
+    if (views.tree.contents.empty())
+        return tell(
+            out, fmt::format("view cells: none, for flat parts hide {:.2g} % of the objects from a cell in the mean\n",
+                             100 * views.hidden));
+    tell(out, fmt::format("view cells: {}; of {} flat parts from {:.3g} x {:.3g} on {} hide something from a cell\n",
+                          grouped(views.tree.contents.size()), grouped(views.hiders), views.smallest_occluder,
+                          views.smallest_occluder, grouped(views.used)));
+    tell(out,
+         fmt::format("  a cell sees {:.1f} of {} objects in the mean\n",
+                     ratio(baked.view_rows.count(), baked.view_rows.rows()), grouped(baked.objects.places.size())));
+    if (views.over_budget)
+        tell(out,
+             fmt::format("  cells over budget {}: what was not asked counts as visible\n", grouped(views.over_budget)));
 }
 
 }  // namespace
@@ -143,6 +158,7 @@ void printBakeSummary(std::FILE* out, const BakeSource& source, const Baked& bak
                               percentText(s.visible_cluster_pairs, s.clusters * s.clusters),
                               percentText(s.unresolved_pairs, s.visible_cluster_pairs)));
     printLimits(out, s);
+    printViews(out, baked);
     tell(out,
          fmt::format("objects: {}, each in {:.2f} cells; {} seen from everywhere, {} outside, {} moving and not in "
                      "the file\n",
@@ -220,6 +236,15 @@ std::string bakeJson(const BakeSource& source, const Baked& baked, const BakeSum
                                               {"objects_seen", trial.objects_seen},
                                               {"portals_tried", trial.portals_tried}});
     }
+    if (baked.cells.views)
+        out["view_cells"] = {{"count", baked.cells.views->tree.contents.size()},
+                             {"hiders", baked.cells.views->hiders},
+                             {"used", baked.cells.views->used},
+                             {"smallest_occluder", baked.cells.views->smallest_occluder},
+                             {"smallest_cell", baked.cells.views->smallest_cell},
+                             {"hidden", baked.cells.views->hidden},
+                             {"over_budget", baked.cells.views->over_budget},
+                             {"visible_pairs", baked.view_rows.count()}};
     out["bytes"] = s.pvs_bytes;
     out["resident_bytes"] = s.resident_bytes;
     out["in_place_bytes"] = summary.in_place_bytes;

@@ -228,6 +228,7 @@ Json cellsJson(const AskedScene& asked, const CellsReason& reason) {
     };
     Json out;
     out["eye"] = list(reason.eye);
+    if (reason.view_cells) out["view_cells"] = reason.view_cells;
     out["object"] = list(reason.object);
     out["reached"] = reason.reached;
     out["way"] = list(reason.way);

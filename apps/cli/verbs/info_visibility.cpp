@@ -124,6 +124,7 @@ Status infoOfVisibility(const std::string& file, const std::string& json) {
                 fmt::format("in {} places; {} seen from everywhere, {} walls", grouped(places.places),
                             grouped(places.everywhere), grouped(places.walls)));
         if (opened->hasObjectRows()) row("visible objects", places.object_pairs, "pairs of rows and objects");
+        if (opened->hasViewCells()) row("view cells", opened->viewRows().rows(), "with a row of objects each");
         row("bytes", bytes->size(), grouped(opened->residentBytes()) + " resident");
     }
     if (json.empty()) return success();
@@ -141,11 +142,10 @@ Status infoOfVisibility(const std::string& file, const std::string& json) {
                 {"bytes", bytes->size()},
                 {"resident_bytes", opened->residentBytes()}};
     if (opened->hasCells()) {
-        out["places"] = {{"cells", places.cells},
-                         {"cells_are", places.cells_are},
-                         {"outside", places.outside},
-                         {"portals", places.portals},
-                         {"doors", places.doors}};
+        out["places"] = {
+            {"cells", places.cells},     {"cells_are", places.cells_are},
+            {"outside", places.outside}, {"portals", places.portals},
+            {"doors", places.doors},     {"view_cells", opened->hasViewCells() ? opened->viewRows().rows() : 0}};
         if (opened->hasObjects())
             out["objects"] = {{"count", places.objects},
                               {"places", places.places},

@@ -15,6 +15,7 @@ void addCull(CLI::App& tool, int& exit_code);
 void addVerify(CLI::App& tool, int& exit_code);
 void addRender(CLI::App& tool, int& exit_code);
 void addExplain(CLI::App& tool, int& exit_code);
+void addSight(CLI::App& tool, int& exit_code);
 void addVis(CLI::App& tool, int& exit_code);
 void addBake(CLI::App& tool, int& exit_code);
 void addExport(CLI::App& tool, int& exit_code);

@@ -156,6 +156,18 @@ FlatPiece grownBy(const FlatPiece& piece, double by) {
     return hullOf(std::move(points));
 }
 
+FlatPiece shrunkBy(const FlatPiece& piece, double by) {
+    FlatPiece inner = piece;
+    for (size_t i = 0; i < piece.size() && !inner.empty(); ++i) {
+        const glm::dvec2 along = piece[(i + 1) % piece.size()] - piece[i];
+        const double length = glm::length(along);
+        if (!(length > 0)) continue;
+        const glm::dvec2 normal(-along.y / length, along.x / length);
+        inner = clipPiece(inner, {normal, -glm::dot(normal, piece[i]) - by});
+    }
+    return inner;
+}
+
 void FlatRest::take(const FlatPiece& taken) {
     if (taken.size() < 3 || pieces_.size() > kMost) return;
     const FlatBox box = boxOf(taken);

@@ -25,6 +25,9 @@ FlatPiece sharedBy(const FlatPiece& a, const FlatPiece& b);
 /// so that a sharp one does not reach farther. Pieces without area grow as well.
 FlatPiece grownBy(const FlatPiece& piece, double by);
 
+/// The points of a piece that are at least `by` from the lines of its sides; empty if there are none.
+FlatPiece shrunkBy(const FlatPiece& piece, double by);
+
 /// What is left of pieces when others are taken away.
 class FlatRest {
 public:

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <utility>
 
 #include "sightline/bake/marked/checked_cells.h"
+#include "sightline/bake/soup/flat_sheet.h"
+#include "sightline/bake/soup/soup_scale.h"
 #include "sightline/bake/soup/soup_tree.h"
 #include "sightline/bake/soup/soup_trial.h"
 #include "sightline/bake/soup/soup_walls.h"
@@ -16,48 +18,6 @@
 namespace sightline::bake {
 using namespace tools;
 namespace {
-
-/// A triangle in the frame of its sheet.
-struct SheetTriangle {
-    FlatPiece piece;  // counter-clockwise as seen from the tip of the sheet's normal, grown
-    glm::dvec2 min, max;
-    uint32_t triangle = 0;
-    uint8_t sides = 0;  // 1: hides from where the normal points, 2: from behind
-};
-
-/// The triangles of a sheet, from left to right.
-struct FlatSheet {
-    FlatFrame frame{glm::dvec3(0), glm::dvec3(0, 0, 1)};
-    std::vector<SheetTriangle> triangles;
-    std::vector<double> right;  // per triangle: the farthest right of it and of all before
-
-    FlatSheet() = default;
-    FlatSheet(const SoupWalls& walls, const WallSheet& sheet, double grow)
-        : frame(-sheet.plane.w * glm::dvec3(sheet.plane), glm::dvec3(sheet.plane)) {
-        for (const uint32_t t : sheet.triangles) {
-            const WallTriangle& triangle = walls.triangles[t];
-            SheetTriangle flat;
-            FlatPiece piece = frame.to(triangle.corners);
-            const double area = areaOf(piece);
-            if (area == 0) continue;
-            flat.sides = triangle.both ? 3 : area > 0 ? 1 : 2;
-            if (area < 0) std::swap(piece[1], piece[2]);
-            flat.piece = grownBy(piece, grow);
-            if (flat.piece.empty()) continue;
-            flat.min = flat.max = flat.piece[0];
-            for (const glm::dvec2& point : flat.piece) {
-                flat.min = glm::min(flat.min, point);
-                flat.max = glm::max(flat.max, point);
-            }
-            flat.triangle = t;
-            triangles.push_back(std::move(flat));
-        }
-        std::stable_sort(triangles.begin(), triangles.end(),
-                         [](const SheetTriangle& a, const SheetTriangle& b) { return a.min.x < b.min.x; });
-        double farthest = -std::numeric_limits<double>::infinity();
-        for (const SheetTriangle& triangle : triangles) right.push_back(farthest = std::max(farthest, triangle.max.x));
-    }
-};
 
 /// What is found of one face.
 struct FaceAnswer {
@@ -100,12 +60,12 @@ public:
         const FlatSheet& sheet = sheets_[sheet_number];
         // The portal's plane is the sheet's, or its other side.
         const bool along = glm::dot(glm::dvec3(face.plane), glm::dvec3(walls_.sheets[sheet_number].plane)) > 0;
-        const FlatPiece whole = sheet.frame.to(outline);
+        const FlatPiece whole = sheet.frame().to(outline);
         const FlatPiece piece = areaOf(whole) < 0 ? FlatPiece(whole.rbegin(), whole.rend()) : whole;
         // A strip along another plane may belong to the wall in that.
-        const FlatPiece inner = shrunk(piece, hole_);
+        const FlatPiece inner = shrunkBy(piece, hole_);
         std::vector<const SheetTriangle*> near[2];
-        gather(sheet, inner.empty() ? piece : inner, near);
+        sheet.gather(inner.empty() ? piece : inner, near);
         if (near[0].empty() && near[1].empty()) {
             out.holes.push_back({{outline.begin(), outline.end()}, 3});
             return out;
@@ -131,43 +91,13 @@ public:
             for (const FlatHole& hole : holesOf(rest.pieces(), hole_, most_holes_)) {
                 out.merged |= hole.merged;
                 for (const FlatPiece& part : hole.pieces)
-                    out.holes.push_back({sheet.frame.from(widened(part, hole_)), way});
+                    out.holes.push_back({sheet.frame().from(widened(part, hole_)), way});
             }
         }
         return out;
     }
 
 private:
-    /// The triangles that meet a piece: [0] those that hide from where the sheet's normal points, [1] from behind.
-    static void gather(const FlatSheet& sheet, const FlatPiece& piece, std::vector<const SheetTriangle*> near[2]) {
-        glm::dvec2 min = piece[0], max = piece[0];
-        for (const glm::dvec2& point : piece) {
-            min = glm::min(min, point);
-            max = glm::max(max, point);
-        }
-        const auto first = std::lower_bound(sheet.right.begin(), sheet.right.end(), min.x) - sheet.right.begin();
-        for (auto i = static_cast<size_t>(first); i < sheet.triangles.size(); ++i) {
-            const SheetTriangle& triangle = sheet.triangles[i];
-            if (triangle.min.x > max.x) break;
-            if (triangle.max.x < min.x || triangle.max.y < min.y || triangle.min.y > max.y) continue;
-            if (sharedBy(triangle.piece, piece).empty()) continue;
-            if ((triangle.sides & 1) != 0) near[0].push_back(&triangle);
-            if ((triangle.sides & 2) != 0) near[1].push_back(&triangle);
-        }
-    }
-
-    static FlatPiece shrunk(const FlatPiece& piece, double by) {
-        FlatPiece inner = piece;
-        for (size_t i = 0; i < piece.size() && !inner.empty(); ++i) {
-            const glm::dvec2 along = piece[(i + 1) % piece.size()] - piece[i];
-            const double length = glm::length(along);
-            if (!(length > 0)) continue;
-            const glm::dvec2 normal(-along.y / length, along.x / length);
-            inner = clipPiece(inner, {normal, -glm::dot(normal, piece[i]) - by});
-        }
-        return inner;
-    }
-
     const SoupWalls& walls_;
     const SoupTree& tree_;
     const CellGraph& graph_;
@@ -252,19 +182,14 @@ SoupCells divide(const Scene& scene, const Soup& soup, double smallest_occluder,
 }  // namespace
 
 SoupCells cellsOfSoup(const Scene& scene, const SoupCellSettings& settings) {
-    std::vector<WallTriangle> triangles;
-    const Box3d everywhere{glm::dvec3(-std::numeric_limits<double>::infinity()),
-                           glm::dvec3(std::numeric_limits<double>::infinity())};
-    OpaqueWalls(scene, settings.movable).gather(everywhere, triangles);
-    Soup soup;
-    soup.bounds = worldBounds(scene);
-    const double diagonal = soup.bounds.empty() ? 0 : glm::length(soup.bounds.size());
-    if (triangles.empty() || !(diagonal > 0) || !std::isfinite(diagonal)) return {};
+    const std::optional<SoupScale> scale = soupScaleOf(scene, settings.smallest_hole);
+    std::vector<WallTriangle> triangles = opaqueTriangles(scene, settings.movable);
+    if (triangles.empty() || !scale) return {};
+    const double diagonal = scale->diagonal;
     const uint64_t opaque = triangles.size();
-    const double smallest_hole = settings.smallest_hole >= 0 ? settings.smallest_hole : diagonal * 0x1p-23;
-    // Far from the origin rounding moves planes by more than what the scene's size says.
-    const glm::dvec3 far = glm::max(glm::abs(soup.bounds.min), glm::abs(soup.bounds.max));
-    soup.hole = std::max({smallest_hole, diagonal * 0x1p-30, std::max({far.x, far.y, far.z}) * 0x1p-40});
+    Soup soup;
+    soup.bounds = scale->bounds;
+    soup.hole = scale->hole;
     const double finest = settings.smallest_occluder >= 0 ? settings.smallest_occluder : diagonal / 128;
     soup.walls = sheetsOf(std::move(triangles), soup.hole, std::max(finest * finest, soup.hole * soup.hole));
     // Eyes outside of the scene are in cells, too.

@@ -49,6 +49,13 @@ struct SoupCellReport {
     uint64_t merged = 0;                              ///< faces whose holes became their hull
     uint32_t depth = 0;                               ///< of the tree
     bool full = false;                                ///< `most_cells` ended the division
+    /// Whether the trial of what was used saw a quarter of the objects or more; false without trials.
+    bool hardlyAnInside() const {
+        for (const SoupTrial& trial : trials)
+            if (trial.smallest_occluder == smallest_occluder)
+                return trial.objects_seen > 0.25 * static_cast<double>(objects);
+        return false;
+    }
     std::vector<uint32_t> walls;  ///< objects that the answer rests on: while they stand, are drawn and are opaque it
                                   ///< holds  [Scene::objects] rising
 };

@@ -232,6 +232,7 @@ void Explainer::Impl::lookAtCells(uint32_t item, CellsReason& out) const {
     const uint32_t row = state.rowOf(item);
     const detail::CellLists& lists = state.cell_state.lists;
     out.eye.assign(stages.cells.start().begin(), stages.cells.start().end());
+    out.view_cells = static_cast<uint32_t>(stages.cells.viewStart().size());
     out.work_spent = stages.cells.portalStats().work_spent;
     for (uint32_t cell = 0; cell < lists.first.size(); ++cell)
         for (uint32_t at = lists.first[cell]; at != detail::CellBlock::kNone; at = lists.blocks[at].next) {

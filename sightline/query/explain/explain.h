@@ -84,7 +84,8 @@ struct CellsReason {
     /// The cells that the eye may be in, and the cells that the object stands in. Where one of them is empty, the
     /// stages of cells cull nothing.
     Array<uint32_t> eye, object;
-    uint32_t reached = 0;  ///< how many of the object's cells are seen, in any part of the image
+    uint32_t view_cells = 0;  ///< how many the eye may be in; 0: their rows decided nothing
+    uint32_t reached = 0;     ///< how many of the object's cells are seen, in any part of the image
     /// The way to the first of these: cells, beginning with one of the eye's, and the portals between them.
     Array<uint32_t> way, portals;
     bool work_spent = false;  ///< QuerySettings::portal_work was too small: the stage of portals culled nothing

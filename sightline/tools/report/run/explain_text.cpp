@@ -206,6 +206,8 @@ std::string cellsText(const CellsReason& cells) {
 }
 
 std::string rowsText(const CellsReason& cells) {
+    if (cells.view_cells > 0)
+        return "it is seen from nowhere in " + counted(cells.view_cells, "view cell") + " that the eye may be in";
     return fmt::format("it stands in {}, none of which is seen from {} that the eye may be in",
                        counted(cells.object.size(), "cell"), counted(cells.eye.size(), "cell"));
 }

@@ -1,0 +1,130 @@
+// The verb `sight`: whether one point sees another, and what may be seen from a place or its surroundings.
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/cli/shell/apart.h"
+#include "apps/cli/shell/session.h"
+#include "apps/cli/verbs/common.h"
+#include "apps/cli/verbs/explain_object.h"
+#include "apps/cli/verbs/verbs.h"
+#include "apps/cli/verbs/visibility_choice.h"
+#include "sightline/query/sight_query.h"
+#include "sightline/tools/report/output_file.h"
+
+namespace sightline::cli {
+using namespace tools;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct SightOptions : RunOptions {
+    std::string from, to;
+    double within = 0;
+};
+
+Result<glm::dvec3> readPoint(const char* option, const std::string& text) {
+    const std::vector<std::string> parts = CLI::detail::split(text, ',');
+    glm::dvec3 point(0.0);
+    bool good = parts.size() == 3;
+    for (int axis = 0; axis < 3 && good; ++axis)
+        good = CLI::detail::lexical_cast(parts[static_cast<size_t>(axis)], point[axis]) && std::isfinite(point[axis]);
+    if (good) return point;
+    return usageError(fmt::format("{} {}: not X,Y,Z of a point", option, text));
+}
+
+Json pointJson(const glm::dvec3& point) { return {point.x, point.y, point.z}; }
+
+Json objectJson(const Scene& scene, const Visible& visible) {
+    return {{"key", visible.key}, {"name", scene.objects[AskedScene::objectOf(visible.id)].name}};
+}
+
+void answerLine(const AskedScene& asked, const glm::dvec3& from, const glm::dvec3& to, std::FILE* out, Json& body) {
+    SightQuery query;
+    const SightLine line = query.look(asked.now, from, to);
+    body["to"] = pointJson(to);
+    body["blocked"] = line.blocked;
+    if (line.blocked) body["by"] = objectJson(asked.scene, line.by);
+    fmt::print(out, "{}\n",
+               line.blocked ? fmt::format("blocked: {} stands between them", asked.nameOf(line.by.id))
+                            : "open: no front of an occluder stands between them");
+}
+
+void answerRegion(const AskedScene& asked, const glm::dvec3& from, double within, std::FILE* out, Json& body) {
+    constexpr size_t kMost = 8;
+    SightQuery query;
+    const RegionSet set = query.seenFrom(asked.now, {from - within, from + within});
+    body["within"] = within;
+    body["known"] = set.known;
+    body["objects"] = Json::array();
+    for (const Visible& visible : set.objects) body["objects"].push_back(objectJson(asked.scene, visible));
+    const std::string all = grouped(asked.scene.objects.size());
+    if (!set.known)
+        return fmt::print(out, "not known: all {} objects may be seen (sightline bake tells more: --visibility FILE)\n",
+                          all);
+    fmt::print(out, "{} of {} objects may be seen from there\n", grouped(set.objects.size()), all);
+    for (size_t i = 0; i < std::min(set.objects.size(), kMost); ++i)
+        fmt::print(out, "  {}\n", titleOf(asked.scene, AskedScene::objectOf(set.objects[i].id)));
+    if (set.objects.size() > kMost) fmt::print(out, "  and {} more (--json lists them)\n", set.objects.size() - kMost);
+}
+
+Status checkOutput(const SightOptions& options) {
+    ApartFiles files;
+    for (const std::string& name : options.scene.names) files.read("SCENE", name);
+    files.read("--visibility", options.visibility.file);
+    files.write("--json", options.json);
+    if (!files.status()) return files.status();
+    return options.json.empty() || options.json == "-" ? success() : canWriteFile(options.json);
+}
+
+Status runSight(SightOptions& options) {
+    const Result<glm::dvec3> from = readPoint("--from", options.from);
+    if (!from) return from.error();
+    const Result<glm::dvec3> to = options.to.empty() ? from : readPoint("--to", options.to);
+    if (!to) return to.error();
+    if (Status writable = checkOutput(options); !writable) return writable;
+    const Result<Scene> scene = loadScene(options.scene);
+    if (!scene) return scene.error();
+    if (Status opened = openVisibility(*scene, options); !opened) return opened;
+    const AskedScene asked(*scene, options);
+    std::FILE* const out = options.json == "-" ? stderr : stdout;
+    Json body = {{"schema", "sightline.sight/1"}, {"scene", options.scene.title()}, {"from", pointJson(*from)}};
+    if (options.to.empty()) answerRegion(asked, *from, options.within, out, body);
+    else answerLine(asked, *from, *to, out, body);
+    if (options.json.empty()) return success();
+    return writeText(options.json, body.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace
+
+void addSight(CLI::App& tool, int& exit_code) {
+    CLI::App* verb = tool.add_subcommand("sight", "whether two points see each other, and what a region sees");
+    const auto options = std::make_shared<SightOptions>();
+    addSceneChoice(*verb, options->scene);
+    verb->add_option("--from", options->from, "where one stands [world units]")->required()->type_name("X,Y,Z");
+    CLI::Option* to =
+        verb->add_option("--to", options->to, "a point: does an occluder stand in between?")->type_name("X,Y,Z");
+    verb->add_option(
+            "--within", options->within,
+            "or so far around: which objects may be seen from somewhere in that box? [world units] (default: 0)")
+        ->check(CLI::Range(0.0, 1e9))
+        ->excludes(to)
+        ->type_name("R");
+    verb->add_option("--visibility", options->visibility.file,
+                     "cells and rows that `bake` made of this scene: the second question is answered by them")
+        ->type_name("FILE");
+    verb->add_option("--json", options->json, "write the answer as JSON (-: standard output)")->type_name("FILE");
+    verb->callback([options, &exit_code] {
+        exit_code = kDone;
+        if (const Status done = runSight(*options); !done) exit_code = report(done.error());
+    });
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,196 @@
+// View cells: no line from a cell comes to an object that the cell's row leaves out, in made rooms and real buildings.
+// SPDX-License-Identifier: MIT
+#include "sightline/bake/view_cells/view_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sightline/bake/soup/soup_scale.h"
+#include "sightline/bake/view_cells/flat_hiders.h"
+#include "sightline/base/random.h"
+#include "sightline/base/thread_pool.h"
+#include "sightline/tools/scene/procedural.h"
+#include "tests/bake/marked/random_rooms.h"
+#include "tests/bake/opaque_triangles.h"
+
+namespace sightline {
+using namespace bake;
+using namespace tools;
+namespace {
+
+using namespace test;
+
+uint32_t leafAt(const LeafTree& tree, const glm::dvec3& point) {
+    uint32_t at = 0;
+    while ((at & LeafTreeNode::kLeaf) == 0) {
+        const LeafTreeNode& node = tree.nodes[at];
+        at = node.child[glm::dot(glm::dvec3(node.plane), point) + node.plane.w >= 0];
+    }
+    return at & ~LeafTreeNode::kLeaf;
+}
+
+glm::dvec3 pointIn(const Box3d& box, Random& random) {
+    glm::dvec3 point;
+    for (int axis = 0; axis < 3; ++axis) point[axis] = random.uniform(box.min[axis], box.max[axis]);
+    return point;
+}
+
+/// A point on one of an object's triangles, often at its edge.
+glm::dvec3 pointOn(const Scene& scene, const SceneObject& object, Random& random) {
+    const Mesh& mesh = scene.meshes[object.mesh];
+    const size_t t = random.below(mesh.triangles());
+    double a = random.uniform(), b = random.uniform();
+    if (a + b > 1) a = 1 - a, b = 1 - b;
+    if (random.below(3) == 0) b = 0;
+    const auto corner = [&](size_t c) { return glm::dvec3(mesh.positions[mesh.indices[3 * t + c]]); };
+    const glm::dvec3 point = (1 - a - b) * corner(0) + a * corner(1) + b * corner(2);
+    return glm::dvec3(object.transform * glm::dvec4(point, 1));
+}
+
+struct Judged {
+    uint64_t hidden = 0, pairs = 0;
+};
+
+/// Looks from anywhere at points of objects that are said to be hidden from there.
+void judge(const Scene& scene, const ViewCells& cells, int lines, Random& random, Judged& judged) {
+    const OpaqueTriangles truth(scene);
+    const SoupScale scale = *soupScaleOf(scene, -1);
+    for (int i = 0; i < lines; ++i) {
+        const glm::dvec3 eye = pointIn(cells.tree.bounds, random);
+        const uint32_t leaf = leafAt(cells.tree, eye);
+        for (int k = 0; k < 4; ++k) {
+            const auto object = static_cast<uint32_t>(random.below(scene.objects.size()));
+            ++judged.pairs;
+            if (cells.visible.at(leaf, object) || scene.meshes[scene.objects[object].mesh].triangles() == 0) continue;
+            ++judged.hidden;
+            const glm::dvec3 to = pointOn(scene, scene.objects[object], random);
+            const double length = glm::distance(eye, to);
+            ASSERT_TRUE(truth.meets(eye, (to - eye) / length, 0, length, scale.hole, object))
+                << "from (" << eye.x << ", " << eye.y << ", " << eye.z << ") object " << object << " is seen at ("
+                << to.x << ", " << to.y << ", " << to.z << ")";
+        }
+    }
+}
+
+TEST(ViewCells, LeaveOutNothingThatALineComesTo) {
+    Random random(7);
+    Judged judged;
+    for (int round = 0; round < 24; ++round) {
+        const MarkedRooms made = randomRooms(random, round);
+        ViewCellSettings settings;
+        settings.most_cells = 200;
+        settings.least_hidden = 0;
+        settings.smallest_occluder = round % 2 ? -1 : 0.3;
+        const ViewCells cells = viewCellsOf(made.scene, settings);
+        ASSERT_GT(cells.tree.contents.size(), 100u);
+        judge(made.scene, cells, 2000, random, judged);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(judged.hidden, judged.pairs / 20);
+}
+
+TEST(ViewCells, HoldInABuildingAndACity) {
+    Random random(8);
+    for (const char* name : {"building:1:1", "city:1:300"}) {
+        SCOPED_TRACE(name);
+        const Scene scene = *makeProcedural(name);
+        ViewCellSettings settings;
+        settings.most_cells = 100;
+        settings.least_hidden = 0;
+        const ViewCells cells = viewCellsOf(scene, settings);
+        Judged judged;
+        judge(scene, cells, 300, random, judged);
+        EXPECT_GT(judged.hidden, 10u);
+        EXPECT_FALSE(cells.walls.empty());
+        // From outside of the scene all is seen.
+        for (size_t object = 0; object < scene.objects.size(); ++object) EXPECT_TRUE(cells.visible.at(0, object));
+        EXPECT_EQ(leafAt(cells.tree, glm::dvec3(1e9, 0, 0)), 0u);
+    }
+}
+
+TEST(ViewCells, AreTheSameWithAnyThreads) {
+    const Scene scene = *makeProcedural("building:1:1");
+    ViewCellSettings settings;
+    settings.most_cells = 48;
+    settings.least_hidden = 0;
+    const ViewCells alone = viewCellsOf(scene, settings);
+    ThreadPool pool(3);
+    settings.jobs = &pool;
+    const ViewCells shared = viewCellsOf(scene, settings);
+    EXPECT_EQ(alone.visible, shared.visible);
+    EXPECT_EQ(alone.walls, shared.walls);
+    EXPECT_EQ(alone.tree.contents.size(), shared.tree.contents.size());
+}
+
+TEST(ViewCells, ABudgetLeavesMoreVisible) {
+    const Scene scene = *makeProcedural("building:1:1");
+    ViewCellSettings settings;
+    settings.most_cells = 64;
+    settings.budget = 100;
+    settings.least_hidden = 0;
+    const ViewCells cells = viewCellsOf(scene, settings);
+    EXPECT_GT(cells.over_budget, 1u);
+    Random random(9);
+    Judged judged;
+    judge(scene, cells, 100, random, judged);
+}
+
+TEST(ViewCells, OfNothingThereAreNone) {
+    EXPECT_TRUE(viewCellsOf(Scene()).tree.contents.empty());
+    ViewCellSettings settings;
+    settings.smallest_occluder = 1e6;
+    EXPECT_TRUE(viewCellsOf(*makeProcedural("building:1:1"), settings).tree.contents.empty());
+}
+
+TEST(ViewCells, ThatHideTooLittleAreLeftOut) {
+    const Scene scene = *makeProcedural("city:1:100");
+    ViewCellSettings settings;
+    settings.most_cells = 64;
+    settings.least_hidden = 1;
+    const ViewCells cells = viewCellsOf(scene, settings);
+    EXPECT_TRUE(cells.tree.contents.empty() && cells.walls.empty());
+    EXPECT_EQ(cells.visible.rows(), 0u);
+    EXPECT_GE(cells.hidden, 0);
+    EXPECT_LT(cells.hidden, 1);
+}
+
+/// Walls with windows and doors of any shape: hiders are covered, and most of what could hide does.
+TEST(FlatHiders, AreCoveredByFrontsAndCoverMostOfTheWalls) {
+    Random random(10);
+    for (int round = 0; round < 24; ++round) {
+        const MarkedRooms made = randomRooms(random, round);
+        const SoupScale scale = *soupScaleOf(made.scene, -1);
+        FlatHiderSettings settings;
+        settings.bend = scale.hole;
+        settings.least_area = 0.04;
+        const SoupWalls walls = sheetsOf(opaqueTriangles(made.scene, {}), scale.hole, settings.least_area);
+        const std::vector<FlatHider> hiders = flatHiders(walls, settings);
+        ASSERT_GT(hiders.size(), 10u);
+        const OpaqueTriangles truth(made.scene);
+        double area = 0, whole = 0;
+        for (const WallSheet& sheet : walls.sheets) whole += sheet.largest;
+        for (const FlatHider& hider : hiders) {
+            area += hider.area;
+            const glm::dvec3 normal(hider.plane);
+            for (int k = 0; k < 40; ++k) {
+                glm::dvec3 point(0.0);
+                double weights = 0;
+                for (const glm::dvec3& corner : hider.corners) {
+                    const double weight = std::pow(random.uniform(), 4);
+                    point += weight * corner;
+                    weights += weight;
+                }
+                point /= weights;
+                ASSERT_TRUE(truth.meets(point + normal, -normal, 1 - 2 * scale.hole, 1 + 2 * scale.hole, scale.hole))
+                    << "round " << round;
+            }
+        }
+        EXPECT_GT(area, 0.6 * whole);
+    }
+}
+
+}  // namespace
+}  // namespace sightline
