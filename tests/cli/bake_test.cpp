@@ -278,7 +278,8 @@ TEST_F(Bake, ASourceHasTheCellsOfItsBrushes) {
 
 TEST_F(Bake, WhatCannotBeBakedIsALine) {
     expectError("bake city:1:10 --smallest-occluder 1e6", 3, "city:1:10: has no cells, and no opaque surface");
-    expectError("bake city:1:10 --objects", 2, "--objects: cells of a scene's own walls have no rows");
+    expectError("bake building:1:1 --cells none --objects", 2, "--objects: these cells have no rows");
+    expectError("bake city:1:10 --objects", 2, "--objects: these cells have no rows");
     expectError("bake building:1:1 --smallest-hole 0.001", 2, "the scene has marked cells");
     expectError("bake room.map --cells walls", 2, "room.map: a map has cells of its own");
     expectError("bake room.map --view-cells 8", 2, "room.map: a map has cells of its own");

@@ -50,11 +50,10 @@ Result<int> runBake(SceneBakeOptions& options) {
     options.source.jobs = &run.jobs();
     Result<BakeSource> source = loadBakeSource(options.scene, options.source);
     if (!source) return source.error();
-    if (source->walls && (options.objects || !options.report.empty()))
-        return usageError(
-            std::string(options.objects ? "--objects" : "--report") +
-            ": cells of a scene's own walls have no rows of visibility, which it tells of; cull --visibility FILE "
-            "--report DIR shows such cells");
+    if (source->rows_are == "none" && (options.objects || !options.report.empty()))
+        return usageError(std::string(options.objects ? "--objects" : "--report") +
+                          ": these cells have no rows of visibility, which it tells of; cull --visibility FILE "
+                          "--report DIR shows such cells");
     if (Status fits = checkSize(source->cells.rows, title, source->of_bsp); !fits) return fits.error();
     const double cells_seconds = secondsSince(begin);
 

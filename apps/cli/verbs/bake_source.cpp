@@ -95,6 +95,13 @@ void addViews(const BakeSourceChoice& choice, const Scene& scene, BakeCells& cel
 Result<BakeSource> wallsOf(const Scene& scene, const SceneChoice& names, const std::string& name,
                            const BakeSourceChoice& choice) {
     BakeSource out;
+    out.rows_are = "none";
+    const auto takeAllOfSpace = [&] {
+        out.cells = openToBake(scene, name);
+        out.cells_are = "all of space";
+        return out;
+    };
+    if (choice.cells == "none") return takeAllOfSpace();
     SoupCellSettings settings;
     settings.smallest_occluder = choice.smallest_occluder;
     settings.smallest_hole = choice.smallest_hole;
@@ -105,19 +112,14 @@ Result<BakeSource> wallsOf(const Scene& scene, const SceneChoice& names, const s
     settings.movable = doorsOf(scene);
     Progress progress("finding portals", "faces", 0);
     settings.progress = [&](size_t done, size_t total) { progress.set(done, total); };
-    if (choice.cells != "none") out.cells = soupToBake(scene, name, settings, &out.walls.emplace());
-    const bool open = choice.cells.empty() && out.walls && out.walls->hardlyAnInside();
-    if (choice.cells == "none" || open) {
-        out.cells = openToBake(scene, name);
-        out.cells_are = "all of space";
-    } else {
-        if (out.cells.space.graph.cells == 0)
-            return Error{Error::Kind::kInput, names.title() +
-                                                  ": has no cells, and no opaque surface that is large "
-                                                  "enough to divide it (see --smallest-occluder)"};
-        out.cells_are = "of its own walls";
-    }
-    out.rows_are = "none";
+    out.cells = soupToBake(scene, name, settings, &out.walls.emplace());
+    if (choice.cells.empty() && out.walls->hardlyAnInside()) return takeAllOfSpace();
+    if (out.cells.space.graph.cells == 0)
+        return Error{Error::Kind::kInput,
+                     names.title() +
+                         ": has no cells, and no opaque surface that is large enough to divide it (see "
+                         "--smallest-occluder)"};
+    out.cells_are = "of its own walls";
     return out;
 }
 

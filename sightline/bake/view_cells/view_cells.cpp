@@ -188,7 +188,6 @@ public:
         };
         wait(0);
         while (!queue.empty() && cells_.size() + 1 < settings_.most_cells) {
-            if (settings_.stop && settings_.stop()) break;
             std::vector<uint32_t> batch;
             while (!queue.empty() && batch.size() < kBatch && cells_.size() + batch.size() + 1 < settings_.most_cells) {
                 batch.push_back(~queue.top().second);

@@ -32,7 +32,6 @@ struct ViewCellSettings {
     std::vector<uint32_t> movable;  ///< objects that may be elsewhere at run time: they hide nothing  [Scene::objects]
     Jobs* jobs = nullptr;           ///< threads to share the cells out to; the answer is the same with any
     std::function<void(size_t, size_t)> progress;  ///< called with (done, total) cells now and then; may be empty
-    std::function<bool()> stop;                    ///< asked now and then; true ends the division; may be empty
 };
 
 struct ViewCells {
