@@ -54,8 +54,8 @@ public:
         : from_(from), way_(to - from), error_(error) {}
 
     /// Whether it passes the inside of a triangle, or of two triangles 0 1 2 and 0 2 3, from the side that sees them
-    /// counter-clockwise. Where it goes round no side of the outline the wrong way, the outline winds around it, and so it
-    /// meets a triangle; it does so between its ends, for these are on both sides of both planes.
+    /// counter-clockwise. Where it goes round no side of the outline the wrong way, the outline winds around it, and so
+    /// it meets a triangle; it does so between its ends, for these are on both sides of both planes.
     bool passes(const glm::dvec3* corners, int count) const {
         const double way = farOf(way_);
         double size = 0, far = way;

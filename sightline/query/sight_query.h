@@ -41,21 +41,20 @@ public:
 
     /// Whether the front of an occluder stands between two points, by its own triangles where they are now.
     ///
-    /// Conservative: `blocked` means that `to` cannot be seen from `from`, in exact arithmetic on the positions given. What
-    /// was left out of occluders, and a line that meets an edge of one of its polygons to within rounding, block nothing. A double-sided
-    /// occluder blocks both ways; else whoever looks at a wall's back sees through it, as in a picture.
-    /// O(log objects) where few boxes lie on the line.
-    /// Points that are not finite see all.
+    /// Conservative: `blocked` means that `to` cannot be seen from `from`, in exact arithmetic on the positions given.
+    /// What was left out of occluders, and a line that meets an edge of one of its polygons to within rounding, block
+    /// nothing. A double-sided occluder blocks both ways; else whoever looks at a wall's back sees through it, as in a
+    /// picture. O(log objects) where few boxes lie on the line. Points that are not finite see all.
     SightLine look(const Snapshot& now, const glm::dvec3& from, const glm::dvec3& to,
                    const SightSettings& settings = {});
 
-    /// The objects that may be seen from anywhere in a box, whichever way one looks: what a server must tell a player who may
-    /// be there by the time he hears of it, and what is worth loading ahead.
+    /// The objects that may be seen from anywhere in a box, whichever way one looks: what a server must tell a player
+    /// who may be there by the time he hears of it, and what is worth loading ahead.
     ///
     /// Conservative: by rows of visibility of the cells that the box meets (Stage::kPvs; of view cells where the file
-    /// has them), without a frustum and without occlusion. All objects of the layers, and not `known`: the world has no rows, the
-    /// box is not finite or reaches out of all cells, or a wall of the file does not stand as it did or may be outside of the layers.
-    /// O(cells that the box meets * objects / 64 + objects found).
+    /// has them), without a frustum and without occlusion. All objects of the layers, and not `known`: the world has no
+    /// rows, the box is not finite or reaches out of all cells, or a wall of the file does not stand as it did or may
+    /// be outside of the layers. O(cells that the box meets * objects / 64 + objects found).
     /// @param region  where sight lines begin: it should hold the near rectangles of the eyes, too  [world units]
     RegionSet seenFrom(const Snapshot& now, const Box3d& region, uint32_t layers = ~0u);
 

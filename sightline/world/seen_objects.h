@@ -11,8 +11,8 @@
 
 namespace sightline::detail {
 
-/// Calls visit(row) for each object in cells that the rows show, some of them more than once. Objects that are in no cell
-/// are not among them: CellState::free has these.
+/// Calls visit(row) for each object in cells that the rows show, some of them more than once. Objects that are in no
+/// cell are not among them: CellState::free has these.
 /// @param by_cells    the rows of AttachedCells::rows
 /// @param by_objects  the rows of AttachedCells::views; they decide if there are any
 /// @pre the ones that decide are known

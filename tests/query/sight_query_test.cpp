@@ -19,8 +19,8 @@
 namespace sightline::test {
 namespace {
 
-/// How far from its middle a segment passes the inside of a unit cube: the room between it and the nearest edge of a face,
-/// as a share of the cube; less than 0: it passes no face, or begins inside.
+/// How far from its middle a segment passes the inside of a unit cube: the room between it and the nearest edge of a
+/// face, as a share of the cube; less than 0: it passes no face, or begins inside.
 double roomInCube(const glm::dmat4& transform, const glm::dvec3& from, const glm::dvec3& to) {
     const glm::dmat4 back = glm::inverse(transform);
     const glm::dvec3 a(back * glm::dvec4(from, 1)), b(back * glm::dvec4(to, 1));

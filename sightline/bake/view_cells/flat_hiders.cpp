@@ -38,7 +38,8 @@ public:
         unused_ = covered_;
     }
 
-    /// The rectangle of covered cells with the most area that no other has yet, and marks it; empty if that is too little.
+    /// The rectangle of covered cells with the most area that no other has yet, and marks it; empty if that is too
+    /// little.
     FlatPiece takeLargest(double least) {
         double best = 0;
         size_t from[2] = {}, to[2] = {};

@@ -14,8 +14,8 @@
 
 namespace sightline::bake {
 
-/// A convex polygon that opaque fronts cover wholly: a segment that comes from in front of its plane and goes behind it through the
-/// polygon meets one of them within `bend` of the plane.
+/// A convex polygon that opaque fronts cover wholly: a segment that comes from in front of its plane and goes behind it
+/// through the polygon meets one of them within `bend` of the plane.
 struct FlatHider {
     glm::dvec4 plane{0.0};            ///< its normal has length 1 and points to where it hides from
     std::vector<glm::dvec3> corners;  ///< counter-clockwise as seen from there
@@ -31,9 +31,9 @@ struct FlatHiderSettings {
     Jobs* jobs = nullptr;        ///< threads to share the sheets out to; the answer is the same with any
 };
 
-/// Of each side of a sheet, part by part: its hull if that is covered and has few corners, else the largest rectangles along
-/// the lines of its edges, which may overlap. What is left uncovered costs tightness alone. Gaps narrower than two
-/// thirds of the bend count as covered, as those of cellsOfSoup() do. Deterministic.
+/// Of each side of a sheet, part by part: its hull if that is covered and has few corners, else the largest rectangles
+/// along the lines of its edges, which may overlap. What is left uncovered costs tightness alone. Gaps narrower than
+/// two thirds of the bend count as covered, as those of cellsOfSoup() do. Deterministic.
 std::vector<FlatHider> flatHiders(const SoupWalls& walls, const FlatHiderSettings& settings);
 
 }  // namespace sightline::bake

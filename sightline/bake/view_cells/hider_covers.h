@@ -25,11 +25,12 @@ struct CoverMember {
 /// Hiders that bound one convex room from within, as the walls, the floor and the ceiling of a room do: no edge that is
 /// shared lets anything pass.
 ///
-/// The argument. Let an eye be in front of the planes of all members: then it is in the convex region K that is in front of all.
-/// Let a point be behind one of the planes: the way there leaves K, at a point p of one member's plane, which is in
-/// front of all other planes. If p is outside of that member's polygon, then walk from a point of the polygon in K, which
-/// there must be, to p: all the way is in K, and it leaves the polygon at one of its edges. Shared edges are not in K. So it
-/// is beside one that is not shared, and these are asked. Walls meet at corners to within half of the smallest hole.
+/// The argument. Let an eye be in front of the planes of all members: then it is in the convex region K that is in
+/// front of all. Let a point be behind one of the planes: the way there leaves K, at a point p of one member's plane,
+/// which is in front of all other planes. If p is outside of that member's polygon, then walk from a point of the
+/// polygon in K, which there must be, to p: all the way is in K, and it leaves the polygon at one of its edges. Shared
+/// edges are not in K. So it is beside one that is not shared, and these are asked. Walls meet at corners to within
+/// half of the smallest hole.
 using HiderCover = std::vector<CoverMember>;
 
 /// The hiders of a scene, and which of them meet.

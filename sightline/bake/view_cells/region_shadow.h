@@ -1,8 +1,8 @@
 // What a flat hider hides from every point of a convex region: a few planes.
 // SPDX-License-Identifier: MIT
 //
-// Daniel Cohen-Or, Gadi Fibich, Dan Halperin, Eyal Zadicario. Conservative Visibility and Strong Occlusion for Viewspace
-// Partitioning of Densely Occluded Scenes. 1998.
+// Daniel Cohen-Or, Gadi Fibich, Dan Halperin, Eyal Zadicario. Conservative Visibility and Strong Occlusion for
+// Viewspace Partitioning of Densely Occluded Scenes. 1998.
 // Satyan Coorg, Seth Teller. Real-Time Occlusion Culling for Models with Large Occluders. 1997.
 #pragma once
 
@@ -19,12 +19,12 @@ namespace sightline::bake {
 
 /// The shadow of a hider from a region: each segment from the region to a point in it passes the hider.
 ///
-/// The argument. Behind the hider's plane, what an eye's rays through one edge and beside the hider reach is bounded by the plane
-/// through the eye and the edge. All these planes hold the edge's line, so that they are ordered by their slope, and the
-/// one of the region's corner that stands the farthest out over the edge for its height bounds what all of them leave.
-/// The surface may lie anywhere within half of the bend of the plane, and a segment must be over the hider as long as it
-/// is so near: so the edges are lifted to the side where that asks for more. Planes are moved inward by what rounding
-/// may move them.
+/// The argument. Behind the hider's plane, what an eye's rays through one edge and beside the hider reach is bounded by
+/// the plane through the eye and the edge. All these planes hold the edge's line, so that they are ordered by their
+/// slope, and the one of the region's corner that stands the farthest out over the edge for its height bounds what all
+/// of them leave. The surface may lie anywhere within half of the bend of the plane, and a segment must be over the
+/// hider as long as it is so near: so the edges are lifted to the side where that asks for more. Planes are moved
+/// inward by what rounding may move them.
 class RegionShadow {
 public:
     /// @param corners  of the region: it is their hull

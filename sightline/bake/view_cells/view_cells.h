@@ -1,8 +1,8 @@
 // View cells: boxes that space is divided into, and which objects may be seen from each, whatever the scene is.
 // SPDX-License-Identifier: MIT
 //
-// Daniel Cohen-Or, Gadi Fibich, Dan Halperin, Eyal Zadicario. Conservative Visibility and Strong Occlusion for Viewspace
-// Partitioning of Densely Occluded Scenes. 1998.
+// Daniel Cohen-Or, Gadi Fibich, Dan Halperin, Eyal Zadicario. Conservative Visibility and Strong Occlusion for
+// Viewspace Partitioning of Densely Occluded Scenes. 1998.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,8 @@ using namespace tools;
 
 struct ViewCellSettings {
     uint32_t most_cells = 2048;  ///< [limit: >= 2]
-    /// No cell is halved if its longest side would be shorter. Negative: a 512th of the scene's diagonal.  [world units]
+    /// No cell is halved if its longest side would be shorter. Negative: a 512th of the scene's diagonal.  [world
+    /// units]
     double smallest_cell = -1;
     /// Flat parts that are smaller than a square of this side hide nothing from whole cells. Negative: a 512th of the
     /// scene's diagonal.  [world units]
@@ -46,8 +47,8 @@ struct ViewCells {
 };
 
 /// Divides space into boxes and finds for each a superset of the objects that can be seen from anywhere in it. Space
-/// is halved where the most is seen from the most room, along a wall if one crosses the cell: so it stands wholly on one
-/// side of it. What is outside of the scene sees everything.
+/// is halved where the most is seen from the most room, along a wall if one crosses the cell: so it stands wholly on
+/// one side of it. What is outside of the scene sees everything.
 ///
 /// The argument. An object is left out of a row only if one HiderCover hides its bounds from the whole cell, or from a
 /// cell that holds it: each segment from there to the object passes an opaque front. Nothing else is used: how space is
