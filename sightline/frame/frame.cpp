@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sightline/frame/image_part.h"
+#include "sightline/math/stretch.h"
 
 namespace sightline::detail {
 
@@ -49,7 +50,7 @@ Box3d Frame::boundsAt(uint32_t place) const {
 bool Frame::errsLittle(uint32_t place) const {
     const HeldLods& held = *world->lods[world->placed[place].coarser.index];
     if (settings.budget > 0.0) return held.levels.size() > 1;
-    const double unit = stretchOf(world->objectAt(place).transform) * pixelsOfUnit(lods, boundsAt(place));
+    const double unit = largestStretch(world->objectAt(place).transform) * pixelsOfUnit(lods, boundsAt(place));
     return held.least_error * unit <= settings.lod_error;
 }
 

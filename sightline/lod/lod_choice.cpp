@@ -71,15 +71,6 @@ double pixelsOfBox(const LodMeasure& measure, const Box3d& box) {
     return beyond > 0.0 ? std::min(disk / beyond, measure.viewport) : measure.viewport;
 }
 
-double stretchOf(const glm::dmat4& transform) {
-    const glm::dmat3 m(transform), square = glm::transpose(m) * m;
-    // Of a symmetric matrix no eigenvalue is larger than the largest sum of a row's sizes (Gershgorin).
-    double most = 0.0;
-    for (int row = 0; row < 3; ++row)
-        most = std::max(most, std::abs(square[row].x) + std::abs(square[row].y) + std::abs(square[row].z));
-    return std::sqrt(most);
-}
-
 LodRange lodRange(std::span<const LodLevel> levels, double pixels_of_unit, const LodRule& rule, bool remembers) {
     LodRange range;
     range.coarsest = coarsestWithin(levels, pixels_of_unit, remembers ? leavesAt(rule) : rule.error);

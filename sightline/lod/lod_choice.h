@@ -41,10 +41,6 @@ double pixelsOfUnit(const LodMeasure& measure, const Box3d& box);
 /// How many pixels the sphere around a box covers at most, wherever the camera turns; no more than the viewport has.
 double pixelsOfBox(const LodMeasure& measure, const Box3d& box);
 
-/// How much a transform stretches what it stretches most: no less than its largest singular value, and exactly that if
-/// it is made of a rotation and scales along the axes of the object.
-double stretchOf(const glm::dmat4& transform);
-
 /// When a level may be drawn, and how it gives way to another one.
 struct LodRule {
     double error = 1;         ///< that may be seen  [pixels]
@@ -71,7 +67,7 @@ struct LodRange {
 /// Steady: an object whose errors change to and fro by less than the rule's hysteresis (half of it, with a fade)
 /// changes its level once at most.
 /// @param levels          finest first, errors rising
-/// @param pixels_of_unit  of the object's own space: stretchOf() * pixelsOfUnit()
+/// @param pixels_of_unit  of the object's own space: largestStretch() * pixelsOfUnit()
 /// @param remembers       whether there was a level, `last`, in the last answer
 LodRange lodRange(std::span<const LodLevel> levels, double pixels_of_unit, const LodRule& rule, bool remembers);
 

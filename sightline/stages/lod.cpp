@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/math/stretch.h"
 #include "sightline/stages/pipeline.h"
 #include "sightline/stages/stage_memory.h"
 
@@ -66,7 +67,7 @@ void LodMemory::ask(std::span<const Frame* const> frames, const Visible& object)
             item.pixels = std::max(item.pixels, pixelsOfBox(eye->lods, box));
             focus = std::max(focus, focusOf(eye->lods, box));
         }
-        if (!item.levels.empty()) asked.unit = stretchOf(record.transform) * unit;
+        if (!item.levels.empty()) asked.unit = largestStretch(record.transform) * unit;
         item.importance *= focus;
     } else {
         item.pixels = frame.lods.viewport;

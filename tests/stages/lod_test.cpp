@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <thread>
 
 #include "sightline/base/thread_pool.h"
+#include "sightline/math/stretch.h"
 #include "sightline/prepare/facing/draw_clusters.h"
 #include "sightline/query/explain/explain.h"
 #include "sightline/studies/hidden/zbuffer/zbuffer.h"
@@ -164,7 +164,7 @@ TEST(LodStage, ChoosesTheLevelThatErrorsAndMemorySay) {
                 box.min = glm::min(box.min, p);
                 box.max = glm::max(box.max, p);
             }
-            const double unit = stretchOf(made.transforms[key]) * pixelsOfUnit(measure, box);
+            const double unit = largestStretch(made.transforms[key]) * pixelsOfUnit(measure, box);
             const auto at = last.find(key);
             const LodRange range = lodRange(kLevels, unit, rule, at != last.end());
             LodState state{range.coarsest, range.coarsest, 0};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/math/stretch.h"
 #include "sightline/query/answer.h"
 #include "sightline/query/explain/hiders.h"
 #include "sightline/query/explain/open_pixels.h"
@@ -236,7 +237,7 @@ bool Explainer::Impl::lookAtLods(uint32_t item, LodReason& out) {
     const uint32_t where = state.bvh.placeOf(row);
     const double unit = where == PlacedBvh::kNone
                             ? std::numeric_limits<double>::infinity()
-                            : stretchOf(state.objects[row].transform) *
+                            : largestStretch(state.objects[row].transform) *
                                   pixelsOfUnit(answer.frame().lods, answer.frame().boundsAt(where));
     const size_t next = size_t{out.drawn.level} + 1;
     out.error = out.drawn.level > 0 ? held->levels[out.drawn.level].error * unit : 0.0;
