@@ -31,6 +31,7 @@ constexpr Case kCases[] = {
     {"hierarchy", benchHierarchy},
     {"indoor", benchIndoor},
     {"inner", benchInner},
+    {"lod", benchLod},
     {"occlusion", benchOcclusion},
     {"order", benchOrder},
     {"portals", benchPortals},

@@ -49,6 +49,10 @@ Table benchIndoor(const Options& options);
 /// A field of dense statues: simpler occluders inside of them beside their own polygons, by the error allowed.
 Table benchInner(const Options& options);
 
+/// Levels of detail: what choosing them costs an object; the greedy choice beside the best of all; and a walk with jumps through
+/// a field of statues, drawn by the z-buffer under a budget, by levels chosen ahead and by knobs that react.
+Table benchLod(const Options& options);
+
 /// The occlusion buffer by itself on scenes made for it; then the whole query while a city grows, beside flat
 /// frustum culling, and how tight its answer is.
 Table benchOcclusion(const Options& options);
