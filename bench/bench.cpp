@@ -19,6 +19,7 @@ struct Case {
 
 constexpr Case kCases[] = {
     {"backface", benchBackface},
+    {"bottleneck", benchBottleneck},
     {"bsp", benchBsp},
     {"clipping", benchClipping},
     {"depth", benchDepth},

@@ -13,6 +13,10 @@ namespace sightline::bench {
 /// finds of them, and what it costs.
 Table benchBackface(const Options& options);
 
+/// Frames of real work with a known limit, and halves of two, told by the classifier, a fault where it is wrong; and a frame of
+/// the reference renderer that is measured beside one that is not. By the wall's clock: on idle cores only.
+Table benchBottleneck(const Options& options);
+
 /// Random triangles and a city eight surfaces deep: building BSP trees beside random choice, and drawing by them front to
 /// back, with what is free looked up, in segments and in bits, beside back to front.
 Table benchBsp(const Options& options);
