@@ -15,6 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "sightline.calibration/1";
+constexpr const char* kProfileSchema = "sightline.profile/1";  // has the fields in its "costs"
 constexpr const char* kTest = "cluster_test_ns";
 constexpr const char* kDropped = "triangle_dropped_ns";
 constexpr const char* kDrawn = "triangle_drawn_ns";
@@ -35,20 +36,26 @@ Result<FacingCosts> parseCalibration(std::string_view text, const std::string& f
     const auto fail = [&](const std::string& what) {
         return Error{Error::Kind::kInput, fmt::format("{}: {}", oneLine(file), what)};
     };
-    const Json json = Json::parse(text, nullptr, false);
+    Json json = Json::parse(text, nullptr, false);
     if (json.is_discarded()) return fail("not JSON");
     if (!json.is_object()) return fail("not an object");
     const auto schema = json.find("schema");
-    if (schema == json.end() || !schema->is_string() || schema->get<std::string>() != kSchema)
-        return fail(fmt::format("schema: not {}", kSchema));
+    const std::string name = schema != json.end() && schema->is_string() ? schema->get<std::string>() : std::string();
+    if (name == kProfileSchema) {
+        const auto of_profile = json.find("costs");
+        if (of_profile == json.end() || !of_profile->is_object()) return fail("costs: missing");
+        json = Json(*of_profile);
+    } else if (name != kSchema) {
+        return fail(fmt::format("schema: neither {} nor {}", kSchema, kProfileSchema));
+    }
     FacingCosts costs;
     const std::pair<const char*, double*> fields[] = {
         {kTest, &costs.test}, {kDropped, &costs.dropped}, {kDrawn, &costs.drawn}};
-    for (const auto& [name, value] : fields) {
-        const auto at = json.find(name);
-        if (at == json.end()) return fail(fmt::format("{}: missing", name));
+    for (const auto& [field, value] : fields) {
+        const auto at = json.find(field);
+        if (at == json.end()) return fail(fmt::format("{}: missing", field));
         *value = at->is_number() ? at->get<double>() : 0.0;
-        if (!(*value > 0.0) || !std::isfinite(*value)) return fail(fmt::format("{}: not a number above 0", name));
+        if (!(*value > 0.0) || !std::isfinite(*value)) return fail(fmt::format("{}: not a number above 0", field));
     }
     return costs;
 }

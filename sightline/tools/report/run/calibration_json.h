@@ -13,7 +13,8 @@ namespace sightline::tools {
 /// @param machine  in words
 std::string calibrationJson(const FacingCosts& costs, const std::string& machine);
 
-/// Fields that are not known are passed over. Errors (kInput) name the file and the field: costs must be numbers above 0.
+/// A calibration, or the costs of a profile. Fields that are not known are passed over. Errors (kInput) name the file and
+/// the field: costs must be numbers above 0.
 Result<FacingCosts> parseCalibration(std::string_view text, const std::string& file);
 
 }  // namespace sightline::tools

@@ -42,6 +42,9 @@ TEST(Calibration, WhatIsWrongIsNamed) {
         {head + "\"cluster_test_ns\": -1}", "above 0"},
         {head + "\"cluster_test_ns\": 1e999}", ""},
         {head + "\"cluster_test_ns\": null}", "above 0"},
+        {"{\"schema\": \"sightline.profile/1\"}", "costs: missing"},
+        {"{\"schema\": \"sightline.profile/1\", \"costs\": [1]}", "costs: missing"},
+        {"{\"schema\": \"sightline.profile/1\", \"costs\": {}}", "cluster_test_ns: missing"},
     };
     for (const auto& [text, what] : cases) {
         const Result<FacingCosts> read = parseCalibration(text, "c.json");
