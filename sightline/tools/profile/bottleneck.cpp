@@ -184,6 +184,7 @@ Bottleneck findBottleneck(const DrawFrame& draw, const BottleneckSettings& setti
     const uint32_t least = std::max(settings.least_rounds, 1u), most = std::max(settings.most_rounds, least);
     while (rounds.size() < most && !found.settled && !found.out_of_time) {
         rounds.push_back(measureRound(draw, settings, found.frames_a_sample, random));
+        if (settings.progress) settings.progress(rounds.size(), most);
         found.settled = rounds.size() >= least && isSettled(rounds, settings);
         found.out_of_time = !found.settled && settings.seconds > 0 &&
                             std::chrono::duration<double>(Clock::now() - begin).count() > settings.seconds;

@@ -5,7 +5,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,6 +39,7 @@ struct BottleneckSettings {
     double seconds = 0;          ///< rounds end after so long besides; 0: never  [s]
     double least_sample = 2e-3;  ///< frames that are shorter are drawn several times a measurement  [s]
     uint64_t seed = 1;           ///< of the order of measurements, and of the resampling that confidence comes from
+    std::function<void(size_t, size_t)> progress;  ///< called with (done, at most) rounds; may be empty
 };
 
 /// How much one stage matters. Medians over the rounds.

@@ -216,6 +216,7 @@ DrawCosts measureDrawCosts(LoadedRenderer& renderer, std::span<const CostView> v
                            const DrawCostSettings& settings) {
     Random random(settings.seed);
     std::vector<CostSample> samples;
+    size_t done = 0;
     for (const CostView& seen : views) {
         std::vector<Trial> trials = trialsOf(seen, renderer.drawsAnything(), settings, random);
         for (uint32_t round = 0; round <= std::max(settings.rounds, 1u); ++round)
@@ -228,6 +229,7 @@ DrawCosts measureDrawCosts(LoadedRenderer& renderer, std::span<const CostView> v
             trial.sample.seconds = middleOf(std::move(trial.seconds));
             samples.push_back(trial.sample);
         }
+        if (settings.progress) settings.progress(++done, views.size());
     }
     return fitDrawCosts(samples);
 }

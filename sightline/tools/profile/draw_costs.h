@@ -4,7 +4,9 @@
 // Charles Lawson, Richard Hanson. Solving Least Squares Problems. 1974.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "sightline/tools/profile/frame_load.h"
@@ -38,9 +40,10 @@ struct DrawCosts {
 DrawCosts fitDrawCosts(std::span<const CostSample> samples);
 
 struct DrawCostSettings {
-    uint32_t rounds = 5;   ///< medians of so many
-    uint32_t threads = 1;  ///< that count fragments
-    uint64_t seed = 1;     ///< of what parts are taken
+    uint32_t rounds = 5;                           ///< medians of so many
+    uint32_t threads = 1;                          ///< that count fragments
+    uint64_t seed = 1;                             ///< of what parts are taken
+    std::function<void(size_t, size_t)> progress;  ///< called with (done, total) views; may be empty
 };
 
 /// Draws all items and parts of them, in two sizes; where the renderer can, also with few of their triangles, and objects
