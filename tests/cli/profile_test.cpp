@@ -45,8 +45,8 @@ TEST_F(Profile, WritesItsSchema) {
     EXPECT_NE(outcome.out.find(run["bottleneck"]["words"].get<std::string>()), std::string::npos);
     // Cluster building reads its costs.
     const json cull = answer("cull building:1:1 --use frustum,clusters --calibration p.json" + std::string(kSmall));
-    EXPECT_EQ(cull["cluster_test"].get<double>(), run["costs"]["cluster_test_ns"].get<double>() /
-                                                      run["costs"]["triangle_dropped_ns"].get<double>());
+    EXPECT_EQ(cull["cluster_test"].get<double>(),
+              run["costs"]["cluster_test_ns"].get<double>() / run["costs"]["triangle_dropped_ns"].get<double>());
 }
 
 // Counters are the same on every machine, and no stage adds to what is drawn.
@@ -120,7 +120,9 @@ TEST_F(Profile, WrongArgumentsAreRefused) {
     expectError("profile city:1:10 --stream=2", 2, "takes no value");
     expectError("profile no-such.glb", 3, "no-such.glb");
     expectError("profile city:1:10 --json no-such-folder/p.json", 4, "no-such-folder");
-    write("c.json", R"({"frames": [{"view": [0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0], "projection": [0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0]}]})");
+    write(
+        "c.json",
+        R"({"frames": [{"view": [0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0], "projection": [0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0]}]})");
     EXPECT_EQ(run("profile city:1:10 --cameras c.json").exit_code, 3);
     expectError("profile city:1:10 --cameras c.json --json c.json", 2, "c.json");
     expectError("advise", 2, "SCENE");

@@ -33,8 +33,9 @@ AdviceRun madeRun() {
     run.rounds = 5;
     run.frame_milliseconds = 10;
     run.query_microseconds = 200;
-    run.bottleneck =
-        findBottleneck([](const StageLoads& loads) { return FrameTimes{9e-3 * loads.fill + 1e-3, 9e-3, 0.0}; });
+    run.bottleneck = findBottleneck([](const StageLoads& loads) {
+        return FrameTimes{9e-3 * loads.fill + 1e-3, 9e-3, 0.0};
+    });
     run.advice = {advice(Advice::Kind::kStage, "occlusion", true, 15),
                   advice(Advice::Kind::kStage, "frustum", true, 0.02),
                   advice(Advice::Kind::kStage, "portals", true, -2),
@@ -54,13 +55,14 @@ TEST(Advice, MattersByItsSpreadAndByTheFrame) {
 
 TEST(Advice, SaysWhatToDo) {
     const std::string text = adviceText(madeRun());
-    const char* const lines[] = {
-        "measured: 4 frames at 320x180", "limited by fill",
-        "keep occlusion: without it a frame takes 15 ms more, 2.5 times as long",
-        "bake its cells, marked (--words its cells, marked): saves 4 ms a frame, 40 %",
-        "leave off volumes: it would cost 3 ms a frame, 30 %",
-        "turn off portals (--words portals): saves 2 ms a frame, 20 %",
-        "no difference to speak of: frustum", "not tried: split: no large mesh"};
+    const char* const lines[] = {"measured: 4 frames at 320x180",
+                                 "limited by fill",
+                                 "keep occlusion: without it a frame takes 15 ms more, 2.5 times as long",
+                                 "bake its cells, marked (--words its cells, marked): saves 4 ms a frame, 40 %",
+                                 "leave off volumes: it would cost 3 ms a frame, 30 %",
+                                 "turn off portals (--words portals): saves 2 ms a frame, 20 %",
+                                 "no difference to speak of: frustum",
+                                 "not tried: split: no large mesh"};
     size_t at = 0;
     for (const char* line : lines) {
         const size_t found = text.find(line);
