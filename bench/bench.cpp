@@ -30,6 +30,7 @@ constexpr Case kCases[] = {
 #endif
     {"hidden", benchHidden},
     {"hierarchy", benchHierarchy},
+    {"images", benchImages},
     {"indoor", benchIndoor},
     {"inner", benchInner},
     {"lod", benchLod},

@@ -46,6 +46,10 @@ Table benchHidden(const Options& options);
 /// flat list.
 Table benchHierarchy(const Options& options);
 
+/// Doorways of a building, or of a scene: the far side as an image beside drawing it. Triangles, how like the picture is, bake time,
+/// memory, time to show, and the predicted beside the measured error.
+Table benchImages(const Options& options);
+
 /// A furnished building of a quarter of a million triangles from inside its rooms: the share that view volume, rows, portals and
 /// occlusion remove, one after the other, and what the reference renderer then takes. A fault where an image changes.
 Table benchIndoor(const Options& options);
