@@ -16,20 +16,21 @@ uint32_t verticesOf(const std::vector<uint32_t>& indices) {
 /// Measures levels that came with the scene, and leaves out those that are of no use.
 void measure(Mesh& mesh, const LodChainSettings& settings) {
     const DistanceSurface whole({mesh.positions, mesh.indices});
-    size_t left = 0, triangles = mesh.triangles();
+    size_t triangles = mesh.triangles();
     double error = 0;
+    std::vector<MeshLod> useful;
     for (MeshLod& lod : mesh.lods) {
         if (lod.error == MeshLod::kUnknown) {
             const DistanceSurface coarse({mesh.positions, lod.indices});
             lod.error = surfaceDistance(whole, coarse, settings.distance).upper;
         }
-        if (!(lod.error >= error) || lod.indices.size() / 3 >= triangles || left + 1 >= kMostLods) continue;
+        if (!(lod.error >= error) || lod.indices.size() / 3 >= triangles || useful.size() + 1 >= kMostLods) continue;
         error = lod.error;
         triangles = lod.indices.size() / 3;
         lod.vertices = verticesOf(lod.indices);
-        mesh.lods[left++] = std::move(lod);
+        useful.push_back(std::move(lod));
     }
-    mesh.lods.resize(left);
+    mesh.lods = std::move(useful);
 }
 
 /// The triangles of a primitive that stand in a level, appended to it.

@@ -130,13 +130,15 @@ TEST(DrawCosts, TrialsTellAllOfThemApart) {
     for (const bool anything : {true, false}) {
         CountedRenderer renderer(made, anything);
         const CostView view{madeView(320, 180), items};
-        const DrawCosts found = measureDrawCosts(renderer, {&view, 1}, {.rounds = 1});
+        DrawCostSettings settings;
+        settings.rounds = 1;
+        const DrawCosts found = measureDrawCosts(renderer, {&view, 1}, settings);
         EXPECT_GE(found.samples, 13u);
         EXPECT_LT(found.error, 1e-6);
         EXPECT_NEAR(found.triangle, made.triangle, 0.01 * made.triangle) << anything;
         EXPECT_NEAR(found.vertex, made.vertex, 0.01 * made.vertex) << anything;
         EXPECT_NEAR(found.pixel, made.pixel, 0.01 * made.pixel) << anything;
-        if (anything) EXPECT_NEAR(found.object, made.object, 0.01 * made.object);
+        if (anything) { EXPECT_NEAR(found.object, made.object, 0.01 * made.object); }
     }
 }
 
