@@ -19,7 +19,6 @@ struct Case {
 
 constexpr Case kCases[] = {
     {"backface", benchBackface},
-    {"bottleneck", benchBottleneck},
     {"bsp", benchBsp},
     {"clipping", benchClipping},
     {"depth", benchDepth},
@@ -30,10 +29,8 @@ constexpr Case kCases[] = {
 #endif
     {"hidden", benchHidden},
     {"hierarchy", benchHierarchy},
-    {"images", benchImages},
     {"indoor", benchIndoor},
     {"inner", benchInner},
-    {"lod", benchLod},
     {"occlusion", benchOcclusion},
     {"order", benchOrder},
     {"portals", benchPortals},

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "apps/import/fault.h"
-#include "sightline/math/stretch.h"
 #include "sightline/tools/import/gltf/gltf_nodes.h"
 
 namespace sightline::import {
@@ -72,7 +71,7 @@ const Poses::Motion* Poses::motionOf(const aiNode& node) const {
 }
 
 double Poses::scaleOf(const aiNode& node) const {
-    const double rest = largestStretch(toMatrix(node.mTransformation));
+    const double rest = gltf::largestStretch(toMatrix(node.mTransformation));
     const Motion* motion = motionOf(node);
     return motion ? std::max(rest, motion->largest_scale) : rest;
 }
@@ -94,7 +93,7 @@ Poses::Reach Poses::reachOf(const aiNode& joint) const {
     const aiNode& first = *path.back();
     const glm::dmat4 anchor = worldOf(first.mParent);
     Reach out;
-    out.scale = largestStretch(anchor);
+    out.scale = gltf::largestStretch(anchor);
     // The first turns about where it stands, unless an animation shifts it.
     const Motion* motion = motionOf(first);
     const bool stands = !(motion && motion->shifts);
@@ -142,7 +141,7 @@ Box3d Poses::bounds(const aiMesh& mesh, const glm::dmat4& world) const {
             throw fail(fmt::format("bone '{}' is no node, so that its poses have no bounds", bone.mName.C_Str()));
         const Reach reach = reachOf(*node->second);
         const glm::dmat4 offset = toMatrix(bone.mOffsetMatrix);
-        const double stretch = largestStretch(offset);
+        const double stretch = gltf::largestStretch(offset);
         double radius = 0;
         for (unsigned w = 0; w < bone.mNumWeights; ++w) {
             const unsigned vertex = bone.mWeights[w].mVertexId;
