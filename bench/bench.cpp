@@ -19,6 +19,7 @@ struct Case {
 
 constexpr Case kCases[] = {
     {"backface", benchBackface},
+    {"bottleneck", benchBottleneck},
     {"bsp", benchBsp},
     {"clipping", benchClipping},
     {"depth", benchDepth},
@@ -29,8 +30,10 @@ constexpr Case kCases[] = {
 #endif
     {"hidden", benchHidden},
     {"hierarchy", benchHierarchy},
+    {"images", benchImages},
     {"indoor", benchIndoor},
     {"inner", benchInner},
+    {"lod", benchLod},
     {"occlusion", benchOcclusion},
     {"order", benchOrder},
     {"portals", benchPortals},

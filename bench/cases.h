@@ -13,6 +13,10 @@ namespace sightline::bench {
 /// finds of them, and what it costs.
 Table benchBackface(const Options& options);
 
+/// Frames of real work with a known limit, and halves of two, told by the classifier, a fault where it is wrong; and a frame of
+/// the reference renderer that is measured beside one that is not. By the wall's clock: on idle cores only.
+Table benchBottleneck(const Options& options);
+
 /// Random triangles and a city eight surfaces deep: building BSP trees beside random choice, and drawing by them front to
 /// back, with what is free looked up, in segments and in bits, beside back to front.
 Table benchBsp(const Options& options);
@@ -42,12 +46,20 @@ Table benchHidden(const Options& options);
 /// flat list.
 Table benchHierarchy(const Options& options);
 
+/// Doorways of a building, or of a scene: the far side as an image beside drawing it. Triangles, how like the picture is, bake time,
+/// memory, time to show, and the predicted beside the measured error.
+Table benchImages(const Options& options);
+
 /// A furnished building of a quarter of a million triangles from inside its rooms: the share that view volume, rows, portals and
 /// occlusion remove, one after the other, and what the reference renderer then takes. A fault where an image changes.
 Table benchIndoor(const Options& options);
 
 /// A field of dense statues: simpler occluders inside of them beside their own polygons, by the error allowed.
 Table benchInner(const Options& options);
+
+/// Levels of detail: what choosing them costs an object; the greedy choice beside the best of all; and a walk with jumps through
+/// a field of statues, drawn by the z-buffer under a budget, by levels chosen ahead and by knobs that react.
+Table benchLod(const Options& options);
 
 /// The occlusion buffer by itself on scenes made for it; then the whole query while a city grows, beside flat
 /// frustum culling, and how tight its answer is.

@@ -29,9 +29,9 @@ sightline_install(EXPORT sightline-runtime COMPONENT development LIBRARIES run H
 sightline_install(EXPORT sightline-studies COMPONENT development LIBRARIES bsp studies
   HEADERS studies/hidden/render.h studies/hidden/zbuffer/zbuffer.h)
 if(SIGHTLINE_TOOLS)
-  sightline_install(EXPORT sightline-tools COMPONENT tools LIBRARIES scene import bake truth report
-    HEADERS bake/bake.h tools/scene/procedural.h tools/import/scene_file.h tools/load/load_world.h tools/truth/verify.h
-            tools/report/page/page.h)
+  sightline_install(EXPORT sightline-tools COMPONENT tools LIBRARIES lods scene import bake truth report
+    HEADERS bake/bake.h prepare/lod/lod_chain.h tools/scene/procedural.h tools/import/scene_file.h
+            tools/load/load_world.h tools/truth/verify.h tools/report/page/page.h)
   # ./run.sh builds the tool alone: what it has not built is left out.
   install(TARGETS sightline COMPONENT tools)
   install(TARGETS sightline-bench COMPONENT tools OPTIONAL)

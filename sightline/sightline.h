@@ -24,6 +24,12 @@
 #include "sightline/prepare/inner/inner.h"           // simpler occluders inside of dense solids
 #include "sightline/prepare/occluder/occluder.h"     // occluders: what hides
 
+// Levels of detail: which one to draw is what Query says of an object with levels, World::addLods().
+#include "sightline/geom/dither.h"        // masks that fade one level into another
+#include "sightline/lod/frame_control.h"  // quality that follows the time of frames, and a cost model that does
+#include "sightline/lod/lod_budget.h"     // the choice under a budget by itself
+#include "sightline/lod/lod_choice.h"     // the choice by errors by itself
+
 // Indoors: cells and portals.
 #include "sightline/cells/cell_space_build.h"   // from code
 #include "sightline/visfile/visibility_file.h"  // from a file that was baked

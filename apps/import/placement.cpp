@@ -7,6 +7,7 @@
 
 #include <assimp/metadata.h>
 
+#include "sightline/math/stretch.h"
 #include "sightline/tools/import/gltf/gltf_nodes.h"
 
 namespace sightline::import {
@@ -67,7 +68,7 @@ std::optional<SceneCamera> cameraOf(const aiCamera& camera, const glm::dmat4& no
     out.name = camera.mName.C_Str();
     out.transform = glm::dmat4(glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0),
                                node * glm::dvec4(vector(camera.mPosition), 1));
-    const double scale = gltf::largestStretch(node);
+    const double scale = largestStretch(node);
     const double aspect = camera.mAspect > 0 && std::isfinite(camera.mAspect) ? camera.mAspect : 16.0 / 9;
     if (camera.mOrthographicWidth > 0) out.orthographic_height = 2 * scale * camera.mOrthographicWidth / aspect;
     else out.fov_y = 2 * std::atan(std::tan(0.5 * camera.mHorizontalFOV) / aspect);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "apps/import/fault.h"
+#include "sightline/math/stretch.h"
 #include "sightline/tools/import/gltf/gltf_nodes.h"
 
 namespace sightline::import {
@@ -71,7 +72,7 @@ const Poses::Motion* Poses::motionOf(const aiNode& node) const {
 }
 
 double Poses::scaleOf(const aiNode& node) const {
-    const double rest = gltf::largestStretch(toMatrix(node.mTransformation));
+    const double rest = largestStretch(toMatrix(node.mTransformation));
     const Motion* motion = motionOf(node);
     return motion ? std::max(rest, motion->largest_scale) : rest;
 }
@@ -93,7 +94,7 @@ Poses::Reach Poses::reachOf(const aiNode& joint) const {
     const aiNode& first = *path.back();
     const glm::dmat4 anchor = worldOf(first.mParent);
     Reach out;
-    out.scale = gltf::largestStretch(anchor);
+    out.scale = largestStretch(anchor);
     // The first turns about where it stands, unless an animation shifts it.
     const Motion* motion = motionOf(first);
     const bool stands = !(motion && motion->shifts);
@@ -141,7 +142,7 @@ Box3d Poses::bounds(const aiMesh& mesh, const glm::dmat4& world) const {
             throw fail(fmt::format("bone '{}' is no node, so that its poses have no bounds", bone.mName.C_Str()));
         const Reach reach = reachOf(*node->second);
         const glm::dmat4 offset = toMatrix(bone.mOffsetMatrix);
-        const double stretch = gltf::largestStretch(offset);
+        const double stretch = largestStretch(offset);
         double radius = 0;
         for (unsigned w = 0; w < bone.mNumWeights; ++w) {
             const unsigned vertex = bone.mWeights[w].mVertexId;

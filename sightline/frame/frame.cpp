@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sightline/frame/image_part.h"
+#include "sightline/math/stretch.h"
 
 namespace sightline::detail {
 
@@ -29,6 +30,8 @@ void Frame::begin(const SnapshotState* now, const View& from, const QuerySetting
         screen = makeScreen(view, settings.occlusion_size);
     }
     if (!world) return;
+    if (world->lods.size() < 2 || !usable) stages &= ~stageBit(Stage::kLod);
+    if (uses(Stage::kLod)) lods = makeLodMeasure(view);
     if (usable) sizes.begin(*world, view, settings, stages, frustum.eye, shown);
     every_layer = (world->common_layers & view.layers) != 0 || world->count == 0;
     objects = world->count;
@@ -36,6 +39,19 @@ void Frame::begin(const SnapshotState* now, const View& from, const QuerySetting
     objects = 0;
     for (uint32_t place = 0; place < world->placed.size(); ++place) objects += isInLayers(place);
     for (const uint32_t row : world->unbounded) objects += (world->objects[row].layers & view.layers) != 0;
+}
+
+Box3d Frame::boundsAt(uint32_t place) const {
+    const uint32_t at = world->bvh.slot[world->bvh.order[place]];
+    const Box3f box = slotBox(world->bvh.nodes[at / 8], static_cast<int>(at % 8));
+    return {world->bvh.origin + glm::dvec3(box.min), world->bvh.origin + glm::dvec3(box.max)};
+}
+
+bool Frame::errsLittle(uint32_t place) const {
+    const HeldLods& held = *world->lods[world->placed[place].coarser.index];
+    if (settings.budget > 0.0) return held.levels.size() > 1;
+    const double unit = largestStretch(world->objectAt(place).transform) * pixelsOfUnit(lods, boundsAt(place));
+    return held.least_error * unit <= settings.lod_error;
 }
 
 void Frame::narrowTo(const Candidates* left) {

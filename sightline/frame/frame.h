@@ -14,6 +14,7 @@
 #include "sightline/geom/frustum.h"
 #include "sightline/geom/view.h"
 #include "sightline/geom/view_limits.h"
+#include "sightline/lod/lod_choice.h"
 #include "sightline/world/world.h"
 #include "sightline/world/world_state.h"
 
@@ -34,6 +35,7 @@ struct Frame {
     ViewLimits limits;
     Screen screen;
     SizeLimits sizes;
+    LodMeasure lods;                          ///< with Stage::kLod
     const Candidates* candidates = nullptr;   ///< what the stages of cells leave; null: everything
     std::span<const OccluderVolume> volumes;  ///< that Stage::kVolumes has chosen
     std::span<const uint32_t> volume_owners;  ///< per volume: the place of the object that it belongs to
@@ -55,6 +57,13 @@ struct Frame {
     bool isInLayers(uint32_t place) const { return world->placed[place].layers & view.layers; }
     /// How many objects of a range of places are within the view's layers, and candidates.
     uint64_t countObjects(const PlaceRange& places) const;
+    /// Whether another level than the finest may be drawn of the object at a place, one in which neither its occluder
+    /// nor its shape hold.
+    bool mayBeCoarse(uint32_t place) const {
+        return uses(Stage::kLod) && world->placed[place].coarser.index != 0 && errsLittle(place);
+    }
+    /// The bounds of the object at a place, as the hierarchy has them.
+    Box3d boundsAt(uint32_t place) const;
     bool isCandidate(uint32_t place) const { return !candidates || candidates->admits(place); }
     /// Bit per slot of a node below which there is a candidate.
     uint32_t candidateSlots(const BvhNode& node) const;
@@ -67,6 +76,9 @@ struct Frame {
     PixelRect inWindow(uint32_t place, PixelRect rect) const;
     /// The whole buffer, in columns of tiles.
     uint32_t columns() const { return screen.width / 8; }
+
+private:
+    bool errsLittle(uint32_t place) const;
 };
 
 /// Planes of the view's limits stand behind the frustum's: from this bit on.

@@ -40,9 +40,14 @@ struct QueryStats {
     uint64_t cluster_triangles = 0;
     uint64_t drawn_triangles = 0;
     uint64_t draw_ranges = 0;
+    uint64_t lod_finest = 0;
+    uint64_t lod_triangles = 0;
+    uint64_t lod_fading = 0;
+    uint64_t lod_cost = 0;
     uint64_t nanoseconds = 0;
     bool budget_spent = false;
     bool second_look_spent = false;
+    bool lod_exceeded = false;
 
     StageStats& of(Stage stage) { return stages[static_cast<int>(stage)]; }
     const StageStats& of(Stage stage) const { return stages[static_cast<int>(stage)]; }
@@ -95,6 +100,12 @@ inline constexpr CounterRow kQueryCounters[] = {
      "of the objects of which some are left"},
     {"drawn_triangles", &QueryStats::drawn_triangles, "triangles", CounterRow::kOfClusters, "of VisibleSet::ranges"},
     {"draw_ranges", &QueryStats::draw_ranges, "ranges", CounterRow::kOfClusters, "VisibleSet::ranges"},
+    {"lod_finest", &QueryStats::lod_finest, "triangles", CounterRow::kRare,
+     "of the finest levels of the objects that have several"},
+    {"lod_triangles", &QueryStats::lod_triangles, "triangles", CounterRow::kRare,
+     "of the levels that are drawn instead; while two are blended, of both"},
+    {"lod_fading", &QueryStats::lod_fading, "objects", CounterRow::kRare, "of which two levels are blended"},
+    {"lod_cost", &QueryStats::lod_cost, "ns", CounterRow::kRare, "of the levels that were chosen under a budget"},
     {"nanoseconds", &QueryStats::nanoseconds, "ns", CounterRow::kWork, "the whole query"},
 };
 
@@ -108,6 +119,7 @@ inline constexpr CounterFlagRow kQueryFlags[] = {
     {"budget_spent", &QueryStats::budget_spent, "some visible occluders were not rasterized"},
     {"second_look_spent", &QueryStats::second_look_spent,
      "second_look_polygons kept an object from being asked to the end"},
+    {"lod_exceeded", &QueryStats::lod_exceeded, "what must be drawn costs more than the budget"},
 };
 
 inline void QueryStats::addWork(const QueryStats& other) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <tuple>
 
+#include "sightline/geom/lod.h"
 #include "sightline/geom/stage.h"
 
 namespace sightline {
@@ -38,6 +39,14 @@ struct QuerySettings {
     bool second_look = true;
     uint32_t second_look_polygons = 1u << 16;
     uint32_t cluster_gap = 0;
+    double lod_error = 0;
+    uint32_t lod_fade = 12;
+    double budget = 0;
+    bool hard_budget = false;
+    double cost_object = 0;
+    double cost_triangle = 0;
+    double cost_vertex = 0;
+    double cost_pixel = 0;
     uint32_t bins = 1;
     uint32_t unasked_answers = 15;
     bool stateless = false;
@@ -87,7 +96,7 @@ inline constexpr auto kQuerySettings = std::tuple{
                "cull what looks smaller than a disk of this radius, although it may be visible; 0: off"),
     settingRow("hysteresis", "hysteresis", &QuerySettings::hysteresis, "share", 0, 1,
                "keep what the last answer kept until it is so much farther or smaller than the limits of distance and "
-               "contribution; 0: no memory"),
+               "contribution, and the same of levels of detail; 0: no memory"),
     settingRow("occluder_volumes", nullptr, &QuerySettings::occluder_volumes, "volumes", 0, 64,
                "that the stage of volumes chooses at most"),
     settingRow("occluder_triangles_limit", "occluder-triangles", &QuerySettings::occluder_triangles, "triangles", 0,
@@ -109,6 +118,25 @@ inline constexpr auto kQuerySettings = std::tuple{
                0, 4294967295.0, "that a query asks at most; further objects are kept by their boxes"),
     settingRow("cluster_gap", nullptr, &QuerySettings::cluster_gap, "triangles", 0, 4294967295.0,
                "runs of an object's triangles with so few culled ones between them count as one draw"),
+    settingRow("lod_error", "lod-error", &QuerySettings::lod_error, "pixels", 0, 1024,
+               "draw the coarsest level of detail that errs by no more in the middle of the image; 0: the finest, but "
+               "for a budget"),
+    settingRow("lod_fade", "lod-fade", &QuerySettings::lod_fade, "answers", 0, 255,
+               "how many answers it takes to fade a level of detail into another; 0: it is exchanged at once"),
+    settingRow(
+        "budget", "budget", &QuerySettings::budget, "milliseconds", 0, 1e9,
+        "draw the levels of detail that are worth most within so much time, as the costs count it; 0: no budget"),
+    settingRow(
+        "hard_budget", "hard-budget", &QuerySettings::hard_budget, "", 0, 1,
+        "leave out what the budget has no time for, although it may be visible; else its coarsest level is drawn"),
+    settingRow("cost_object", "cost-object", &QuerySettings::cost_object, "ns", 0, 1e9,
+               "cost of drawing an object at all"),
+    settingRow("cost_triangle", "cost-triangle", &QuerySettings::cost_triangle, "ns", 0, 1e9,
+               "cost of a triangle of a level of detail"),
+    settingRow("cost_vertex", "cost-vertex", &QuerySettings::cost_vertex, "ns", 0, 1e9,
+               "cost of a vertex of a level of detail"),
+    settingRow("cost_pixel", "cost-pixel", &QuerySettings::cost_pixel, "ns", 0, 1e9,
+               "cost of a pixel that an object may cover; this or its triangles and vertices, whichever is more"),
     settingRow("bins", "bins", &QuerySettings::bins, "strips", 1, 16,
                "strips of the occlusion buffer, each with a walk of its own, that threads can share; an object is kept "
                "that one of them keeps"),
@@ -126,6 +154,11 @@ inline constexpr auto kQuerySettings = std::tuple{
 template <class Visit>
 constexpr void forEachSetting(Visit&& visit) {
     std::apply([&](const auto&... row) { (visit(row), ...); }, kQuerySettings);
+}
+
+/// What drawing costs, as the settings count it.
+inline DrawCost drawCost(const QuerySettings& settings) {
+    return {settings.cost_object, settings.cost_triangle, settings.cost_vertex, settings.cost_pixel};
 }
 
 /// Steps of QuerySettings::close_gaps in a pixel.

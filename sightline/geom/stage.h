@@ -8,17 +8,29 @@ namespace sightline {
 
 /// The stages of a query, coarse to fine. PVS and portals need a world with cells: World::attach(). Distance and
 /// contribution are not conservative: they do nothing unless the settings say how far and how small. Volumes are
-/// occluder volumes. Clusters are those of objects that have some.
-enum class Stage : uint8_t { kPvs, kPortals, kFrustum, kDistance, kContribution, kVolumes, kOcclusion, kClusters };
-inline constexpr int kStageCount = 8;
-inline constexpr const char* kStageNames[kStageCount] = {"pvs",          "portals", "frustum",   "distance",
-                                                         "contribution", "volumes", "occlusion", "clusters"};
+/// occluder volumes. The stage of levels of detail chooses one for each object that has some; it does nothing unless the
+/// settings name an error or a budget, and culls only under a hard budget. Clusters are those of objects that have some.
+enum class Stage : uint8_t {
+    kPvs,
+    kPortals,
+    kFrustum,
+    kDistance,
+    kContribution,
+    kVolumes,
+    kOcclusion,
+    kLod,
+    kClusters
+};
+inline constexpr int kStageCount = 9;
+inline constexpr const char* kStageNames[kStageCount] = {"pvs",     "portals",   "frustum", "distance", "contribution",
+                                                         "volumes", "occlusion", "lod",     "clusters"};
 inline constexpr uint32_t stageBit(Stage stage) { return 1u << static_cast<uint32_t>(stage); }
 inline constexpr uint32_t kAllStages = (1u << kStageCount) - 1;
 /// The stages that need cells.
 inline constexpr uint32_t kCellStages = stageBit(Stage::kPvs) | stageBit(Stage::kPortals);
 /// The stages that cull what may be visible.
-inline constexpr uint32_t kLossyStages = stageBit(Stage::kDistance) | stageBit(Stage::kContribution);
+inline constexpr uint32_t kLossyStages =
+    stageBit(Stage::kDistance) | stageBit(Stage::kContribution) | stageBit(Stage::kLod);
 /// The stages that pay in most worlds.
 inline constexpr uint32_t kDefaultStages = kAllStages & ~stageBit(Stage::kVolumes);
 

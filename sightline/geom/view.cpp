@@ -103,6 +103,7 @@ uint32_t stagesInUse(const View& view, const QuerySettings& settings) {
     uint32_t stages = settings.stages;
     if (!(settings.max_distance > 0.0)) stages &= ~stageBit(Stage::kDistance);  // nor where it is not a number
     if (!(settings.contribution > 0.0)) stages &= ~stageBit(Stage::kContribution);
+    if (!(settings.lod_error > 0.0) && !(settings.budget > 0.0)) stages &= ~stageBit(Stage::kLod);
     if (opensWalls(view)) stages &= ~kCellStages;
     if (view.eye_radius != 0.0) stages &= stageBit(Stage::kPvs);
     return stages;

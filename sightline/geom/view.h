@@ -115,7 +115,7 @@ bool runsOutward(const View& view);
 bool isUsable(const View& view);
 
 /// The stages that a query for this view uses. They are the settings' stages without distance and contribution if the
-/// settings do not say how far and how small, without the stages of cells if sections cut the world open, and with the
+/// settings do not say how far and how small, without levels of detail if they name neither an error nor a budget, without the stages of cells if sections cut the world open, and with the
 /// PVS alone if the view has an eye_radius.
 uint32_t stagesInUse(const View& view, const QuerySettings& settings);
 

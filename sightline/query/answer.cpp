@@ -25,6 +25,7 @@ void Answer::begin(const Snapshot& now, const View& view, const QuerySettings& s
     count_ = now ? partCount(frame_) : 1;
     while (parts_.size() < count_) parts_.push_back(makeOwned<TraversalState>(memory_, memory_));
     merged_.clear();
+    memory_of_stages_.lods.clear();
     memory_of_stages_.clusters.clear();
     choosing_ = watch.nanoseconds();
 }
@@ -126,14 +127,16 @@ void Answer::timed(uint64_t nanoseconds) {
     stats.nanoseconds = nanoseconds;
 }
 
-void Answer::refine() {
+void Answer::refine(Stage last) {
     if (!frame_.world || !frame_.usable) return;
+    AnswerView answer = view();
     for (const PipelineStep& row : kPipeline) {
-        if (!row.of_answer || !frame_.uses(row.stage)) continue;
+        if (!row.of_answer || row.stage > last || !frame_.uses(row.stage)) continue;
         const Stopwatch watch;
-        AnswerView answer = view();
         row.of_answer(frame_, memory_of_stages_, answer);
         const uint64_t took = watch.nanoseconds();
+        for (int i = static_cast<int>(row.stage) + 1; i < kStageCount; ++i)
+            if (frame_.uses(static_cast<Stage>(i))) stats.stages[i].tested -= stats.of(row.stage).culled;
         stats.nanoseconds += took;
         if (frame_.settings.time_stages) stats.of(row.stage).nanoseconds = took;
     }

@@ -27,8 +27,8 @@ public:
     uint32_t parts() const { return count_; }
     void run(uint32_t part);
     void finish();
-    /// Lets the stages work that look at the whole answer.
-    void refine();
+    /// Lets the stages work that look at the whole answer, up to and with one of them.
+    void refine(Stage last = Stage::kClusters);
     /// Notes how long the whole answer took.
     void timed(uint64_t nanoseconds);
 
@@ -41,6 +41,8 @@ public:
     const CellMemory& cells() const { return memory_of_stages_.cells; }
     ClusterMemory& clusters() { return memory_of_stages_.clusters; }
     const ClusterMemory& clusters() const { return memory_of_stages_.clusters; }
+    LodMemory& lods() { return memory_of_stages_.lods; }
+    const LodMemory& lods() const { return memory_of_stages_.lods; }
     AnswerView view() { return {visible(), stats, count_ == 1 && frame_.usable ? &parts_[0]->tiles : nullptr}; }
 
     /// As Query::reasons(). An object that one part hides and another part does not meet is hidden: of two stages the

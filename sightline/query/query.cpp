@@ -91,7 +91,11 @@ VisibleSet Query::visible(const Snapshot& now, const View& view, const QuerySett
     impl.shown.unmark(impl.before);
     impl.left.refine();
     impl.findScissors();
-    return {impl.left.visible(), impl.left.stats, impl.left.clusters().ranges(), impl.scissors,
+    return {impl.left.visible(),
+            impl.left.stats,
+            impl.left.clusters().ranges(),
+            impl.left.lods().lods().first(impl.left.lods().lods().empty() ? 0 : impl.left.visible().size()),
+            impl.scissors,
             impl.left.frame().problem};
 }
 
@@ -108,10 +112,14 @@ StereoSet Query::visibleStereo(const Snapshot& now, const View& left, const View
         for (size_t eye : {0, 1}) impl.ask({&eyes[eye], 1}, now, {&views[eye], 1}, settings);
     impl.shown.unmark(impl.before);
     impl.mergeEyes();
+    const detail::Frame* const frames[] = {&impl.left.frame(), &impl.right->frame()};
+    if (frames[0]->uses(Stage::kLod) && frames[1]->uses(Stage::kLod))
+        impl.left.lods().run(frames, impl.both, impl.left.stats);
     return {impl.both,
             impl.eyes,
             impl.left.stats,
             impl.right->stats,
+            impl.left.lods().lods(),
             impl.left.frame().problem,
             impl.right->frame().problem};
 }
@@ -228,7 +236,9 @@ void Query::reasons(std::span<uint8_t> reasons) const {
     const Impl& impl = *impl_;
     impl.left.reasons(reasons);
     if (!impl.stereo) {
-        if (impl.left.frame().world) impl.left.clusters().reasons(*impl.left.frame().world, reasons);
+        if (!impl.left.frame().world) return;
+        impl.left.lods().reasons(*impl.left.frame().world, reasons);
+        impl.left.clusters().reasons(*impl.left.frame().world, reasons);
         return;
     }
     impl.other.resize(reasons.size());

@@ -13,6 +13,7 @@
 #include "sightline/frame/draw_range.h"
 #include "sightline/frame/stats.h"
 #include "sightline/geom/image_rect.h"
+#include "sightline/geom/lod.h"
 #include "sightline/geom/view.h"
 #include "sightline/world/world.h"
 
@@ -25,7 +26,8 @@ inline constexpr uint8_t kLeftEye = 1, kRightEye = 2;
 struct StereoSet {
     std::span<const Visible> objects;  ///< that either eye may see, nearly front to back; valid until the next call
     std::span<const uint8_t> eyes;     ///< per object: which eyes may see it
-    QueryStats left, right;            ///< of each eye's own traversal
+    QueryStats left, right;            ///< of each eye's own traversal; what levels of detail cost counts as the left's
+    std::span<const VisibleLod> lods;  ///< as VisibleSet::lods; both eyes see the same level
     ViewProblem left_problem = ViewProblem::kNone, right_problem = ViewProblem::kNone;  ///< as VisibleSet::problem
 };
 
@@ -36,6 +38,9 @@ struct VisibleSet {
     /// object has some. A triangle in no range is a back face of a single-sided surface, lies outside of the view, or
     /// is hidden.
     std::span<const DrawRange> ranges;
+    /// With Stage::kLod, per object: the level of detail to draw, and what it is blended with. Empty if the stage chose
+    /// nothing: every object is drawn by its finest level. An object that is drawn by another level has no ranges.
+    std::span<const VisibleLod> lods;
     /// With Stage::kPortals, per object: the part of the viewport that may show it, in whole pixels, under any jitter
     /// that the view declares; the whole viewport where nothing is known. Empty if the stage decided nothing.
     std::span<const ImageRect> scissors;
@@ -95,9 +100,9 @@ public:
     /// Deterministic: the same set, in the same order, on every instruction set, given the same calls before; with
     /// QuerySettings::stateless, whatever was asked before.
     ///
-    /// QuerySettings::max_distance and ::contribution are not conservative: they cull what may be visible. Their stages
-    /// count these objects apart. Such an object hides nothing: all other culled objects are hidden by objects of the
-    /// answer.
+    /// QuerySettings::max_distance, ::contribution and ::hard_budget are not conservative: they cull what may be visible.
+    /// Their stages count these objects apart. What is too far or too small hides nothing: all other culled objects are hidden by
+    /// objects of the answer, or by what the budget left out of it.
     VisibleSet visible(const Snapshot& now, const View& view, const QuerySettings& settings = {});
 
     /// The objects that may be visible from either of two views, as from the eyes of a headset. Each eye's answer is

@@ -23,7 +23,8 @@ TurnAnswer cullByFaces(const Frame& frame, TraversalState& state, const Pending&
     if (entry.kind != Pending::Kind::kObject) return {};
     const ObjectRecord& object = frame.world->objectAt(entry.index);
     const bool in_layers = object.layers & frame.view.layers;
-    const bool again = frame.settings.second_look && object.shape.index != 0 && in_layers;
+    const bool again =
+        frame.settings.second_look && object.shape.index != 0 && in_layers && !frame.mayBeCoarse(entry.index);
     const bool was_open = again && !frame.settings.stateless && state.openAt(entry.index).cluster != OpenPolygon::kNone;
     if (frame.settings.faces && in_layers && !was_open) {
         const OccludeePlace place = makeOccludeePlace(frame.screen, object.transform, object.bounds);

@@ -133,11 +133,15 @@ void ClusterMemory::clear() {
 
 void ClusterMemory::run(const Frame& frame, AnswerView& answer) {
     size_t left = 0;
-    for (const Visible& v : answer.visible) {
+    for (size_t i = 0; i < answer.visible.size(); ++i) {
+        const Visible v = answer.visible[i];
+        const bool coarse = !answer.lods.empty() && (answer.lods[i].level > 0 || answer.lods[i].from > 0);
         const uint32_t row = frame.world->find(v.id);
         const ObjectRecord& object = frame.world->objects[row];
         const DrawClusters* clusters = frame.world->clusters[object.clusters.index].get();
-        if (clusters && !select(frame, *clusters, object, answer.tiles, static_cast<uint32_t>(left), answer.stats))
+        if (!answer.lods.empty()) answer.lods[left] = answer.lods[i];
+        if (clusters && !coarse &&
+            !select(frame, *clusters, object, answer.tiles, static_cast<uint32_t>(left), answer.stats))
             culled_.push_back(row);
         else answer.visible[left++] = v;
     }

@@ -39,6 +39,7 @@ TurnAnswer cullHidden(const Frame& frame, TraversalState& state, const Pending& 
 OfferedOccluder occluderOf(const Frame& frame, uint32_t place) {
     const PlacedObject& placed = frame.world->placed[place];
     if (placed.occluder.index == 0 || !(placed.layers & frame.view.layers)) return {};
+    if (frame.mayBeCoarse(place)) return {};
     const glm::dmat4& transform = frame.world->objectAt(place).transform;
     const HeldOccluder& held = *frame.world->occluders[placed.occluder.index];
     if (frame.limits.cut() && !isWhole(frame.limits, held, transform)) return {&held, true};

@@ -51,6 +51,7 @@ TurnAnswer keepUnasked(const Frame& frame, TraversalState& state, const Pending&
 TurnAnswer cullHidden(const Frame& frame, TraversalState& state, const Pending& entry);
 TurnAnswer cullByFaces(const Frame& frame, TraversalState& state, const Pending& entry);
 TurnAnswer cullByTriangles(const Frame& frame, TraversalState& state, const SecondLook& kept);
+void chooseLods(const Frame& frame, StageMemory& memory, AnswerView& answer);
 void cullClusters(const Frame& frame, StageMemory& memory, AnswerView& answer);
 
 /// The pipeline. A new stage is a row here, its file, and its name in geom/stage.h.
@@ -64,6 +65,7 @@ inline constexpr PipelineStep kPipeline[] = {
     {.stage = Stage::kOcclusion, .in_turn = keepUnasked},
     {.stage = Stage::kOcclusion, .in_turn = cullHidden},
     {.stage = Stage::kOcclusion, .in_turn = cullByFaces, .at_end = cullByTriangles},
+    {.stage = Stage::kLod, .of_answer = chooseLods},
     {.stage = Stage::kClusters, .of_answer = cullClusters},
 };
 

@@ -6,6 +6,8 @@
 // David Luebke, Chris Georges. Portals and Mirrors: Simple, Fast Evaluation of Potentially Visible Sets. 1995.
 // Satyan Coorg, Seth Teller. Real-Time Occlusion Culling for Models with Large Occluders. 1997.
 // Andreas Johannsen, Michael Carter. Clustered Backface Culling. 1998.
+// Thomas Funkhouser, Carlo Sequin. Adaptive Display Algorithm for Interactive Frame Rates During Visualization of Complex
+// Virtual Environments. 1993.
 // Ulrich Haar, Sebastian Aaltonen. GPU-Driven Rendering Pipelines. 2015.
 #pragma once
 
@@ -20,6 +22,8 @@
 #include "sightline/frame/draw_range.h"
 #include "sightline/frame/frame.h"
 #include "sightline/frame/traversal_state.h"
+#include "sightline/lod/lod_budget.h"
+#include "sightline/lod/lod_choice.h"
 #include "sightline/world/world.h"
 
 namespace sightline::detail {
@@ -152,7 +156,60 @@ private:
 struct AnswerView {
     Array<Visible>& visible;
     QueryStats& stats;
-    DepthTiles* tiles = nullptr;  ///< of the whole image; null: it was answered in parts
+    DepthTiles* tiles = nullptr;      ///< of the whole image; null: it was answered in parts
+    std::span<VisibleLod> lods = {};  ///< per object; empty: no levels were chosen
+};
+
+/// The levels of detail of one answer, and what is remembered of the one before.
+///
+/// An object of which the last answer had a level keeps to it as LodRule says. One that was not in it begins with the
+/// coarsest level that may be drawn, and nothing is faded. An object without bounds has its finest level.
+class LodMemory {
+public:
+    explicit LodMemory(Memory* memory)
+        : lods_(memory), items_(memory), asked_(memory), chosen_(memory), remembered_(memory), culled_(memory) {}
+
+    /// Chooses a level for each object, and removes from the answer what a hard budget leaves out.
+    /// @param frames  one, or those of both eyes: then a level is good enough for either, and nothing is left out
+    void run(std::span<const Frame* const> frames, Array<Visible>& visible, QueryStats& stats);
+    /// Forgets the levels of the answer at hand, not what is remembered of it.
+    void clear();
+
+    /// Per object of the answer; empty if no levels were chosen.
+    std::span<VisibleLod> lods() { return lods_; }
+    std::span<const VisibleLod> lods() const { return lods_; }
+    /// Writes the objects that were left out into an answer's reasons.
+    void reasons(const SnapshotState& now, std::span<uint8_t> reasons) const;
+    bool leftOut(uint32_t row) const;
+
+private:
+    struct Remembered {
+        uint32_t generation = 0;
+        uint32_t answer = 0;
+        LodState state;
+    };
+    /// An object of the answer.
+    struct Asked {
+        uint32_t row = 0;
+        double unit = 0;     ///< pixels of a unit of the object's space
+        bool known = false;  ///< the last answer had a level of it
+        LodState last;
+        LodRange range;
+    };
+
+    void ask(std::span<const Frame* const> frames, const Visible& object);
+    void spendBudget(const QuerySettings& settings, bool may_leave_out, QueryStats& stats);
+    void settle(const Frame& frame, Array<Visible>& visible, QueryStats& stats);
+    std::span<const LodLevel> levelsOf(const SnapshotState& world, uint32_t row) const;
+
+    Array<VisibleLod> lods_;
+    LodBudget budget_;
+    Array<LodItem> items_;
+    Array<Asked> asked_;
+    Array<uint8_t> chosen_;         ///< per object of the answer: a level, or LodBudget::kLeftOut
+    Array<Remembered> remembered_;  ///< by ObjectId::index
+    Array<uint32_t> culled_;        ///< rows
+    uint32_t answer_ = 0;
 };
 
 /// The clusters of one answer. Its arrays stay from answer to answer.
@@ -189,10 +246,11 @@ private:
 };
 
 struct StageMemory {
-    explicit StageMemory(Memory* memory) : cells(memory), volumes(memory), clusters(memory) {}
+    explicit StageMemory(Memory* memory) : cells(memory), volumes(memory), lods(memory), clusters(memory) {}
 
     CellMemory cells;
     VolumeChooser volumes;
+    LodMemory lods;
     ClusterMemory clusters;
 };
 

@@ -119,7 +119,7 @@ void VolumeChooser::openNode(const Frame& frame, const VolumeView& shared, const
 void VolumeChooser::lookAt(const Frame& frame, const VolumeView& shared, uint32_t place) {
     const SnapshotState& state = *frame.world;
     const PlacedObject& placed = state.placed[place];
-    if (!frame.isInLayers(place)) return;
+    if (!frame.isInLayers(place) || frame.mayBeCoarse(place)) return;
     const HeldOccluder& occluder = *state.occluders[placed.occluder.index];
     const VolumeParts& parts = occluder.parts;
     if (parts.parts.empty()) return;

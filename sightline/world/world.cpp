@@ -25,6 +25,8 @@ OccluderId World::addOccluder(const Occluder& occluder, std::span<const InnerOcc
 
 ClustersId World::addClusters(const DrawClusters& clusters) { return state_->addClusters(clusters); }
 
+LodsId World::addLods(std::span<const LodLevel> levels) { return state_->addLods(levels); }
+
 ObjectId World::add(const ObjectDef& object) { return state_->add(object); }
 bool World::move(ObjectId id, const glm::dmat4& transform) { return state_->move(id, transform); }
 bool World::remove(ObjectId id) { return state_->remove(id); }

@@ -12,6 +12,7 @@
 #include "sightline/base/memory.h"
 #include "sightline/base/result.h"
 #include "sightline/geom/draw_clusters.h"
+#include "sightline/geom/lod.h"
 #include "sightline/geom/occluder.h"
 #include "sightline/world/world_object.h"
 
@@ -69,6 +70,10 @@ public:
 
     /// Copies the clusters; many objects may share them. They live as long as the world and its snapshots.
     ClustersId addClusters(const DrawClusters& clusters);
+
+    /// Copies a chain of levels of detail; many objects may share it. It lives as long as the world and its snapshots.
+    /// @param levels  finest first, errors rising  [size: <= kMostLods; of more the coarsest are left out]
+    LodsId addLods(std::span<const LodLevel> levels);
 
     /// Bounds that are NaN, infinite, or empty make an object that is always visible and never hides.
     ObjectId add(const ObjectDef& object);

@@ -26,6 +26,7 @@ void clearBit(Array<uint64_t>& bits, uint32_t i) { bits[i / 64] &= ~(uint64_t{1}
 WorldState::WorldState(Memory* from) : memory(from) {
     occluders.push_back(nullptr);
     clusters.push_back(nullptr);
+    lods.push_back(nullptr);
 }
 
 void WorldState::reserve(uint32_t objects) {
@@ -67,14 +68,21 @@ ClustersId WorldState::addClusters(const DrawClusters& given) {
     return {clusters.size() - 1};
 }
 
+LodsId WorldState::addLods(std::span<const LodLevel> levels) {
+    lods.push_back(makeShared<HeldLods>(memory, levels, memory));
+    changed_ = true;
+    return {lods.size() - 1};
+}
+
 ObjectId WorldState::add(const ObjectDef& object) {
     SIGHTLINE_ASSERT(object.occluder.index < occluders.size());
     SIGHTLINE_ASSERT(object.shape.index < occluders.size());
     SIGHTLINE_ASSERT(object.clusters.index < clusters.size());
+    SIGHTLINE_ASSERT(object.lods.index < lods.size());
     const ObjectId id = newId();
     setBit(living_, objects_.size());
     objects_.push_back({object.transform, object.bounds, object.key, id, object.occluder, object.layers, object.shape,
-                        object.limits, object.clusters});
+                        object.limits, object.clusters, object.lods, object.hides_in_lods});
     limited_ += object.limits != ObjectLimits();
     changed_ = true;
     return id;
@@ -276,6 +284,7 @@ std::shared_ptr<const SnapshotState> WorldState::commit() {
     state->ids = ids_.share();
     state->occluders = occluders.share();
     state->clusters = clusters.share();
+    state->lods = lods.share();
     if (gaps_ > 0) state->living = makeShared<RankedBits>(memory, living_, memory);
     state->unbounded = unbounded_;
     state->bvh = bvh_.share();

@@ -20,6 +20,7 @@ public:
     bool volumes = false;  ///< WorldDef::volumes
     OccluderTable occluders{memory};
     ClusterTable clusters{memory};
+    LodTable lods{memory};
 
     void reserve(uint32_t objects);
     ObjectId add(const ObjectDef& object);
@@ -27,6 +28,7 @@ public:
     bool remove(ObjectId id);
     OccluderId addOccluder(const Occluder& occluder, std::span<const InnerOccluder> inner);
     ClustersId addClusters(const DrawClusters& given);
+    LodsId addLods(std::span<const LodLevel> levels);
     /// @param cells  null: none
     void attach(std::shared_ptr<const AttachedCells> cells);
     bool setDoor(uint32_t door, float open);

@@ -26,6 +26,11 @@ struct ClustersId {
     bool operator==(const ClustersId&) const = default;
 };
 
+struct LodsId {
+    uint32_t index = 0;
+    bool operator==(const LodsId&) const = default;
+};
+
 /// What may shut portals of the attached cells: a door.
 struct PortalId {
     uint32_t index = 0;
@@ -53,8 +58,12 @@ struct ObjectDef {
     OccluderId shape;
     ObjectLimits limits;  ///< for QuerySettings::max_distance and QuerySettings::contribution
     /// The clusters that it is drawn by, for VisibleSet::ranges; or null. They must hold every triangle that may be
-    /// drawn of the object, and lie within `bounds`.
+    /// drawn of the object's finest level, and lie within `bounds`.
     ClustersId clusters;
+    LodsId lods;  ///< its levels of detail; null: it has one
+    /// True if `occluder` lies inside of every level, and `shape` holds the triangles of all. Else both are of the finest
+    /// level, and are used only in views that surely draw that one.
+    bool hides_in_lods = false;
 };
 
 /// What a query says of an object.

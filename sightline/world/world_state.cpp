@@ -2,9 +2,19 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/world/world_state.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sightline::detail {
+
+HeldLods::HeldLods(std::span<const LodLevel> from, Memory* memory)
+    : levels(memory), least_error(std::numeric_limits<double>::infinity()) {
+    from = from.first(std::min<size_t>(from.size(), kMostLods));
+    levels.assign(from.begin(), from.end());
+    for (size_t i = 1; i < levels.size(); ++i)
+        if (levels[i].error < least_error) least_error = levels[i].error;
+}
 
 Box3d worldBounds(const ObjectRecord& object) {
     constexpr double kLargest = 1e30;  // [world units]: float must hold it with room for sums
@@ -48,6 +58,7 @@ std::shared_ptr<SnapshotState> stateOfSome(const SnapshotState& from, std::span<
     state->count = objects.size();
     state->objects = objects.share();
     state->occluders = from.occluders.copy();
+    state->lods = from.lods.copy();
     state->bvh = bvh.share();
     state->placed = placed.share();
     state->limits = limits.share(memory);

@@ -12,6 +12,7 @@
 #include "sightline/cells/portals.h"
 #include "sightline/cull/volume_parts.h"
 #include "sightline/geom/draw_clusters.h"
+#include "sightline/geom/lod.h"
 #include "sightline/geom/occluder.h"
 #include "sightline/tree/world_bvh.h"
 #include "sightline/world/attached_cells.h"
@@ -32,6 +33,8 @@ struct ObjectRecord {
     OccluderId shape;
     ObjectLimits limits;
     ClustersId clusters;
+    LodsId lods;
+    bool hides_in_lods = false;
     bool moved = false;  ///< it does not stand where it was added
 };
 
@@ -53,9 +56,14 @@ struct PlacedObject {
     OccluderId occluder;
     uint32_t layers = 0;  ///< none: the place is empty
     OccluderId shape;
+    LodsId coarser;  ///< levels in which neither `occluder` nor `shape` hold; null: they hold in all
 };
 inline PlacedObject placedObject(const ObjectRecord& object) {
-    return {{object.key, object.id}, object.occluder, object.layers, object.shape};
+    return {{object.key, object.id},
+            object.occluder,
+            object.layers,
+            object.shape,
+            object.hides_in_lods ? LodsId() : object.lods};
 }
 using PlacedObjectTable = Paged<PlacedObject, 128>;
 
@@ -82,6 +90,15 @@ using OccluderTable = Paged<std::shared_ptr<const HeldOccluder>, 64>;  // entry 
 
 using ClusterTable = Paged<std::shared_ptr<const DrawClusters>, 64>;  // entry 0 is null
 
+/// A chain of levels of detail, finest first.
+struct HeldLods {
+    Array<LodLevel> levels;
+    double least_error = 0;  ///< of the levels behind the finest; infinite if there is none
+
+    HeldLods(std::span<const LodLevel> from, Memory* memory);
+};
+using LodTable = Paged<std::shared_ptr<const HeldLods>, 64>;  // entry 0 is null
+
 /// What stands where in the cells of a world.
 struct CellState {
     std::shared_ptr<const AttachedCells> cells;     ///< null: the world has no cells, and all else here is empty
@@ -105,7 +122,8 @@ struct SnapshotState {
     ObjectTable objects;
     IdTable ids;  ///< empty in a world of some of another one's objects
     OccluderTable occluders;
-    ClusterTable clusters;                     ///< empty in a world of some of another one's objects
+    ClusterTable clusters;  ///< empty in a world of some of another one's objects
+    LodTable lods;
     std::shared_ptr<const RankedBits> living;  ///< rows that hold an object; null if all do
     Array<uint32_t> unbounded;                 ///< rows of objects that are always visible, rising
     PlacedBvh bvh;                             ///< over the others
@@ -120,6 +138,7 @@ struct SnapshotState {
           ids(memory),
           occluders(memory),
           clusters(memory),
+          lods(memory),
           unbounded(memory),
           bvh(memory),
           placed(memory),

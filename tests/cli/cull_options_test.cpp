@@ -10,6 +10,7 @@ namespace {
 using SizeOptions = CullTool;
 using SectionOptions = CullTool;
 using ClusterOptions = CullTool;
+using LodOptions = CullTool;
 
 using PathOptions = CullTool;
 
@@ -128,6 +129,47 @@ TEST_F(SizeOptions, HysteresisKeepsWhatTheFrameBeforeShowed) {
     for (size_t i = 0; i < 24; ++i) EXPECT_EQ(other["frames"][i]["visible"], kept["frames"][i]["visible"]) << i;
     expectError("cull city:1:10 --hysteresis 0.1", 2, "--hysteresis");
     expectError("cull city:1:10 --distance 5 --hysteresis 1.5", 2, "--hysteresis");
+}
+
+TEST_F(LodOptions, LevelsSaveTrianglesAndTellThePixelsThatTheyChange) {
+    const std::string arguments = "terrain:1:256 --path scatter --frames 3 --seed 1";
+    const json plain = cull(arguments), run = cull(arguments + " --lod-error 2 --verify --rays 5000");
+    EXPECT_EQ(run["lod_error"], 2.0);
+    EXPECT_EQ(run["verification"]["false_culls"], 0);
+    uint64_t saved = 0, changed = 0;
+    for (size_t i = 0; i < 3; ++i) {
+        const json& frame = run["frames"][i];
+        ASSERT_TRUE(frame.contains("changed_pixels"));
+        ASSERT_EQ(frame["lods"].size(), frame["visible"].size());
+        changed += frame["changed_pixels"].get<uint64_t>();
+        if (!frame.contains("lod_finest")) continue;
+        EXPECT_LE(frame["lod_triangles"], frame["lod_finest"]);
+        saved += frame["lod_finest"].get<uint64_t>() - frame["lod_triangles"].get<uint64_t>();
+        EXPECT_EQ(culledBy(run, "lod"), 0u);
+    }
+    EXPECT_GT(saved, 0u);
+    EXPECT_LT(changed, 3u * 320 * 180 / 10);
+    const Outcome told = succeed("cull " + arguments + " --lod-error 2 --size 320x180 --repeat 1");
+    EXPECT_NE(told.out.find("levels  "), std::string::npos) << told.out;
+    EXPECT_NE(told.out.find("they err by 2 px at most"), std::string::npos) << told.out;
+    EXPECT_FALSE(plain["frames"][0].contains("lod_triangles"));
+}
+
+TEST_F(LodOptions, ABudgetIsKeptAndWhatItLeavesOutIsNoFalseCull) {
+    const json run = cull(
+        "terrain:1:256 --path scatter --frames 3 --seed 1 --budget 0.01 --hard-budget --cost-triangle 1 --cost-object "
+        "100 --verify --rays 5000");
+    EXPECT_EQ(run["verification"]["false_culls"], 0);
+    EXPECT_GT(culledBy(run, "lod"), 0u);
+    for (const json& frame : run["frames"])
+        if (frame.contains("lod_cost")) EXPECT_LE(frame["lod_cost"], 10000);
+}
+
+TEST_F(LodOptions, SayWhatTheyMiss) {
+    expectError("cull city:1:10 --budget 5", 2, "--cost-triangle");
+    expectError("cull city:1:10 --hard-budget", 2, "--budget");
+    expectError("cull city:1:10 --use lod", 2, "--lod-error");
+    expectError("cull city:1:10 --lod-error -1", 2, "--lod-error");
 }
 
 TEST_F(SizeOptions, ExplainNamesThem) {

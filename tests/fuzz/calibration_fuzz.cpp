@@ -12,7 +12,12 @@
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     using namespace sightline;
     using namespace sightline::tools;
-    const Result<FacingCosts> read = parseCalibration({reinterpret_cast<const char*>(data), size}, "c.json");
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    const Result<std::optional<DrawCost>> drawing = parseDrawCost(text, "c.json");
+    if (drawing.ok() && *drawing)
+        for (const double cost : {(*drawing)->object, (*drawing)->triangle, (*drawing)->vertex, (*drawing)->pixel})
+            if (!(cost >= 0.0) || !std::isfinite(cost)) std::abort();
+    const Result<FacingCosts> read = parseCalibration(text, "c.json");
     if (read.ok()) {
         for (const double cost : {read->test, read->dropped, read->drawn})
             if (!(cost > 0.0) || !std::isfinite(cost)) std::abort();

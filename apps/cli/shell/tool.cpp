@@ -246,7 +246,7 @@ void beginVerb(CLI::App& tool, const SessionOptions& session) {
 
 void addVerbs(CLI::App& tool, const BenchVerb& bench, SessionOptions& session, int& exit_code) {
     for (const auto add : {addCull, addVerify, addRender, addExplain, addSight, addReplay, addVis, addBake, addExport,
-                           addCalibrate, addReport, addInfo, bench.add})
+                           addCalibrate, addProfile, addAdvise, addReport, addInfo, bench.add})
         add(tool, exit_code);
     for (CLI::App* verb : tool.get_subcommands({})) verb->configurable();
     // What follows tells of the tool itself.

@@ -211,9 +211,9 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     if (!skip) return skip.error();
     // Clusters take long to prepare: they are for those who ask for them.
     options.settings.stages = (options.use.empty() ? kDefaultStages & ~stageBit(Stage::kClusters) : *use) & ~*skip;
+    if (Status clusters = finishClusterOptions(options); !clusters) return clusters;
     if (Status sizes = finishSizeOptions(options); !sizes) return sizes;
     if (Status cells = finishVisibilityOptions(options); !cells) return cells;
-    if (Status clusters = finishClusterOptions(options); !clusters) return clusters;
     if (Status path = finishPath(verb, options); !path) return path;
     if (options.threads == 0) options.threads = std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads);
     if (options.json.empty() && verb.count("--json") > 0) return usageError("--json: the name is empty");

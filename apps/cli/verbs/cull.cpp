@@ -286,7 +286,7 @@ Result<int> runCull(const CLI::App& verb, CullOptions& options) {
     if (Status good = finish(verb, options); !good) return good.error();
     if (Status good = checkOcclusion(verb, options); !good) return good.error();
     if (Status apart = checkCullApart(options); !apart) return apart.error();
-    const Result<Scene> scene = loadScene(options.scene);
+    Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
     if (Status opened = openVisibility(*scene, options); !opened) return opened.error();
     const Result<CameraPath> path = loadPath(*scene, options);
@@ -294,6 +294,7 @@ Result<int> runCull(const CLI::App& verb, CullOptions& options) {
     if (Status there = checkFrame(options.frame, path->frames.size()); !there) return there.error();
     if (Status writable = checkCullOutputs(options); !writable) return writable.error();
 
+    prepareLods(*scene, options);
     options.credits = !options.report.empty();
     // Whoever explains the frames asks the world that was culled; without need of that its memory is given back.
     std::optional<LoadedWorld> world;

@@ -4,22 +4,39 @@
 
 #include <algorithm>
 
+#include "sightline/world/world_state.h"
+
 namespace sightline::cli {
 using namespace tools;
 namespace {
 
+/// Notes by which levels of detail objects are drawn.
+void noteLods(const Snapshot& now, std::span<const Visible> objects, std::span<const VisibleLod> drawn,
+              std::vector<uint8_t>* lods) {
+    if (!lods || drawn.empty()) return;
+    lods->assign(now.objectCount(), 0);
+    for (size_t i = 0; i < drawn.size(); ++i)
+        (*lods)[now.state().itemOf(now.state().find(objects[i].id))] = drawn[i].level;
+}
+
+/// @param lods  receives the levels of detail, per object, if any were chosen; may be null
 /// @returns what the query did, of both eyes together
 QueryStats ask(const Snapshot& now, const CullRun& run, const CameraFrame& camera, const QuerySettings& settings,
-               Query& query) {
+               Query& query, std::vector<uint8_t>* lods = nullptr) {
     const View view = viewOf(camera, run);
-    if (!(run.stereo > 0)) return query.visible(now, view, settings).stats;
+    if (!(run.stereo > 0)) {
+        const VisibleSet set = query.visible(now, view, settings);
+        noteLods(now, set.objects, set.lods, lods);
+        return set.stats;
+    }
     const StereoSet set = query.visibleStereo(now, view, shiftedEye(view, run.stereo), settings);
+    noteLods(now, set.objects, set.lods, lods);
     QueryStats sum = set.left;
     sum.addWork(set.right);
     return sum;
 }
 
-/// What is held to be hidden: not what distance, contribution and a limited depth of portals culled, which may be seen.
+/// What is held to be hidden: not what distance, contribution, a budget and a limited depth of portals culled, which may be seen.
 std::vector<uint8_t> provable(std::vector<uint8_t> reasons, const CullRun& run) {
     for (uint8_t& reason : reasons)
         if (isLossy(reason, run)) reason = 0;
@@ -35,7 +52,7 @@ void cullFrame(const Snapshot& now, const CullRun& run, const CameraFrame* befor
     QuerySettings settings = before ? run.settings : alone;
     const auto answer = [&] {
         if (settings.hysteresis > 0) ask(now, run, *before, alone, query);
-        return ask(now, run, frame.camera, settings, query);
+        return ask(now, run, frame.camera, settings, query, settings.time_stages ? &frame.lods : nullptr);
     };
     std::vector<double> times;
     for (int i = 0; i < run.repeat; ++i) times.push_back(1e-3 * static_cast<double>(answer().nanoseconds));

@@ -23,8 +23,11 @@
 #include "apps/cli/verbs/visibility_choice.h"
 #include "sightline/base/thread_pool.h"
 #include "sightline/query/explain/credits.h"
+#include "sightline/lod/lod_choice.h"
 #include "sightline/query/query.h"
 #include "sightline/studies/hidden/threads.h"
+#include "sightline/tools/load/mesh_lods.h"
+#include "sightline/tools/load/scene_levels.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/truth/changed_pixels.h"
@@ -144,6 +147,8 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     QuerySettings asked;
     asked.max_distance = run.settings.max_distance;
     asked.contribution = run.settings.contribution;
+    asked.lod_error = run.settings.lod_error;
+    asked.budget = run.settings.budget;
     const uint32_t unnamed = stageBit(Stage::kClusters) | (run.visibility.file.empty() ? kCellStages : 0);
     const uint32_t stages = stagesInUse(View(), asked) & ~unnamed;  // if none are named
     std::string used, skipped;
@@ -164,6 +169,19 @@ void forEach(size_t count, uint32_t threads, const std::function<void(size_t)>& 
     shareOut(count, threads, nullptr, [&](uint32_t) { return work; });
 }
 
+void prepareLods(Scene& scene, const RunOptions& options) {
+    if (!(options.settings.stages & stageBit(Stage::kLod))) return;
+    if (const uint32_t taken = takeNamedLevels(scene))
+        tell(stderr, fmt::format("{}: {} by their names levels of detail of others\n", oneLine(scene.name),
+                                 taken == 1 ? "1 object is" : grouped(taken) + " objects are"));
+    joinLevels(scene);
+    Progress progress("simplifying", "meshes", scene.meshes.size());
+    forEach(scene.meshes.size(), options.threads, [&](size_t i) {
+        addMeshLods(scene.meshes[i]);
+        progress.step();
+    });
+}
+
 CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options,
                  std::optional<LoadedWorld>* world) {
     CullRun run;
@@ -179,6 +197,8 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.sections = options.sections;
     run.visibility = options.visibility;
     run.cluster_test = options.cluster_test;
+    if (run.settings.stages & stageBit(Stage::kLod) && !path.frames.empty())
+        run.corner_stretch = cornerStretch(viewOf(path.frames[0], run));
     run.stereo = options.stereo;
     run.repeat = options.repeat;
     run.frames.resize(path.frames.size());
@@ -187,8 +207,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
         Progress progress("preparing", "meshes", scene.meshes.size());
         return loadWorld(
             scene, [&](size_t done, size_t total) { progress.set(done, total); },
-            loadSettings((options.settings.stages & stageBit(Stage::kVolumes)) != 0, options.settings.occluder_error,
-                         (options.settings.stages & stageBit(Stage::kClusters)) != 0, options.cluster_test));
+            loadSettings(options.settings, options.cluster_test));
     }();
     attachVisibility(options, loaded.world);
     const Snapshot now = loaded.world.commit();
@@ -262,7 +281,7 @@ void countChanges(const Scene& scene, const RunOptions& options, CullRun& run) {
             drawn[object] = reasons[object] == 0            ? Drawn::kAlways
                             : isLossy(reasons[object], run) ? Drawn::kFullOnly
                                                             : Drawn::kNever;
-        frame.changed_pixels = countChangedPixels(facts, view, drawn);
+        frame.changed_pixels = countChangedPixels(facts, view, drawn, frame.lods);
         progress.step();
     });
 }

@@ -214,7 +214,7 @@ Status explainObjects(const ExplainOptions& options, const Scene& scene, const C
 Status runExplain(const CLI::App& verb, ExplainOptions& options, int& exit_code) {
     if (Status good = finish(verb, options); !good) return good;
     if (Status good = readQuestion(verb, options); !good) return good;
-    const Result<Scene> scene = loadScene(options.scene);
+    Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
     if (Status opened = openVisibility(*scene, options); !opened) return opened;
     const Result<CameraPath> path = loadPath(*scene, options);
@@ -222,6 +222,7 @@ Status runExplain(const CLI::App& verb, ExplainOptions& options, int& exit_code)
     if (!options.all_frames)
         if (Status there = checkFrame(options.first_frame, path->frames.size()); !there) return there;
     if (Status writable = checkExplainOutputs(options); !writable) return writable;
+    prepareLods(*scene, options);
     options.credits = true;
     if (verb.count("--object") == 0 && !options.has_pixel) return explainPath(options, *scene, *path, exit_code);
     return explainObjects(options, *scene, *path, exit_code);

@@ -313,11 +313,11 @@ std::string callOf(const Scene& scene, uint32_t object) {
 }
 
 AskedScene::AskedScene(const Scene& from, const RunOptions& options) : scene(from) {
+    LoadSettings settings = loadSettings(options.settings, options.cluster_test);
+    settings.volumes = true;
     Progress progress("preparing", "meshes", scene.meshes.size());
     loaded = loadWorld(
-        scene, [&](size_t done, size_t total) { progress.set(done, total); },
-        loadSettings(true, options.settings.occluder_error, (options.settings.stages & stageBit(Stage::kClusters)) != 0,
-                     options.cluster_test));
+        scene, [&](size_t done, size_t total) { progress.set(done, total); }, settings);
     attachVisibility(options, loaded.world);
     if (options.opened) cells = options.opened->file.cellSpace().names;
     now = loaded.world.commit();

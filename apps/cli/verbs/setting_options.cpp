@@ -206,6 +206,13 @@ Status finishClusterOptions(RunOptions& options) {
     const Result<FacingCosts> costs = parseCalibration(*text, options.calibration);
     if (!costs) return costs.error();
     options.cluster_test = costs->testInTriangles(options.dear_shading ? ShadingCost::kDear : ShadingCost::kCheap);
+    const Result<std::optional<DrawCost>> cost = parseDrawCost(*text, options.calibration);
+    if (!cost) return cost.error();
+    if (!*cost || drawCost(options.settings).known()) return success();
+    options.settings.cost_object = (*cost)->object;
+    options.settings.cost_triangle = (*cost)->triangle;
+    options.settings.cost_vertex = (*cost)->vertex;
+    options.settings.cost_pixel = (*cost)->pixel;
     return success();
 }
 
@@ -226,8 +233,13 @@ Status finishSizeOptions(RunOptions& options) {
     QuerySettings& settings = options.settings;
     if (names(options.use, Stage::kDistance) && !(settings.max_distance > 0)) return needs("distance");
     if (names(options.use, Stage::kContribution) && !(settings.contribution > 0)) return needs("contribution");
+    if (names(options.use, Stage::kLod) && !(settings.lod_error > 0) && !(settings.budget > 0))
+        return usageError("--use lod: how much is told by --lod-error or --budget");
+    if (settings.budget > 0 && !drawCost(settings).known())
+        return usageError("--budget: what drawing costs is told by --cost-triangle and its like, or by --calibration");
+    if (settings.hard_budget && !(settings.budget > 0)) return usageError("--hard-budget goes with --budget");
     // What was given asks for its stage, and --use lists the others.
-    for (const Stage stage : {Stage::kDistance, Stage::kContribution})
+    for (const Stage stage : {Stage::kDistance, Stage::kContribution, Stage::kLod})
         if (!options.use.empty() && !names(options.skip, stage)) settings.stages |= stageBit(stage);
     settings.stages = stagesInUse(View(), settings);
     return success();

@@ -151,10 +151,11 @@ void addSums(std::string& text, const Verification& sum, const CullRun& run) {
     fmt::format_to(std::back_inserter(text), "over-estimate {:.3f}: {} reported, {} exactly visible, over {}\n",
                    sum.overEstimate(), grouped(sum.reported), grouped(sum.exactly_visible), counted(judged, "frame"));
     if (sum.lossy_seen > 0)
-        fmt::format_to(std::back_inserter(text),
-                       "not proved   {} objects that were culled by distance, contribution or depth were seen: so they "
-                       "were asked to\n",
-                       grouped(sum.lossy_seen));
+        fmt::format_to(
+            std::back_inserter(text),
+            "not proved   {} objects that were culled by distance, contribution, budget or depth were seen: so "
+            "they were asked to\n",
+            grouped(sum.lossy_seen));
     if (judged < run.frames.size())
         fmt::format_to(std::back_inserter(text), "unverified   {} of {} frames\n", run.frames.size() - judged,
                        run.frames.size());
@@ -191,6 +192,31 @@ void addClusters(std::string& text, const CullRun& run) {
                    rounded(static_cast<double>(sum.drawn) / frames),
                    percentOf(static_cast<double>(sum.drawn), static_cast<double>(sum.whole)),
                    rounded(static_cast<double>(sum.draws) / frames));
+}
+
+/// What levels of detail save, and by how much they may err.
+void addLods(std::string& text, const CullRun& run) {
+    if (!(run.settings.stages & stageBit(Stage::kLod))) return;
+    double finest = 0, drawn = 0, cost = 0;
+    size_t exceeded = 0;
+    for (const FrameResult& frame : run.frames) {
+        finest += static_cast<double>(frame.stats.lod_finest);
+        drawn += static_cast<double>(frame.stats.lod_triangles);
+        cost += static_cast<double>(frame.stats.lod_cost);
+        exceeded += frame.stats.lod_exceeded;
+    }
+    const auto frames = static_cast<double>(run.frames.size());
+    fmt::format_to(std::back_inserter(text), "levels       {:>10} triangles {:.3f} % of the finest levels'",
+                   rounded(drawn / frames), percentOf(drawn, finest));
+    if (run.settings.budget == 0)
+        fmt::format_to(std::back_inserter(text), "; they err by {:g} px at most, in a corner {:.3g}",
+                       run.settings.lod_error, run.settings.lod_error * run.corner_stretch);
+    text += '\n';
+    if (run.settings.budget == 0) return;
+    fmt::format_to(std::back_inserter(text), "budget       {:>10.3f} ms of {:g} ms modelled", 1e-6 * cost / frames,
+                   run.settings.budget);
+    if (exceeded > 0) fmt::format_to(std::back_inserter(text), "; exceeded in {}", counted(exceeded, "frame"));
+    text += '\n';
 }
 
 }  // namespace
@@ -241,6 +267,7 @@ void printSummary(std::FILE* out, const CullRun& run) {
     fmt::format_to(std::back_inserter(text), "triangles    {:>10} submitted {:6.3f} % of the scene's\n",
                    rounded(triangles / frames), percentOf(triangles / frames, static_cast<double>(run.triangles)));
     addClusters(text, run);
+    addLods(text, run);
     fmt::format_to(std::back_inserter(text), "query        {:>10.1f} us mean, {:.1f} us median, {:.1f} us at most\n",
                    time / frames, medianQuery(run), slowest);
     if (budget_spent)

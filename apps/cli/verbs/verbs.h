@@ -21,6 +21,8 @@ void addBake(CLI::App& tool, int& exit_code);
 void addExport(CLI::App& tool, int& exit_code);
 void addReplay(CLI::App& tool, int& exit_code);
 void addCalibrate(CLI::App& tool, int& exit_code);
+void addProfile(CLI::App& tool, int& exit_code);
+void addAdvise(CLI::App& tool, int& exit_code);
 void addReport(CLI::App& tool, int& exit_code);
 void addInfo(CLI::App& tool, int& exit_code);
 void addBench(CLI::App& tool, int& exit_code);

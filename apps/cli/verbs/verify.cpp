@@ -27,7 +27,7 @@ Result<int> runVerify(const CLI::App& verb, RunOptions& options) {
     files.read("--visibility", options.visibility.file);
     files.write("--json", options.json);
     if (!files.status()) return files.status().error();
-    const Result<Scene> scene = loadScene(options.scene);
+    Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
     if (Status opened = openVisibility(*scene, options); !opened) return opened.error();
     const Result<CameraPath> path = loadPath(*scene, options);
@@ -35,6 +35,7 @@ Result<int> runVerify(const CLI::App& verb, RunOptions& options) {
     if (!options.json.empty() && options.json != "-")
         if (Status writable = canWriteFile(options.json); !writable) return writable.error();
 
+    prepareLods(*scene, options);
     CullRun run = cullPath(*scene, *path, options);
     if (run.frames.empty()) return exitCodeOf(run, path->frames.size(), true);
     countChanges(*scene, options, run);

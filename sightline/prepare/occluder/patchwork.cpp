@@ -3,54 +3,13 @@
 #include "sightline/prepare/occluder/patchwork.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "sightline/prepare/occluder/exact.h"
+#include "sightline/prepare/welder.h"
 
 namespace sightline {
 namespace {
-
-/// Gives equal positions the same number, in the order in which they come.
-class Welder {
-public:
-    explicit Welder(std::vector<glm::vec3>& positions) : positions_(positions), slots_(1024, kFree) {}
-
-    uint32_t number(const glm::vec3& given) {
-        const glm::vec3 p = given + glm::vec3(0.0f);  // a negative zero becomes zero: equal positions have equal bits
-        if (4 * positions_.size() > 3 * slots_.size()) grow();
-        size_t at = slotOf(p);
-        for (; slots_[at] != kFree; at = (at + 1) & (slots_.size() - 1))
-            if (positions_[slots_[at]] == p) return slots_[at];
-        slots_[at] = static_cast<uint32_t>(positions_.size());
-        positions_.push_back(p);
-        return slots_[at];
-    }
-
-private:
-    static constexpr uint32_t kFree = ~uint32_t{0};
-
-    size_t slotOf(const glm::vec3& p) const {
-        uint64_t hash = 0x9e3779b97f4a7c15ull;
-        for (float c : {p.x, p.y, p.z}) {
-            hash = (hash ^ std::bit_cast<uint32_t>(c)) * 0xd6e8feb86659fd93ull;
-            hash ^= hash >> 32;
-        }
-        return hash & (slots_.size() - 1);
-    }
-
-    void grow() {
-        slots_.assign(2 * slots_.size(), kFree);
-        for (uint32_t i = 0; i < positions_.size(); ++i) {
-            size_t at = slotOf(positions_[i]);
-            while (slots_[at] != kFree) at = (at + 1) & (slots_.size() - 1);
-            slots_[at] = i;
-        }
-    }
-
-    std::vector<glm::vec3>& positions_;
-    std::vector<uint32_t> slots_;
-};
 
 bool isFinite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/math/stretch.h"
 #include "sightline/query/answer.h"
 #include "sightline/query/explain/hiders.h"
 #include "sightline/query/explain/open_pixels.h"
@@ -90,6 +91,8 @@ struct Explainer::Impl {
     void explainOccluded(uint32_t item, const PixelRect& rect, const ExplainSettings& asked_for, OcclusionReason& out);
     void tryWithout(uint32_t item, OcclusionReason& out);
     void lookWithout(const SnapshotState& others, uint32_t self, OcclusionReason& out);
+    detail::Answer& wholeAnswer();
+    bool lookAtLods(uint32_t item, LodReason& out);
     ClustersReason lookAtClusters(uint32_t item);
     void narrowTo(const detail::Candidates* left_of_it) { trial.candidates = search.cells = left_of_it; }
     void lookAtCells(uint32_t item, CellsReason& out) const;
@@ -205,15 +208,49 @@ void Explainer::Impl::explainOccluded(uint32_t item, const PixelRect& rect, cons
     if (asked_for.without) tryWithout(item, out);
 }
 
+/// The answer itself, with levels of detail.
+detail::Answer& Explainer::Impl::wholeAnswer() {
+    if (whole) return *whole;
+    whole = makeOwned<detail::Answer>(memory, memory);
+    whole->begin(snapshot, view, settings, shown.generations());
+    for (uint32_t part = 0; part < whole->parts(); ++part) whole->run(part);
+    whole->finish();
+    whole->refine(Stage::kLod);
+    return *whole;
+}
+
+/// @returns whether the object is left out
+bool Explainer::Impl::lookAtLods(uint32_t item, LodReason& out) {
+    const SnapshotState& state = snapshot.state();
+    if (!frame.uses(Stage::kLod)) return false;
+    const detail::Answer& answer = wholeAnswer();
+    const uint32_t row = state.rowOf(item);
+    if (answer.lods().leftOut(row)) return true;
+    const detail::HeldLods* held = state.lods[state.objects[row].lods.index].get();
+    const auto& visible = answer.visible();
+    const auto at = std::find_if(visible.begin(), visible.end(),
+                                 [&](const Visible& object) { return object.id == state.objects[row].id; });
+    if (!held || at == visible.end() || answer.lods().lods().empty()) return false;
+    const auto place = static_cast<size_t>(at - visible.begin());
+    out.levels = static_cast<uint32_t>(held->levels.size());
+    out.drawn = answer.lods().lods()[place];
+    const uint32_t where = state.bvh.placeOf(row);
+    const double unit = where == PlacedBvh::kNone
+                            ? std::numeric_limits<double>::infinity()
+                            : largestStretch(state.objects[row].transform) *
+                                  pixelsOfUnit(answer.frame().lods, answer.frame().boundsAt(where));
+    const size_t next = size_t{out.drawn.level} + 1;
+    out.error = out.drawn.level > 0 ? held->levels[out.drawn.level].error * unit : 0.0;
+    out.next_error =
+        next < held->levels.size() ? held->levels[next].error * unit : std::numeric_limits<double>::infinity();
+    return false;
+}
+
+/// Of an object that is drawn by its finest level.
 ClustersReason Explainer::Impl::lookAtClusters(uint32_t item) {
     const uint32_t row = snapshot.state().rowOf(item);
     if (snapshot.state().objects[row].clusters.index == 0) return {};
-    if (!whole) {
-        whole = makeOwned<detail::Answer>(memory, memory);
-        whole->begin(snapshot, view, settings, shown.generations());
-        for (uint32_t part = 0; part < whole->parts(); ++part) whole->run(part);
-        whole->finish();
-    }
+    wholeAnswer();
     detail::AnswerView answer = whole->view();
     const QueryStats stats = whole->clusters().look(whole->frame(), row, answer);
     return {stats.clusters_tested,
@@ -364,7 +401,11 @@ Explanation Explainer::explain(ObjectId id, const ExplainSettings& asked_for) {
         (by_frustum ? out.frustum.by_faces : out.occlusion.by_faces) = look == detail::Look::kFaces;
         (by_frustum ? out.frustum.by_triangles : out.occlusion.by_triangles) = look == detail::Look::kTriangles;
     }
-    if (out.verdict == Verdict::kVisible) out.clusters = impl.lookAtClusters(item);
+    if (out.verdict == Verdict::kVisible && impl.lookAtLods(item, out.lod)) {
+        out.verdict = Verdict::kNoTime;
+        return out;
+    }
+    if (out.verdict == Verdict::kVisible && out.lod.drawn.level == 0) out.clusters = impl.lookAtClusters(item);
     if (out.clusters.clusters > 0 && out.clusters.drawn == 0) {
         out.verdict = Verdict::kNoCluster;
         return out;

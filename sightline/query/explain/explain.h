@@ -10,6 +10,7 @@
 #include "sightline/base/memory.h"
 #include "sightline/frame/size_reason.h"
 #include "sightline/geom/image_rect.h"
+#include "sightline/geom/lod.h"
 #include "sightline/geom/view.h"
 #include "sightline/query/explain/hider.h"
 #include "sightline/query/explain/verdict.h"
@@ -79,6 +80,15 @@ struct ClustersReason {
     uint64_t drawn = 0;      ///< triangles that are left
 };
 
+/// What the stage of levels of detail makes of an object that has some: ObjectDef::lods. It is what a first answer would
+/// do, that remembers no level.
+struct LodReason {
+    uint32_t levels = 0;  ///< 0: the stage is not in use, or the object has no levels
+    VisibleLod drawn;
+    double error = 0;       ///< of the level that is drawn, in the middle of the image  [pixels]
+    double next_error = 0;  ///< of the next coarser level; infinite if there is none  [pixels]
+};
+
 /// Where eye and object stand among the cells of the world, if a stage of cells is in use.
 struct CellsReason {
     /// The cells that the eye may be in, and the cells that the object stands in. Where one of them is empty, the
@@ -140,6 +150,7 @@ struct Explanation {
     SizeReason size;         ///< where a stage of distance or contribution is in use; not for objects in doubt
     OcclusionReason occlusion;
     VisibleReason visible;
+    LodReason lod;            ///< of what is kept
     ClustersReason clusters;  ///< of what is kept, and of what the stage culls, with that stage
     CellsReason cells;        ///< of what has bounds, in a world with cells
 

@@ -16,6 +16,7 @@ enum class Verdict : uint8_t {
     kTooFar,          ///< culled by the stage of distance, although it may be visible
     kTooSmall,        ///< culled by the stage of contribution, although it may be visible
     kNoCluster,       ///< culled by the stage of clusters: none of its clusters is left
+    kNoTime,          ///< left out by the stage of levels of detail under a hard budget, although it may be visible
     kNotInPvs,  ///< culled by the stage of the PVS: not seen from the eye's view cells, or no cell that it stands in from its cells
     kNoWindow,  ///< culled by the stage of portals: it lies in no window into a cell that it stands in
 };

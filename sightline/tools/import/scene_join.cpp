@@ -50,6 +50,10 @@ void shift(Scene& scene, const Offsets& by, uint32_t root) {
         object.mesh += by.meshes;
         object.node = object.node == SceneNode::kNone ? root : object.node + by.nodes;
     }
+    for (SceneLevel& level : scene.levels) {
+        level.object += by.objects;
+        level.mesh += by.meshes;
+    }
     for (ScenePortal& portal : scene.portals) {
         for (uint32_t& cell : portal.cells)
             if (cell != ScenePortal::kNone) cell += by.cells;
@@ -104,6 +108,7 @@ Scene joinScenes(std::vector<Scene> scenes) {
         append(out.materials, std::move(scene.materials));
         append(out.meshes, std::move(scene.meshes));
         append(out.objects, std::move(scene.objects));
+        append(out.levels, std::move(scene.levels));
         append(out.cameras, std::move(scene.cameras));
         append(out.nodes, std::move(scene.nodes));
         append(out.cells, std::move(scene.cells));

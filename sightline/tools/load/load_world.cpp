@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "sightline/prepare/facing/draw_clusters.h"
+#include "sightline/tools/load/mesh_lods.h"
 
 namespace sightline::tools {
 namespace {
@@ -16,11 +17,14 @@ constexpr size_t kDense = 200;      // triangles: below that a simpler occluder 
 struct Forms {
     OccluderId occluder, shape;
     ClustersId clusters;
+    LodsId lods;
 };
 
 /// The occluder holds the triangles whose material hides, the shape all; one record serves both where they are equal.
 Forms formsOf(const Scene& scene, const Mesh& mesh, const LoadSettings& settings, World& world) {
-    if (mesh.deforms) return {};
+    Forms forms;
+    if (settings.lods) forms.lods = world.addLods(lodLevels(mesh));
+    if (mesh.deforms) return forms;
     std::vector<uint8_t> hides(mesh.triangles(), 0), double_sided(mesh.triangles(), 0);
     for (const Primitive& primitive : mesh.primitives) {
         const Material& material = scene.materials[primitive.material];
@@ -31,7 +35,6 @@ Forms formsOf(const Scene& scene, const Mesh& mesh, const LoadSettings& settings
     }
     const MeshView view{mesh.positions, mesh.indices};
     const size_t hiding = static_cast<size_t>(std::count(hides.begin(), hides.end(), 1));
-    Forms forms;
     if (hiding > 0) {
         const Occluder occluder = prepareOccluder(view, hides, double_sided, settings.occluders);
         std::vector<InnerOccluder> inner;
@@ -63,6 +66,13 @@ LoadSettings loadSettings(bool volumes, double occluder_error, bool clusters, do
     return settings;
 }
 
+LoadSettings loadSettings(const QuerySettings& settings, double cluster_test) {
+    LoadSettings load = loadSettings((settings.stages & stageBit(Stage::kVolumes)) != 0, settings.occluder_error,
+                                     (settings.stages & stageBit(Stage::kClusters)) != 0, cluster_test);
+    load.lods = (settings.stages & stageBit(Stage::kLod)) != 0;
+    return load;
+}
+
 LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_t)>& progress,
                       const LoadSettings& settings) {
     WorldDef world;
@@ -82,6 +92,7 @@ LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_
         def.occluder = forms[object.mesh].occluder;
         def.shape = forms[object.mesh].shape;
         def.clusters = forms[object.mesh].clusters;
+        def.lods = forms[object.mesh].lods;
         loaded.ids.push_back(loaded.world.add(def));
     }
     return loaded;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "sightline/geom/query_settings.h"
 #include "sightline/prepare/facing/draw_clusters.h"
 #include "sightline/prepare/inner/inner.h"
 #include "sightline/tools/scene/scene.h"
@@ -25,9 +26,14 @@ struct LoadSettings {
     InnerSettings inner_occluders;
     bool clusters = false;  ///< prepare clusters of meshes of some size, too: prepareDrawClusters()
     DrawClusterSettings draw_clusters;
+    bool lods = false;  ///< tell the world the levels that meshes have, and what they take to draw: addMeshLods()
 };
 
-/// What the tool loads with.
+/// What queries with these settings need.
+/// @param cluster_test  of Stage::kClusters: what a test costs, in triangles: FacingCost::test
+LoadSettings loadSettings(const QuerySettings& settings, double cluster_test = FacingCost().test);
+
+/// The same, piece by piece.
 /// @param occluder_error  QuerySettings::occluder_error of the queries to come; 0: no simpler occluders are prepared
 /// @param clusters        prepare them, for a test that costs so many triangles: FacingCost::test
 LoadSettings loadSettings(bool volumes, double occluder_error, bool clusters = false,

@@ -34,12 +34,23 @@ struct Primitive {
     uint32_t material = 0;  ///< index into Scene::materials
 };
 
+/// A coarser level of detail of a mesh, on the same positions.
+struct MeshLod {
+    static constexpr double kUnknown = -1;
+
+    double error = kUnknown;  ///< LodLevel::error
+    uint32_t vertices = 0;    ///< that its indices name
+    std::vector<uint32_t> indices;
+    std::vector<Primitive> primitives;  ///< as Mesh::primitives
+};
+
 /// Triangles in object space; counter-clockwise is front. Every position is finite.
 struct Mesh {
     std::string name;
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;      ///< [size: 3 * triangles]
     std::vector<Primitive> primitives;  ///< covers the triangles in order, without gaps
+    std::vector<MeshLod> lods;          ///< finest first; empty: this is the only level
     Box3d bounds;                       ///< of the positions and, where the mesh deforms, of every pose
     bool deforms = false;               ///< skinned or morphed: is bounded by `bounds`, and hides nothing
 
@@ -61,6 +72,13 @@ struct SceneObject {
     glm::dmat4 transform{1.0};  ///< object to world, affine; a negative determinant flips the winding
     std::string name;
     uint32_t node = SceneNode::kNone;  ///< index into Scene::nodes
+};
+
+/// What a file names as a coarser level of detail of an object.
+struct SceneLevel {
+    uint32_t object = 0;        ///< index into Scene::objects
+    uint32_t mesh = 0;          ///< index into Scene::meshes
+    glm::dmat4 transform{1.0};  ///< of the mesh to the object's own space
 };
 
 /// A convex region that was declared to be a cell: by hand in the file, or by the generator that made the world.
@@ -107,6 +125,7 @@ struct Scene {
     std::vector<Material> materials;  ///< never empty once imported: index 0 is glTF's default if needed
     std::vector<Mesh> meshes;
     std::vector<SceneObject> objects;
+    std::vector<SceneLevel> levels;  ///< of one object finest first, one after the other; may be empty
     std::vector<SceneCamera> cameras;
     std::vector<SceneNode> nodes;      ///< parents need not come first; no cycles
     std::vector<SceneCell> cells;      ///< may be empty

@@ -241,6 +241,7 @@ CutScene cutScene(Scene whole_scene, const Split& split) {
     }
     for (size_t i = 0; i < objects.size(); ++i) objects[i].key = i;
     scene.objects = std::move(objects);
+    scene.levels.clear();
     out.object_of = std::move(object_of);
     for (Mesh& piece : pieces) scene.meshes.push_back(std::move(piece));
     dropUnused(out);
@@ -289,6 +290,7 @@ uint64_t leaveOut(CutScene& cut, const std::vector<std::vector<uint32_t>>& witho
         object_of.push_back(cut.object_of[i]);
     }
     scene.objects = std::move(objects);
+    scene.levels.clear();
     cut.object_of = std::move(object_of);
     for (ScenePortal& portal : scene.portals)
         if (portal.door != ScenePortal::kNone) portal.door = now_at[portal.door];

@@ -43,6 +43,7 @@ CutScene uncut(Scene scene);
 /// The same triangles with the same materials in the same places; pieces are in the order of their first triangles, and
 /// keep the order of theirs. Objects are numbered anew, from 0. A piece is called "part 3", "cube 0 4 1" or as its
 /// material, below a node of its object's name. What deforms, what shuts a portal and what would be one piece stays whole.
+/// Levels of detail that a file names are of whole objects: they go.
 CutScene cutScene(Scene scene, const Split& split);
 
 /// The scene of cutScene(), for those who need not know where its pieces come from.

@@ -3,6 +3,7 @@
 #include "sightline/tools/truth/changed_pixels.h"
 
 #include <algorithm>
+#include <map>
 
 #include "sightline/base/assert.h"
 #include "sightline/studies/hidden/zbuffer/zbuffer.h"
@@ -38,10 +39,60 @@ uint64_t countChanges(const Band& a, const Band& b) {
     return changed;
 }
 
+/// What DrawItem wants to know of the triangles of a level.
+struct LodFacts {
+    std::vector<uint8_t> double_sided, hides;
+};
+
+LodFacts factsOf(const Scene& scene, const Mesh& mesh, const MeshLod& lod) {
+    LodFacts facts;
+    facts.double_sided.assign(lod.indices.size() / 3, 0);
+    facts.hides.assign(lod.indices.size() / 3, mesh.deforms ? 0 : 1);
+    for (const Primitive& primitive : lod.primitives) {
+        const Material& material = scene.materials[primitive.material];
+        for (uint32_t t = primitive.first_triangle; t < primitive.first_triangle + primitive.triangle_count; ++t) {
+            facts.double_sided[t] = material.double_sided;
+            if (!material.hides()) facts.hides[t] = 0;
+        }
+    }
+    return facts;
+}
+
+/// Draws items by coarser levels.
+class CoarseItems {
+public:
+    CoarseItems(const SceneFacts& facts, std::span<const uint8_t> lods) : facts_(facts), lods_(lods) {}
+
+    bool any() const {
+        return std::any_of(lods_.begin(), lods_.end(), [](uint8_t level) { return level > 0; });
+    }
+    void apply(std::vector<DrawItem>& items) {
+        for (DrawItem& item : items) {
+            if (lods_.empty() || lods_[item.id] == 0) continue;
+            const uint8_t level = lods_[item.id];
+            const Mesh& mesh = facts_.mesh(item.id);
+            const MeshLod& lod = mesh.lods[level - 1u];
+            const auto [at, is_new] = known_.try_emplace(&lod);
+            if (is_new) at->second = factsOf(facts_.scene(), mesh, lod);
+            item.mesh.indices = lod.indices;
+            item.double_sided = at->second.double_sided;
+            if (!item.writes_depth.empty()) item.writes_depth = at->second.hides;
+        }
+    }
+
+private:
+    const SceneFacts& facts_;
+    std::span<const uint8_t> lods_;
+    std::map<const MeshLod*, LodFacts> known_;
+};
+
 }  // namespace
 
-uint64_t countChangedPixels(const SceneFacts& facts, const View& view, std::span<const Drawn> drawn) {
+uint64_t countChangedPixels(const SceneFacts& facts, const View& view, std::span<const Drawn> drawn,
+                            std::span<const uint8_t> lods) {
     SIGHTLINE_ASSERT(drawn.size() == facts.scene().objects.size());
+    SIGHTLINE_ASSERT(lods.empty() || lods.size() == drawn.size());
+    CoarseItems coarse(facts, lods);
     const SightLines sight(view);
     std::vector<uint32_t> full, kept;
     for (uint32_t object = 0; object < drawn.size(); ++object) {
@@ -49,10 +100,11 @@ uint64_t countChangedPixels(const SceneFacts& facts, const View& view, std::span
         full.push_back(object);
         if (drawn[object] == Drawn::kAlways) kept.push_back(object);
     }
-    if (full.size() == kept.size()) return 0;
+    if (full.size() == kept.size() && !coarse.any()) return 0;
     std::vector<DrawItem> all = drawItems(facts, full), some = drawItems(facts, kept);
     for (size_t i = 0; i < all.size(); ++i) all[i].id = full[i];
     for (size_t i = 0; i < some.size(); ++i) some[i].id = kept[i];
+    coarse.apply(some);
     ZBufferSettings pass;
     pass.want_generated = false;
     pass.row_count = static_cast<uint32_t>(std::clamp<uint64_t>(kBandSamples / view.width, 1, view.height));

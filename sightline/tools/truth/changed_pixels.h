@@ -22,6 +22,9 @@ enum class Drawn : uint8_t {
 /// shows what changes behind them, and as if they hid, which shows them.
 /// @param view   isUsable(view)
 /// @param drawn  [size: objects of the scene]
-uint64_t countChangedPixels(const SceneFacts& facts, const View& view, std::span<const Drawn> drawn);
+/// @param lods   per object the level of detail that it is drawn by where something is left out: 0, or 1 + an index
+///               into Mesh::lods. Empty: all by their finest  [size: objects of the scene, or 0]
+uint64_t countChangedPixels(const SceneFacts& facts, const View& view, std::span<const Drawn> drawn,
+                            std::span<const uint8_t> lods = {});
 
 }  // namespace sightline::tools

@@ -56,6 +56,12 @@ inline std::string cellFault(const Scene& scene) {
 inline std::string sceneFault(const Scene& scene) {
     if (scene.materials.empty()) return "no material";
     if (scene.objects.empty() && scene.cells.empty() && scene.portals.empty()) return "no object";
+    for (const SceneLevel& level : scene.levels) {
+        if (level.object >= scene.objects.size()) return "a level's object is out of range";
+        if (level.mesh >= scene.meshes.size()) return "a level's mesh is out of range";
+        for (int column = 0; column < 4; ++column)
+            if (!std::isfinite(glm::dot(level.transform[column], glm::dvec4(1.0)))) return "a level is not finite";
+    }
     for (const Mesh& mesh : scene.meshes)
         if (const std::string fault = meshFault(scene, mesh); !fault.empty()) return fault;
     for (const SceneObject& object : scene.objects) {

@@ -47,6 +47,66 @@ TEST(GltfNodes, ShowsTheMarkedSceneOrAllOrEveryNode) {
     EXPECT_EQ(keysOf(loadSample("scenes_none.glb")), (std::vector<uint64_t>{0, 1, 2}));
 }
 
+/// A node with two levels, of which the second is larger; the tree of `parent`, if there is one, holds the node.
+GltfBuilder nodeWithLevels() {
+    GltfBuilder b;
+    const uint32_t fine = b.triangleMesh(), coarse = b.triangleMesh(), coarsest = b.triangleMesh();
+    b.node({{"mesh", fine}, {"translation", {5, 0, 0}}, {"extensions", {{"MSFT_lod", {{"ids", {1, 2}}}}}}});
+    b.node({{"mesh", coarse}, {"translation", {5, 0, 0}}});
+    b.node({{"mesh", coarsest}, {"translation", {6, 0, 0}}, {"scale", {2, 2, 2}}});
+    b.json["extensionsUsed"] = {"MSFT_lod"};
+    return b;
+}
+
+TEST(GltfNodes, KeepsTheLevelsOfDetailOfANode) {
+    GltfBuilder b = nodeWithLevels();
+    b.json["scenes"] = {{{"nodes", {0}}}};
+    for (const bool listed : {false, true}) {
+        if (listed) b.json["scenes"] = {{{"nodes", {0, 1, 2}}}};  // some writers do
+        const Scene scene = load(b.glb());
+        ASSERT_EQ(keysOf(scene), (std::vector<uint64_t>{0}));
+        ASSERT_EQ(scene.levels.size(), 2u);
+        EXPECT_EQ(scene.levels[0].object, 0u);
+        EXPECT_EQ(scene.levels[0].transform, glm::dmat4(1.0));
+        EXPECT_EQ(scene.levels[1].transform[3].x, 1.0);
+        EXPECT_EQ(scene.levels[1].transform[0].x, 2.0);
+        EXPECT_EQ(scene.meshes.size(), 3u);
+    }
+}
+
+TEST(GltfNodes, LevelsTakeTheNodesPlaceInTheTree) {
+    GltfBuilder b = nodeWithLevels();
+    b.node({{"children", {0}}, {"translation", {0, 100, 0}}, {"scale", {3, 3, 3}}});
+    b.json["scenes"] = {{{"nodes", {3}}}};
+    const Scene scene = load(b.glb());
+    ASSERT_EQ(scene.levels.size(), 2u);
+    EXPECT_EQ(scene.objects[0].transform[3], glm::dvec4(15, 100, 0, 1));
+    EXPECT_NEAR(scene.levels[1].transform[3].x, 1.0, 1e-12);
+    EXPECT_NEAR(scene.levels[1].transform[0].x, 2.0, 1e-12);
+}
+
+TEST(GltfNodes, LevelsThatWouldLoseSomethingAreLeftOut) {
+    const auto levelsOf = [](GltfBuilder b) {
+        b.json["scenes"] = {{{"nodes", {0}}}};
+        const Scene scene = load(b.glb());
+        EXPECT_EQ(keysOf(scene).front(), 0u);
+        return scene.levels.size();
+    };
+    EXPECT_EQ(levelsOf(nodeWithLevels()), 2u);
+    GltfBuilder without = nodeWithLevels();
+    without.json["nodes"][2].erase("mesh");  // drawn as nothing from afar
+    EXPECT_EQ(levelsOf(without), 0u);
+    GltfBuilder children = nodeWithLevels();
+    children.json["nodes"][1]["children"] = {children.node({{"mesh", 0}})};
+    EXPECT_EQ(levelsOf(children), 0u);
+    GltfBuilder wrong = nodeWithLevels();
+    wrong.json["nodes"][0]["extensions"]["MSFT_lod"]["ids"] = {7};
+    const Result<Scene> refused = parse(wrong.glb());
+    ASSERT_FALSE(refused.ok());
+    EXPECT_NE(refused.error().message.find("nodes[0]: ids 7 is out of range of 3"), std::string::npos)
+        << refused.error().message;
+}
+
 TEST(GltfNodes, ReadsLongChains) {
     GltfBuilder b;
     b.triangleMesh();

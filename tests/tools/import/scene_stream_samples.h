@@ -14,11 +14,12 @@ inline Scene sampleScene() {
     scene.materials.push_back({"grey", {0.5f, 0.25f, 0.125f, 1}, AlphaMode::kOpaque, 0.5f, false, false});
     scene.materials.push_back({"glass", glm::vec4(1), AlphaMode::kBlend, 0.5f, true, true});
     scene.nodes = {{"House", SceneNode::kNone}, {"Room", 0}, {"", 1}};
-    scene.meshes.push_back({"first mesh", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}, {{0, 1, 0}}, {}, false});
+    scene.meshes.push_back({"first mesh", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}, {{0, 1, 0}}, {}, {}, false});
     scene.meshes.push_back({"moves",
                             {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                             {0, 1, 2, 0, 2, 3},
                             {{0, 1, 0}, {1, 1, 1}},
+                            {},
                             {glm::dvec3(-9), glm::dvec3(9)},
                             true});
     glm::dmat4 moved(1.0);

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "sightline/math/stretch.h"
+
 namespace sightline::tools::gltf {
 namespace {
 
@@ -101,6 +103,12 @@ void readNode(const Json& json, uint32_t i, const NodeTargets& targets, NodeTree
     node.camera = index(json, "camera", targets.cameras, place);
     node.weights = floats(json, "weights", place);
     node.extended = json.contains("extensions");
+    if (node.extended)
+        if (const Json* lod = extension(json, "MSFT_lod", place)) {
+            const Json& ids = table(*lod, "ids", place);
+            for (size_t k = 0; k < ids.size(); ++k)
+                node.lods.push_back(indexAt(ids, k, "ids", tree.nodes.size(), place));
+        }
     if (std::optional<NodeMark> mark = readMark(json, tree.names[i].name, tree.nodes.size(), place)) {
         mark->node = i;
         node.marked = !mark->box;
@@ -210,6 +218,9 @@ NodeTree readNodes(const JsonText& json, const NodeTargets& targets, const std::
         }
         if (node.drawn && node.extended) node.drawn = !hiddenByFile(array[i], at("nodes", i));
     }
+    // What stands for another node is not drawn beside it.
+    for (const Node& node : tree.nodes)
+        for (const uint32_t lod : node.lods) tree.nodes[lod].drawn = false;
     return tree;
 }
 
@@ -234,19 +245,6 @@ glm::dmat4 composeTransform(const double translation[3], const double rotation[4
     for (int column = 0; column < 3; ++column) out[column] = glm::dvec4(turned[column] * scale[column], 0.0);
     out[3] = {translation[0], translation[1], translation[2], 1.0};
     return out;
-}
-
-double largestStretch(const glm::dmat4& matrix) {
-    // Gershgorin on the transposed times itself: its largest eigenvalue is the square of the stretch.
-    const glm::dmat3 linear(matrix);
-    double largest = 0;
-    for (int row = 0; row < 3; ++row) {
-        double sum = 0;
-        for (int column = 0; column < 3; ++column) sum += std::abs(glm::dot(linear[row], linear[column]));
-        if (!std::isfinite(sum)) return std::numeric_limits<double>::infinity();
-        largest = std::max(largest, sum);
-    }
-    return std::sqrt(largest) * (1 + 1e-12);
 }
 
 bool finiteMatrix(const glm::dmat4& matrix) {

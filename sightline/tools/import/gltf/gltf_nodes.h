@@ -47,6 +47,7 @@ struct Node {
     bool drawn = false;           ///< and nothing hides it
     bool marked = false;          ///< its mesh is the shape of a cell or a portal, and is not drawn
     bool extended = false;        ///< its JSON has extensions
+    std::vector<uint32_t> lods;   ///< MSFT_lod: nodes that stand for it from afar, finest first
 };
 
 struct NodeTree {
@@ -72,9 +73,6 @@ glm::dmat3 rotationMatrix(const double rotation[4]);
 
 /// translate * rotate * scale
 glm::dmat4 composeTransform(const double translation[3], const double rotation[4], const double scale[3]);
-
-/// An upper bound on how much the linear part stretches any vector: exact if its columns are orthogonal.
-double largestStretch(const glm::dmat4& matrix);
 
 /// False if any element is NaN or infinite.
 bool finiteMatrix(const glm::dmat4& matrix);

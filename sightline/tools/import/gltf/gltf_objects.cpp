@@ -110,11 +110,28 @@ struct Parts {
     std::vector<Skin> skins;
     NodeTree tree;
     std::vector<Shape> shapes;
+    std::map<uint32_t, size_t> shape_of_level;  ///< by node that stands for others from afar
 };
 
-std::vector<Shape> gatherShapes(const Parts& parts) {
-    std::vector<Shape> shapes;
+/// Whether a node's levels of detail can be kept: meshes that do not deform, and nothing below that would be lost.
+bool keepsLevels(const Parts& parts, const std::vector<uint8_t>& has_children, uint32_t node) {
+    const Node& of = parts.tree.nodes[node];
+    if (of.lods.empty() || !of.drawn || !of.mesh || of.marked || has_children[node]) return false;
+    const auto plain = [&](uint32_t i) {
+        const Node& level = parts.tree.nodes[i];
+        if (!level.mesh || level.marked || has_children[i] || level.skin) return false;
+        const MeshSource& source = parts.meshes[*level.mesh];
+        return !source.primitives.empty() && !source.morphs;
+    };
+    return plain(node) && std::all_of(of.lods.begin(), of.lods.end(), plain);
+}
+
+void gatherShapes(Parts& parts) {
+    std::vector<Shape>& shapes = parts.shapes;
     std::map<std::tuple<uint32_t, uint32_t, std::vector<float>>, size_t> known;
+    std::vector<uint8_t> has_children(parts.tree.nodes.size(), 0);
+    for (const SceneNode& node : parts.tree.names)
+        if (node.parent != kNoNode) has_children[node.parent] = 1;
     for (uint32_t i = 0; i < parts.tree.nodes.size(); ++i) {
         const Node& node = parts.tree.nodes[i];
         if (!node.drawn || !node.mesh || node.marked) continue;
@@ -127,7 +144,18 @@ std::vector<Shape> gatherShapes(const Parts& parts) {
         if (fresh) shapes.push_back(std::move(shape));
         shapes[place->second].nodes.push_back(i);
     }
-    return shapes;
+    for (uint32_t i = 0; i < parts.tree.nodes.size(); ++i) {
+        if (!keepsLevels(parts, has_children, i)) {
+            parts.tree.nodes[i].lods.clear();
+            continue;
+        }
+        for (const uint32_t level : parts.tree.nodes[i].lods) {
+            const uint32_t mesh = *parts.tree.nodes[level].mesh;
+            const auto [place, fresh] = known.try_emplace({mesh, kNoNode, {}}, shapes.size());
+            if (fresh) shapes.push_back({mesh, std::nullopt, {}, {}});
+            parts.shape_of_level[level] = place->second;
+        }
+    }
 }
 
 // What each morph weight of a mesh may be: 0 to 1, its defaults, and what animations make of it.
@@ -271,6 +299,26 @@ void addObjects(Document& document, const Parts& parts, const std::vector<Built>
         if (shape_of[node] != kNone) addNode(document, parts, node, built[shape_of[node]], scene);
 }
 
+/// The levels that the file names for the objects of a node.
+void addLevels(Document& document, const Parts& parts, const std::vector<Built>& built, Scene& scene) {
+    const NodeTree& tree = parts.tree;
+    for (uint32_t object = 0; object < scene.objects.size(); ++object) {
+        const uint32_t node = scene.objects[object].node;
+        for (const uint32_t level : tree.nodes[node].lods) {
+            const Built& shape = built[parts.shape_of_level.at(level)];
+            if (!shape.mesh) break;
+            // It takes the node's place in the tree, unless it has one of its own.
+            glm::dmat4 place = tree.nodes[level].world;
+            const uint32_t parent = tree.names[node].parent;
+            if (tree.names[level].parent == kNoNode && parent != kNoNode) place = tree.nodes[parent].world * place;
+            const glm::dmat4 relative = glm::inverse(tree.nodes[node].world) * place;
+            if (!finiteMatrix(relative)) break;
+            document.budget.charge(1, sizeof(SceneLevel), at("nodes", node));
+            scene.levels.push_back({object, *shape.mesh, relative});
+        }
+    }
+}
+
 }  // namespace
 
 Scene makeScene(Document& document) {
@@ -284,9 +332,11 @@ Scene makeScene(Document& document) {
     parts.tree = readNodes(document.json, {parts.meshes.size(), parts.skins.size(), cameras.size()}, [&](size_t read) {
         document.progress.reach(Progress::kChecked, Progress::kParsed, double(read) / double(nodes));
     });
-    parts.shapes = gatherShapes(parts);
+    gatherShapes(parts);
     scene.materials = std::move(materials.list);
-    addObjects(document, parts, buildShapes(document, parts, scene), scene);
+    const std::vector<Built> built = buildShapes(document, parts, scene);
+    addObjects(document, parts, built, scene);
+    addLevels(document, parts, built, scene);
     scene.cameras = placeCameras(parts.tree, cameras);
     scene.nodes = std::move(parts.tree.names);
     addMarked(document, parts.tree, parts.meshes, scene);

@@ -40,10 +40,12 @@ Bytes trimmed(Bytes text) {
 }  // namespace
 
 bool isKnownExtension(const std::string& name) {
-    constexpr std::array kExact = {"KHR_mesh_quantization",      "EXT_meshopt_compression", "KHR_meshopt_compression",
-                                   "KHR_draco_mesh_compression", "EXT_mesh_gpu_instancing", "KHR_node_visibility",
-                                   "KHR_animation_pointer",      "MSFT_texture_dds",        "EXT_mesh_features",
-                                   "EXT_structural_metadata",    "EXT_instance_features"};
+    constexpr std::array kExact = {"KHR_mesh_quantization",   "EXT_meshopt_compression",
+                                   "KHR_meshopt_compression", "KHR_draco_mesh_compression",
+                                   "EXT_mesh_gpu_instancing", "KHR_node_visibility",
+                                   "KHR_animation_pointer",   "MSFT_texture_dds",
+                                   "EXT_mesh_features",       "MSFT_lod",
+                                   "EXT_structural_metadata", "EXT_instance_features"};
     constexpr std::array kPrefixes = {"KHR_texture_",     "EXT_texture_", "KHR_materials_", "EXT_materials_",
                                       "ADOBE_materials_", "KHR_lights_",  "EXT_lights_",    "KHR_xmp"};
     for (const char* exact : kExact)

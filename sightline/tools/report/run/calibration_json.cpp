@@ -15,9 +15,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "sightline.calibration/1";
+constexpr const char* kProfileSchema = "sightline.profile/1";  // has the fields in its "costs"
 constexpr const char* kTest = "cluster_test_ns";
 constexpr const char* kDropped = "triangle_dropped_ns";
 constexpr const char* kDrawn = "triangle_drawn_ns";
+
+Error wrongFile(const std::string& file, const std::string& what) {
+    return {Error::Kind::kInput, fmt::format("{}: {}", oneLine(file), what)};
+}
 
 }  // namespace
 
@@ -32,25 +37,50 @@ std::string calibrationJson(const FacingCosts& costs, const std::string& machine
 }
 
 Result<FacingCosts> parseCalibration(std::string_view text, const std::string& file) {
-    const auto fail = [&](const std::string& what) {
-        return Error{Error::Kind::kInput, fmt::format("{}: {}", oneLine(file), what)};
-    };
-    const Json json = Json::parse(text, nullptr, false);
+    const auto fail = [&](const std::string& what) { return wrongFile(file, what); };
+    Json json = Json::parse(text, nullptr, false);
     if (json.is_discarded()) return fail("not JSON");
     if (!json.is_object()) return fail("not an object");
     const auto schema = json.find("schema");
-    if (schema == json.end() || !schema->is_string() || schema->get<std::string>() != kSchema)
-        return fail(fmt::format("schema: not {}", kSchema));
+    const std::string name = schema != json.end() && schema->is_string() ? schema->get<std::string>() : std::string();
+    if (name == kProfileSchema) {
+        const auto of_profile = json.find("costs");
+        if (of_profile == json.end() || !of_profile->is_object()) return fail("costs: missing");
+        json = Json(*of_profile);
+    } else if (name != kSchema) {
+        return fail(fmt::format("schema: neither {} nor {}", kSchema, kProfileSchema));
+    }
     FacingCosts costs;
     const std::pair<const char*, double*> fields[] = {
         {kTest, &costs.test}, {kDropped, &costs.dropped}, {kDrawn, &costs.drawn}};
-    for (const auto& [name, value] : fields) {
-        const auto at = json.find(name);
-        if (at == json.end()) return fail(fmt::format("{}: missing", name));
+    for (const auto& [field, value] : fields) {
+        const auto at = json.find(field);
+        if (at == json.end()) return fail(fmt::format("{}: missing", field));
         *value = at->is_number() ? at->get<double>() : 0.0;
-        if (!(*value > 0.0) || !std::isfinite(*value)) return fail(fmt::format("{}: not a number above 0", name));
+        if (!(*value > 0.0) || !std::isfinite(*value)) return fail(fmt::format("{}: not a number above 0", field));
     }
     return costs;
+}
+
+Result<std::optional<DrawCost>> parseDrawCost(std::string_view text, const std::string& file) {
+    const Json json = Json::parse(text, nullptr, false);
+    if (!json.is_object()) return wrongFile(file, json.is_discarded() ? "not JSON" : "not an object");
+    if (json.value("schema", Json()) != Json(kProfileSchema)) return std::optional<DrawCost>();
+    const auto costs = json.find("costs");
+    if (costs == json.end() || !costs->is_object()) return wrongFile(file, "costs: missing");
+    DrawCost cost;
+    const std::pair<const char*, double*> fields[] = {{"object_ns", &cost.object},
+                                                      {"triangle_ns", &cost.triangle},
+                                                      {"vertex_ns", &cost.vertex},
+                                                      {"pixel_ns", &cost.pixel}};
+    for (const auto& [field, value] : fields) {
+        const auto at = costs->find(field);
+        if (at == costs->end()) return wrongFile(file, fmt::format("{}: missing", field));
+        *value = at->is_number() ? at->get<double>() : -1.0;
+        if (!(*value >= 0.0) || !std::isfinite(*value))
+            return wrongFile(file, fmt::format("{}: not a number from 0 on", field));
+    }
+    return std::optional<DrawCost>(cost);
 }
 
 }  // namespace sightline::tools

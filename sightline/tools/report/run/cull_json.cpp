@@ -44,6 +44,7 @@ Json frameJson(const FrameResult& frame, const CullRun& run, const Scene* scene)
     if (scene) out["visible"] = frame.visible;
     else out["kept"] = frame.visible.size();
     if (scene && run.stereo > 0) out["eyes"] = frame.eyes;
+    if (scene && !frame.lods.empty()) out["lods"] = lodsByKey(frame, *scene);
     if (!scene && !frame.notes.empty()) out["notes"] = frame.notes;
     out["stages"] = Json::array();
     for (int stage = 0; stage < kStageCount; ++stage) {

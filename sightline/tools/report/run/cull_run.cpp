@@ -95,12 +95,26 @@ void countByKey(const Scene& scene, const std::vector<uint32_t>& key_order, uint
         else if (finest <= kStageCount) ++frame.stages[finest - 1].culled;
     }
     if (frame.clusters) frame.triangles -= frame.clusters->whole - frame.clusters->drawn;
+    frame.triangles -= frame.stats.lod_finest;
+    frame.triangles += frame.stats.lod_triangles;
     uint64_t left = keys;
     for (int stage = 0; stage < kStageCount; ++stage) {
         if (!(stages >> stage & 1)) continue;
         frame.stages[stage].tested = left;
         left -= frame.stages[stage].culled;
     }
+}
+
+std::vector<uint8_t> lodsByKey(const FrameResult& frame, const Scene& scene) {
+    if (frame.lods.empty()) return {};
+    std::vector<uint8_t> lods(frame.visible.size(), 0xff);
+    for (size_t i = 0; i < frame.lods.size(); ++i) {
+        if (frame.reasons[i] != 0) continue;
+        const auto at = std::lower_bound(frame.visible.begin(), frame.visible.end(), scene.objects[i].key);
+        uint8_t& level = lods[static_cast<size_t>(at - frame.visible.begin())];
+        level = std::min(level, frame.lods[i]);
+    }
+    return lods;
 }
 
 std::vector<uint64_t> keysKeptUnseen(const FrameResult& frame, const Scene& scene) {

@@ -107,6 +107,7 @@ struct FrameResult {
     std::optional<LeftToDraw> frustum_alone;  ///< what the stage of the frustum would leave if it were the only one
     std::optional<ClusterRow> clusters;       ///< with that stage, of one eye
     std::optional<CellRow> cells;             ///< with the stage of portals, of one eye
+    std::vector<uint8_t> lods;                ///< with the stage of levels of detail: per object  [size: objects, or 0]
     QueryStats stats;                         ///< of both eyes together, where there are two
     double query_microseconds = 0;            ///< median over the repeats
     std::vector<OccluderCredit> credits;      ///< of all that were rasterized, by object; empty unless asked for
@@ -114,7 +115,7 @@ struct FrameResult {
     double begin_microseconds = 0;            ///< when it began with this frame, since the run began
     double end_microseconds = 0;              ///< when it had done with it
     std::optional<VerificationRow> verification;
-    std::optional<uint64_t> changed_pixels;  ///< that show another object for distance and contribution culling
+    std::optional<uint64_t> changed_pixels;  ///< that show another object for what is not conservative
     std::vector<std::string> notes;          ///< for a reader: why this frame is the slowest or the loosest of its run
 };
 
@@ -129,8 +130,9 @@ struct CullRun {
     QuerySettings settings = toolSettings();  ///< stages: those in use; hysteresis: towards the frame before
     ViewPlanes sections;                      ///< View
     VisibilityAsked visibility;
-    double cluster_test = 0;  ///< FacingCost::test that clusters were prepared for, with that stage
-    double stereo = 0;        ///< distance of the two eyes  [world units]; 0: there is one
+    double cluster_test = 0;    ///< FacingCost::test that clusters were prepared for, with that stage
+    double corner_stretch = 1;  ///< of the first frame: how much larger an error may look in the image's corner
+    double stereo = 0;          ///< distance of the two eyes  [world units]; 0: there is one
     int repeat = 1;
     bool interrupted = false;    ///< the frames after the last one here were not begun, or not finished
     uint64_t frames_wanted = 0;  ///< of the path; 0: as many as there are here
@@ -185,6 +187,9 @@ struct KeyName {
 
 /// The keys that any frame kept or a witness saw, ascending: as many as are visible, however large the scene is.
 std::vector<KeyName> keyNames(const CullRun& run, const Scene& scene, const std::vector<uint32_t>& key_order);
+
+/// Per visible key of a frame, the finest level of detail that an object of it is drawn by; empty if none were chosen.
+std::vector<uint8_t> lodsByKey(const FrameResult& frame, const Scene& scene);
 
 /// Keys that a frame kept and of which no witness saw any object, ascending.
 std::vector<uint64_t> keysKeptUnseen(const FrameResult& frame, const Scene& scene);

@@ -54,6 +54,14 @@ std::string clustersText(const ClustersReason& found) {
                        readable(static_cast<double>(found.outside)), readable(static_cast<double>(found.hidden)));
 }
 
+std::string lodText(const LodReason& found) {
+    if (found.levels < 2) return "";
+    std::string text = fmt::format(" It is drawn by level {} of {}", found.drawn.level, found.levels);
+    if (found.drawn.level > 0) text += fmt::format(", which errs by {:.2g} pixels", found.error);
+    if (std::isfinite(found.next_error)) text += fmt::format("; the next would err by {:.2g}", found.next_error);
+    return text + ".";
+}
+
 std::string drawnText(const ClustersReason& found) {
     if (found.clusters == 0) return "";
     return fmt::format(" Of its {} triangles {} are left to draw: {}.", readable(static_cast<double>(found.triangles)),
@@ -235,6 +243,9 @@ std::string explanationText(const Explanation& why, const std::string& subject, 
         case Verdict::kNoCluster:
             return fmt::format("culled by clusters: of {} none is left: {}.", subject, clustersText(why.clusters)) +
                    rectangleText(why);
+        case Verdict::kNoTime:
+            return fmt::format("culled by lod: the budget has no time for {}. It may be visible.", subject) +
+                   rectangleText(why);
         case Verdict::kNotInPvs:
             return fmt::format("culled by pvs: {}: {}.", subject, rowsText(why.cells));
         case Verdict::kNoWindow:
@@ -245,7 +256,7 @@ std::string explanationText(const Explanation& why, const std::string& subject, 
     std::string reason = keptText(why, name);
     if (!seen.empty()) reason[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(reason[0])));
     return fmt::format("kept: {}{} {}.", subject, seen.empty() ? ":" : " " + seen, reason) + rectangleText(why) +
-           drawnText(why.clusters);
+           lodText(why.lod) + drawnText(why.clusters);
 }
 
 std::string explanationClause(const Explanation& why, const NameOfObject& name, size_t most) {
@@ -265,6 +276,8 @@ std::string explanationClause(const Explanation& why, const NameOfObject& name, 
             return smallText(why.size);
         case Verdict::kNoCluster:
             return clustersText(why.clusters);
+        case Verdict::kNoTime:
+            return "no time in the budget";
         case Verdict::kNotInPvs:
             return rowsText(why.cells);
         case Verdict::kNoWindow:
@@ -281,14 +294,16 @@ std::string stageOf(const Explanation& why) {
     if (why.verdict == Verdict::kTooFar) return kStageNames[static_cast<int>(Stage::kDistance)];
     if (why.verdict == Verdict::kTooSmall) return kStageNames[static_cast<int>(Stage::kContribution)];
     if (why.verdict == Verdict::kNoCluster) return kStageNames[static_cast<int>(Stage::kClusters)];
+    if (why.verdict == Verdict::kNoTime) return kStageNames[static_cast<int>(Stage::kLod)];
     if (why.verdict == Verdict::kNotInPvs) return kStageNames[static_cast<int>(Stage::kPvs)];
     if (why.verdict == Verdict::kNoWindow) return kStageNames[static_cast<int>(Stage::kPortals)];
     return "";
 }
 
 const char* verdictName(Verdict verdict) {
-    constexpr const char* kNames[] = {"no such object", "outside layers", "visible",    "outside frustum", "occluded",
-                                      "too far",        "too small",      "no cluster", "not in PVS",      "no window"};
+    constexpr const char* kNames[] = {"no such object", "outside layers", "visible",   "outside frustum",
+                                      "occluded",       "too far",        "too small", "no cluster",
+                                      "no time",        "not in PVS",     "no window"};
     return kNames[static_cast<int>(verdict)];
 }
 

@@ -42,6 +42,9 @@ TEST(Calibration, WhatIsWrongIsNamed) {
         {head + "\"cluster_test_ns\": -1}", "above 0"},
         {head + "\"cluster_test_ns\": 1e999}", ""},
         {head + "\"cluster_test_ns\": null}", "above 0"},
+        {"{\"schema\": \"sightline.profile/1\"}", "costs: missing"},
+        {"{\"schema\": \"sightline.profile/1\", \"costs\": [1]}", "costs: missing"},
+        {"{\"schema\": \"sightline.profile/1\", \"costs\": {}}", "cluster_test_ns: missing"},
     };
     for (const auto& [text, what] : cases) {
         const Result<FacingCosts> read = parseCalibration(text, "c.json");
@@ -67,6 +70,30 @@ TEST(Calibration, ReplaysTheCorpusOfTheFuzzer) {
     EXPECT_GE(read, 1u);
 }
 
+TEST(Calibration, AProfileTellsWhatDrawingCosts) {
+    const std::string costs = R"("object_ns": 120.5, "triangle_ns": 0, "vertex_ns": 2, "pixel_ns": 0.25)";
+    const auto profile = [](const std::string& text) {
+        return R"({"schema": "sightline.profile/1", "costs": {)" + text + "}}";
+    };
+    const Result<std::optional<DrawCost>> read = parseDrawCost(profile(costs), "p.json");
+    ASSERT_TRUE(read.ok() && *read);
+    EXPECT_EQ((*read)->object, 120.5);
+    EXPECT_EQ((*read)->triangle, 0);
+    EXPECT_EQ((*read)->vertex, 2);
+    EXPECT_EQ((*read)->pixel, 0.25);
+    const Result<std::optional<DrawCost>> none = parseDrawCost(calibrationJson({1, 2, 3}, "m"), "c.json");
+    ASSERT_TRUE(none.ok());
+    EXPECT_FALSE(*none);
+    const std::pair<const char*, const char*> wrong[] = {
+        {R"("object_ns": -1)", "p.json: object_ns: not a number from 0 on"},
+        {R"("object_ns": "1")", "p.json: object_ns: not a number from 0 on"},
+        {R"("object_ns": 1)", "p.json: triangle_ns: missing"}};
+    for (const auto& [text, message] : wrong)
+        EXPECT_EQ(parseDrawCost(profile(text), "p.json").error().message, message);
+    EXPECT_EQ(parseDrawCost("[]", "p.json").error().message, "p.json: not an object");
+    EXPECT_EQ(parseDrawCost("{", "p.json").error().message, "p.json: not JSON");
+}
+
 TEST(Calibration, NoBytesCrashTheReader) {
     const std::string good = calibrationJson({1, 2, 3}, "m");
     Random random(1);
@@ -90,6 +117,7 @@ TEST(Calibration, NoBytesCrashTheReader) {
         const Result<FacingCosts> costs = parseCalibration(text, "c");
         read += costs.ok();
         if (costs.ok()) { EXPECT_GT(costs->test, 0); }
+        (void)parseDrawCost(text, "c").ok();
     }
     EXPECT_GT(read, 100u);
 }
