@@ -163,6 +163,7 @@ Result<CellVisibility> bakeRows(const CellGraph& rows, const BakeSettings& setti
     CellVisibilitySettings flows;
     flows.jobs = settings.jobs;
     flows.budget = settings.budget;
+    flows.farthest = settings.farthest;
     flows.keep_follows = settings.object_rows;
     flows.resume = settings.resume;
     flows.progress = settings.progress;
@@ -174,7 +175,7 @@ Result<CellVisibility> bakeRows(const CellGraph& rows, const BakeSettings& setti
         flows.checkpoint = [&](const CellVisibilityState& state) {
             if (state.flowed == state.order.size()) return;  // the end is near
             if (!asksToStop(settings) && secondsSince(saved) < settings.checkpoint_seconds) return;
-            written = settings.checkpoint(bakeStateBytes(state, hashOf(rows), settings.budget));
+            written = settings.checkpoint(bakeStateBytes(state, hashOf(rows, settings.farthest), settings.budget));
             saved = Clock::now();
         };
     CellVisibility visibility = bakeCellVisibility(rows, flows);

@@ -47,6 +47,33 @@ TEST_F(Vis, APortalFileGivesRowsAndFigures) {
     EXPECT_FALSE(std::filesystem::exists(path("rooms.see.state")));
 }
 
+TEST_F(Vis, SightMayEndAtADistance) {
+    write("rooms.prt", kRooms);
+    const auto pairs = [&](const std::string& farthest) { return vis("rooms.prt --verify " + farthest); };
+    EXPECT_EQ(pairs("")["farthest"], 0);
+    EXPECT_EQ(pairs("--farthest 60")["visible_leaf_pairs"], 14);
+    const json near = pairs("-visdist 40");  // the rooms across the corridor are 33 and 49 apart
+    EXPECT_EQ(near["visible_leaf_pairs"], 12);
+    EXPECT_EQ(near["farthest"], 40);
+    EXPECT_EQ(near["verification"]["false_negatives"], 0);
+    EXPECT_EQ(pairs("-maxdistance 20")["visible_leaf_pairs"], 10);
+
+    std::string map =
+        "{\n\"classname\" \"worldspawn\"\n\"_farplanedist\" \"512.5\"\n{\n"
+        "( 0 0 0 ) ( 0 1 0 ) ( 0 0 1 ) w 0 0 0 1 1\n( 9 0 0 ) ( 9 0 1 ) ( 9 1 0 ) w 0 0 0 1 1\n"
+        "( 0 0 0 ) ( 0 0 1 ) ( 1 0 0 ) w 0 0 0 1 1\n( 0 9 0 ) ( 1 9 0 ) ( 0 9 1 ) w 0 0 0 1 1\n"
+        "( 0 0 0 ) ( 1 0 0 ) ( 0 1 0 ) w 0 0 0 1 1\n( 0 0 9 ) ( 0 1 9 ) ( 1 0 9 ) w 0 0 0 1 1\n}\n}\n";
+    write("fog.map", map);
+    EXPECT_EQ(vis("fog.map")["farthest"], 512.5);
+    EXPECT_NE(run("vis fog.map").err.find("sight ends at 512.5 units, by the map's _farplanedist"), std::string::npos);
+    EXPECT_EQ(vis("fog.map --farthest 0")["farthest"], 0);
+    EXPECT_EQ(vis("fog.map --farthest 100")["farthest"], 100);
+    EXPECT_NE(run("vis fog.map -o fog.see").err.find("_farplanedist has no effect"), std::string::npos);
+    expectError("vis fog.map --farthest 100 -o fog.see", 2, "a visibility file holds at any distance");
+    write("fog.map", map.replace(map.find("512.5"), 5, "dense"));
+    EXPECT_EQ(vis("fog.map")["farthest"], 0);
+}
+
 TEST_F(Vis, BytesAreTheSameForAnyThreads) {
     write("rooms.prt", kRooms);
     for (const char* threads : {"1", "2", "8"})
@@ -94,7 +121,7 @@ TEST_F(Vis, AMapIsWrittenInItsPlaceAsCompilersDo) {
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_EQ(read(path("n.bsp")), read(path("out.bsp")));
     EXPECT_NE(outcome.err.find("-level has no effect: rows are always as tight"), std::string::npos);
-    expectError("vis -visdist 512 n.bsp", 2, "-visdist: nothing is cut off at a distance");
+    expectError("vis -visdist -512 n.bsp", 2, "--farthest");
     expectError("vis n.bsp -threads", 2, "-threads: its value is missing");
     expectError("vis n.bsp -threads many", 2, "--threads");
     expectError("vis n.bsp -frobnicate", 2, "-frobnicate");

@@ -32,7 +32,7 @@ Result<std::optional<CellVisibilityState>> stateLeft(const CellGraph& rows, cons
         note(bytes.error().message + ": the bake begins anew");
         return state_left;
     }
-    Result<CellVisibilityState> state = readBakeState(*bytes, options.state, rows, options.budget);
+    Result<CellVisibilityState> state = readBakeState(*bytes, options.state, rows, options.budget, options.farthest);
     if (!state && !isBakeState(*bytes))
         return Error{Error::Kind::kOutput, options.state + ": holds something else than the state of a bake"};
     if (!state) {
@@ -120,6 +120,7 @@ Result<BakeSettings> BakeRun::begin(const CellGraph& rows) {
     settings.jobs = &pool_;
     settings.budget = options_.budget;
     settings.time_limit = options_.time_limit;
+    settings.farthest = options_.farthest;
     settings.object_rows = options_.objects;
     settings.form = options_.in_place ? VisibilityForm::kInPlace : VisibilityForm::kPacked;
     settings.stop = [] { return interrupted(); };

@@ -28,6 +28,7 @@ struct BakeOptions {
     uint32_t threads = 0;              ///< 0: all cores
     uint64_t budget = 0;               ///< BakeSettings
     double time_limit = 0;             ///< BakeSettings  [s]
+    double farthest = 0;               ///< BakeSettings  [world units]
     bool in_place = false, objects = false;
 };
 

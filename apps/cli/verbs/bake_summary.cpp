@@ -22,8 +22,9 @@ double ratio(uint64_t part, uint64_t whole) {
 
 std::string percentText(uint64_t part, uint64_t whole) { return fmt::format("{:.2f} %", 100 * ratio(part, whole)); }
 
-/// What ended early.
+/// What ends sight, or ended the bake, early.
 void printLimits(std::FILE* out, const VisSummary& s) {
+    if (s.farthest > 0) tell(out, fmt::format("  sight ends at {:g} units\n", s.farthest));
     if (s.over_budget)
         tell(out,
              fmt::format("  portals over budget {}: what they may see counts as visible\n", grouped(s.over_budget)));

@@ -41,6 +41,17 @@ using namespace bake;
 using namespace tools;
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
+struct VisOptions : BakeOptions {
+    VisMapChoice map;
+    std::string leak;                      ///< file, or empty
+    std::vector<std::string> no_ambient;   ///< sounds; "all"
+    std::optional<double> farthest_given;  ///< none: the map says it
+    bool verify = false;
+    uint64_t rays = 1000000;
+};
+
 // Rows of a map held against rays.
 
 void addReport(const RowReport& report, VisSummary::Verification& out, const std::vector<uint32_t>& leaf_of_row) {
@@ -53,7 +64,7 @@ void addReport(const RowReport& report, VisSummary::Verification& out, const std
 
 /// Half of the rays go through the map's own tree, if it has one: then the rows hold for the map, and not only for its
 /// portals. The others go through the portals.
-VisSummary::Verification verifyVis(const VisMap& map, const BitMatrix& visible, uint64_t rays, Jobs& jobs) {
+VisSummary::Verification verifyVis(const VisMap& map, const BitMatrix& visible, const VisOptions& options, Jobs& jobs) {
     const CellGraph& graph = map.graph;
     VisSummary::Verification out;
     std::vector<uint32_t> leaf_of_cell(graph.cells, 0);
@@ -62,7 +73,8 @@ VisSummary::Verification verifyVis(const VisMap& map, const BitMatrix& visible, 
             leaf_of_cell[graph.cell_of_leaf[leaf]] = static_cast<uint32_t>(leaf);
     RowCheckSettings settings;
     settings.jobs = &jobs;
-    settings.segments = map.tree ? std::max<uint64_t>(1, rays / 2) : rays;
+    settings.segments = map.tree ? std::max<uint64_t>(1, options.rays / 2) : options.rays;
+    settings.farthest = options.farthest;
     double largest = 1;
     for (const glm::dvec3& p : graph.points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     addReport(checkCellRows(GraphRays(graph, largest * 0x1p-36), visible, settings), out, leaf_of_cell);
@@ -77,20 +89,13 @@ VisSummary::Verification verifyVis(const VisMap& map, const BitMatrix& visible, 
     return out;
 }
 
-using Clock = std::chrono::steady_clock;
-
-struct VisOptions : BakeOptions {
-    VisMapChoice map;
-    std::string leak;                     ///< file, or empty
-    std::vector<std::string> no_ambient;  ///< sounds; "all"
-    bool verify = false;
-    uint64_t rays = 1000000;
-};
-
 std::string endOf(const std::string& name) { return lower(std::filesystem::path(name).extension().string()); }
 
 /// `-o` names a map (.bsp), and not a visibility file.
 bool writesMap(const VisOptions& options) { return endOf(options.output) == ".bsp"; }
+
+/// `-o` names a visibility file.
+bool writesRows(const VisOptions& options) { return !options.output.empty() && !writesMap(options); }
 
 /// The map that a name without an end stands for, as compilers take it.
 std::string mapFileOf(const std::string& name) {
@@ -102,6 +107,8 @@ std::string mapFileOf(const std::string& name) {
 Status checkVisFiles(VisOptions& options) {
     if (options.in_place && writesMap(options))
         return Error{Error::Kind::kUsage, "--in-place goes with -o of a visibility file"};
+    if (options.farthest_given.value_or(0) > 0 && writesRows(options))
+        return Error{Error::Kind::kUsage, "--farthest goes with -o of a .bsp: a visibility file holds at any distance"};
     for (const char* end : {".map", ".prt", ".pak", ".pk3"})
         for (const std::string& name : {options.output, options.json, options.state, options.leak})
             if (endOf(name) == end)
@@ -168,7 +175,7 @@ Result<VisOutputs> makeOutputs(const VisOptions& options, const VisMap& map, con
     VisOutputs out;
     const bool write_map = writesMap(options), figures = !options.json.empty();
     const std::string name = std::filesystem::path(splitMapName(options.map.name).file).filename().string();
-    if (figures || (!options.output.empty() && !write_map)) {
+    if (figures || writesRows(options)) {
         const VisibilityContent content{visibility.visible, map.graph.cell_of_leaf, name, map.content_hash};
         Result<BakedFile> rows = bakedFile(content, true);
         if (!rows) return rows.error();
@@ -237,11 +244,21 @@ Result<VisMap> loadCheckedMap(VisOptions& options) {
     return map;
 }
 
+/// What was asked for, or what the map says.
+void chooseFarthest(VisOptions& options, double of_map) {
+    options.farthest = options.farthest_given.value_or(writesRows(options) ? 0 : of_map);
+    if (options.farthest_given || of_map == 0) return;
+    note(writesRows(options)
+             ? "the map's _farplanedist has no effect: a visibility file holds at any distance"
+             : fmt::format("sight ends at {:g} units, by the map's _farplanedist (--farthest 0: nowhere)", of_map));
+}
+
 Result<int> runVis(VisOptions& options) {
     const Clock::time_point begin = Clock::now();
     options.map.name = mapFileOf(options.map.name);
     const Result<VisMap> map = loadCheckedMap(options);
     if (!map) return map.error();
+    chooseFarthest(options, map->farthest);
     BakeRun run(options);
     const Result<BakeSettings> settings = run.begin(map->graph);
     if (!settings) return settings.error();
@@ -257,12 +274,13 @@ Result<int> runVis(VisOptions& options) {
     VisSummary summary = summaryOf(*map, *visibility, *outputs);
     summary.before = compareWithLump(*map, visibility->visible);
     summary.map = options.map.name;
+    summary.farthest = options.farthest;
     summary.threads = run.threads();
     summary.cpu_seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
     summary.wall_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     if (options.objects) summary.objects = bakeFaces(*map, *visibility, *settings);
     if (options.objects && !summary.objects) return reportInterruption("the cells, in the midst of the objects", true);
-    if (options.verify) summary.verification = verifyVis(*map, visibility->visible, options.rays, run.jobs());
+    if (options.verify) summary.verification = verifyVis(*map, visibility->visible, options, run.jobs());
 
     if (!options.report.empty())
         if (Status written =
@@ -302,6 +320,11 @@ void addVis(CLI::App& tool, int& exit_code) {
     verb->add_option("--prt", options->map.prt,
                      "take the clusters of a .bsp from this portal file (default: beside it, of the same name)")
         ->type_name("FILE");
+    verb->add_option("--farthest", options->farthest_given,
+                     "sight ends so far from the eye, as at a far plane or in fog; 0: nowhere (default: _farplanedist "
+                     "of the map's worldspawn, or nowhere)")
+        ->check(CLI::Range(0.0, 1e9))
+        ->type_name("UNITS");
     verb->add_flag("--opaque-water", options->map.water_is_opaque,
                    "nothing is seen from one kind of contents into another");
     verb->add_option("--leak", options->leak, "write the way by which a .map leaks, as engines draw it (.pts)")

@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <span>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,6 +25,7 @@
 #include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/import/quake/prt.h"
 #include "sightline/tools/import/quake/quake_map.h"
+#include "sightline/tools/import/quake/quake_scene.h"
 #include "sightline/tools/scene/procedural.h"
 #include "sightline/tools/scene/text_file.h"
 
@@ -188,6 +193,15 @@ Result<VisMap> loadPortalFile(const VisMapChoice& choice) {
     return out;
 }
 
+/// `_farplanedist` of the worldspawn, as q3map2 takes it; 0: none that is a distance.
+double farPlaneOf(const QuakeMap& map) {
+    if (map.entities.empty()) return 0;
+    const std::string_view value = map.valueOf(map.entities[0], "_farplanedist");
+    double distance = 0;
+    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), distance);
+    return error == std::errc() && std::isfinite(distance) && distance > 0 ? distance : 0;
+}
+
 /// The source of a map, by our own tree of its brushes.
 Result<VisMap> loadSource(const VisMapChoice& choice) {
     const Result<std::string> text = readTextFile(choice.name);
@@ -200,6 +214,7 @@ Result<VisMap> loadSource(const VisMapChoice& choice) {
                      choice.name + ": has no brushes: there is nothing that could hide or be seen"};
     VisMap out;
     out.content_hash = contentHash(*text);
+    out.farthest = farPlaneOf(*source);
     BrushTree brushes = treeOfBrushes(*source);
     MapCells cells = cellsInside(*source, brushes);
     out.graph = std::move(cells.graph);
@@ -247,6 +262,9 @@ Result<VisMap> loadVisMap(const VisMapChoice& choice) {
         if (Status read = readMap(choice.name, out); !read) return read.error();
         if (Status found = findCells(choice, out); !found) return found.error();
     }
+    if (out.map)
+        if (const Result<QuakeMap> entities = quakeEntities(*out.map, out.map_name))
+            out.farthest = farPlaneOf(*entities);
     for (const uint32_t cell : out.graph.cell_of_leaf) out.leaves += cell != CellGraph::kNoCell;
     return out;
 }

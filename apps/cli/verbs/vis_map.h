@@ -47,6 +47,7 @@ struct VisMap {
     double tolerance = 0;                 ///< how far portals of the tree may be off [world units]
     bool contents_stop = false;           ///< TreePortalSettings
     std::vector<MapLeak> leaks;           ///< of a .map
+    double farthest = 0;                  ///< _farplanedist of its worldspawn: sight ends there; 0: none  [map units]
     std::string map_name;                 ///< of its bytes
     std::vector<unsigned char> map_bytes;
 };

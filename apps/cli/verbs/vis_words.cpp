@@ -24,7 +24,6 @@ struct Word {
 
 constexpr std::string_view kTight = "rows are always as tight as they can be proved";
 constexpr std::string_view kOwnWay = "it says how other tools work";
-constexpr std::string_view kNoLimit = "nothing is cut off at a distance";
 
 constexpr auto kWords = std::to_array<Word>({
     {"-threads", Means::kOption, true, "--threads"},
@@ -58,8 +57,8 @@ constexpr auto kWords = std::to_array<Word>({
     {"-noambientwater", Means::kOption, false, "--no-ambient=water"},
     {"-noambientslime", Means::kOption, false, "--no-ambient=slime"},
     {"-noambientlava", Means::kOption, false, "--no-ambient=lava"},
-    {"-visdist", Means::kOtherRows, true, kNoLimit},
-    {"-maxdistance", Means::kOtherRows, true, kNoLimit},
+    {"-visdist", Means::kOption, true, "--farthest"},
+    {"-maxdistance", Means::kOption, true, "--farthest"},
     {"-phsonly", Means::kOtherRows, false, "what is heard is made with what is seen"},
     {"-merge", Means::kOtherRows, false, "clusters stay as the compiler made them; see --cells"},
     {"-mergeportals", Means::kOtherRows, false, "clusters stay as the compiler made them; see --cells"},

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/bake/flow/bake_state.h"
 
+#include <bit>
 #include <cstring>
 #include <vector>
 
@@ -49,7 +50,7 @@ Error wrong(const std::string& name, const char* what) { return {Error::Kind::kI
 
 }  // namespace
 
-uint64_t hashOf(const CellGraph& graph) {
+uint64_t hashOf(const CellGraph& graph, double farthest) {
     const auto bytesOf = [](const auto& list) {
         return std::span<const char>(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(list[0]));
     };
@@ -58,7 +59,7 @@ uint64_t hashOf(const CellGraph& graph) {
         hash = mixSeed(hash, uint64_t{portal.cells[0]} << 32 | portal.cells[1]);
         hash = mixSeed(hash, uint64_t{portal.first} << 32 | portal.count);
     }
-    return hash;
+    return farthest > 0 ? mixSeed(hash, std::bit_cast<uint64_t>(farthest)) : hash;
 }
 
 std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash, uint64_t budget) {
@@ -82,7 +83,7 @@ std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash
 bool isBakeState(std::span<const char> bytes) { return ByteCursor(bytes).take<uint64_t>() == kMagic; }
 
 Result<CellVisibilityState> readBakeState(std::span<const char> bytes, const std::string& name, const CellGraph& graph,
-                                          uint64_t budget) {
+                                          uint64_t budget, double farthest) {
     constexpr size_t kHead = 7 * 8, kEnd = 8;
     const ThinMerged thin = mergeThinCells(graph);
     const CellGraph& baked = thin.any ? thin.graph : graph;
@@ -91,7 +92,7 @@ Result<CellVisibilityState> readBakeState(std::span<const char> bytes, const std
     if (bytes.size() < kHead + kEnd || in.take<uint64_t>() != kMagic) return wrong(name, "no state of a bake");
     ByteCursor end(bytes.last(kEnd));
     if (end.take<uint64_t>() != contentHash(bytes.first(bytes.size() - kEnd))) return wrong(name, "damaged");
-    if (in.take<uint64_t>() != hashOf(graph)) return wrong(name, "the state of another map's bake");
+    if (in.take<uint64_t>() != hashOf(graph, farthest)) return wrong(name, "the state of another bake");
     if (in.take<uint64_t>() != budget) return wrong(name, "the state of a bake with another budget");
     CellVisibilityState state;
     state.flowed = in.take<uint64_t>();

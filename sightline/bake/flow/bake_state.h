@@ -11,8 +11,9 @@
 
 namespace sightline::bake {
 
-/// A number that two graphs share only if they are the same: cells, portals and points, to the last bit.
-uint64_t hashOf(const CellGraph& graph);
+/// A number that two bakes share only if their graphs (cells, portals and points, to the last bit) and
+/// CellVisibilitySettings::farthest are the same.
+uint64_t hashOf(const CellGraph& graph, double farthest = 0);
 
 /// The bytes: small where the matrices are empty far and wide.
 std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash, uint64_t budget);
@@ -20,9 +21,10 @@ std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash
 /// Whether bytes begin as a state does.
 bool isBakeState(std::span<const char> bytes);
 
-/// The state again. Errors (kInput): one line with the file: no such file, of another graph or budget, damaged.
-/// @param name  what errors call the bytes
+/// The state again. Errors (kInput): one line with the file: no such file, of another bake, damaged.
+/// @param name      what errors call the bytes
+/// @param farthest  CellVisibilitySettings
 Result<CellVisibilityState> readBakeState(std::span<const char> bytes, const std::string& name, const CellGraph& graph,
-                                          uint64_t budget);
+                                          uint64_t budget, double farthest = 0);
 
 }  // namespace sightline::bake

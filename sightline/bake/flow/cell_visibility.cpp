@@ -13,6 +13,7 @@
 #include "sightline/bake/flow/random_point.h"
 #include "sightline/bake/flow/thin_cells.h"
 #include "sightline/bake/flow/witness_rays.h"
+#include "sightline/math/box.h"
 
 namespace sightline::bake {
 namespace {
@@ -74,6 +75,7 @@ public:
         } else {
             tell("base", 0);
             state_.may = baseVisibility(directed_, settings_.jobs);
+            dropFarFollowers();
             tightenBase(directed_, state_.may, settings_.jobs);
             state_.witnessed = BitMatrix(directed_.cells(), directed_.cells());
             state_.reached = BitMatrix(directed_.cells(), directed_.cells());
@@ -89,6 +91,51 @@ public:
 private:
     void tell(const char* step, double done) const {
         if (settings_.progress) settings_.progress({step, done});
+    }
+
+    /// No segment passes both of two portals that are farther apart than sight reaches.
+    void dropFarFollowers() {
+        if (!(settings_.farthest > 0)) return;
+        runJobs(settings_.jobs, directed_.size(), [&](uint32_t p) {
+            forEachBit(state_.may.row(p), [&](uint32_t q) {
+                if (!isNear(p, q)) state_.may.clear(p, q);
+            });
+        });
+    }
+
+    bool isNear(uint32_t p, uint32_t q) const {
+        const FlowPortal &a = directed_.portals[p], &b = directed_.portals[q];
+        // Welding moved points by up to the precision.
+        const double reach = settings_.farthest + 8 * directed_.precision + directed_.rounding;
+        if (glm::distance(a.center, b.center) - a.radius - b.radius > reach) return false;
+        const Box3d box_p = boxOf(p), box_q = boxOf(q);
+        const glm::dvec3 apart = glm::max(glm::max(box_p.min - box_q.max, box_q.min - box_p.max), glm::dvec3(0.0));
+        return glm::length(apart) <= reach;
+    }
+
+    Box3d boxOf(uint32_t p) const {
+        Box3d box;
+        for (const glm::dvec3& point : directed_.outline(p)) box.grow(point);
+        return box;
+    }
+
+    /// Takes back all pairs of cells that no two portals within reach lead from and into.
+    void dropFarPairs(BitMatrix& pairs) const {
+        if (!(settings_.farthest > 0)) return;
+        BitMatrix near(directed_.cells(), directed_.cells());
+        for (uint32_t cell = 0; cell < directed_.cells(); ++cell) near.set(cell, cell);
+        for (uint32_t p = 0; p < directed_.size(); ++p) near.set(directed_.portals[p].from, directed_.portals[p].to);
+        for (uint32_t from = 0; from < directed_.cells(); ++from)
+            forEachBit(pairs.row(from), [&](uint32_t to) {
+                if (!near.at(from, to) && !leadWithinReach(from, to)) pairs.clear(from, to);
+            });
+    }
+
+    bool leadWithinReach(uint32_t from, uint32_t to) const {
+        for (uint32_t p = directed_.first_of_cell[from]; p < directed_.first_of_cell[from + 1]; ++p)
+            for (uint32_t q = directed_.first_of_cell[to]; q < directed_.first_of_cell[to + 1]; ++q)
+                if (isNear(p, q)) return true;
+        return false;
     }
 
     /// Casts rays from points of each portal to points of portals that may follow it.
@@ -194,7 +241,9 @@ private:
             forEachBit(state_.reached.row(a), [&](uint32_t b) {
                 if (state_.reached.at(b, a)) answer.visible.set(a, b);
             });
+        dropFarPairs(answer.visible);
         answer.witnessed = std::move(state_.witnessed);
+        dropFarPairs(answer.witnessed);
         if (thin_.any) {
             // A ray that witnesses a merged cell need not pass each of its parts.
             answer.visible = apart(answer.visible);

@@ -36,6 +36,9 @@ struct CellVisibilitySettings {
     Jobs* jobs = nullptr;  ///< threads to share the work out to; the answer is the same with any
     uint64_t budget = 0;   ///< steps of the flow for each portal and direction: what is not settled then stays visible,
                            ///< and is counted; 0: no limit
+    /// Sight ends so far from the eye, as at a far plane or in fog: pairs of cells without points as close as this are
+    /// not visible. 0: no limit  [world units]
+    double farthest = 0;
     /// Asked between pieces of work; true: stop, and leave what is not settled visible. The answer then hangs on time.
     std::function<bool()> stop;
     std::function<void(const BakeProgress&)> progress;
@@ -64,7 +67,7 @@ constexpr size_t kMostBakedPortals = 65536;
 
 /// The promise: a line that passes from cell to cell through the graph's portals, where these are known to within
 /// 2^-35 of the largest coordinate, is within `visible` for all cells on it; lines that only touch portals' outlines
-/// count. docs/techniques/pvs.md has the argument.
+/// count. docs/techniques/pvs.md has the argument. With `farthest` it holds for segments that are no longer.
 ///
 /// The same bits for any number of threads, any instruction set, and with or without a resume.
 /// @param graph  finite, of at most kMostBakedPortals portals; a cell that is not convex counts as empty space: nothing

@@ -66,7 +66,8 @@ namespace {
 
 class Checker {
 public:
-    Checker(const GraphRays& rays, const BitMatrix& rows, bool gather) : rays_(rays), judge_(rows, gather) {
+    Checker(const GraphRays& rays, const BitMatrix& rows, double farthest, bool gather)
+        : rays_(rays), farthest_(farthest), judge_(rows, gather) {
         const CellGraph& graph = rays.graph();
         first_portal_.assign(graph.cells + 1, 0);
         for (const CellPortal& portal : graph.portals)
@@ -100,9 +101,23 @@ public:
         chainsOf(forward_, front_chains_);
         for (const std::vector<uint32_t>& back : back_chains_)
             for (const std::vector<uint32_t>& front : front_chains_) {
-                places_.assign(back.rbegin(), back.rend());
-                places_.insert(places_.end(), front.begin(), front.end());
-                judge_.judge(places_, through - direction, through + direction, [](size_t, size_t) { return true; });
+                places_.clear();
+                entered_.clear();
+                for (size_t i = back.size(); i-- > 0;) {
+                    places_.push_back(backward_[back[i]].cell);
+                    // A walk backward enters a cell where one forward leaves it.
+                    entered_.push_back(i + 1 < back.size() ? -backward_[back[i + 1]].at : 0);
+                }
+                for (const uint32_t step : front) {
+                    places_.push_back(forward_[step].cell);
+                    entered_.push_back(forward_[step].at);
+                }
+                const auto is_near = [&](size_t i, size_t j) {
+                    return !(farthest_ > 0) || i == j ||
+                           entered_[j] - entered_[i + 1] + 4 * rays_.margin() <= farthest_;
+                };
+                judge_.judge(
+                    places_, through - direction, through + direction, [](size_t, size_t) { return true; }, is_near);
             }
     }
 
@@ -121,7 +136,7 @@ private:
         return true;
     }
 
-    /// The ways from the start to each last step.
+    /// The ways from the start to each last step, as steps.
     static void chainsOf(const std::vector<GraphStep>& steps, std::vector<std::vector<uint32_t>>& chains) {
         std::vector<bool> inner(steps.size(), false);
         for (const GraphStep& step : steps)
@@ -130,17 +145,19 @@ private:
         for (uint32_t s = 0; s < steps.size() && chains.size() < 64; ++s) {
             if (inner[s]) continue;
             chains.emplace_back();
-            for (uint32_t k = s; k != GraphStep::kStart; k = steps[k].before) chains.back().push_back(steps[k].cell);
+            for (uint32_t k = s; k != GraphStep::kStart; k = steps[k].before) chains.back().push_back(k);
             std::reverse(chains.back().begin(), chains.back().end());
         }
     }
 
     const GraphRays& rays_;
+    double farthest_;
     RowJudge judge_;
     std::vector<uint32_t> first_portal_, portals_;
     std::vector<GraphStep> forward_, backward_;
     std::vector<std::vector<uint32_t>> front_chains_, back_chains_;
     std::vector<uint32_t> places_;
+    std::vector<double> entered_;  // per place where along the line; the first one is not read
 };
 
 }  // namespace
@@ -151,7 +168,7 @@ RowReport checkCellRows(const GraphRays& rays, const BitMatrix& rows, const RowC
     RowReport report;
     if (rays.graph().portals.empty()) return report;
     constexpr uint32_t kParts = 16;
-    std::vector<Checker> parts(kParts, Checker(rays, rows, seen != nullptr));
+    std::vector<Checker> parts(kParts, Checker(rays, rows, settings.farthest, seen != nullptr));
     runJobs(settings.jobs, kParts, [&](uint32_t part) {
         Random random(mixSeed(settings.seed, part));
         for (uint64_t i = 0; i < (settings.segments + kParts - 1) / kParts; ++i) parts[part].line(random);

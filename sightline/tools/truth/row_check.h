@@ -37,6 +37,7 @@ struct RowCheckSettings {
     uint64_t segments = 1u << 20;  ///< rounded up to whole batches
     double aimed = 0.5;            ///< share of the segments that are aimed  [0, 1]
     size_t most_examples = 64;     ///< of misses
+    double farthest = 0;           ///< rows tell of nothing farther away than this; 0: no limit  [world units]
     Jobs* jobs = nullptr;          ///< threads; the report is the same with any
 };
 
@@ -51,9 +52,11 @@ public:
 
     /// All of these are seen from one another, along a segment. `confirm(i, j)` says of an alarm whether it is beyond
     /// rounding: asked at most once for each pair of places.
-    /// @param places  rows in the order of the segment; kNoRow among them counts as unmapped
-    template <class Confirm>
-    void judge(std::span<const uint32_t> places, const glm::dvec3& from, const glm::dvec3& to, Confirm&& confirm) {
+    /// @param places   rows in the order of the segment; kNoRow among them counts as unmapped
+    /// @param is_near  of two places, the first one before the other: whether the rows tell of pairs so far apart
+    template <class Confirm, class IsNear>
+    void judge(std::span<const uint32_t> places, const glm::dvec3& from, const glm::dvec3& to, Confirm&& confirm,
+               IsNear&& is_near) {
         ++report_.segments;
         report_.stretches += places.size();
         for (size_t i = 0; i < places.size(); ++i) {
@@ -62,7 +65,7 @@ public:
                 continue;
             }
             for (size_t j = 0; j <= i; ++j) {
-                if (places[j] == kNoRow) continue;
+                if (places[j] == kNoRow || !is_near(j, i)) continue;
                 report_.pairs += 2;
                 if (rows_.at(places[i], places[j]) && rows_.at(places[j], places[i])) {
                     if (seen_.rows() != 0) markSeen(places[i], places[j]);

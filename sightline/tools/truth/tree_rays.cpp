@@ -123,8 +123,8 @@ namespace {
 class Checker {
 public:
     Checker(const TreeRays& rays, const BitMatrix& rows, std::span<const uint32_t> row_of_leaf, const AimedHoles& holes,
-            bool gather)
-        : rays_(rays), row_of_leaf_(row_of_leaf), holes_(holes), judge_(rows, gather) {
+            double farthest, bool gather)
+        : rays_(rays), row_of_leaf_(row_of_leaf), holes_(holes), farthest_(farthest), judge_(rows, gather) {
         diagonal_ = rays.tree().bounds.empty() ? 0 : glm::length(rays.tree().bounds.size());
     }
 
@@ -160,24 +160,43 @@ public:
         if (back_walk_.stretches.empty() || walk_.stretches.empty()) return;
         const glm::dvec3 from = middleOf(back_walk_.stretches.back(), through, back);
         places_.clear();
+        extents_.clear();
         const double least_back = leastOf(through, back), least = leastOf(through, to);
-        for (size_t i = back_walk_.stretches.size(); i-- > 0;) addPlace(back_walk_.stretches[i], least_back);
-        for (const TreeStretch& stretch : walk_.stretches) addPlace(stretch, least);
+        const double reach_back = glm::distance(through, back), reach = glm::distance(through, to);
+        for (size_t i = back_walk_.stretches.size(); i-- > 0;) {
+            const TreeStretch& stretch = back_walk_.stretches[i];
+            addPlace(stretch, least_back, {-stretch.to * reach_back, -stretch.from * reach_back});
+        }
+        for (const TreeStretch& stretch : walk_.stretches)
+            addPlace(stretch, least, {stretch.from * reach, stretch.to * reach});
         const glm::dvec3 end = middleOf(walk_.stretches.back(), through, to);
         seen_.assign(places_.begin(), places_.end());
+        seen_extents_.assign(extents_.begin(), extents_.end());
         bool walked = false;
-        judge_.judge(seen_, from, end, [&](size_t i, size_t j) {
-            // Only an alarm needs the walk as a whole. If that finds other places, the segment passes a corner too
-            // closely.
-            if (!walked) walkWhole(from, to);
-            walked = true;
-            return places_ == seen_ && rays_.stands(from, to, walk_, stretch_[i], stretch_[j]);
-        });
+        judge_.judge(
+            seen_, from, end,
+            [&](size_t i, size_t j) {
+                // Only an alarm needs the walk as a whole. If that finds other places, the segment passes a corner too
+                // closely.
+                if (!walked) walkWhole(from, to);
+                walked = true;
+                return places_ == seen_ && rays_.stands(from, to, walk_, stretch_[i], stretch_[j]);
+            },
+            [&](size_t i, size_t j) { return isNear(seen_extents_[i], seen_extents_[j]); });
     }
 
     const RowJudge& judge() const { return judge_; }
 
 private:
+    /// Where a line is in a place, along the line.  [world units]
+    struct Extent {
+        double from, to;
+    };
+
+    bool isNear(const Extent& first, const Extent& second) const {
+        return !(farthest_ > 0) || second.from - first.to + 4 * rays_.margin() <= farthest_;
+    }
+
     glm::dvec3 pointInBounds(Random& random) const {
         const Box3d& box = rays_.tree().bounds;
         const double x = random.uniform(), y = random.uniform(), z = random.uniform();
@@ -205,40 +224,51 @@ private:
 
     /// Adds where a stretch lies, unless it is too short to tell or goes on where the last one was. True if it was
     /// added.
-    bool addPlace(const TreeStretch& stretch, double least) {
+    bool addPlace(const TreeStretch& stretch, double least, const Extent& extent) {
         if (!(stretch.to - stretch.from > least)) return false;
         const uint32_t row = row_of_leaf_.empty() ? stretch.leaf : row_of_leaf_[stretch.leaf];
-        if (!places_.empty() && places_.back() == row) return false;
+        if (!places_.empty() && places_.back() == row) {
+            extents_.back().to = extent.to;
+            return false;
+        }
         places_.push_back(row);
+        extents_.push_back(extent);
         return true;
     }
 
     void walkWhole(const glm::dvec3& a, const glm::dvec3& b) {
         rays_.follow(a, b, walk_);
         places_.clear();
+        extents_.clear();
         stretch_.clear();
-        const double least = leastOf(a, b);
-        for (uint32_t i = 0; i < walk_.stretches.size(); ++i)
-            if (addPlace(walk_.stretches[i], least)) stretch_.push_back(i);
+        const double least = leastOf(a, b), length = glm::distance(a, b);
+        for (uint32_t i = 0; i < walk_.stretches.size(); ++i) {
+            const TreeStretch& stretch = walk_.stretches[i];
+            if (addPlace(stretch, least, {stretch.from * length, stretch.to * length})) stretch_.push_back(i);
+        }
     }
 
     void pass(const glm::dvec3& a, const glm::dvec3& b) {
         walkWhole(a, b);
         if (places_.empty()) return;
         // To the middle of the last stretch: the way back is a segment, too.
-        judge_.judge(places_, a, middleOf(walk_.stretches.back(), a, b),
-                     [&](size_t i, size_t j) { return rays_.stands(a, b, walk_, stretch_[i], stretch_[j]); });
+        judge_.judge(
+            places_, a, middleOf(walk_.stretches.back(), a, b),
+            [&](size_t i, size_t j) { return rays_.stands(a, b, walk_, stretch_[i], stretch_[j]); },
+            [&](size_t i, size_t j) { return isNear(extents_[i], extents_[j]); });
     }
 
     const TreeRays& rays_;
     std::span<const uint32_t> row_of_leaf_;
     const AimedHoles& holes_;
+    double farthest_;
     RowJudge judge_;
     double diagonal_ = 0;
     glm::dvec3 start_{0.0};
     int left_from_here_ = 0;
     TreeWalk walk_, back_walk_;
     std::vector<uint32_t> places_, seen_, stretch_;
+    std::vector<Extent> extents_, seen_extents_;  // of `places_` and `seen_`
 };
 
 }  // namespace
@@ -248,7 +278,7 @@ RowReport checkLeafRows(const TreeRays& rays, const BitMatrix& rows, std::span<c
     SIGHTLINE_ASSERT(row_of_leaf.empty() ? rays.tree().contents.size() <= rows.rows()
                                          : row_of_leaf.size() == rays.tree().contents.size());
     constexpr uint32_t kParts = 16;
-    std::vector<Checker> parts(kParts, Checker(rays, rows, row_of_leaf, holes, seen != nullptr));
+    std::vector<Checker> parts(kParts, Checker(rays, rows, row_of_leaf, holes, settings.farthest, seen != nullptr));
     runJobs(settings.jobs, kParts, [&](uint32_t part) {
         Random random(mixSeed(settings.seed, part));
         for (uint64_t i = 0; i < (settings.segments + kParts - 1) / kParts; ++i) {

@@ -54,7 +54,8 @@ TEST(BakeState, RefusesWhatIsNotItsOwn) {
         return state ? std::string() : state.error().message;
     };
     EXPECT_EQ(said(bytes, graph, 5), "");
-    EXPECT_EQ(said(bytes, other, 5), "x.state: the state of another map's bake");
+    EXPECT_EQ(said(bytes, other, 5), "x.state: the state of another bake");
+    EXPECT_FALSE(readBakeState(bytes, "x.state", graph, 5, 100.0).ok());
     EXPECT_EQ(said(bytes, graph, 6), "x.state: the state of a bake with another budget");
     EXPECT_EQ(said({}, graph, 5), "x.state: no state of a bake");
     for (size_t length = 0; length < bytes.size(); length += 1 + length / 16)

@@ -194,6 +194,63 @@ TEST(CellVisibility, KeepsWhatABudgetLeavesUnsettled) {
     }
 }
 
+/// Whether some two points of the portals around two cells are as near as this: in boxes, as slowly as can be.
+bool haveNearPortals(const CellGraph& graph, uint32_t a, uint32_t b, double distance) {
+    const auto boxOf = [&](const CellPortal& portal) {
+        Box3d box;
+        for (const glm::dvec3& point : graph.outline(portal)) box.grow(point);
+        return box;
+    };
+    const auto isOf = [](const CellPortal& portal, uint32_t cell) {
+        return portal.cells[0] == cell || portal.cells[1] == cell;
+    };
+    for (const CellPortal& p : graph.portals)
+        for (const CellPortal& q : graph.portals) {
+            if (!isOf(p, a) || !isOf(q, b)) continue;
+            const Box3d one = boxOf(p), other = boxOf(q);
+            const glm::dvec3 gap = glm::max(glm::max(one.min - other.max, other.min - one.max), glm::dvec3(0.0));
+            if (glm::length(gap) <= distance) return true;
+        }
+    return false;
+}
+
+TEST(CellVisibility, SightMayEndAtADistance) {
+    uint64_t wholes = 0, nears = 0, too_far = 0;
+    for (uint64_t kind = 0; kind < 4; ++kind)
+        for (uint64_t seed = 1; seed <= 5; ++seed) {
+            const CellGraph graph = worldOf(kind, seed);
+            const CellVisibility whole = bakeCellVisibility(graph);
+            const double size = largestCoordinate(graph);
+            for (const double share : {0.05, 0.2, 0.6, 8.0}) {
+                const std::string name = nameOf("farthest", seed) + " of kind " + std::to_string(kind);
+                CellVisibilitySettings settings;
+                settings.farthest = share * size;
+                const CellVisibility some = bakeCellVisibility(graph, settings);
+                expectShape(some, graph.cells, name);
+                // Flows in another order prove other pairs hidden.
+                EXPECT_LE(countOutside(some.visible, whole.visible), whole.visible.count() / 50) << name;
+                if (share > 4) { EXPECT_TRUE(some.visible == whole.visible) << name; }
+                const GraphRays judge(graph, 0x1p-34 * size);
+                RowCheckSettings within;
+                within.segments = 40000;
+                within.farthest = settings.farthest;
+                EXPECT_EQ(checkCellRows(judge, some.visible, within).misses, 0u) << name;
+                for (uint32_t a = 0; a < graph.cells; ++a)
+                    for (uint32_t b = 0; b < graph.cells; ++b)
+                        if (a != b && some.visible.at(a, b) && !haveNearPortals(graph, a, b, settings.farthest * 1.001))
+                            ADD_FAILURE() << name << ": " << a << " sees " << b << ", which is too far away";
+                within.farthest *= 2;
+                if (share < 1) {
+                    wholes += whole.visible.count();
+                    nears += some.visible.count();
+                    too_far += checkCellRows(judge, some.visible, within).misses;
+                }
+            }
+        }
+    EXPECT_LT(nears, wholes * 3 / 4);
+    EXPECT_GT(too_far, 100u);  // segments twice as long are seen to miss something
+}
+
 TEST(CellVisibility, StopsWithAllThatMayBeSeen) {
     for (uint64_t kind = 0; kind < 4; ++kind) {
         const CellGraph graph = worldOf(kind, 3);

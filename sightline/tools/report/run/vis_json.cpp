@@ -26,6 +26,7 @@ std::string visJson(const VisSummary& summary) {
     out["steps"] = summary.steps;
     out["over_budget"] = summary.over_budget;
     out["stopped"] = summary.stopped;
+    out["farthest"] = summary.farthest;
     out["threads"] = summary.threads;
     out["cpu_seconds"] = summary.cpu_seconds;
     out["wall_seconds"] = summary.wall_seconds;

@@ -25,6 +25,7 @@ struct VisSummary {
     uint64_t steps = 0;           ///< portals that were clipped
     uint64_t over_budget = 0;     ///< portals and directions that ended by the budget
     bool stopped = false;         ///< by a limit in seconds: another run may end elsewhere
+    double farthest = 0;          ///< sight ends so far from the eye; 0: nowhere  [world units]
     double cpu_seconds = 0, wall_seconds = 0;
     uint32_t threads = 1;
 
