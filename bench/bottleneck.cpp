@@ -126,6 +126,32 @@ private:
 
 using Parts = std::array<double, kFrameStages>;
 
+/// What makes two stages take so long each while both work: side by side a unit takes longer than alone.
+Parts halvesSideBySide(Works& works, size_t a, size_t b, double seconds) {
+    Parts parts{};
+    parts[a] = parts[b] = seconds;
+    for (int round = 0; round < 12; ++round) {
+        std::vector<double> times[2];
+        for (int turn = 0; turn < 5; ++turn) {
+            const auto timed = [&](size_t stage, double& time) {
+                const FrameClock clock;
+                works.work(static_cast<int>(stage), parts[stage]);
+                time = clock.times().wall;
+            };
+            double first = 0, second = 0;
+            {
+                const std::jthread other([&] { timed(b, second); });
+                timed(a, first);
+            }
+            times[0].push_back(first);
+            times[1].push_back(second);
+        }
+        parts[a] *= std::sqrt(seconds / medianOf(times[0]));
+        parts[b] *= std::sqrt(seconds / medianOf(times[1]));
+    }
+    return parts;
+}
+
 /// A frame that works its parts off one after the other, or each on a thread of its own.
 DrawFrame frameOf(Works& works, const Parts& parts, bool pipelined) {
     return [&works, parts, pipelined](const StageLoads& loads) {
@@ -178,7 +204,8 @@ void tellMixtures(Works& works, bool pipelined, Table& table) {
     for (size_t a = 0; a < kFrameStages; ++a)
         for (size_t b = a + 1; b < kFrameStages; ++b) {
             Parts parts{};
-            parts[a] = parts[b] = 4e-3;
+            if (pipelined) parts = halvesSideBySide(works, a, b, 4e-3);
+            else parts[a] = parts[b] = 4e-3;
             const Bottleneck found = findBottleneck(frameOf(works, parts, pipelined));
             bool good = found.verdict() == LimitVerdict::kMixed;
             for (size_t i = 0; i < kFrameStages; ++i) good = good && found.judgement.limits[i] == (i == a || i == b);

@@ -14,7 +14,7 @@ namespace sightline::bench {
 using namespace images;
 namespace {
 
-constexpr uint32_t kWidth = 640, kHeight = 360, kSub = 2;  // pixels, and samples across a pixel
+constexpr uint32_t kWidth = 640, kHeight = 360, kSub = 4;  // pixels, and samples across a pixel
 constexpr double kTexelsAPixel = 1.5, kMostTexels = 1000;  // where the eye is nearest
 constexpr size_t kEyes = 4;
 
@@ -87,7 +87,8 @@ PictureError compare(std::span<const glm::u8vec3> a, std::span<const glm::u8vec3
 struct Truth {
     View camera;
     std::vector<glm::u8vec3> screen, raster;
-    DepthImage beyond;  ///< as the raster shows it
+    std::vector<glm::u8vec3> smooth;  ///< the raster as images without depth have it
+    DepthImage beyond;                ///< as the raster shows it
     std::vector<uint32_t> through;
     std::vector<glm::u8vec3> near;
     std::vector<float> nearness;
@@ -202,6 +203,7 @@ private:
         truth.beyond = scene_.draw(beyond, raster);
         figures_.geometry_times.push_back(threadTime() - start);
         truth.raster = coloursOf(truth.beyond);
+        truth.smooth = scene_.drawSmooth(beyond, raster);
         if (count) {
             ++figures_.eyes;
             figures_.in_frustum += static_cast<double>(scene_.triangles(in_view));
@@ -236,7 +238,8 @@ private:
             const Shown shown = showPortal(*images_, eye, settings, picture);
             modes[mode].times.push_back(threadTime() - start);
             if (!shown.ok() || truth.through.empty()) continue;
-            modes[mode].on_raster.add(truth.raster, picture.colour);
+            const bool has_depth = settings.mode == ShowMode::kWarped || settings.mode == ShowMode::kLayered;
+            modes[mode].on_raster.add(has_depth ? truth.raster : truth.smooth, picture.colour);
             modes[mode].holes += picture.holes;
             modes[mode].texels += picture.colour.size();
             const PictureError error = compareOnScreen(truth, picture);
@@ -273,7 +276,7 @@ private:
                 most = std::max(most, glm::length((place - glm::dvec2(i, row)) * texel));
             }
         PictureError error;
-        error.add(truth.raster, picture.colour);
+        error.add(truth.smooth, picture.colour);
         figures_.points.push_back({predicted, most * focal / doorway_.frame.toFrame(eye).z, error.psnr()});
     }
 
@@ -332,13 +335,25 @@ uint64_t DrawnScene::triangles(const std::vector<uint32_t>& chosen) const {
     return sum;
 }
 
-DepthImage DrawnScene::draw(const std::vector<uint32_t>& chosen, const View& view) const {
+std::vector<DrawItem> DrawnScene::itemsOf(const std::vector<uint32_t>& chosen) const {
     std::vector<DrawItem> some;
     some.reserve(chosen.size());
     for (const uint32_t item : chosen) some.push_back(items()[item]);
+    return some;
+}
+
+TakeSettings DrawnScene::takeOf(const std::vector<uint32_t>& chosen) const {
     TakeSettings settings;
     settings.shade.colour = [&](uint32_t item, uint32_t triangle) { return all_.colourOf(chosen[item], triangle); };
-    return takeImage(DrawList(some), view, settings);
+    return settings;
+}
+
+DepthImage DrawnScene::draw(const std::vector<uint32_t>& chosen, const View& view) const {
+    return takeImage(DrawList(itemsOf(chosen)), view, takeOf(chosen));
+}
+
+std::vector<glm::u8vec3> DrawnScene::drawSmooth(const std::vector<uint32_t>& chosen, const View& view) const {
+    return takeColours(DrawList(itemsOf(chosen)), view, takeOf(chosen), PortalImageSettings{}.across).colours;
 }
 
 void studyDoorway(const DrawnScene& scene, const StudiedDoorway& doorway, uint64_t seed, StudyFigures& figures) {

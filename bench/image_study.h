@@ -32,8 +32,13 @@ public:
     std::vector<uint32_t> inView(const View& view) const;
     uint64_t triangles(const std::vector<uint32_t>& items) const;
     images::DepthImage draw(const std::vector<uint32_t>& items, const View& view) const;
+    /// As images without depth are drawn.
+    std::vector<glm::u8vec3> drawSmooth(const std::vector<uint32_t>& items, const View& view) const;
 
 private:
+    std::vector<DrawItem> itemsOf(const std::vector<uint32_t>& chosen) const;
+    images::TakeSettings takeOf(const std::vector<uint32_t>& chosen) const;
+
     const Scene& scene_;
     RenderList all_;
     std::vector<Box3d> boxes_;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/images/depth_image.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sightline::images {
@@ -48,6 +49,26 @@ DepthImage takeImage(const DrawList& list, const View& view, const TakeSettings&
             if (!(sample.nearness > 0)) sample = {static_cast<float>(1 / clip.w), 0, 0, sample.colour, 0};
         }
     });
+    return out;
+}
+
+ColourImage takeColours(const DrawList& list, const View& view, const TakeSettings& settings, uint32_t across) {
+    View fine = view;
+    fine.width *= across;
+    fine.height *= across;
+    const HiddenImage image = render(list, fine, settings.render);
+    const std::vector<glm::u8vec3> samples = shade(list, fine, image, settings.shade);
+    ColourImage out;
+    out.has_sky = std::find(image.surface.begin(), image.surface.end(), HiddenImage::kNone) != image.surface.end();
+    out.colours.reserve(size_t{view.width} * view.height);
+    for (uint32_t row = 0; row < view.height; ++row)
+        for (uint32_t i = 0; i < view.width; ++i) {
+            glm::uvec3 sum(across * across / 2);
+            for (uint32_t y = 0; y < across; ++y)
+                for (uint32_t x = 0; x < across; ++x)
+                    sum += glm::uvec3(samples[size_t{row * across + y} * fine.width + i * across + x]);
+            out.colours.emplace_back(sum / (across * across));
+        }
     return out;
 }
 

@@ -47,4 +47,15 @@ struct TakeSettings {
 /// @param view  perspective
 DepthImage takeImage(const studies::DrawList& list, const View& view, const TakeSettings& settings);
 
+/// Colours alone, smooth at edges.
+struct ColourImage {
+    std::vector<glm::u8vec3> colours;  ///< sRGB  [size: width * height]
+    bool has_sky = false;              ///< somewhere nothing is drawn
+};
+
+/// Draws and shades what a view shows; each pixel is the mean of its samples.
+/// @param view    perspective
+/// @param across  samples along each side of a pixel  [>= 1]
+ColourImage takeColours(const studies::DrawList& list, const View& view, const TakeSettings& settings, uint32_t across);
+
 }  // namespace sightline::images

@@ -64,36 +64,18 @@ public:
     }
 
     DepthImage take(const glm::dvec3& eye) {
-        const View view = *portalView(out_.frame, eye, settings_.width, settings_.height);
-        const Frustum frustum = makeFrustum(view);
-        std::vector<DrawItem> chosen;
-        std::vector<uint32_t> index;
-        BeyondRange range{std::numeric_limits<double>::infinity(), 0};
-        double triangles = 0;
-        for (uint32_t i = 0; i < items_.size(); ++i) {
-            if (!boxes_[i].finite() || isOutside(frustum, boxes_[i])) continue;
-            chosen.push_back(items_[i]);
-            index.push_back(i);
-            triangles += static_cast<double>(items_[i].mesh.triangles());
-            const double plane = glm::dot(out_.frame.front, out_.frame.corner);
-            range.farthest = std::max(range.farthest, plane + reachOf(boxes_[i], -out_.frame.front));
-            range.nearest = std::min(range.nearest, std::max(0.0, plane - reachOf(boxes_[i], out_.frame.front)));
-        }
-        TakeSettings take = settings_.take;
-        if (const auto& colour = settings_.take.shade.colour)
-            take.shade.colour = [&](uint32_t item, uint32_t triangle) { return colour(index[item], triangle); };
-        else take.shade.colour = {};
-        DepthImage image = takeImage(DrawList(chosen), view, take);
-        const bool sky = std::any_of(image.samples.begin(), image.samples.end(),
-                                     [](const DepthSample& s) { return !(s.nearness > 0); });
-        if (sky) range.farthest = std::numeric_limits<double>::infinity();
-        const std::lock_guard<std::mutex> lock(mutex_);
-        triangles_ += triangles;
-        ++done_;
-        out_.beyond.nearest = std::min(out_.beyond.nearest, range.nearest);
-        out_.beyond.farthest = std::max(out_.beyond.farthest, range.farthest);
-        if (settings_.progress) settings_.progress(done_, total_);
+        const Seen seen = seenFrom(eye);
+        DepthImage image = takeImage(DrawList(seen.items), seen.view, settingsFor(seen));
+        note(seen, std::any_of(image.samples.begin(), image.samples.end(),
+                               [](const DepthSample& s) { return !(s.nearness > 0); }));
         return image;
+    }
+
+    std::vector<glm::u8vec3> takeColoursFrom(const glm::dvec3& eye) {
+        const Seen seen = seenFrom(eye);
+        ColourImage image = takeColours(DrawList(seen.items), seen.view, settingsFor(seen), settings_.across);
+        note(seen, image.has_sky);
+        return std::move(image.colours);
     }
 
     void run() {
@@ -103,11 +85,8 @@ public:
         out_.layered.resize(out_.layered_fan.eyes.size());
         PortalBakeReport& report = out_.report;
         auto start = std::chrono::steady_clock::now();
-        shareOut(settings_.share, out_.images.size(), [&](size_t i) {
-            const DepthImage image = take(out_.fan.eyes[i]);
-            out_.images[i].reserve(image.samples.size());
-            for (const DepthSample& sample : image.samples) out_.images[i].push_back(sample.colour);
-        });
+        shareOut(settings_.share, out_.images.size(),
+                 [&](size_t i) { out_.images[i] = takeColoursFrom(out_.fan.eyes[i]); });
         report.image_seconds = secondsSince(start);
         start = std::chrono::steady_clock::now();
         shareOut(settings_.share, out_.references.size(),
@@ -120,6 +99,51 @@ public:
     }
 
 private:
+    /// What an eye may see through the doorway.
+    struct Seen {
+        View view;
+        std::vector<DrawItem> items;
+        std::vector<uint32_t> index;  ///< of each among all items
+        BeyondRange range{std::numeric_limits<double>::infinity(), 0};
+        double triangles = 0;
+    };
+
+    Seen seenFrom(const glm::dvec3& eye) const {
+        Seen seen;
+        seen.view = *portalView(out_.frame, eye, settings_.width, settings_.height);
+        const Frustum frustum = makeFrustum(seen.view);
+        const double plane = glm::dot(out_.frame.front, out_.frame.corner);
+        for (uint32_t i = 0; i < items_.size(); ++i) {
+            if (!boxes_[i].finite() || isOutside(frustum, boxes_[i])) continue;
+            seen.items.push_back(items_[i]);
+            seen.index.push_back(i);
+            seen.triangles += static_cast<double>(items_[i].mesh.triangles());
+            BeyondRange& range = seen.range;
+            range.farthest = std::max(range.farthest, plane + reachOf(boxes_[i], -out_.frame.front));
+            range.nearest = std::min(range.nearest, std::max(0.0, plane - reachOf(boxes_[i], out_.frame.front)));
+        }
+        return seen;
+    }
+
+    /// @param seen  outlives the answer
+    TakeSettings settingsFor(const Seen& seen) const {
+        TakeSettings take = settings_.take;
+        if (const auto& colour = settings_.take.shade.colour)
+            take.shade.colour = [&](uint32_t item, uint32_t triangle) { return colour(seen.index[item], triangle); };
+        return take;
+    }
+
+    /// Takes down an image that was drawn.
+    void note(const Seen& seen, bool has_sky) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        triangles_ += seen.triangles;
+        ++done_;
+        const double farthest = has_sky ? std::numeric_limits<double>::infinity() : seen.range.farthest;
+        out_.beyond.nearest = std::min(out_.beyond.nearest, seen.range.nearest);
+        out_.beyond.farthest = std::max(out_.beyond.farthest, farthest);
+        if (settings_.progress) settings_.progress(done_, total_);
+    }
+
     /// The view's own image comes first, then the references, nearest first.
     LayeredImage gather(size_t i) {
         const glm::dvec3& eye = out_.layered_fan.eyes[i];
@@ -177,8 +201,10 @@ Status makeFan(const PortalFrame& frame, const FanSettings& settings, SampleFan&
 Result<PortalImages> bakePortalImages(const PortalFrame& frame, std::span<const DrawItem> items,
                                       const PortalImageSettings& settings) {
     constexpr uint32_t kMostTexels = 8192;
-    if (settings.width == 0 || settings.height == 0 || settings.width > kMostTexels || settings.height > kMostTexels)
-        return Error{Error::Kind::kUsage, "images of a doorway have 1 to 8192 texels on each side"};
+    const uint64_t across = settings.across;
+    if (settings.width == 0 || settings.height == 0 || across == 0 || across * settings.width > kMostTexels ||
+        across * settings.height > kMostTexels)
+        return Error{Error::Kind::kUsage, "images of a doorway have 1 to 8192 samples on each side"};
     if (!(settings.layer_margin >= 0 && settings.layer_margin <= 4))
         return Error{Error::Kind::kUsage, "the margin of layered images is from 0 to 4"};
     PortalImages out;

@@ -27,6 +27,9 @@ namespace sightline::images {
 struct PortalImageSettings {
     uint32_t width = 256, height = 512;  ///< of every image  [texels, 1 to 8192]
     FanSettings images;                  ///< colours alone, for nearest and blended
+    /// Of these images each texel is the mean of so many samples along each side: smooth at edges, and as many times
+    /// squared as long to bake.  [>= 1; width and height times this: 1 to 8192]
+    uint32_t across = 2;
     FanSettings references{
         .nearest = 1, .farthest = 4, .arcs = 3, .angles = 5};  ///< with depth, for warped and layered
     FanSettings layered{.arcs = 1, .angles = 3};               ///< views that layers are gathered in; need references

@@ -3,6 +3,7 @@
 //
 // Thomas Funkhouser, Carlo Sequin. Adaptive Display Algorithm for Interactive Frame Rates During Visualization of
 // Complex Virtual Environments. 1993.
+// Hugh Everett. Generalized Lagrange Multiplier Method for Solving Problems of Optimum Allocation of Resources. 1963.
 #pragma once
 
 #include <cstdint>
@@ -48,10 +49,15 @@ struct LodBudgetResult {
 /// An object is worth its pixels times its importance times the accuracy of its level, e / (e + error), with e from the
 /// settings. Of each object's levels those count that lie on the upper hull of benefit over cost. The steps from hull
 /// point to hull point, of all objects together, are taken by benefit per cost, the best first, until one does not fit;
-/// then what still fits is taken in the same order, within a limit of work. That is the greedy method for the
-/// multiple-choice knapsack: it loses less than one step against the best choice of all. Where one step alone is worth
-/// more than all others together, that one is taken first; so the choice is worth at least half of the best. Costs are
-/// counted in whole picoseconds, so that sums are exact and the choice is the same everywhere. O(levels of all objects).
+/// then what still fits of those that are nearly as good. That is the greedy method for the multiple-choice knapsack: it
+/// loses less than one step against the best choice of all. Where one object alone is worth more than all of that, it
+/// comes first; so the choice is worth at least half of the best.
+///
+/// The steps are not looked at one by one. What all steps above a price lead to is, for each object, the level of the
+/// largest benefit less price times cost. So two prices are tried, near the one at which the last answer's money ran
+/// out: where that happens between the two, only objects that choose differently at both have steps to be sorted. The
+/// choice does not depend on where the search began. Costs are counted in whole picoseconds, so that sums are exact.
+/// O(levels of all objects), a few times over where the price has moved.
 class LodBudget {
 public:
     static constexpr uint8_t kLeftOut = LodItem::kNone;
@@ -63,48 +69,61 @@ public:
                            std::span<uint8_t> chosen);
 
 private:
-    struct Step {
-        float slope = 0;  ///< benefit per picosecond
-        uint32_t item = 0;
-        uint64_t cost = 0;  ///< [ps]
-        uint8_t level = 0;
-        uint8_t serial = 0;  ///< among the item's steps
-    };
-    /// The steps whose slopes are nearly the same.
-    struct Bin {
-        uint64_t cost = 0;  ///< [ps]
-        uint32_t steps = 0;
-    };
-
     /// What an item may be drawn as.
     struct Point {
-        uint64_t cost = 0;  ///< [ps]
+        double cost = 0;  ///< [ps], a whole number
         double benefit = 0;
         uint8_t level = 0;
     };
+    /// From one point of an item's hull to the next.
+    struct Step {
+        double slope = 0;  ///< benefit per picosecond
+        double cost = 0;   ///< [ps]
+        double benefit = 0;
+        uint32_t item = 0;
+        uint8_t level = 0;
+        uint8_t serial = 0;  ///< among the item's steps
+    };
+    /// What is chosen, all together.
+    struct Sum {
+        uint64_t cost = 0;  ///< [ps]
+        double benefit = 0;
 
-    static Point pointOf(const LodItem& item, uint8_t level, const LodBudgetSettings& settings);
+        void add(const Point& point) {
+            cost += static_cast<uint64_t>(point.cost);
+            benefit += point.benefit;
+        }
+    };
+
+    class Terms;
+
+    Point pointOf(uint32_t index, uint8_t level) const;
+    template <class Visit>
+    void forEachPoint(uint32_t index, Visit&& visit) const;
     static size_t addToHull(Point* hull, size_t count, const Point& point);
-    void addItem(const LodItem& item, uint32_t index, const LodBudgetSettings& settings);
-    void addSteps(std::span<const Point> hull, uint32_t index);
-    void spend(std::span<uint8_t> chosen);
-    void spendRest(std::span<uint8_t> chosen);
+    void buy(double high, double low);
+    void addSteps(uint32_t index);
+    double spend(std::span<uint8_t> chosen);
     void takeWhatFits(uint32_t index, std::span<uint8_t> chosen);
-    void startAgain(std::span<uint8_t> chosen);
-    double benefitOf(std::span<const uint8_t> chosen) const;
+    bool search(std::span<uint8_t> chosen);
+    void takeOneFirst(std::span<uint8_t> chosen);
 
     std::span<const LodItem> items_;  ///< of the call
     LodBudgetSettings settings_;
-    uint64_t budget_ = 0, sum_of_base_ = 0;  ///< [ps]
-    Array<Step> steps_;
-    Array<Step> rest_;        ///< from the bin on of which not all steps fit
-    Array<Bin> bins_;         ///< the steepest first
+    uint64_t budget_ = 0;   ///< [ps]
+    double reach_ = 1;      ///< steps are tried down to this part of the slope of the first that does not fit
+    double price_ = 0;      ///< where the last search ended; 0: all that is of use fitted
+    Array<uint8_t> dear_;   ///< per item: the level at the higher price
+    Array<uint8_t> cheap_;  ///< per item: the level at the lower price
+    Sum dear_sum_, cheap_sum_;
+    Array<Step> steps_;       ///< between the two prices
     Array<uint8_t> blocked_;  ///< per item: a step of it did not fit
-    Array<Point> base_;       ///< per item: what must be drawn of it
-    uint64_t cost_ = 0;       ///< of what is chosen so far  [ps]
-    double best_gain_ = 0;    ///< of one blocked item alone
-    uint32_t best_item_ = 0;
-    Point best_;
+    Sum sum_;                 ///< of what is chosen so far
+    Point most_;              ///< of all points of blocked items the one that is worth most
+    uint32_t most_item_ = 0;
+    bool has_fixed_ = false;  ///< one item has no choice
+    uint32_t fixed_item_ = 0;
+    Point fixed_;
 };
 
 }  // namespace sightline

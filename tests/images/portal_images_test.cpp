@@ -21,6 +21,7 @@ PortalImageSettings madeSettings() {
     PortalImageSettings settings;
     settings.width = kWidth;
     settings.height = kHeight;
+    settings.across = 1;
     settings.images = {1.2, 1.5, 1.5, 1, 24, 0.9};
     settings.references = {1.2, 1.0, 2.2, 2, 5, 0.9};
     settings.layered = {1.2, 1.0, 2.2, 2, 3, 0.9};
@@ -64,6 +65,37 @@ protected:
 };
 DoorwayRoom* PortalImagesTest::room_ = nullptr;
 PortalImages* PortalImagesTest::images_ = nullptr;
+
+TEST_F(PortalImagesTest, TexelsAreTheMeansOfTheirSamples) {
+    PortalImageSettings settings = madeSettings();
+    settings.across = 3;
+    settings.images.angles = 3;
+    settings.references.arcs = settings.layered.arcs = 0;
+    const PortalImages smooth = *bakePortalImages(madeDoorway(), room_->items(), settings);
+    ASSERT_EQ(smooth.images.size(), 3u);
+    for (size_t at = 0; at < 3; ++at) {
+        const std::vector<glm::u8vec3> samples = coloursOf(room_->take(smooth.fan.eyes[at], 3 * kWidth, 3 * kHeight));
+        uint64_t mixed = 0;
+        for (uint32_t row = 0; row < kHeight; ++row)
+            for (uint32_t i = 0; i < kWidth; ++i) {
+                glm::dvec3 sum(0.0), low(255.0), high(0.0);
+                for (uint32_t k = 0; k < 9; ++k) {
+                    const glm::dvec3 sample(samples[(3 * row + k / 3) * 3 * kWidth + 3 * i + k % 3]);
+                    sum += sample / 9.0;
+                    low = glm::min(low, sample);
+                    high = glm::max(high, sample);
+                }
+                mixed += low != high;
+                const glm::dvec3 texel(smooth.images[at][row * kWidth + i]);
+                ASSERT_LE(glm::length(texel - sum), 1.0) << "sample " << at << ", row " << row << ", texel " << i;
+            }
+        EXPECT_GT(mixed, kWidth) << "there are edges";
+    }
+    settings.across = 0;
+    EXPECT_FALSE(bakePortalImages(madeDoorway(), room_->items(), settings).ok());
+    settings.across = 8192 / kWidth + 1;
+    EXPECT_FALSE(bakePortalImages(madeDoorway(), room_->items(), settings).ok());
+}
 
 TEST_F(PortalImagesTest, AreExactAtTheirSamplePoints) {
     for (const size_t at : {size_t{0}, size_t{7}, size_t{23}})

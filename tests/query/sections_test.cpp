@@ -79,7 +79,7 @@ TEST(Sections, AClosedRoomCutOpenShowsWhatIsInside) {
         settings.bins = 1;
         View beside = shiftedEye(view, 0.3);
         const StereoSet both = query.visibleStereo(now, view, beside, settings);
-        EXPECT_EQ(inside({both.objects, both.left, {}, {}}), Room::kEnd - Room::kInside);
+        EXPECT_EQ(inside({both.objects, both.left, {}, {}, {}}), Room::kEnd - Room::kInside);
         // A wall that the cut does not reach hides as ever: from behind, the room is closed.
         view = viewFrom({0, 0, -20}, {0, 0, 1});
         view.sections.add({0, 0, -1, 4.0});
