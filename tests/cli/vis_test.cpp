@@ -40,6 +40,7 @@ TEST_F(Vis, APortalFileGivesRowsAndFigures) {
     EXPECT_EQ(out["witnessed_pairs"], 14);
     EXPECT_EQ(out["unresolved_pairs"], 0);
     EXPECT_EQ(out["verification"]["false_negatives"], 0);
+    EXPECT_EQ(vis("rooms.prt --verify --rays 20000 --seed 7")["verification"]["false_negatives"], 0);
     EXPECT_EQ(out["pvs_bytes"], std::filesystem::file_size(path("rooms.see")));
     EXPECT_GT(out["lump_bytes"], 0);
     EXPECT_GE(out["cpu_seconds"], 0);
@@ -124,6 +125,7 @@ TEST_F(Vis, AMapIsWrittenInItsPlaceAsCompilersDo) {
     expectError("vis -visdist -512 n.bsp", 2, "--farthest");
     expectError("vis n.bsp -threads", 2, "-threads: its value is missing");
     expectError("vis n.bsp -threads many", 2, "--threads");
+    expectError("vis n.bsp --verify --seed -1", 2, "--seed");
     expectError("vis n.bsp -frobnicate", 2, "-frobnicate");
     expectError("vis n.bsp -o n.see --json n.bsp", 2, "is taken by");
     expectError("vis n.bsp -o n.bsp --json n.bsp", 2, "is taken by");

@@ -49,7 +49,7 @@ struct VisOptions : BakeOptions {
     std::vector<std::string> no_ambient;   ///< sounds; "all"
     std::optional<double> farthest_given;  ///< none: the map says it
     bool verify = false;
-    uint64_t rays = 1000000;
+    uint64_t rays = 1000000, seed = 1;
 };
 
 // Rows of a map held against rays.
@@ -75,6 +75,7 @@ VisSummary::Verification verifyVis(const VisMap& map, const BitMatrix& visible, 
     settings.jobs = &jobs;
     settings.segments = map.tree ? std::max<uint64_t>(1, options.rays / 2) : options.rays;
     settings.farthest = options.farthest;
+    settings.seed = options.seed;
     double largest = 1;
     for (const glm::dvec3& p : graph.points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     addReport(checkCellRows(GraphRays(graph, largest * 0x1p-36), visible, settings), out, leaf_of_cell);
@@ -338,6 +339,7 @@ void addVis(CLI::App& tool, int& exit_code) {
     verb->add_option("--rays", options->rays, "of --verify")
         ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
         ->capture_default_str();
+    verb->add_option("--seed", options->seed, "of --rays: other seeds are other rays")->capture_default_str();
     verb->callback([options, &exit_code] {
         const Result<int> done = runVis(*options);
         exit_code = done ? *done : report(done.error());
