@@ -75,6 +75,14 @@ TEST_F(Vis, SightMayEndAtADistance) {
     EXPECT_EQ(vis("fog.map")["farthest"], 0);
 }
 
+// Its cells touch in edges, where the tolerance leaves portals narrower than points are known by: no openings.
+TEST_F(Vis, ASourceIsHeldAgainstRays) {
+    if (!std::filesystem::exists(shared("lq_e2m2.map"))) GTEST_SKIP() << "there is no such map";
+    const json verified = vis(shared("lq_e2m2.map") + " --verify --rays 400000")["verification"];
+    EXPECT_GT(verified["segments"], 300000);
+    EXPECT_EQ(verified["false_negatives"], 0);
+}
+
 TEST_F(Vis, BytesAreTheSameForAnyThreads) {
     write("rooms.prt", kRooms);
     for (const char* threads : {"1", "2", "8"})

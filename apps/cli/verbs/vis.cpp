@@ -62,6 +62,8 @@ void addReport(const RowReport& report, VisSummary::Verification& out, const std
         out.examples.push_back({leaf_of_row[miss.row], leaf_of_row[miss.column], miss.from, miss.to});
 }
 
+/// Rays pass a portal only within its outline by twice what its points are known by: narrower ones are no openings, but
+/// what cells that touch in an edge share by the tolerance of the tree.
 /// Half of the rays go through the map's own tree, if it has one: then the rows hold for the map, and not only for its
 /// portals. The others go through the portals.
 VisSummary::Verification verifyVis(const VisMap& map, const BitMatrix& visible, const VisOptions& options, Jobs& jobs) {
@@ -78,7 +80,7 @@ VisSummary::Verification verifyVis(const VisMap& map, const BitMatrix& visible, 
     settings.seed = options.seed;
     double largest = 1;
     for (const glm::dvec3& p : graph.points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    addReport(checkCellRows(GraphRays(graph, largest * 0x1p-36), visible, settings), out, leaf_of_cell);
+    addReport(checkCellRows(GraphRays(graph, 2 * kGraphPrecision * largest), visible, settings), out, leaf_of_cell);
     if (map.tree) {
         AimedHoles holes;
         for (const CellPortal& portal : graph.portals) holes.add(graph.outline(portal));

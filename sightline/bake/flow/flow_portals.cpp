@@ -7,15 +7,12 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "sightline/bake/flow/cell_visibility.h"
 #include "sightline/base/random.h"
 #include "sightline/geom/outline_hull.h"
 
 namespace sightline::bake {
 namespace {
-
-/// Coordinates are known to a few units in the last place of the largest; what a chain of a map compiler's clips adds
-/// is a few thousand times that.
-constexpr double kRelativePrecision = 0x1p-35;
 
 /// Welds points that are near one another to the first of them.
 class Welder {
@@ -173,7 +170,7 @@ FlowPortals flowPortalsOf(const CellGraph& graph) {
     const glm::dvec3 half = glm::max(high - directed.center, directed.center - low);
     directed.extent = std::max({half.x, half.y, half.z});
     const double largest = std::max({glm::length(low), glm::length(high), directed.extent});
-    directed.precision = largest * kRelativePrecision;
+    directed.precision = largest * kGraphPrecision;
     directed.rounding = directed.extent * 0x1p-48;
 
     std::vector<glm::dvec3> points = graph.points;

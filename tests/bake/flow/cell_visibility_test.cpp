@@ -230,7 +230,7 @@ TEST(CellVisibility, SightMayEndAtADistance) {
                 // Flows in another order prove other pairs hidden.
                 EXPECT_LE(countOutside(some.visible, whole.visible), whole.visible.count() / 50) << name;
                 if (share > 4) { EXPECT_TRUE(some.visible == whole.visible) << name; }
-                const GraphRays judge(graph, 0x1p-34 * size);
+                const GraphRays judge(graph, 2 * kGraphPrecision * size);
                 RowCheckSettings within;
                 within.segments = 40000;
                 within.farthest = settings.farthest;

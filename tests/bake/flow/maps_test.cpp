@@ -7,10 +7,13 @@
 #include <filesystem>
 #include <thread>
 
+#include "sightline/bake/brushes/brush_tree.h"
+#include "sightline/bake/brushes/outside.h"
 #include "sightline/base/thread_pool.h"
 #include "sightline/bsp/tree_portals.h"
 #include "sightline/tools/import/quake/prt.h"
 #include "sightline/tools/import/quake/quake_bsp.h"
+#include "sightline/tools/import/quake/quake_map.h"
 #include "sightline/tools/import/quake/quake_visibility.h"
 #include "sightline/tools/scene/text_file.h"
 #include "sightline/tools/truth/tree_rays.h"
@@ -114,6 +117,31 @@ TEST_P(SmallMaps, SeeByTheirTreesPortalsWhatTheirTreesSee) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Real, SmallMaps, ::testing::Values("lq_e2m2", "e3m5"),
+                         [](const auto& map) { return std::string(map.param); });
+
+/// The source of a map, by our own tree of its brushes.
+class Sources : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Sources, SeeByTheirBrushesPortalsWhatTheirTreesSee) {
+    const std::string file = fileOf(GetParam(), ".map");
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "there is no such map: " << file;
+    const Result<std::string> text = readTextFile(file);
+    ASSERT_TRUE(text.ok()) << text.error().message;
+    const Result<QuakeMap> source =
+        parseQuakeMap({reinterpret_cast<const unsigned char*>(text->data()), text->size()}, file);
+    ASSERT_TRUE(source.ok()) << source.error().message;
+    const BrushTree brushes = treeOfBrushes(*source);
+    const CellGraph graph = cellsInside(*source, brushes).graph;
+    const CellVisibility answer = bakeCellVisibility(graph);
+    expectLaws(graph, answer, 5 * raysToCast(), GetParam(), nullptr, &pool());
+    AimedHoles holes;
+    for (const CellPortal& portal : graph.portals) holes.add(graph.outline(portal));
+    const RowReport report = checkLeafRows(TreeRays(brushes.tree), answer.visible, graph.cell_of_leaf, holes,
+                                           {.segments = 5 * raysToCast(), .jobs = &pool()});
+    EXPECT_EQ(report.misses, 0u) << "the first: " << report.examples[0].row << ", " << report.examples[0].column;
+}
+
+INSTANTIATE_TEST_SUITE_P(Real, Sources, ::testing::Values("lq_e2m2", "lq_e4m1", "byob_rabbit"),
                          [](const auto& map) { return std::string(map.param); });
 
 }  // namespace

@@ -62,7 +62,7 @@ inline void expectLaws(const CellGraph& graph, const CellVisibility& answer, uin
                        BitMatrix* seen = nullptr, Jobs* jobs = nullptr) {
     expectShape(answer, graph.cells, name);
     if (graph.portals.empty()) return;
-    const GraphRays judge(graph, 0x1p-34 * largestCoordinate(graph));
+    const GraphRays judge(graph, 2 * kGraphPrecision * largestCoordinate(graph));
     const RowReport report = checkCellRows(judge, answer.visible, {.segments = rays, .jobs = jobs}, seen);
     EXPECT_EQ(report.misses, 0u) << name << ", the first: " << report.examples[0].row << ", "
                                  << report.examples[0].column;
