@@ -15,7 +15,7 @@ using namespace images;
 namespace {
 
 constexpr uint32_t kWidth = 640, kHeight = 360, kSub = 4;  // pixels, and samples across a pixel
-constexpr double kTexelsAPixel = 1.5, kMostTexels = 1000;  // where the eye is nearest
+constexpr double kTexelsAPixel = 2, kMostTexels = 1500;    // where the eye is nearest
 constexpr size_t kEyes = 4;
 
 /// Sees the whole of a scene, so that a list's items are all of them.
