@@ -132,7 +132,7 @@ TEST_F(SizeOptions, HysteresisKeepsWhatTheFrameBeforeShowed) {
 }
 
 TEST_F(LodOptions, LevelsSaveTrianglesAndTellThePixelsThatTheyChange) {
-    const std::string arguments = "terrain:1:256 --path scatter --frames 3 --seed 1";
+    const std::string arguments = "terrain:1:64 --path scatter --frames 3 --seed 1";
     const json plain = cull(arguments), run = cull(arguments + " --lod-error 2 --verify --rays 5000");
     EXPECT_EQ(run["lod_error"], 2.0);
     EXPECT_EQ(run["verification"]["false_culls"], 0);
@@ -157,12 +157,12 @@ TEST_F(LodOptions, LevelsSaveTrianglesAndTellThePixelsThatTheyChange) {
 
 TEST_F(LodOptions, ABudgetIsKeptAndWhatItLeavesOutIsNoFalseCull) {
     const json run = cull(
-        "terrain:1:256 --path scatter --frames 3 --seed 1 --budget 0.01 --hard-budget --cost-triangle 1 --cost-object "
+        "terrain:1:64 --path scatter --frames 3 --seed 1 --budget 0.001 --hard-budget --cost-triangle 1 --cost-object "
         "100 --verify --rays 5000");
     EXPECT_EQ(run["verification"]["false_culls"], 0);
     EXPECT_GT(culledBy(run, "lod"), 0u);
     for (const json& frame : run["frames"])
-        if (frame.contains("lod_cost")) EXPECT_LE(frame["lod_cost"], 10000);
+        if (frame.contains("lod_cost")) EXPECT_LE(frame["lod_cost"], 1000);
 }
 
 TEST_F(LodOptions, SayWhatTheyMiss) {
