@@ -26,6 +26,7 @@
 #include "apps/cli/verbs/verbs.h"
 #include "apps/cli/verbs/vis_map.h"
 #include "sightline/bake/brushes/outside.h"
+#include "sightline/bake/flow/flow_portals.h"
 #include "sightline/base/jobs.h"
 #include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/import/quake/quake_ambient.h"

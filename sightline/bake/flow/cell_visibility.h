@@ -61,17 +61,14 @@ struct CellVisibility {
     bool stopped = false;       ///< by the settings' stop
 };
 
-/// How well the points of a graph are taken to be known, of the largest coordinate: a few units in the last place, and
-/// what a chain of a map compiler's clips adds, which is a few thousand times that.
-inline constexpr double kGraphPrecision = 0x1p-35;
-
 /// A bake holds three matrices with a row and a column per directed portal. With more portals than this they would take
 /// more than 6 GiB.
 constexpr size_t kMostBakedPortals = 65536;
 
 /// The promise: a line that passes from cell to cell through the graph's portals, where these are known to within
-/// kGraphPrecision, is within `visible` for all cells on it; lines that only touch portals' outlines count. A portal that
-/// is no wider than twice that may be there or not: cells of a tree that touch in an edge have one. docs/techniques/pvs.md has the argument. With `farthest` it holds for segments that are no longer.
+/// kGraphPrecision (flow_portals.h), is within `visible` for all cells on it; lines that only touch portals' outlines
+/// count. A portal that is no wider than twice that may be there or not: cells of a tree that touch in an edge have one.
+/// docs/techniques/pvs.md has the argument. With `farthest` it holds for segments that are no longer.
 ///
 /// The same bits for any number of threads, any instruction set, and with or without a resume.
 /// @param graph  finite, of at most kMostBakedPortals portals; a cell that is not convex counts as empty space: nothing

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "sightline/bake/flow/cell_visibility.h"
 #include "sightline/base/random.h"
 #include "sightline/geom/outline_hull.h"
 

@@ -12,6 +12,10 @@
 
 namespace sightline::bake {
 
+/// How well the points of a graph are taken to be known, of the largest coordinate: a few units in the last place, and
+/// what a chain of a map compiler's clips adds, which is a few thousand times that.
+inline constexpr double kGraphPrecision = 0x1p-35;
+
 /// A portal and a way through it. Its plane's normal points along the way, into the cell that is entered.
 struct FlowPortal {
     glm::dvec3 normal{0.0};

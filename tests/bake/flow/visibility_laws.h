@@ -7,6 +7,7 @@
 #include <string>
 
 #include "sightline/bake/flow/cell_visibility.h"
+#include "sightline/bake/flow/flow_portals.h"
 #include "sightline/tools/truth/graph_rays.h"
 #include "tests/bake/flow/cell_worlds.h"
 
