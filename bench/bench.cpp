@@ -37,6 +37,7 @@ constexpr Case kCases[] = {
     {"occlusion", benchOcclusion},
     {"order", benchOrder},
     {"portals", benchPortals},
+    {"queries", benchQueries},
     {"rows", benchRows},
     {"shadow", benchShadow},
     {"vis", benchVis},

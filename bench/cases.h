@@ -73,6 +73,10 @@ Table benchOrder(const Options& options);
 /// are truly seen, and those of the maps' own rows.
 Table benchPortals(const Options& options);
 
+/// Walls behind walls, and a walk through a city or a scene: what stop-and-wait, CHC and CHC++ ask and what a frame takes beside
+/// the frustum alone, by a simulated GPU whose answers come up to three frames late, and by Mesa's software GL.
+Table benchQueries(const Options& options);
+
 /// The rows of visibility of real maps, where ../shared/maps is there, and of rooms in a grid: their bytes on disk and in memory, and
 /// what a row and a pair cost, beside the run-length lump.
 Table benchRows(const Options& options);

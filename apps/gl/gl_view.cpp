@@ -50,9 +50,11 @@ GlView makeGlView(const View& view, std::span<const DrawItem> items) {
     result.rotation = glm::dmat3(view.view);
     result.eye = eyePosition(view);
     result.to_clip = view.projection;
-    // A right-handed eye space seen by the usual projection has a negative determinant: eye z is -w there.
-    result.mirrored = (glm::determinant(result.rotation) < 0) != (glm::determinant(view.projection) > 0);
-    const glm::dvec4 z = rowOf(view.projection, 2), w = rowOf(view.projection, 3);
+    // A right-handed eye space seen by the usual projection has a negative determinant: eye z is -w there. Of reversed depth
+    // z stands for its opposite.
+    const bool reversed = isUsable(view) && !runsOutward(view);
+    result.mirrored = (glm::determinant(result.rotation) < 0) != ((glm::determinant(view.projection) > 0) != reversed);
+    const glm::dvec4 z = (reversed ? -1.0 : 1.0) * rowOf(view.projection, 2), w = rowOf(view.projection, 3);
     setRow(result.to_clip, 2, 0.5 * (w - z));
     if (isOrthographic(view)) {
         const double least = farthest(result, items);

@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "apps/gl/gl_view.h"
+#include "apps/gl/meshes.h"
 #include "apps/gl/objects.h"
 
 namespace sightline {
@@ -49,13 +49,8 @@ View loadedView(View view, double fill) {
     return view;
 }
 
-struct LoadedRange {
-    uint32_t first = 0, count = 0;  ///< indices
-};
-
-struct LoadedMesh {
-    LoadedRange single, double_sided;
-    uint32_t base_vertex = 0, vertices = 0;
+struct LoadedMesh : GlMesh {
+    uint32_t vertices = 0;
 };
 
 GlName makeDynamicBuffer() {
@@ -133,30 +128,12 @@ struct LoadedGl::State {
 
 void LoadedGl::State::upload(std::span<const DrawItem> items) {
     std::vector<uint32_t> all;
-    using Key = std::tuple<const void*, const void*, const void*, const void*>;
-    std::map<Key, uint32_t> known;
+    GlMeshNumbers known;
     for (const DrawItem& item : items) {
-        const Key key{item.mesh.positions.data(), item.mesh.indices.data(), item.double_sided.data(),
-                      item.writes_depth.data()};
-        const auto [found, is_new] = known.try_emplace(key, static_cast<uint32_t>(meshes.size()));
-        mesh_of.emplace(item.id, found->second);
-        if (!is_new) continue;
-        LoadedMesh mesh;
-        mesh.base_vertex = static_cast<uint32_t>(positions.size());
-        mesh.vertices = static_cast<uint32_t>(item.mesh.positions.size());
-        positions.insert(positions.end(), item.mesh.positions.begin(), item.mesh.positions.end());
-        for (const bool both : {false, true}) {
-            LoadedRange& range = both ? mesh.double_sided : mesh.single;
-            range.first = static_cast<uint32_t>(all.size());
-            for (size_t t = 0; t < item.mesh.triangles(); ++t) {
-                if (!item.writes_depth.empty() && item.writes_depth[t] == 0) continue;
-                if ((!item.double_sided.empty() && item.double_sided[t] != 0) != both) continue;
-                all.insert(all.end(), item.mesh.indices.begin() + static_cast<std::ptrdiff_t>(3 * t),
-                           item.mesh.indices.begin() + static_cast<std::ptrdiff_t>(3 * t + 3));
-            }
-            range.count = static_cast<uint32_t>(all.size()) - range.first;
-        }
-        meshes.push_back(mesh);
+        const uint32_t number = known.of(item);
+        mesh_of.emplace(item.id, number);
+        if (number < meshes.size()) continue;
+        meshes.push_back({appendGlMesh(item, positions, all), static_cast<uint32_t>(item.mesh.positions.size())});
     }
     degenerate = static_cast<uint32_t>(all.size());
     all.insert(all.end(), {0, 0, 0});
@@ -189,7 +166,7 @@ void LoadedGl::State::prepare(std::span<const DrawItem> items, const GlView& vie
     for (const DrawItem& item : items) {
         const auto mesh = mesh_of.find(item.id);
         if (mesh == mesh_of.end()) continue;
-        to_clip.emplace_back(view.objectToClip(item.transform));
+        to_clip.emplace_back(view.objectToClip(meshes[mesh->second].placed(item.transform)));
         drawn.push_back(mesh->second);
         clockwise.push_back(view.frontIsClockwise(item.transform));
     }
@@ -260,16 +237,16 @@ void LoadedGl::State::begin(const GlTarget& target) const {
 }
 
 void LoadedGl::State::submitAll(uint32_t instances, bool of_points) const {
-    const LoadedRange point{degenerate, 3};
+    const GlRange point{degenerate, 3};
     for (size_t i = 0; i < drawn.size(); ++i) {
         const LoadedMesh& mesh = meshes[drawn[i]];
         glFrontFace(clockwise[i] ? GL_CW : GL_CCW);
         for (const bool both : {false, true}) {
-            const LoadedRange& range = both ? mesh.double_sided : mesh.single;
+            const GlRange& range = both ? mesh.double_sided : mesh.single;
             if (range.count == 0) continue;
             if (both) glDisable(GL_CULL_FACE);
             else glEnable(GL_CULL_FACE);
-            const LoadedRange& taken = of_points ? point : range;
+            const GlRange& taken = of_points ? point : range;
             glDrawElementsInstancedBaseVertexBaseInstance(
                 GL_TRIANGLES, static_cast<GLsizei>(taken.count), GL_UNSIGNED_INT,
                 reinterpret_cast<const void*>(size_t{taken.first} * sizeof(uint32_t)), static_cast<GLsizei>(instances),

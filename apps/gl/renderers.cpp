@@ -6,11 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <tuple>
 
 #include "apps/gl/gl_view.h"
-#include "apps/gl/objects.h"
+#include "apps/gl/meshes.h"
 #include "apps/gl/provoking.h"
 #include "sightline/math/box.h"
 #include "sightline/studies/hidden/draw_item.h"
@@ -18,78 +16,6 @@
 namespace sightline {
 using namespace studies;
 namespace {
-
-/// What both renderers have in the GL: one array of vertices with its indices, a program, the image that it draws into.
-struct GlMeshes {
-    explicit GlMeshes(const GlContext& in) : context(in) {}
-    ~GlMeshes() { context.makeCurrent(); }
-
-    const GlContext& context;
-    GlName vertices, indices, array, program;
-    GlTarget target;
-
-    Status compile(const char* vertex_shader, const char* fragment_shader);
-    /// Attributes 0 and on come from the vertices; their formats are the caller's matter.
-    template <class Vertex>
-    void store(const std::vector<Vertex>& all_vertices, const std::vector<uint32_t>& all_indices, GLuint attributes);
-    /// Makes all ready to draw into an image whose depth is cleared; its colour is not.
-    Status begin(const View& view, GLenum colour_format);
-    /// @param pixels  [size: width * height of the target]
-    Status read(GLenum format, GLenum type, std::vector<uint32_t>& pixels, const char* during) const;
-};
-
-Status GlMeshes::compile(const char* vertex_shader, const char* fragment_shader) {
-    Result<GlName> made = makeGlProgram(vertex_shader, fragment_shader);
-    if (!made) return made.error();
-    program = std::move(*made);
-    return success();
-}
-
-template <class Vertex>
-void GlMeshes::store(const std::vector<Vertex>& all_vertices, const std::vector<uint32_t>& all_indices,
-                     GLuint attributes) {
-    vertices = makeGlBuffer(std::as_bytes(std::span(all_vertices)));
-    indices = makeGlBuffer(std::as_bytes(std::span(all_indices)));
-    array = makeGlVertexArray();
-    glVertexArrayVertexBuffer(array.get(), 0, vertices.get(), 0, sizeof(Vertex));
-    glVertexArrayElementBuffer(array.get(), indices.get());
-    for (GLuint attribute = 0; attribute < attributes; ++attribute) {
-        glEnableVertexArrayAttrib(array.get(), attribute);
-        glVertexArrayAttribBinding(array.get(), attribute, 0);
-    }
-    glVertexArrayAttribFormat(array.get(), 0, 3, GL_FLOAT, GL_FALSE, 0);
-}
-
-Status GlMeshes::begin(const View& view, GLenum colour_format) {
-    context.makeCurrent();
-    if (target.width != view.width || target.height != view.height) {
-        Result<GlTarget> made = GlTarget::create(colour_format, view.width, view.height);
-        if (!made) return made.error();
-        target = std::move(*made);
-    }
-    const GLfloat nowhere = 0.0f;
-    glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
-    glViewport(0, 0, static_cast<GLsizei>(view.width), static_cast<GLsizei>(view.height));
-    glDepthMask(GL_TRUE);
-    glClearBufferfv(GL_DEPTH, 0, &nowhere);
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GREATER);
-    glCullFace(GL_BACK);
-    glUseProgram(program.get());
-    glBindVertexArray(array.get());
-    return success();
-}
-
-Status GlMeshes::read(GLenum format, GLenum type, std::vector<uint32_t>& pixels, const char* during) const {
-    if (pixels.empty()) return success();
-    context.makeCurrent();
-    glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
-    glPixelStorei(GL_PACK_ALIGNMENT, 4);
-    glReadPixels(0, 0, static_cast<GLsizei>(target.width), static_cast<GLsizei>(target.height), format, type,
-                 pixels.data());
-    return checkGl(during);
-}
 
 constexpr const char* kIdVertexShader = R"(#version 450 core
 layout(location = 0) in vec3 position;
@@ -113,21 +39,6 @@ struct IdVertex {
     glm::vec3 position;
     uint32_t triangle;
 };
-
-struct Range {
-    uint32_t first = 0, count = 0;  ///< indices
-};
-
-struct MeshRange {
-    Range single, double_sided;
-    uint32_t base_vertex = 0;
-};
-
-using MeshKey = std::tuple<const void*, const void*, const void*, const void*>;
-
-MeshKey keyOf(const DrawItem& item) {
-    return {item.mesh.positions.data(), item.mesh.indices.data(), item.double_sided.data(), item.writes_depth.data()};
-}
 
 constexpr const char* kFlatVertexShader = R"(#version 450 core
 layout(location = 0) in vec3 position;
@@ -225,7 +136,7 @@ struct GlIdRenderer::State : GlMeshes {
     State(const GlContext& in, const DrawList& of) : GlMeshes(in), list(of) {}
 
     const DrawList& list;
-    std::vector<MeshRange> meshes;
+    std::vector<GlMesh> meshes;
     std::vector<uint32_t> mesh_of;  ///< per item
 
     void upload();
@@ -235,18 +146,17 @@ struct GlIdRenderer::State : GlMeshes {
 void GlIdRenderer::State::upload() {
     std::vector<IdVertex> all_vertices;
     std::vector<uint32_t> all_indices;
-    std::map<MeshKey, uint32_t> known;
+    GlMeshNumbers known;
     const auto append = [&](const std::vector<uint32_t>& more) {
-        const Range range{static_cast<uint32_t>(all_indices.size()), static_cast<uint32_t>(more.size())};
+        const GlRange range{static_cast<uint32_t>(all_indices.size()), static_cast<uint32_t>(more.size())};
         all_indices.insert(all_indices.end(), more.begin(), more.end());
         return range;
     };
     for (const DrawItem& item : list.items()) {
-        const auto [found, is_new] = known.try_emplace(keyOf(item), static_cast<uint32_t>(meshes.size()));
-        mesh_of.push_back(found->second);
-        if (!is_new) continue;
+        mesh_of.push_back(known.of(item));
+        if (mesh_of.back() < meshes.size()) continue;
         const ProvokingMesh made = makeProvoking(item);
-        MeshRange mesh;
+        GlMesh mesh;
         mesh.base_vertex = static_cast<uint32_t>(all_vertices.size());
         mesh.single = append(made.single);
         mesh.double_sided = append(made.double_sided);
@@ -259,23 +169,13 @@ void GlIdRenderer::State::upload() {
 }
 
 void GlIdRenderer::State::drawItems(const GlView& view) const {
-    const auto draw = [](const MeshRange& mesh, const Range& range) {
-        if (range.count == 0) return;
-        glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(range.count), GL_UNSIGNED_INT,
-                                 reinterpret_cast<const void*>(size_t{range.first} * sizeof(uint32_t)),
-                                 static_cast<GLint>(mesh.base_vertex));
-    };
     for (size_t i = 0; i < list.items().size(); ++i) {
         const DrawItem& item = list.items()[i];
-        const MeshRange& mesh = meshes[mesh_of[i]];
+        const GlMesh& mesh = meshes[mesh_of[i]];
         const glm::dmat4 to_clip = view.objectToClip(item.transform);
         glUniformMatrix4dv(0, 1, GL_FALSE, &to_clip[0][0]);
         glUniform1ui(8, list.firstSurface(i));
-        glFrontFace(view.frontIsClockwise(item.transform) ? GL_CW : GL_CCW);
-        glEnable(GL_CULL_FACE);
-        draw(mesh, mesh.single);
-        glDisable(GL_CULL_FACE);
-        draw(mesh, mesh.double_sided);
+        mesh.draw(view.frontIsClockwise(item.transform));
     }
 }
 
