@@ -30,9 +30,10 @@ prepare() {
     exec {lock}>&-
 }
 
-# The cases of the verb `bench` are a program of their own, which takes a minute more.
+# The verbs `bench` and `view` are programs of their own, which take a minute more.
 programs=(sightline)
 case " $* " in *" bench "*) programs+=(sightline-bench) ;; esac
+case " $* " in *" view "*) programs+=(sightline-view) ;; esac
 prepare "${programs[@]}"
 if [ $# -gt 0 ]; then exec "$tool" "$@"; fi
 

@@ -35,6 +35,9 @@ if(SIGHTLINE_TOOLS)
   # ./run.sh builds the tool alone: what it has not built is left out.
   install(TARGETS sightline COMPONENT tools)
   install(TARGETS sightline-bench COMPONENT tools OPTIONAL)
+  if(TARGET sightline-view)
+    install(TARGETS sightline-view COMPONENT tools OPTIONAL)
+  endif()
   if(TARGET sightline_completions)
     set(pages ${PROJECT_BINARY_DIR}/apps/cli/completions)
     install(FILES ${pages}/sightline DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions

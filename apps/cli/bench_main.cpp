@@ -5,5 +5,9 @@
 #include "bench/bench.h"
 
 int main(int count, char** words) {
-    return sightline::cli::toolMain(count, words, {sightline::cli::addBench, sightline::bench::names, nullptr});
+    using namespace sightline::cli;
+    OtherVerb bench = kBenchVerb;
+    bench.add = addBench;
+    bench.names = sightline::bench::names;
+    return toolMain(count, words, {bench, kViewVerb});
 }

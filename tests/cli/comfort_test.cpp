@@ -61,6 +61,9 @@ TEST_F(Comfort, SlipsAreToldWhatIsNearest) {
     expectError("evrify city:1:10", 2, "did you mean verify?");
     expectError("cull city:1:10 --farmes 3", 2, "did you mean --frames?");
     expectError("help rendr", 2, "did you mean render?");
+    expectError("render city:1:10 --method z-buffer", 2, "did you mean zbuffer?");
+    expectError("cull city:1:10 --skip oclusion", 2, "did you mean occlusion?");
+    EXPECT_EQ(run("cull city:1:10 --path xyz").err.find("did you mean"), std::string::npos);
     EXPECT_EQ(run("xyzzy").err.find("did you mean"), std::string::npos);
 }
 

@@ -162,7 +162,7 @@ TEST_F(LodOptions, ABudgetIsKeptAndWhatItLeavesOutIsNoFalseCull) {
     EXPECT_EQ(run["verification"]["false_culls"], 0);
     EXPECT_GT(culledBy(run, "lod"), 0u);
     for (const json& frame : run["frames"])
-        if (frame.contains("lod_cost")) EXPECT_LE(frame["lod_cost"], 1000);
+        if (frame.contains("lod_cost")) { EXPECT_LE(frame["lod_cost"], 1000); }
 }
 
 TEST_F(LodOptions, SayWhatTheyMiss) {

@@ -1,5 +1,6 @@
 // The verb vis: maps of every kind in, lumps and visibility files out.
 // SPDX-License-Identifier: MIT
+#include <chrono>
 #include <filesystem>
 #include <string>
 
@@ -229,10 +230,13 @@ TEST_F(Vis, AStateOfAnotherBakeIsPassedOver) {
 
 TEST_F(Vis, AnInterruptedBakeGoesOnToTheSameBytes) {
     if (!std::filesystem::exists(shared("lq_e1m5.prt"))) GTEST_SKIP() << "the shared maps are not there";
-    ASSERT_EQ(run("vis " + shared("lq_e1m5.prt") + " -o whole.see").exit_code, 0);
-    // Sooner or later it is interrupted in the midst of its flow.
+    const auto start = std::chrono::steady_clock::now();
+    ASSERT_EQ(run("vis " + shared("lq_e1m5.prt") + " --threads 1 -o whole.see").exit_code, 0);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    // Sooner or later it is interrupted in the midst of its flow, however fast the machine is.
     bool left = false;
-    for (const char* after : {"0.1", "0.2", "0.3", "0.4"}) {
+    for (const double part : {0.25, 0.4, 0.55, 0.7, 0.8, 0.9}) {
+        const std::string after = std::to_string(part * seconds);
         std::filesystem::remove(path("x.see"));
         const Outcome outcome = run("vis " + shared("lq_e1m5.prt") + " --threads 1 -o x.see & sleep " + after +
                                     "; kill -TERM $! ; wait $!");

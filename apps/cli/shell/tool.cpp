@@ -9,8 +9,11 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
+
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -193,6 +196,16 @@ std::string inOurWords(std::string what) {
     return withoutRange(what);
 }
 
+/// Of a value that an option does not take: which of those it takes may have been meant.
+std::string meantValue(const std::string& what) {
+    const std::string_view kNotIn = " not in {";
+    const size_t at = what.find(kNotIn), end = what.find('}', at);
+    if (at == std::string::npos || end == std::string::npos) return "";
+    const size_t word = what.rfind(' ', at - 1) + 1;  // behind the option's name, or the whole
+    const size_t first = at + kNotIn.size();
+    return suggestion(what.substr(word, at - word), CLI::detail::split(what.substr(first, end - first), ','));
+}
+
 /// What the parser found wrong, with a word that may have been meant.
 std::string explained(const CLI::App& tool, const CLI::ParseError& error) {
     std::string meant;
@@ -202,6 +215,8 @@ std::string explained(const CLI::App& tool, const CLI::ParseError& error) {
         const std::vector<std::string> extras = app.remaining();
         if (!extras.empty() && extras[0].size() > 1 && extras[0].starts_with('-'))
             meant = meantOption(tool, app, extras[0].substr(0, extras[0].find('=')));
+    } else {
+        meant = meantValue(error.what());
     }
     return fmt::format("{}{} (see {} --help)", inOurWords(error.what()), meant, verbOf(tool));
 }
@@ -244,10 +259,14 @@ void beginVerb(CLI::App& tool, const SessionOptions& session) {
     if (config.here && verb.get_configurable()) note("options are taken from ./" + config.file);
 }
 
-void addVerbs(CLI::App& tool, const BenchVerb& bench, SessionOptions& session, int& exit_code) {
+void addVerbs(CLI::App& tool, std::span<const OtherVerb> others, SessionOptions& session, int& exit_code) {
     for (const auto add : {addCull, addVerify, addRender, addExplain, addSight, addReplay, addVis, addBake, addExport,
-                           addCalibrate, addProfile, addAdvise, addReport, addInfo, bench.add})
+                           addCalibrate, addProfile, addAdvise, addReport, addInfo})
         add(tool, exit_code);
+    for (const OtherVerb& other : others) {
+        if (other.add) other.add(tool, exit_code);
+        else tool.add_subcommand(other.name, other.about);  // what is said of it comes from the other program
+    }
     for (CLI::App* verb : tool.get_subcommands({})) verb->configurable();
     // What follows tells of the tool itself.
     addConfig(tool, session, exit_code);
@@ -264,23 +283,48 @@ std::string meantVerb(const std::string& word, const std::vector<std::string>& n
     return fmt::format("; for a scene: sightline cull {0}, or sightline info {0}", quoted(word));
 }
 
-/// Whether the words are about the verb `bench`, or its completions or help.
-bool isAboutBench(const std::vector<std::string>& words) {
+/// The verb that the words are about, or whose completions or help they ask for.
+std::string aboutVerb(const std::vector<std::string>& words) {
     size_t at = 0;
     if (words.size() > 2 && words[0] == "completions" && words[1] == "--words") at = 2;
     else if (words.size() > 1 && words[0] == "help") at = 1;
-    return at < words.size() && words[at] == "bench";
+    return at < words.size() ? words[at] : "";
 }
 
-int runTool(std::vector<std::string> words, const BenchVerb& bench) {
-    if (bench.elsewhere && isAboutBench(words)) return bench.elsewhere(words);
+/// Becomes another program, which lies beside this one.
+int runBeside(const OtherVerb& verb, const std::vector<std::string>& words) {
+    std::error_code failed;
+    const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", failed).parent_path();
+    const std::string program = (here / verb.program).string();
+    std::vector<std::string> all = words;
+    all.insert(all.begin(), program);
+    std::vector<char*> pointers;
+    for (std::string& word : all) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    std::fflush(nullptr);
+    execv(program.c_str(), pointers.data());
+    return report(
+        {Error::Kind::kUsage, fmt::format("{0}: the program {1} is not beside this one; `./run.sh {0}` builds it",
+                                          verb.name, verb.program)});
+}
+
+/// What the verb's NAME may be.
+std::vector<std::string> casesOf(std::span<const OtherVerb> others) {
+    for (const OtherVerb& other : others)
+        if (other.names) return other.names();
+    return {};
+}
+
+int runTool(std::vector<std::string> words, std::span<const OtherVerb> others) {
+    for (const OtherVerb& other : others)
+        if (!other.add && aboutVerb(words) == other.name) return runBeside(other, words);
     CLI::App tool("What can be seen, from any view of any world: conservative visibility, measured and proved.",
                   "sightline");
     tool.set_version_flag("--version", "sightline " SIGHTLINE_VERSION, "print the version");
     tool.require_subcommand(1);
     int exit_code = kDone;
     SessionOptions session;
-    addVerbs(tool, bench, session, exit_code);
+    addVerbs(tool, others, session, exit_code);
     tool.parse_complete_callback([&] { beginVerb(tool, session); });
 
     if (words.empty()) {
@@ -288,10 +332,7 @@ int runTool(std::vector<std::string> words, const BenchVerb& bench) {
         return kWrongArguments;
     }
     if (words.size() > 2 && words[0] == "completions" && words[1] == "--words") {
-        std::fputs(completionsOf(tool, {words.begin() + 2, words.end()},
-                                 bench.names ? bench.names() : std::vector<std::string>())
-                       .c_str(),
-                   stdout);
+        std::fputs(completionsOf(tool, {words.begin() + 2, words.end()}, casesOf(others)).c_str(), stdout);
         return kDone;
     }
     if (words[0] == "help") {  // `help VERB` is `VERB --help`
@@ -317,11 +358,11 @@ int runTool(std::vector<std::string> words, const BenchVerb& bench) {
 
 }  // namespace
 
-int toolMain(int count, char** words, const BenchVerb& bench) {
+int toolMain(int count, char** words, std::initializer_list<OtherVerb> others) {
     openSession();
     int exit_code = kDone;
     try {
-        exit_code = runTool({words + 1, words + std::max(count, 1)}, bench);
+        exit_code = runTool({words + 1, words + std::max(count, 1)}, {others.begin(), others.size()});
     } catch (const std::bad_alloc&) {
         exit_code = report({Error::Kind::kInput, "not enough memory for this scene"});
     } catch (const std::exception& error) {

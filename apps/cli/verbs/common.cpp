@@ -22,6 +22,7 @@
 #include "sightline/tools/report/readable.h"
 #include "sightline/tools/scene/city/city.h"
 #include "sightline/tools/scene/one_line.h"
+#include "sightline/tools/scene/suggestion.h"
 
 namespace sightline::cli {
 using namespace tools;
@@ -54,7 +55,9 @@ Result<uint32_t> readStages(const std::string& option, const std::vector<std::st
     for (const std::string& name : names) {
         const auto* const found = std::find(std::begin(kStageNames), std::end(kStageNames), name);
         if (found == std::end(kStageNames))
-            return usageError(fmt::format("{}: there is no stage \"{}\" (there are: {})", option, name, stageNames()));
+            return usageError(fmt::format("{}: there is no stage \"{}\"{} (there are: {})", option, name,
+                                          suggestion(name, {std::begin(kStageNames), std::end(kStageNames)}),
+                                          stageNames()));
         bits |= 1u << (found - std::begin(kStageNames));
     }
     return bits;
@@ -216,7 +219,8 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     if (Status cells = finishVisibilityOptions(options); !cells) return cells;
     if (Status path = finishPath(verb, options); !path) return path;
     if (options.threads == 0) options.threads = std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads);
-    if (options.json.empty() && verb.count("--json") > 0) return usageError("--json: the name is empty");
+    const CLI::Option* const json = verb.get_option_no_throw("--json");  // not every verb has it
+    if (options.json.empty() && json && json->count() > 0) return usageError("--json: the name is empty");
     return success();
 }
 

@@ -26,5 +26,6 @@ void addAdvise(CLI::App& tool, int& exit_code);
 void addReport(CLI::App& tool, int& exit_code);
 void addInfo(CLI::App& tool, int& exit_code);
 void addBench(CLI::App& tool, int& exit_code);
+void addView(CLI::App& tool, int& exit_code);
 
 }  // namespace sightline::cli

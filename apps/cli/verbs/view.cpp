@@ -1,0 +1,216 @@
+// The verb `view`: a window onto a scene, or a picture of what would be in it.
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/cli/shell/apart.h"
+#include "apps/cli/shell/progress.h"
+#include "apps/cli/shell/tool.h"
+#include "apps/cli/verbs/common.h"
+#include "apps/cli/verbs/explain_object.h"
+#include "apps/cli/verbs/verbs.h"
+#include "apps/cli/verbs/visibility_choice.h"
+#include "apps/gl/context.h"
+#include "apps/viewer/viewer.h"
+#include "apps/viewer/window.h"
+#include "sightline/tools/report/output_file.h"
+#include "sightline/tools/report/readable.h"
+
+namespace sightline::cli {
+using namespace tools;
+namespace {
+
+struct ViewOptions : RunOptions {
+    bool headless = false, no_panels = false;
+    std::string screenshot;
+    uint32_t frame = 0;
+    std::optional<uint32_t> frozen;
+    std::string object, colours = "materials", culled = "boxes";
+    bool x_ray = false;
+    int tree_level = -1;
+};
+
+template <class Choice, size_t count>
+Choice choiceOf(const char* const (&names)[count], const std::string& word) {
+    return static_cast<Choice>(std::find(names, names + count, word) - names);
+}
+
+/// What the options ask for.
+Status arrange(const ViewOptions& options, const Scene& scene, viewer::Viewer& viewer) {
+    viewer::ViewerState& state = viewer.state;
+    state.panels = !options.no_panels;
+    state.colour_by = choiceOf<viewer::ColourBy>(viewer::kColourByNames, options.colours);
+    state.culled_as = choiceOf<viewer::CulledAs>(viewer::kCulledAsNames, options.culled);
+    state.x_ray = options.x_ray;
+    state.tree_level = options.tree_level;
+    for (const DoorAsked& asked : options.visibility.doors)
+        for (viewer::ViewerDoor& door : viewer.culler().doors())
+            if (door.name == asked.name) door.open = static_cast<float>(asked.open);
+    if (options.frozen) {
+        viewer.goTo(*options.frozen);
+        state.frozen = true;
+    }
+    viewer.goTo(options.frame);
+    if (options.object.empty()) return success();
+    const Result<std::vector<uint32_t>> objects = findObjects(scene, options.object);
+    if (!objects) return objects.error();
+    state.chosen = objects->front();
+    return success();
+}
+
+Status writePicture(const viewer::Viewer& viewer, const std::string& file) {
+    const Result<Image<Rgb>> picture = viewer.picture();
+    if (!picture) return picture.error();
+    return writeFileAside(file, encodePng(*picture));
+}
+
+/// A name that no file has.
+std::string freeName() {
+    for (int i = 1;; ++i) {
+        const std::string name = fmt::format("sightline-view-{}.png", i);
+        std::error_code ignored;
+        if (!std::filesystem::exists(name, ignored)) return name;
+    }
+}
+
+/// Panels take their places in the first frames.
+Status drawOnce(const ViewOptions& options, viewer::Viewer& viewer) {
+    for (int i = 0; i < 3; ++i)
+        if (Status drawn = viewer.frame({}, options.width, options.height); !drawn) return drawn;
+    if (options.screenshot.empty()) return success();
+    return writePicture(viewer, options.screenshot);
+}
+
+Status runWindow(const ViewOptions& options, viewer::Window& window, viewer::Viewer& viewer) {
+    Status status = success();
+    uint64_t frames = 0;
+    window.run([&](const viewer::Input& input, uint32_t width, uint32_t height) {
+        status = viewer.frame(input, width, height);
+        if (!status) return viewer::Window::Next::kEnd;
+        viewer.show(width, height);
+        if (viewer.state.wants_picture) {
+            viewer.state.wants_picture = false;
+            const std::string name = freeName();
+            const Status written = writePicture(viewer, name);
+            viewer.state.said = written ? name + " written" : written.error().message;
+        }
+        if (++frames == 3 && !options.screenshot.empty()) {
+            status = writePicture(viewer, options.screenshot);
+            return viewer::Window::Next::kEnd;
+        }
+        if (viewer.state.wants_to_close || interrupted()) return viewer::Window::Next::kEnd;
+        return viewer.rests() && frames > 3 ? viewer::Window::Next::kRest : viewer::Window::Next::kFrame;
+    });
+    return status;
+}
+
+Status checkView(const ViewOptions& options) {
+    ApartFiles files;
+    for (const std::string& name : options.scene.names) files.read("SCENE", name);
+    files.read("--cameras", options.choice.file);
+    files.read("--visibility", options.visibility.file);
+    files.write("--screenshot", options.screenshot);
+    if (!files.status()) return files.status();
+    if (options.screenshot == "-") return usageError("--screenshot -: pictures go into files");
+    if (options.headless && options.screenshot.empty()) return usageError("--headless goes with --screenshot");
+    return options.screenshot.empty() ? success() : canWriteFile(options.screenshot);
+}
+
+LoadedWorld loadForView(const Scene& scene, const ViewOptions& options) {
+    Progress progress("preparing", "meshes", scene.meshes.size());
+    LoadSettings settings = loadSettings(options.settings, options.cluster_test);
+    settings.volumes = true;
+    LoadedWorld loaded = loadWorld(
+        scene, [&](size_t done, size_t total) { progress.set(done, total); }, settings);
+    attachVisibility(options, loaded.world);
+    return loaded;
+}
+
+Status runView(const CLI::App& verb, ViewOptions& options) {
+    if (Status good = finish(verb, options); !good) return good;
+    if (Status good = checkView(options); !good) return good;
+    const Result<Scene> scene = loadScene(options.scene);
+    if (!scene) return scene.error();
+    if (Status opened = openVisibility(*scene, options); !opened) return opened;
+    const Result<CameraPath> path = loadPath(*scene, options);
+    if (!path) return path.error();
+    if (Status there = checkFrame(options.frame, path->frames.size()); !there) return there;
+    if (options.frozen && *options.frozen >= path->frames.size())
+        return usageError(fmt::format("--frozen {}: the path has {}, from 0", *options.frozen,
+                                      counted(path->frames.size(), "frame")));
+    LoadedWorld world = loadForView(*scene, options);
+    QuerySettings settings = options.settings;
+    settings.stateless = false;
+
+    std::optional<GlContext> context;
+    std::optional<viewer::Window> window;
+    viewer::ViewerSettings shown;
+    shown.path = *path;
+    shown.sections = options.sections;
+    shown.jitter = options.jitter;
+    shown.times = !options.headless;
+    if (options.headless) {
+        Result<GlContext> made = GlContext::create(2);
+        if (!made) return made.error();
+        context.emplace(std::move(*made));
+        context->makeCurrent();
+    } else {
+        Result<viewer::Window> opened =
+            viewer::Window::open("Sightline: " + options.scene.title(), options.width, options.height);
+        if (!opened) return opened.error();
+        window.emplace(std::move(*opened));
+        shown.scale = window->scale();
+    }
+    Result<std::unique_ptr<viewer::Viewer>> made = viewer::Viewer::create(*scene, std::move(world), settings, shown);
+    if (!made) return made.error();
+    if (Status ready = arrange(options, *scene, **made); !ready) return ready;
+    stopGently();
+    return options.headless ? drawOnce(options, **made) : runWindow(options, *window, **made);
+}
+
+}  // namespace
+
+void addView(CLI::App& tool, int& exit_code) {
+    CLI::App* verb = tool.add_subcommand(kViewVerb.name, kViewVerb.about);
+    const auto options = std::make_shared<ViewOptions>();
+    addSceneOptions(*verb, *options);
+    for (const char* name : {"--json", "--rays", "--repeat", "--threads"})  // of verbs that run through a path
+        verb->remove_option(verb->get_option(name));
+    verb->add_flag("--headless", options->headless, "draw one frame without a window, for --screenshot");
+    verb->add_option("--screenshot", options->screenshot, "write the picture, and end")->type_name("FILE.png");
+    verb->add_option("--frame", options->frame, "of the path, where the eye stands")
+        ->type_name("N")
+        ->capture_default_str();
+    verb->add_option("--frozen", options->frozen,
+                     "leave the culling camera at this frame of the path, and look at what it left from --frame")
+        ->type_name("N");
+    verb->add_option("--object", options->object, "choose this object: its key, its name or a part of its path")
+        ->type_name("OBJECT");
+    verb->add_option("--colours", options->colours, "of what is visible")
+        ->check(CLI::IsMember({"materials", "objects", "answer"}))
+        ->type_name("materials|objects|answer")
+        ->capture_default_str();
+    verb->add_option("--culled", options->culled, "what was culled is shown as")
+        ->check(CLI::IsMember({"nothing", "boxes", "ghosts"}))
+        ->type_name("nothing|boxes|ghosts")
+        ->capture_default_str();
+    verb->add_flag("--x-ray", options->x_ray, "what is visible is see-through, and what was culled is shown");
+    verb->add_option("--tree-level", options->tree_level, "show the boxes of a level of the hierarchy (-1: none)")
+        ->check(CLI::Range(-1, 12))
+        ->type_name("N")
+        ->capture_default_str();
+    verb->add_flag("--no-panels", options->no_panels, "without panels");
+    verb->callback([verb, options, &exit_code] {
+        const Status done = runView(*verb, *options);
+        exit_code = !done ? report(done.error()) : interrupted() ? kInterrupted : kDone;
+    });
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,11 @@
+// The program `sightline-view`: the tool with its verb `view`.
+// SPDX-License-Identifier: MIT
+#include "apps/cli/shell/tool.h"
+#include "apps/cli/verbs/verbs.h"
+
+int main(int count, char** words) {
+    using namespace sightline::cli;
+    OtherVerb view = kViewVerb;
+    view.add = addView;
+    return toolMain(count, words, {kBenchVerb, view});
+}

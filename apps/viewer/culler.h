@@ -1,0 +1,88 @@
+// A scene as a world, and what its camera sees of it: asked anew when something has changed.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sightline/query/query.h"
+#include "sightline/query/shadow_query.h"
+#include "sightline/tools/load/load_world.h"
+#include "sightline/tools/scene/scene.h"
+
+namespace sightline::viewer {
+
+/// A door of the attached cells.
+struct ViewerDoor {
+    std::string name;
+    float open = 1;
+};
+
+/// Why an object is, or is not, in the answer.
+struct ObjectWhy {
+    std::string text;              ///< a paragraph
+    std::vector<uint32_t> hiders;  ///< objects that hide it, those with the largest share first
+    bool kept = false;
+};
+
+class Culler {
+public:
+    /// @param scene  must outlive it
+    /// @param world  of the scene, with its visibility file, if there is one
+    Culler(const tools::Scene& scene, tools::LoadedWorld world, const QuerySettings& settings);
+
+    QuerySettings settings;
+
+    /// Asks, if the view, the settings or a door differ from those of the last answer.
+    /// @returns whether it did
+    bool ask(const View& view);
+
+    /// Objects, rising: so that of two surfaces at one depth the same is shown, whatever is culled.
+    std::span<const uint32_t> visible() const { return visible_; }
+    const QueryStats& stats() const { return stats_; }
+    /// Per object: 0 visible, 1 + Stage of the stage that culled it.  [size: objects]
+    std::span<const uint8_t> reasons();
+    /// Objects that may darken what is visible under a sun, those that are visible among them. Asked where it is first
+    /// wanted after an answer.
+    /// @param sun  where its light comes from
+    std::span<const uint32_t> casters(const glm::dvec3& sun);
+    const CasterStats& casterStats() const { return caster_stats_; }
+    std::span<const SeenWindow> windows() { return query_.windows(); }
+    Query::DepthImage depthImage() { return query_.depthImage(true); }
+
+    ObjectWhy why(uint32_t object) const;
+    std::string nameOf(uint32_t object) const;
+
+    std::vector<ViewerDoor>& doors() { return doors_; }
+    bool hasCells() const;
+    const Snapshot& now() const { return now_; }
+    const tools::Scene& scene() const { return scene_; }
+    /// In world space; may not be finite.
+    const Box3d& boundsOf(uint32_t object) const { return bounds_[object]; }
+
+private:
+    uint32_t objectOf(ObjectId id) const { return object_of_[id.index]; }
+    void moveDoors();
+
+    const tools::Scene& scene_;
+    tools::LoadedWorld world_;
+    std::vector<uint32_t> object_of_;  ///< by the id's index
+    std::vector<Box3d> bounds_;
+    std::vector<ViewerDoor> doors_;
+    std::vector<float> set_;  ///< how far each door was open in the last answer
+    Snapshot now_;
+    Query query_;
+    View view_;
+    QuerySettings asked_;
+    bool fresh_ = false, has_reasons_ = false, has_casters_ = false;
+    std::vector<uint32_t> visible_, casters_;
+    std::vector<Visible> receivers_;
+    ShadowQuery shadow_query_;
+    CasterStats caster_stats_;
+    std::vector<uint8_t> reasons_;
+    QueryStats stats_;
+};
+
+}  // namespace sightline::viewer

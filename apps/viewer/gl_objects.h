@@ -1,0 +1,38 @@
+// What the viewer has in the GL: buffers, arrays, programs and images to draw into; of OpenGL 3.3.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "apps/gl/objects.h"
+
+namespace sightline::viewer {
+
+GlName makeBuffer(GLenum target, std::span<const std::byte> bytes, GLenum usage);
+GlName makeArray();
+
+/// An image of several samples a pixel, and the same of one, which can be read and shown.
+class ScreenImage {
+public:
+    /// Makes it anew where the size is another one. Errors: too large, no memory.
+    /// @param smooth  several samples a pixel
+    Status resize(uint32_t width, uint32_t height, bool smooth);
+    void begin() const;    ///< what is drawn goes here, and the viewport is all of it
+    void resolve() const;  ///< the samples of each pixel into one
+    /// Copies it into the window.
+    void show(uint32_t window_width, uint32_t window_height) const;
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+    GLuint resolved() const { return resolved_.get(); }
+
+private:
+    uint32_t width_ = 0, height_ = 0;
+    GlName colour_, depth_, framebuffer_, resolved_colour_, resolved_;
+};
+
+}  // namespace sightline::viewer

@@ -1,0 +1,359 @@
+// The viewer's panels.
+// SPDX-License-Identifier: MIT
+#include "apps/viewer/panels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+namespace sightline::viewer {
+using namespace tools;
+namespace {
+
+ImVec4 inkOf(const glm::vec3& colour) { return {colour.r, colour.g, colour.b, 1}; }
+
+constexpr double kFarthest = 1e30;  // [world units]: what a slider bears
+
+double meanOf(std::span<const float> values) {
+    double sum = 0;
+    size_t count = 0;
+    for (const float value : values)
+        if (value > 0) {
+            sum += static_cast<double>(value);
+            ++count;
+        }
+    return count == 0 ? 0 : sum / static_cast<double>(count);
+}
+
+/// 1234567 as "1,234,567".
+std::string grouped(uint64_t number) {
+    std::string text = std::to_string(number);
+    for (size_t at = text.size(); at > 3;) text.insert(at -= 3, ",");
+    return text;
+}
+
+/// One frame of them.
+class Panels {
+public:
+    Panels(const PanelFacts& facts, ViewerState& state, Culler& culler, PanelPlaces& places)
+        : facts_(facts), state_(state), culler_(culler), places_(places) {}
+    PanelWishes draw();
+
+private:
+    void answer();
+    void show();
+    void cut();
+    void path();
+    void doors();
+    void chosen();
+    void times() const;
+    void windows() const;
+    void buffer();
+    void keys();
+
+    bool check(const char* words, bool& value);
+    bool press(const char* words);
+    bool slide(const char* words, float& value, float low, float high);
+    void note(const char* words);
+
+    const PanelFacts& facts_;
+    ViewerState& state_;
+    Culler& culler_;
+    PanelPlaces& places_;
+    PanelWishes wishes_;
+};
+
+void Panels::note(const char* words) {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    places_[words] = {low.x, low.y, high.x, high.y};
+}
+
+bool Panels::check(const char* words, bool& value) {
+    const bool changed = ImGui::Checkbox(words, &value);
+    note(words);
+    return changed;
+}
+
+bool Panels::press(const char* words) {
+    const bool pressed = ImGui::Button(words);
+    note(words);
+    return pressed;
+}
+
+bool Panels::slide(const char* words, float& value, float low, float high) {
+    const bool changed = ImGui::SliderFloat(words, &value, low, high, "%.2f");
+    note(words);
+    return changed;
+}
+
+PanelWishes Panels::draw() {
+    const float height = static_cast<float>(facts_.height);
+    ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize({340, std::max(height - 16, 100.0f)}, ImGuiCond_FirstUseEver);
+    if (ImGui::Begin("Sightline")) {
+        answer();
+        show();
+        cut();
+        path();
+        doors();
+        times();
+        keys();
+    }
+    ImGui::End();
+    if (state_.chosen) chosen();
+    if (state_.buffer) buffer();
+    if (state_.windows && !state_.frozen) windows();
+    return wishes_;
+}
+
+/// What was culled by which stage, and the stages' switches.
+void Panels::answer() {
+    const QueryStats& stats = culler_.stats();
+    ImGui::TextUnformatted(facts_.scene.name.c_str());
+    ImGui::Text("%s of %s objects visible", grouped(stats.visible).c_str(), grouped(stats.objects).c_str());
+    ImGui::Text("%s triangles drawn", grouped(facts_.triangles).c_str());
+    if (facts_.times)
+        ImGui::Text("query %.0f us, frame %.1f ms", 1e-3 * static_cast<double>(stats.nanoseconds),
+                    meanOf(facts_.frame_milliseconds));
+    check("freeze the culling camera (F)", state_.frozen);
+    if (state_.frozen || state_.x_ray) {
+        ImGui::TextUnformatted("culled is shown as (C)");
+        for (int i = 0; i < 3; ++i) {
+            if (i > 0) ImGui::SameLine();
+            if (ImGui::RadioButton(kCulledAsNames[i], static_cast<int>(state_.culled_as) == i))
+                state_.culled_as = static_cast<CulledAs>(i);
+            note(kCulledAsNames[i]);
+        }
+        if (state_.culled_as != CulledAs::kNothing && facts_.left_out > 0)
+            ImGui::Text("%s %s more are not drawn", grouped(facts_.left_out).c_str(),
+                        kCulledAsNames[static_cast<int>(state_.culled_as)]);
+    }
+    if (!ImGui::CollapsingHeader("stages", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    if (!ImGui::BeginTable("stages", 4, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_RowBg)) return;
+    ImGui::TableSetupColumn("stage");
+    ImGui::TableSetupColumn("tested");
+    ImGui::TableSetupColumn("culled");
+    ImGui::TableSetupColumn("us");
+    ImGui::TableHeadersRow();
+    for (int stage = 0; stage < kStageCount; ++stage) {
+        const uint32_t bit = 1u << stage;
+        if ((bit & kCellStages) != 0 && !culler_.hasCells()) continue;
+        if (bit == stageBit(Stage::kClusters)) continue;  // nothing is prepared for it
+        const bool chooses_levels = culler_.settings.lod_error > 0 || culler_.settings.budget > 0;
+        if (bit == stageBit(Stage::kLod) && !chooses_levels) continue;
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        bool on = (culler_.settings.stages & bit) != 0;
+        ImGui::PushStyleColor(ImGuiCol_Text, inkOf(stageColour(stage)));
+        if (check(kStageNames[stage], on)) culler_.settings.stages ^= bit;
+        ImGui::PopStyleColor();
+        const StageStats& row = stats.stages[stage];
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(grouped(row.tested).c_str());
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(grouped(row.culled).c_str());
+        ImGui::TableNextColumn();
+        if (facts_.times) ImGui::Text("%.0f", 1e-3 * static_cast<double>(row.nanoseconds));
+    }
+    ImGui::EndTable();
+    float distance = static_cast<float>(std::min(culler_.settings.max_distance, kFarthest)),
+          pixels = static_cast<float>(culler_.settings.contribution);
+    if ((culler_.settings.stages & stageBit(Stage::kDistance)) != 0 &&
+        slide("farthest", distance, 0, static_cast<float>(std::min(facts_.size, kFarthest))))
+        culler_.settings.max_distance = static_cast<double>(distance);
+    if ((culler_.settings.stages & stageBit(Stage::kContribution)) != 0 && slide("smallest, pixels", pixels, 0, 20))
+        culler_.settings.contribution = static_cast<double>(pixels);
+    int width = static_cast<int>(culler_.settings.occlusion_size);
+    if (ImGui::SliderInt("buffer width", &width, 64, 1280))
+        culler_.settings.occlusion_size = static_cast<uint32_t>(width);
+    note("buffer width");
+}
+
+void Panels::show() {
+    if (!ImGui::CollapsingHeader("show", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    ImGui::TextUnformatted("colours (V)");
+    for (int i = 0; i < 3; ++i) {
+        if (i > 0) ImGui::SameLine();
+        if (ImGui::RadioButton(kColourByNames[i], static_cast<int>(state_.colour_by) == i))
+            state_.colour_by = static_cast<ColourBy>(i);
+        note(kColourByNames[i]);
+    }
+    check("frustum of the frozen camera", state_.frustum);
+    check("bounds of what is visible", state_.bounds);
+    check("x-ray (X)", state_.x_ray);
+    check("occlusion buffer", state_.buffer);
+    check("shadow casters of a sun", state_.casters);
+    if (state_.casters) {
+        const CasterStats& stats = culler_.casterStats();
+        const uint64_t left = stats.in_light - stats.beside - stats.behind - stats.in_shadow;
+        ImGui::Text("%s of %s in its light; %.0f us", grouped(left).c_str(), grouped(stats.in_light).c_str(),
+                    1e-3 * static_cast<double>(stats.nanoseconds));
+    }
+    if (culler_.hasCells()) {
+        check("portals", state_.portals);
+        check("windows of cells", state_.windows);
+    }
+    ImGui::SliderInt("tree level", &state_.tree_level, -1, 12, state_.tree_level < 0 ? "none" : "%d");
+    note("tree level");
+}
+
+void Panels::cut() {
+    if (!ImGui::CollapsingHeader("cut open")) return note("cut open");
+    note("cut open");
+    check("section", state_.section);
+    if (!state_.section) return;
+    for (int axis = 0; axis < 3; ++axis) {
+        constexpr const char* kNames[] = {"x", "y", "z"};
+        if (axis > 0) ImGui::SameLine();
+        if (ImGui::RadioButton(kNames[axis], state_.section_axis == axis)) state_.section_axis = axis;
+    }
+    slide("at", state_.section_at, 0, 1);
+    check("keep the upper part", state_.section_keeps_upper);
+}
+
+void Panels::path() {
+    if (!ImGui::CollapsingHeader("path", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    const size_t frames = facts_.path.frames.size();
+    if (frames > 0) {
+        int frame = static_cast<int>(facts_.path_frame);
+        if (ImGui::SliderInt("frame", &frame, 0, static_cast<int>(frames) - 1))
+            wishes_.go_to = static_cast<size_t>(frame);
+        note("frame");
+        check("play (P)", state_.playing);
+        ImGui::SameLine();
+    }
+    check("record (R)", state_.recording);
+    if (frames > 0 && press("save path")) wishes_.save_path = true;
+    if (frames > 0) ImGui::SameLine();
+    if (press("picture (F12)")) state_.wants_picture = true;
+    if (!state_.said.empty()) ImGui::TextWrapped("%s", state_.said.c_str());
+}
+
+void Panels::doors() {
+    std::vector<ViewerDoor>& doors = culler_.doors();
+    if (doors.empty() || !ImGui::CollapsingHeader("doors")) return note("doors");
+    note("doors");
+    if (press("open all"))
+        for (ViewerDoor& door : doors) door.open = 1;
+    ImGui::SameLine();
+    if (press("shut all"))
+        for (ViewerDoor& door : doors) door.open = 0;
+    for (size_t i = 0; i < std::min<size_t>(doors.size(), 200); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        slide(doors[i].name.c_str(), doors[i].open, 0, 1);
+        ImGui::PopID();
+    }
+}
+
+/// Why an object is, or is not, in the answer.
+void Panels::chosen() {
+    const uint32_t object = *state_.chosen;
+    const float width = static_cast<float>(facts_.width);
+    ImGui::SetNextWindowPos({width - 388, 8}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize({380, 260}, ImGuiCond_FirstUseEver);
+    if (ImGui::Begin("chosen object")) {
+        const SceneObject& of = facts_.scene.objects[object];
+        ImGui::TextWrapped("%s, key %llu, %s triangles", culler_.nameOf(object).c_str(),
+                           static_cast<unsigned long long>(of.key),
+                           grouped(facts_.scene.meshes[of.mesh].triangles()).c_str());
+        ImGui::Separator();
+        if (state_.why_is_old) ImGui::TextUnformatted("of an earlier view:");
+        ImGui::TextWrapped("%s", state_.why.c_str());
+        if (press("explain again")) wishes_.explain = true;
+        ImGui::SameLine();
+        if (press("look at it (Z)")) wishes_.look_at_chosen = true;
+        ImGui::SameLine();
+        check("isolate (I)", state_.isolate);
+        if (!state_.hiders.empty()) ImGui::TextUnformatted("hidden by, in orange:");
+        for (size_t i = 0; i < std::min<size_t>(state_.hiders.size(), 12); ++i) {
+            ImGui::PushID(static_cast<int>(i));  // several may have one name
+            if (ImGui::Selectable(culler_.nameOf(state_.hiders[i]).c_str())) wishes_.choose = state_.hiders[i];
+            ImGui::PopID();
+        }
+    }
+    ImGui::End();
+}
+
+void Panels::times() const {
+    if (!facts_.times) return;
+    if (!ImGui::CollapsingHeader("times", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    const auto plot = [](const char* words, std::span<const float> values, const char* unit) {
+        const float most = values.empty() ? 1 : *std::max_element(values.begin(), values.end());
+        const std::string over = fmt::format("{}: mean {:.1f}, most {:.1f} {}", words, meanOf(values), most, unit);
+        ImGui::PlotLines(("##" + std::string(words)).c_str(), values.data(), static_cast<int>(values.size()), 0,
+                         over.c_str(), 0, std::max(most * 1.1f, 0.1f), {-1, 50});
+    };
+    plot("query", facts_.query_microseconds, "us");
+    plot("frame", facts_.frame_milliseconds, "ms");
+}
+
+/// What cells are seen through, over the image.
+void Panels::windows() const {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    for (const SeenWindow& window : culler_.windows())
+        list.AddRect({static_cast<float>(window.rect.left), static_cast<float>(window.rect.top)},
+                     {static_cast<float>(window.rect.right), static_cast<float>(window.rect.bottom)},
+                     IM_COL32(80, 230, 230, 200), 0, 0, 1.5f);
+}
+
+/// The occlusion buffer, the nearer the brighter.
+void Panels::buffer() {
+    const Query::DepthImage image = culler_.depthImage();
+    if (image.width == 0) return;
+    constexpr float kWidth = 384;
+    const float scale = kWidth / static_cast<float>(image.width);
+    ImGui::SetNextWindowPos({static_cast<float>(facts_.width) - kWidth - 24,
+                             static_cast<float>(facts_.height) - scale * static_cast<float>(image.height) - 48},
+                            ImGuiCond_FirstUseEver);
+    if (ImGui::Begin("occlusion buffer", &state_.buffer, ImGuiWindowFlags_AlwaysAutoResize)) {
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        ImDrawList& list = *ImGui::GetWindowDrawList();
+        double nearest = 0;
+        for (size_t i = 0; i < image.nearness.size(); ++i)
+            if (image.covered[i]) nearest = std::max(nearest, static_cast<double>(image.nearness[i]));
+        // Runs of one brightness, in rows two pixels high: some thousand rectangles at most.
+        for (uint32_t y = 0; y < image.height; y += 2) {
+            const size_t line = size_t{image.height - 1 - y} * image.width;
+            const auto shade = [&](uint32_t x) {
+                if (!image.covered[line + x]) return 0;
+                const double part = nearest > 0 ? static_cast<double>(image.nearness[line + x]) / nearest : 1;
+                return 30 + 15 * static_cast<int>(14.99 * std::sqrt(std::clamp(part, 0.0, 1.0)));
+            };
+            for (uint32_t x = 0; x < image.width;) {
+                const int of = shade(x);
+                uint32_t end = x + 1;
+                while (end < image.width && shade(end) == of) ++end;
+                if (of > 0)
+                    list.AddRectFilled(
+                        {at.x + scale * static_cast<float>(x), at.y + scale * static_cast<float>(y)},
+                        {at.x + scale * static_cast<float>(end), at.y + scale * static_cast<float>(y + 2)},
+                        IM_COL32(of, of, of, 255));
+                x = end;
+            }
+        }
+        ImGui::Dummy({kWidth, scale * static_cast<float>(image.height)});
+    }
+    ImGui::End();
+}
+
+void Panels::keys() {
+    if (!ImGui::CollapsingHeader("keys")) return note("keys");
+    note("keys");
+    ImGui::TextWrapped(
+        "W A S D fly, Q E down and up, Shift faster, wheel: speed. Drag: look. Middle button or Alt and drag: turn "
+        "around "
+        "the scene or the chosen object. Click: choose. F freeze, C culled, V colours, X x-ray, I isolate, Z look at "
+        "it, "
+        "P play, R record, H hide the panels, Home: the whole scene, F12 picture, Esc: let go, then quit.");
+}
+
+}  // namespace
+
+PanelWishes drawPanels(const PanelFacts& facts, ViewerState& state, Culler& culler, PanelPlaces& places) {
+    return Panels(facts, state, culler, places).draw();
+}
+
+}  // namespace sightline::viewer

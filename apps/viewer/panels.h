@@ -1,0 +1,47 @@
+// The viewer's panels: what they show, what they change, and what they ask for.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "apps/viewer/culler.h"
+#include "apps/viewer/viewer_state.h"
+#include "sightline/tools/scene/camera_path.h"
+#include "sightline/tools/scene/scene.h"
+
+namespace sightline::viewer {
+
+/// What panels show beside the user's choices and the answer.
+struct PanelFacts {
+    const tools::Scene& scene;
+    const tools::CameraPath& path;
+    size_t path_frame = 0;
+    uint32_t width = 0, height = 0;  ///< of the image  [pixels]
+    uint64_t triangles = 0;          ///< drawn
+    size_t left_out = 0;             ///< boxes or ghosts
+    double size = 1;                 ///< of the scene  [world units]
+    bool times = true;               ///< are shown
+    std::span<const float> frame_milliseconds, query_microseconds;
+};
+
+/// What the user asked of them that is more than a choice.
+struct PanelWishes {
+    std::optional<size_t> go_to;     ///< a frame of the path
+    std::optional<uint32_t> choose;  ///< an object
+    bool explain = false, look_at_chosen = false, save_path = false;
+};
+
+/// Where a part of the panels is, by its words: for tests, which click there.
+struct PanelPlace {
+    float left = 0, top = 0, right = 0, bottom = 0;
+};
+using PanelPlaces = std::map<std::string, PanelPlace>;
+
+/// Between Gui::begin() and Gui::draw().
+PanelWishes drawPanels(const PanelFacts& facts, ViewerState& state, Culler& culler, PanelPlaces& places);
+
+}  // namespace sightline::viewer

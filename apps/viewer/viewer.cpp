@@ -1,0 +1,460 @@
+// The viewer without its window: what the user did goes in, a picture comes out.
+// SPDX-License-Identifier: MIT
+#include "apps/viewer/viewer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "sightline/cells/portal_graph.h"
+#include "sightline/tools/report/output_file.h"
+#include "sightline/tools/report/pictures/scene_look.h"
+#include "sightline/tree/descend.h"
+#include "sightline/world/world_state.h"
+
+namespace sightline::viewer {
+using namespace tools;
+namespace {
+
+constexpr glm::vec3 kBackground(0.10f, 0.115f, 0.14f);
+constexpr glm::vec3 kChosen(0.15f, 0.55f, 1.0f), kHider(1.0f, 0.55f, 0.1f), kFrustumInk(1.0f, 0.95f, 0.6f);
+constexpr glm::vec3 kCaster(0.75f, 0.45f, 1.0f);
+constexpr glm::dvec3 kSun(0.4, 0.8, 0.45);  // as the shading has it
+constexpr size_t kMostBoxes = 40000;        // of culled objects
+constexpr uint32_t kMostGhosts = 4000;      // objects that are drawn see-through
+constexpr size_t kTimes = 240;              // frames that times are kept of
+constexpr size_t kLeastRecorded = 10;       // frames: a shorter recording was a slip
+constexpr double kPathFps = 30;             // of a path that is recorded or shown
+
+/// Pressed since the last frame.
+bool pressedNow(const Input& now, const Input& last, uint16_t key) { return now.holds(key) && !last.holds(key); }
+
+/// But for the time, and nothing held.
+bool sameInput(const Input& a, const Input& b) {
+    return a.mouse_x == b.mouse_x && a.mouse_y == b.mouse_y && a.wheel == 0 && a.text.empty() &&
+           std::none_of(std::begin(a.keys), std::end(a.keys), [](bool held) { return held; }) &&
+           std::none_of(std::begin(a.buttons), std::end(a.buttons), [](bool held) { return held; }) &&
+           std::equal(std::begin(a.keys), std::end(a.keys), b.keys) &&
+           std::equal(std::begin(a.buttons), std::end(a.buttons), b.buttons);
+}
+
+}  // namespace
+
+Viewer::Viewer(const Scene& scene, LoadedWorld world, const QuerySettings& settings, ViewerSettings viewer)
+    : scene_(scene), culler_(scene, std::move(world), settings), settings_(std::move(viewer)) {
+    bounds_ = finiteBounds(scene);
+    size_ = diagonalOf(bounds_);
+    if (!settings_.path.frames.empty()) eye.take(settings_.path.frames.front());
+    culling = eye;
+}
+
+Viewer::~Viewer() = default;
+
+Result<std::unique_ptr<Viewer>> Viewer::create(const Scene& scene, LoadedWorld world, const QuerySettings& settings,
+                                               ViewerSettings viewer) {
+    std::unique_ptr<Viewer> made(new Viewer(scene, std::move(world), settings, std::move(viewer)));
+    if (const Status ready = made->prepare(); !ready) return ready.error();
+    return made;
+}
+
+Status Viewer::prepare() {
+    Result<SceneDrawer> drawer = SceneDrawer::create(scene_);
+    if (!drawer) return drawer.error();
+    drawer_.emplace(std::move(*drawer));
+    for (std::optional<LineDrawer>* lines : {&lines_, &culled_lines_}) {
+        Result<LineDrawer> made = LineDrawer::create();
+        if (!made) return made.error();
+        lines->emplace(std::move(*made));
+    }
+    Result<Gui> gui = Gui::create();
+    if (!gui) return gui.error();
+    gui_ = std::move(*gui);
+    return success();
+}
+
+void Viewer::goTo(size_t frame) {
+    if (settings_.path.frames.empty()) return;
+    path_frame_ = std::min(frame, settings_.path.frames.size() - 1);
+    eye.take(settings_.path.frames[path_frame_]);
+    if (!state.frozen) culling = eye;
+}
+
+View Viewer::viewOf(const FlyCamera& camera) const {
+    View view = camera.view(std::max(width_, 1u), std::max(height_, 1u));
+    view.sections = settings_.sections;
+    view.jitter = settings_.jitter;
+    if (!state.section) return view;
+    const int axis = state.section_axis;
+    const double at = glm::mix(bounds_.min[axis], bounds_.max[axis], static_cast<double>(state.section_at));
+    glm::dvec4 plane(0.0);
+    plane[axis] = state.section_keeps_upper ? 1 : -1;
+    plane.w = state.section_keeps_upper ? -at : at;
+    view.sections.add(plane);
+    return view;
+}
+
+/// Depth reaches over the scene and what is drawn around it, for a parallel view has to be told.
+GlView Viewer::glViewOf(const View& view) const {
+    std::vector<glm::vec3> corners;
+    DrawItem reach;
+    const glm::dvec3 middle = bounds_.empty() ? glm::dvec3(0.0) : bounds_.center();
+    for (int i = 0; i < 8; ++i)
+        corners.push_back(static_cast<float>(size_) * glm::vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+    reach.mesh.positions = corners;
+    reach.transform[3] = glm::dvec4(middle, 1.0);
+    return makeGlView(view, {&reach, 1});
+}
+
+/// Flies, looks and turns around what was chosen.
+void Viewer::steer(const Input& input) {
+    const double seconds = std::min(input.seconds, 0.1);
+    const bool keys = !gui_.wantsKeys(), mouse = !gui_.wantsMouse();
+    if (mouse && input.wheel != 0) state.speed = std::clamp(state.speed * std::pow(1.2f, input.wheel), 0.01f, 100.0f);
+    if (keys && !input.control) {
+        const double step =
+            seconds * 0.1 * std::min(size_, 60.0) * static_cast<double>(state.speed) * (input.shift ? 4 : 1);
+        const auto way = [&](uint16_t ahead, uint16_t back) { return step * (input.holds(ahead) - input.holds(back)); };
+        eye.fly({way('D', 'A'), way('E', 'Q'), way('W', 'S')});
+        const double turn = 1.5 * seconds;
+        eye.look(turn * (input.holds(kRight) - input.holds(kLeft)), turn * (input.holds(kUp) - input.holds(kDown)));
+    }
+    const double right = static_cast<double>(input.mouse_x - last_.mouse_x),
+                 down = static_cast<double>(input.mouse_y - last_.mouse_y);
+    const bool held = (input.buttons[0] && last_.buttons[0]) || (input.buttons[1] && last_.buttons[1]) ||
+                      (input.buttons[2] && last_.buttons[2]);
+    if (!mouse || !held || (right == 0 && down == 0)) return;
+    dragged_ = true;
+    const double per_pixel = glm::radians(eye.fov_y_degrees) / std::max(height_, 1u);
+    if (input.buttons[2] || input.alt) {
+        const Box3d& around =
+            state.chosen && culler_.boundsOf(*state.chosen).finite() ? culler_.boundsOf(*state.chosen) : bounds_;
+        eye.orbit(around.center(), -3 * per_pixel * right, 3 * per_pixel * down);
+    } else {
+        eye.look(2 * per_pixel * right, -2 * per_pixel * down);
+    }
+}
+
+void Viewer::pressed(const Input& input) {
+    if (gui_.wantsKeys() || input.control) return;
+    const auto now = [&](uint16_t key) { return pressedNow(input, last_, key); };
+    if (now('F')) state.frozen = !state.frozen;
+    if (now('C')) state.culled_as = static_cast<CulledAs>((static_cast<int>(state.culled_as) + 1) % 3);
+    if (now('V')) state.colour_by = static_cast<ColourBy>((static_cast<int>(state.colour_by) + 1) % 3);
+    if (now('X')) state.x_ray = !state.x_ray;
+    if (now('I')) state.isolate = !state.isolate && state.chosen.has_value();
+    if (now('H')) state.panels = !state.panels;
+    if (now('P') && !state.recording) state.playing = !state.playing;
+    if (now('R')) state.recording = !state.recording;
+    if (now('Z') && state.chosen) lookAtChosen();
+    if (now(kHome)) eye.frame(bounds_.center(), 0.5 * size_, aspect());
+    if (now(kF12)) state.wants_picture = true;
+    if (now(kEscape)) {
+        if (state.chosen) choose(std::nullopt);
+        else state.wants_to_close = true;
+    }
+}
+
+/// Shows the panels, and does what they are asked for.
+void Viewer::drawPanels() {
+    const size_t left_out = state.culled_as == CulledAs::kBoxes ? boxes_left_out_ : ghosts_left_out_;
+    const PanelFacts facts{scene_,          settings_.path,      path_frame_,        width_,
+                           height_,         triangles_,          left_out,           size_,
+                           settings_.times, frame_milliseconds_, query_microseconds_};
+    const PanelWishes wishes = sightline::viewer::drawPanels(facts, state, culler_, places_);
+    if (wishes.go_to) goTo(*wishes.go_to);
+    if (wishes.choose) choose(*wishes.choose);
+    if (wishes.explain) explainChosen();
+    if (wishes.look_at_chosen) lookAtChosen();
+    if (wishes.save_path) {
+        const Status written = writeFileAside(settings_.path_file, cameraPathJson(settings_.path));
+        state.said = written ? fmt::format("{} frames in {}", settings_.path.frames.size(), settings_.path_file)
+                             : written.error().message;
+    }
+}
+
+void Viewer::lookAtChosen() {
+    const Box3d& box = culler_.boundsOf(*state.chosen);
+    if (box.finite()) eye.frame(box.center(), 0.6 * diagonalOf(box), aspect());
+}
+
+/// Records, or shows what is there. What was recorded takes the path's place when the recording ends.
+void Viewer::playPath() {
+    if (state.recording) state.playing = false;
+    else if (!recorded_.frames.empty()) keepRecording();
+    const bool works = state.recording || state.playing;
+    if (works && !path_works_) {
+        path_time_ = 0;
+        if (state.playing && path_frame_ + 1 >= settings_.path.frames.size()) goTo(0);
+    }
+    path_works_ = works;
+    if (!works) return;
+    path_time_ += std::min(last_.seconds, 0.5);
+    for (; path_time_ >= 1 / kPathFps; path_time_ -= 1 / kPathFps) {
+        if (state.recording) {
+            recorded_.frames.push_back(eye.cameraFrame());
+        } else if (path_frame_ + 1 < settings_.path.frames.size()) {
+            goTo(path_frame_ + 1);
+        } else {
+            state.playing = path_works_ = false;
+            return;
+        }
+    }
+}
+
+void Viewer::keepRecording() {
+    if (recorded_.frames.size() >= kLeastRecorded) {
+        settings_.path = recorded_;
+        path_frame_ = recorded_.frames.size() - 1;
+        state.said = fmt::format("{} frames recorded", recorded_.frames.size());
+    }
+    recorded_.frames.clear();
+}
+
+bool Viewer::isShown(uint32_t object) const {
+    if (!state.isolate || !state.chosen) return true;
+    return object == *state.chosen || std::find(state.hiders.begin(), state.hiders.end(), object) != state.hiders.end();
+}
+
+void Viewer::drawObjects(const View& view) {
+    for (const uint32_t object : culler_.visible()) {
+        if (!isShown(object)) continue;
+        Paint paint;
+        if (state.colour_by != ColourBy::kMaterials) paint.tinted = 1;
+        if (state.colour_by == ColourBy::kObjects) {
+            const uint64_t mixed = (scene_.objects[object].key + 1) * 0x9e3779b97f4a7c15ull;
+            for (int i = 0; i < 3; ++i)
+                paint.tint[i] = 0.25f + 0.6f * static_cast<float>(mixed >> (8 + 16 * i) & 0xff) / 255;
+        } else if (state.colour_by == ColourBy::kAnswer) {
+            paint.tint = glm::vec3(0.35f, 0.65f, 0.4f);
+        }
+        if (state.x_ray) paint.opacity = 0.25f;
+        if (state.chosen == object) {
+            paint.tint = kChosen;
+            paint.tinted = 0.8f;
+            paint.opacity = 1;
+        } else if (std::find(state.hiders.begin(), state.hiders.end(), object) != state.hiders.end()) {
+            paint.tint = kHider;
+            paint.tinted = 0.8f;
+        }
+        drawer_->draw(object, paint);
+    }
+    static_cast<void>(view);
+}
+
+/// Whether an object that was culled is shown as what it is.
+bool Viewer::isCulled(uint32_t object) {
+    const uint8_t reason = culler_.reasons()[object];
+    return reason != 0 && reason <= kStageCount && isShown(object);
+}
+
+/// What was culled and is drawn as a ghost.
+void Viewer::listGhosts() {
+    ghosts_.clear();
+    ghosts_left_out_ = 0;
+    if ((!state.frozen && !state.x_ray) || state.culled_as != CulledAs::kGhosts) return;
+    for (uint32_t object = 0; object < scene_.objects.size(); ++object) {
+        if (!isCulled(object) || state.chosen == object) continue;
+        if (ghosts_.size() < kMostGhosts) ghosts_.push_back(object);
+        else ++ghosts_left_out_;
+    }
+}
+
+/// What was culled: while the culling camera is left, or as one sees through walls.
+void Viewer::drawCulled(const GlView& view) {
+    const std::span<const uint8_t> reasons = culler_.reasons();
+    if (state.chosen && reasons[*state.chosen] != 0) drawer_->draw(*state.chosen, {kChosen, 0.8f, 0.6f});
+    if (state.casters)
+        for (const uint32_t object : culler_.casters(kSun))
+            if (isCulled(object)) drawer_->draw(object, {kCaster, 1.0f, 0.35f});
+    for (const uint32_t object : ghosts_) drawer_->draw(object, {stageColour(reasons[object] - 1), 1.0f, 0.18f});
+    if ((!state.frozen && !state.x_ray) || state.culled_as != CulledAs::kBoxes) return;
+    if (culled_boxes_stale_) {
+        culled_lines_->clear();
+        boxes_left_out_ = 0;
+        for (uint32_t object = 0; object < reasons.size(); ++object) {
+            if (reasons[object] == 0 || reasons[object] > kStageCount || !culler_.boundsOf(object).finite()) continue;
+            if (culled_lines_->count() >= 12 * kMostBoxes) ++boxes_left_out_;
+            else culled_lines_->box(culler_.boundsOf(object), stageColour(reasons[object] - 1));
+        }
+        culled_boxes_stale_ = false;
+    }
+    if (!state.isolate) culled_lines_->draw(view, 0.12f);
+}
+
+void Viewer::drawLines(const GlView& view) {
+    lines_->clear();
+    if (state.frozen && state.frustum) {
+        const View of = viewOf(culling);
+        const glm::dmat4 back = glm::inverse(of.projection * of.view);
+        glm::dvec3 corners[8];
+        for (int i = 0; i < 8; ++i) {
+            const glm::dvec4 near = back * glm::dvec4(i & 1 ? 1 : -1, i & 2 ? 1 : -1, -1, 1);
+            corners[i] = glm::dvec3(near) / near.w;
+            if ((i & 4) == 0) continue;
+            // To the far end of the scene, in place of a far plane that may be infinitely far away.
+            const glm::dvec3 from = eyePosition(of), ahead = corners[i] - from;
+            corners[i] = isOrthographic(of) ? corners[i] + size_ * culling.forward()
+                                            : from + ahead * (0.6 * size_ / std::max(glm::length(ahead), 1e-12));
+        }
+        lines_->hexahedron(corners, kFrustumInk);
+    }
+    if (state.bounds)
+        for (const uint32_t object : culler_.visible())
+            if (culler_.boundsOf(object).finite() && isShown(object))
+                lines_->box(culler_.boundsOf(object), glm::vec3(0.45f, 0.8f, 0.5f));
+    if (state.portals && culler_.hasCells()) {
+        const PortalGraph& graph = culler_.now().state().cell_state.cells->graph;
+        const PortalCorners corners = graph.corners();
+        std::vector<glm::dvec3> points;
+        for (uint32_t cell = 0; cell < graph.cells(); ++cell)
+            for (const DirectedPortal& portal : graph.portalsFrom(cell)) {
+                points.clear();
+                for (uint32_t i = portal.first; i < portal.first + portal.count; ++i)
+                    points.emplace_back(corners.x[i], corners.y[i], corners.z[i]);
+                lines_->outline(points, portal.door == CellPortal::kNone ? glm::vec3(0.3f, 0.9f, 0.9f)
+                                                                         : glm::vec3(1.0f, 0.6f, 0.9f));
+            }
+    }
+    if (state.tree_level >= 0) {
+        const PlacedBvh& tree = culler_.now().state().bvh;
+        std::vector<std::pair<uint32_t, int>> open;
+        if (tree.nodes.size() > 0) open.emplace_back(0, 0);
+        while (!open.empty()) {
+            const auto [node, level] = open.back();
+            open.pop_back();
+            const BvhNode& children = tree.nodes[node];
+            forEachSlot(usedSlots(children), [&](int slot) {
+                const bool leaf = (children.child[slot] & BvhNode::kLeaf) != 0;
+                if (level == state.tree_level) {
+                    const Box3f box = slotBox(children, slot);
+                    lines_->box({tree.origin + glm::dvec3(box.min), tree.origin + glm::dvec3(box.max)},
+                                glm::vec3(0.7f, 0.7f, 1.0f));
+                } else if (!leaf) {
+                    open.emplace_back(children.child[slot], level + 1);
+                }
+            });
+        }
+    }
+    if (state.chosen && culler_.boundsOf(*state.chosen).finite()) {
+        const Box3d& box = culler_.boundsOf(*state.chosen);
+        lines_->box(box, kChosen);
+        // Whether something stands in between is seen along the lines from the culling camera.
+        if (state.frozen && !isOrthographic(viewOf(culling)))
+            for (int i = 0; i < 8; ++i)
+                lines_->line(
+                    culling.eye(),
+                    {i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z},
+                    0.7f * kChosen);
+    }
+    lines_->draw(view, 0.25f);
+}
+
+void Viewer::choose(std::optional<uint32_t> object) {
+    state.chosen = object;
+    state.why.clear();
+    state.hiders.clear();
+    if (!object) state.isolate = false;
+    else explainChosen();
+}
+
+void Viewer::explainChosen() {
+    ObjectWhy why = culler_.why(*state.chosen);
+    state.why = std::move(why.text);
+    state.why_is_old = false;
+    state.hiders = std::move(why.hiders);
+}
+
+/// Chooses what is at a pixel.
+Status Viewer::pick(const View& view, float x, float y) {
+    if (Status ready = pick_image_.resize(width_, height_, false); !ready) return ready;
+    pick_image_.begin();
+    glDepthMask(GL_TRUE);
+    setDepth(true);
+    glClearColor(0, 0, 0, 0);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    const GlView gl_view = glViewOf(view);
+    drawer_->beginNumbers(gl_view, view.sections.all());
+    const auto row = static_cast<GLint>(height_) - 1 - static_cast<GLint>(y);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(static_cast<GLint>(x), row, 1, 1);
+    for (const uint32_t object : culler_.visible())
+        if (isShown(object)) drawer_->drawNumber(object);
+    for (const uint32_t object : ghosts_) drawer_->drawNumber(object);
+    if (state.casters)
+        for (const uint32_t object : culler_.casters(kSun))
+            if (isCulled(object)) drawer_->drawNumber(object);
+    if (state.chosen && culler_.reasons()[*state.chosen] != 0) drawer_->drawNumber(*state.chosen);
+    glDisable(GL_SCISSOR_TEST);
+    uint8_t bytes[4] = {};
+    glReadPixels(static_cast<GLint>(x), row, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, bytes);
+    const uint32_t number = bytes[0] | bytes[1] << 8 | bytes[2] << 16 | static_cast<uint32_t>(bytes[3]) << 24;
+    choose(number == 0 ? std::nullopt : std::optional(number - 1));
+    return checkGl("choosing an object");
+}
+
+Status Viewer::frame(const Input& input, uint32_t width, uint32_t height) {
+    width_ = width;
+    height_ = height;
+    if (Status ready = image_.resize(width, height, true); !ready) return ready;
+    places_.clear();
+    gui_.begin(input, width, height, settings_.scale);
+    if (state.panels) drawPanels();
+    pressed(input);
+    steer(input);
+    const bool released = last_.buttons[0] && !input.buttons[0];
+    if (input.buttons[0] && !last_.buttons[0]) pressed_in_world_ = !gui_.wantsMouse();
+    const bool click = released && pressed_in_world_ && !dragged_ && !gui_.wantsMouse();
+    if (!input.buttons[0] && !input.buttons[1] && !input.buttons[2]) dragged_ = false;
+    rests_ = sameInput(input, last_) && !state.playing && !state.recording;
+    last_ = input;
+    playPath();
+    if (!state.frozen) culling = eye;
+
+    answer_changed_ = culler_.ask(viewOf(culling));
+    culled_boxes_stale_ = culled_boxes_stale_ || answer_changed_;
+    rests_ = rests_ && !answer_changed_;
+    // While the camera moves what is said of the chosen object is of an earlier view; when it rests it is asked again.
+    if (state.chosen && (state.why.empty() || (state.why_is_old && !answer_changed_))) explainChosen();
+    state.why_is_old = state.why_is_old || answer_changed_;
+    const View view = viewOf(eye);
+    const GlView gl_view = glViewOf(view);
+    image_.begin();
+    setDepth(true);
+    glClearColor(kBackground.r, kBackground.g, kBackground.b, 1);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    drawer_->begin(gl_view, view.sections.all());
+    drawObjects(view);
+    triangles_ = drawer_->triangles();
+    listGhosts();
+    if (state.frozen || state.x_ray || state.casters || state.chosen) drawCulled(gl_view);
+    drawLines(gl_view);
+    image_.resolve();
+    gui_.draw();
+    if (click)
+        if (Status done = pick(view, input.mouse_x, input.mouse_y); !done) return done;
+
+    const auto keep = [](std::vector<float>& times, double value) {
+        if (times.size() >= kTimes) times.erase(times.begin());
+        times.push_back(static_cast<float>(value));
+    };
+    keep(frame_milliseconds_, 1e3 * input.seconds);
+    keep(query_microseconds_, answer_changed_ ? 1e-3 * static_cast<double>(culler_.stats().nanoseconds) : 0.0);
+    return checkGl("drawing a frame");
+}
+
+Result<Image<Rgb>> Viewer::picture() const {
+    Image<Rgb> picture(image_.width(), image_.height());
+    glBindFramebuffer(GL_FRAMEBUFFER, image_.resolved());
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    std::vector<Rgb> rows(picture.pixels.size());
+    glReadPixels(0, 0, static_cast<GLsizei>(picture.width), static_cast<GLsizei>(picture.height), GL_RGB,
+                 GL_UNSIGNED_BYTE, rows.data());
+    for (uint32_t y = 0; y < picture.height; ++y)
+        std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(size_t{picture.height - 1 - y} * picture.width),
+                    picture.width, picture.pixels.begin() + static_cast<std::ptrdiff_t>(size_t{y} * picture.width));
+    if (const Status done = checkGl("reading a picture"); !done) return done.error();
+    return picture;
+}
+
+}  // namespace sightline::viewer

@@ -1,0 +1,107 @@
+// The viewer without its window: what the user did goes in, a picture comes out.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/viewer/culler.h"
+#include "apps/viewer/fly_camera.h"
+#include "apps/viewer/gui.h"
+#include "apps/viewer/line_drawer.h"
+#include "apps/viewer/panels.h"
+#include "apps/viewer/scene_drawer.h"
+#include "sightline/tools/report/pictures/png.h"
+#include "sightline/tools/scene/camera_path.h"
+
+namespace sightline::viewer {
+
+struct ViewerSettings {
+    tools::CameraPath path;                         ///< to begin with: its first frame is where the eye stands
+    std::string path_file = "sightline-path.json";  ///< that a recorded path is written to
+    ViewPlanes sections;                            ///< that cut the scene open, beside the user's own
+    double jitter = 0.5;                            ///< View::jitter of the culling camera
+    bool times = true;                              ///< are shown; else pictures are the same each time
+    float scale = 1;                                ///< of the panels
+};
+
+class Viewer {
+public:
+    /// A context of OpenGL 3.3 or later must be current, here and in all that follows.
+    /// @param scene  must outlive it
+    /// Errors: of the GL.
+    static Result<std::unique_ptr<Viewer>> create(const tools::Scene& scene, tools::LoadedWorld world,
+                                                  const QuerySettings& settings, ViewerSettings viewer);
+    ~Viewer();
+
+    /// Draws a frame of that size. Errors: of the GL, no memory for an image so large.
+    Status frame(const Input& input, uint32_t width, uint32_t height);
+    /// Into the window.
+    void show(uint32_t width, uint32_t height) const { image_.show(width, height); }
+    /// The last frame.
+    Result<tools::Image<tools::Rgb>> picture() const;
+
+    ViewerState state;
+    FlyCamera eye, culling;
+    Culler& culler() { return culler_; }
+    /// Goes to a frame of the path.
+    void goTo(size_t frame);
+    const tools::CameraPath& path() const { return settings_.path; }
+    size_t pathFrame() const { return path_frame_; }
+
+    const PanelPlaces& places() const { return places_; }  ///< of the last frame
+    /// Whether the next frame would be the same, were nothing done meanwhile.
+    bool rests() const { return rests_; }
+
+private:
+    Viewer(const tools::Scene& scene, tools::LoadedWorld world, const QuerySettings& settings, ViewerSettings viewer);
+    Status prepare();
+
+    void steer(const Input& input);
+    void playPath();
+    void keepRecording();
+    void pressed(const Input& input);
+    View viewOf(const FlyCamera& camera) const;
+    void drawObjects(const View& view);
+    void drawCulled(const GlView& view);
+    void drawLines(const GlView& view);
+    Status pick(const View& view, float x, float y);
+    void choose(std::optional<uint32_t> object);
+    void explainChosen();
+    void lookAtChosen();
+    void drawPanels();
+    bool isShown(uint32_t object) const;
+    bool isCulled(uint32_t object);
+    void listGhosts();
+    GlView glViewOf(const View& view) const;
+    double aspect() const { return double(std::max(width_, 1u)) / std::max(height_, 1u); }
+
+    const tools::Scene& scene_;
+    Culler culler_;
+    ViewerSettings settings_;
+    std::optional<SceneDrawer> drawer_;
+    std::optional<LineDrawer> lines_, culled_lines_;
+    Gui gui_;
+    ScreenImage image_, pick_image_;
+    Box3d bounds_;
+    double size_ = 1;  ///< of the scene  [world units]
+    uint32_t width_ = 0, height_ = 0;
+    Input last_;
+    size_t path_frame_ = 0;
+    double path_time_ = 0;
+    bool dragged_ = false, pressed_in_world_ = false, culled_boxes_stale_ = true, answer_changed_ = false;
+    bool path_works_ = false, rests_ = false;
+    tools::CameraPath recorded_;
+    std::vector<uint32_t> ghosts_;
+    size_t ghosts_left_out_ = 0;
+    size_t boxes_left_out_ = 0;
+    std::vector<float> frame_milliseconds_, query_microseconds_;
+    uint64_t triangles_ = 0;
+    PanelPlaces places_;
+};
+
+}  // namespace sightline::viewer

@@ -1,0 +1,61 @@
+// What the user of the viewer has chosen.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "sightline/geom/stage.h"
+
+namespace sightline::viewer {
+
+enum class ColourBy : uint8_t { kMaterials, kObjects, kAnswer };
+inline constexpr const char* kColourByNames[] = {"materials", "objects", "answer"};
+
+/// How what was culled looks while the culling camera is left alone.
+enum class CulledAs : uint8_t { kNothing, kBoxes, kGhosts };
+inline constexpr const char* kCulledAsNames[] = {"nothing", "boxes", "ghosts"};
+
+/// What the user has chosen.
+struct ViewerState {
+    bool panels = true;
+    bool frozen = false;  ///< the culling camera stays where it is, and the eye leaves it
+    ColourBy colour_by = ColourBy::kMaterials;
+    CulledAs culled_as = CulledAs::kBoxes;
+    bool frustum = true;   ///< of the frozen camera
+    bool portals = false;  ///< of the attached cells
+    bool windows = false;  ///< that cells are seen through, in the image of the culling camera
+    bool bounds = false;   ///< of what is visible
+    bool casters = false;  ///< what may darken what is visible, under a sun
+    int tree_level = -1;   ///< boxes of the hierarchy's nodes of a level; below 0: none
+    bool buffer = false;   ///< the occlusion buffer as a picture
+    bool x_ray = false;    ///< all that is solid is see-through
+    bool isolate = false;  ///< the chosen object alone, and what hides it
+    bool section = false;
+    int section_axis = 1;
+    float section_at = 0.5f;  ///< between the ends of the scene  [0 to 1]
+    bool section_keeps_upper = false;
+    bool recording = false, playing = false;
+    float speed = 1;                 ///< of flight, times what suits the scene
+    std::optional<uint32_t> chosen;  ///< object
+    std::string why;                 ///< of it
+    bool why_is_old = false;         ///< of an earlier view
+    std::vector<uint32_t> hiders;    ///< of it
+    std::string said;                ///< the last message
+    bool wants_picture = false;      ///< of the next frame, into a file of the user's
+    bool wants_to_close = false;
+};
+
+/// The colour of what a stage culled.
+inline glm::vec3 stageColour(int stage) {
+    constexpr glm::vec3 kColours[kStageCount] = {{0.34f, 0.70f, 0.91f}, {0.00f, 0.62f, 0.45f}, {0.55f, 0.57f, 0.60f},
+                                                 {0.94f, 0.89f, 0.26f}, {0.80f, 0.47f, 0.65f}, {0.84f, 0.37f, 0.00f},
+                                                 {0.90f, 0.20f, 0.20f}, {0.60f, 0.40f, 0.80f}, {0.70f, 0.70f, 0.30f}};
+    return kColours[stage];
+}
+
+}  // namespace sightline::viewer

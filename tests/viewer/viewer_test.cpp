@@ -1,0 +1,411 @@
+// The viewer driven as a user drives it, without a window: keys, clicks and drags in, pictures and answers out.
+// SPDX-License-Identifier: MIT
+#include "apps/viewer/viewer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include "apps/gl/context.h"
+#include "sightline/tools/import/gltf/gltf.h"
+#include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/scene/camera_path.h"
+#include "sightline/tools/scene/city/city.h"
+#include "tests/support/random.h"
+#include "tests/support/shared_scenes.h"
+
+namespace sightline::viewer {
+namespace {
+using namespace test;
+using namespace tools;
+
+constexpr uint32_t kWidth = 640, kHeight = 800;  // high enough for all panels
+
+/// A viewer with a mouse and keys.
+class Driven {
+public:
+    Driven(const GlContext& context, const Scene& scene, const CameraPath& path) {
+        context.makeCurrent();
+        ViewerSettings settings;
+        settings.path = path;
+        settings.path_file = path_file_.string();
+        QuerySettings query;
+        query.stages = stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion);
+        LoadSettings load;
+        load.volumes = true;
+        Result<std::unique_ptr<Viewer>> made = Viewer::create(scene, loadWorld(scene, {}, load), query, settings);
+        EXPECT_TRUE(made.ok()) << made.error().message;
+        if (made) viewer_ = std::move(*made);
+        frames(2);
+    }
+
+    Viewer& operator*() { return *viewer_; }
+    Viewer* operator->() { return viewer_.get(); }
+
+    ~Driven() {
+        std::error_code ignored;
+        std::filesystem::remove(path_file_, ignored);
+    }
+    void frames(int count = 1) {
+        for (int i = 0; i < count; ++i) {
+            const Status drawn = viewer_->frame(input_, kWidth, kHeight);
+            ASSERT_TRUE(drawn.ok()) << drawn.error().message;
+        }
+    }
+    void press(uint16_t key) {
+        input_.keys[key] = true;
+        frames();
+        input_.keys[key] = false;
+        frames();
+    }
+    void hold(uint16_t key, int count) {
+        input_.keys[key] = true;
+        frames(count);
+        input_.keys[key] = false;
+        frames();
+    }
+    void clickAt(float x, float y) {
+        input_.mouse_x = x;
+        input_.mouse_y = y;
+        frames();
+        input_.buttons[0] = true;
+        frames();
+        input_.buttons[0] = false;
+        frames(2);
+    }
+    /// Clicks a part of a panel; false if there is none with these words.
+    bool click(const std::string& words) {
+        const auto place = viewer_->places().find(words);
+        if (place == viewer_->places().end()) return false;
+        const PanelPlace at = place->second;
+        clickAt(at.left + 8, 0.5f * (at.top + at.bottom));
+        away();
+        return true;
+    }
+    /// Presses the left button at one place and lets go of it at another.
+    void press(float x, float y, float to_x, float to_y) {
+        input_.mouse_x = x;
+        input_.mouse_y = y;
+        frames();
+        input_.buttons[0] = true;
+        frames(2);
+        input_.mouse_x = to_x;
+        input_.mouse_y = to_y;
+        frames(2);
+        input_.buttons[0] = false;
+        frames(2);
+        away();
+    }
+    void drag(int button, float right, float down) {
+        input_.mouse_x = 500;
+        input_.mouse_y = 400;
+        frames();
+        input_.buttons[button] = true;
+        frames();
+        input_.mouse_x += right;
+        input_.mouse_y += down;
+        frames();
+        input_.buttons[button] = false;
+        frames();
+        away();
+    }
+    void away() {
+        input_.mouse_x = input_.mouse_y = -1;
+        frames();
+    }
+    Image<Rgb> picture() {
+        frames();
+        const Result<Image<Rgb>> picture = viewer_->picture();
+        EXPECT_TRUE(picture.ok());
+        return picture ? *picture : Image<Rgb>();
+    }
+    std::string pathFile() const { return path_file_.string(); }
+
+private:
+    const std::filesystem::path path_file_ =
+        std::filesystem::temp_directory_path() / ("sightline-viewer-" + std::to_string(getpid()) + ".json");
+    std::unique_ptr<Viewer> viewer_;
+    Input input_;
+};
+
+size_t differing(const Image<Rgb>& a, const Image<Rgb>& b) {
+    size_t count = 0;
+    for (size_t i = 0; i < a.pixels.size(); ++i) count += a.pixels[i] != b.pixels[i];
+    return count;
+}
+
+class ViewerTest : public testing::Test {
+protected:
+    void SetUp() override {
+        if (!context_) GTEST_SKIP() << context_.error().message;
+    }
+    Result<GlContext> context_ = GlContext::create(1);
+    Scene city_ = makeCity(1, 400);
+    CameraPath path_ = cityStreetPath(1, 12);
+};
+
+TEST_F(ViewerTest, DrawsTheSameWithAndWithoutCulling) {
+    Driven viewer(*context_, city_, path_);
+    viewer->state.panels = false;
+    for (size_t frame = 0; frame < path_.frames.size(); ++frame) {
+        viewer->goTo(frame);
+        const Image<Rgb> culled = viewer.picture();
+        const size_t kept = viewer->culler().visible().size();
+        viewer->culler().settings.stages = 0;
+        const Image<Rgb> all = viewer.picture();
+        EXPECT_GT(viewer->culler().visible().size(), 2 * kept) << "frame " << frame;
+        EXPECT_EQ(differing(culled, all), 0u) << "frame " << frame;
+        viewer->culler().settings.stages = stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion);
+    }
+}
+
+TEST_F(ViewerTest, TheFrozenCameraStaysWhileTheEyeLeavesIt) {
+    Driven viewer(*context_, city_, path_);
+    const glm::dvec3 start = viewer->eye.eye();
+    const std::vector<uint32_t> before(viewer->culler().visible().begin(), viewer->culler().visible().end());
+    viewer.press('F');
+    EXPECT_TRUE(viewer->state.frozen);
+    viewer.hold('W', 20);
+    viewer.hold('E', 20);
+    viewer.drag(1, 200, 60);
+    EXPECT_GT(glm::length(viewer->eye.eye() - start), 0.1);
+    EXPECT_EQ(viewer->culling.eye(), start);
+    EXPECT_TRUE(
+        std::equal(before.begin(), before.end(), viewer->culler().visible().begin(), viewer->culler().visible().end()));
+    viewer.press('F');
+    EXPECT_FALSE(viewer->state.frozen);
+    EXPECT_EQ(viewer->culling.eye(), viewer->eye.eye());
+    EXPECT_FALSE(
+        std::equal(before.begin(), before.end(), viewer->culler().visible().begin(), viewer->culler().visible().end()));
+}
+
+TEST_F(ViewerTest, EveryModeCanBeSeen) {
+    Driven viewer(*context_, city_, path_);
+    viewer->goTo(3);
+    viewer.press('F');
+    viewer.press(kHome);  // the whole city, with what was culled
+    viewer->state.panels = false;
+    viewer->state.culled_as = CulledAs::kNothing;
+    viewer->state.frustum = false;
+    const Image<Rgb> plain = viewer.picture();
+    ViewerState& state = viewer->state;
+    const auto shows = [&](const char* what, auto&& change) {
+        const ViewerState before = state;
+        change();
+        EXPECT_GT(differing(plain, viewer.picture()), 20u) << what;
+        state = before;
+    };
+    shows("boxes", [&] { state.culled_as = CulledAs::kBoxes; });
+    shows("ghosts", [&] { state.culled_as = CulledAs::kGhosts; });
+    shows("frustum", [&] { state.frustum = true; });
+    shows("bounds", [&] { state.bounds = true; });
+    shows("objects", [&] { state.colour_by = ColourBy::kObjects; });
+    shows("answer", [&] { state.colour_by = ColourBy::kAnswer; });
+    shows("x-ray", [&] { state.x_ray = true; });
+    shows("shadow casters", [&] { state.casters = true; });
+    shows("tree", [&] { state.tree_level = 1; });
+    shows("section", [&] {
+        state.section = true;
+        state.section_at = 0.05f;
+    });
+    shows("section across", [&] {
+        state.section = true;
+        state.section_axis = 0;
+        state.section_keeps_upper = true;
+    });
+    shows("chosen", [&] { state.chosen = viewer->culler().visible().front(); });
+    shows("isolated", [&] {
+        state.chosen = viewer->culler().visible().front();
+        state.isolate = true;
+    });
+    shows("panels", [&] { state.panels = true; });
+    shows("buffer", [&] { state.panels = state.buffer = true; });
+    EXPECT_EQ(differing(plain, viewer.picture()), 0u) << "all that was changed is as it was";
+}
+
+TEST_F(ViewerTest, PanelsDoWhatTheySay) {
+    Driven viewer(*context_, city_, path_);
+    const size_t kept = viewer->culler().visible().size();
+    ASSERT_TRUE(viewer.click("occlusion"));
+    EXPECT_GT(viewer->culler().visible().size(), kept);
+    ASSERT_TRUE(viewer.click("occlusion"));
+    EXPECT_EQ(viewer->culler().visible().size(), kept);
+    ASSERT_TRUE(viewer.click("freeze the culling camera (F)"));
+    EXPECT_TRUE(viewer->state.frozen);
+    ASSERT_TRUE(viewer.click("ghosts"));
+    EXPECT_EQ(viewer->state.culled_as, CulledAs::kGhosts);
+    ASSERT_TRUE(viewer.click("cut open"));
+    viewer.frames(2);
+    ASSERT_TRUE(viewer.click("section"));
+    EXPECT_TRUE(viewer->state.section);
+    ASSERT_TRUE(viewer.click("record (R)"));
+    EXPECT_TRUE(viewer->state.recording);
+    viewer.hold('W', 30);
+    ASSERT_TRUE(viewer.click("record (R)"));
+    EXPECT_GE(viewer->path().frames.size(), 10u);
+    ASSERT_TRUE(viewer.click("save path"));
+    const Result<CameraPath> saved = readCameraPath(viewer.pathFile());
+    ASSERT_TRUE(saved.ok()) << saved.error().message;
+    EXPECT_EQ(saved->frames.size(), viewer->path().frames.size());
+    ASSERT_TRUE(viewer.click("picture (F12)"));
+    EXPECT_TRUE(viewer->state.wants_picture);
+    EXPECT_FALSE(viewer.click("what no panel has"));
+}
+
+TEST_F(ViewerTest, NothingThatIsClickedDoesHarm) {
+    Driven viewer(*context_, city_, path_);
+    Random random(5);
+    for (int i = 0; i < 120; ++i) {
+        switch (random.below(6)) {
+            case 0: {
+                const auto& places = viewer->places();
+                if (places.empty()) break;
+                auto place = places.begin();
+                std::advance(place, random.below(places.size()));
+                viewer.click(std::string(place->first));
+                break;
+            }
+            case 1:
+                viewer.clickAt(float(random.uniform(0, kWidth)), float(random.uniform(0, kHeight)));
+                break;
+            case 2:
+                viewer.drag(int(random.below(3)), float(random.uniform(-200, 200)), float(random.uniform(-200, 200)));
+                break;
+            case 3:
+                viewer.press(uint16_t('A' + random.below(26)));
+                break;
+            case 4:
+                viewer.press(uint16_t(kEscape + random.below(kKeys - kEscape)));
+                break;
+            default:
+                viewer.hold(uint16_t("WASDQE"[random.below(6)]), 3);
+        }
+        if (HasFailure()) return;
+    }
+    EXPECT_TRUE(isUsable(viewer->eye.view(kWidth, kHeight)));
+}
+
+TEST_F(ViewerTest, AClickChoosesWhatIsThereAndExplainsIt) {
+    const CameraPath path = seededCameras(city_, 12, 3);
+    Driven viewer(*context_, city_, path);
+    viewer->state.panels = false;
+    const RayProbe probe(city_);
+    size_t agreed = 0, asked = 0;
+    for (size_t frame = 0; frame < path.frames.size(); ++frame) {
+        viewer->goTo(frame);
+        viewer.frames();
+        for (const auto& [x, y] : {std::pair(320.0f, 400.0f), std::pair(100.0f, 500.0f), std::pair(550.0f, 420.0f)}) {
+            viewer.clickAt(x, y);
+            const View view = viewer->eye.view(kWidth, kHeight);
+            const glm::dmat4 back = glm::inverse(view.projection * view.view);
+            const glm::dvec4 near =
+                back * glm::dvec4(2 * (double(x) + 0.5) / kWidth - 1, 1 - 2 * (double(y) + 0.5) / kHeight, -1, 1);
+            const glm::dvec3 eye = eyePosition(view);
+            const std::optional<ProbeHit> hit = probe.nearest({eye, glm::normalize(glm::dvec3(near) / near.w - eye)});
+            ++asked;
+            // A ray also meets backs of single-sided faces, which are not drawn.
+            agreed += hit ? viewer->state.chosen == hit->object : !viewer->state.chosen;
+            EXPECT_EQ(viewer->state.chosen.has_value(), !viewer->state.why.empty());
+            if (viewer->state.chosen) {
+                EXPECT_NE(viewer->state.why.find("kept"), std::string::npos) << viewer->state.why;
+            }
+        }
+    }
+    EXPECT_GE(agreed + 2, asked);
+}
+
+TEST_F(ViewerTest, WhatIsPressedInAPanelIsLetGoOfWithoutHarm) {
+    Driven viewer(*context_, city_, path_);
+    viewer->state.chosen = viewer->culler().visible().front();
+    viewer.frames(2);
+    const PanelPlace frame = viewer->places().at("frame");
+    viewer.press(0.5f * (frame.left + frame.right), 0.5f * (frame.top + frame.bottom), 600, 600);
+    EXPECT_TRUE(viewer->state.chosen.has_value());
+    EXPECT_GT(viewer->pathFrame(), 0u) << "the slider was moved";
+}
+
+TEST_F(ViewerTest, WhatIsSaidOfTheChosenObjectIsOfThisView) {
+    Driven viewer(*context_, city_, path_);
+    viewer->state.chosen = viewer->culler().visible().front();
+    viewer.frames(2);
+    EXPECT_EQ(viewer->state.why.find("kept"), 0u) << viewer->state.why;
+    viewer.hold(kRight, 100);  // away from it
+    viewer.frames(3);
+    const bool kept = viewer->culler().reasons()[*viewer->state.chosen] == 0;
+    EXPECT_EQ(viewer->state.why.find("kept") == 0, kept) << viewer->state.why;
+    EXPECT_FALSE(kept);
+    EXPECT_FALSE(viewer->state.why_is_old);
+}
+
+TEST_F(ViewerTest, ShowsParallelViews) {
+    CameraPath path;
+    path.frames.emplace_back();
+    path.frames[0].eye = {0, 400, 1};
+    path.frames[0].target = {0, 0, 0};
+    path.frames[0].orthographic_height = 300;
+    Driven viewer(*context_, city_, path);
+    viewer->state.panels = false;
+    const Image<Rgb> picture = viewer.picture();
+    size_t shown = 0;
+    for (const Rgb& pixel : picture.pixels) shown += pixel != picture.pixels.front();
+    EXPECT_GT(shown, picture.pixels.size() / 10);
+    viewer.clickAt(320, 400);
+    EXPECT_TRUE(viewer->state.chosen.has_value());
+}
+
+TEST_F(ViewerTest, ARecordingThatIsNotMadeLeavesThePath) {
+    Driven viewer(*context_, city_, path_);
+    viewer.press('R');
+    viewer.press('R');
+    EXPECT_EQ(viewer->path().frames.size(), path_.frames.size());
+    viewer->goTo(path_.frames.size() - 1);
+    viewer.press('P');
+    EXPECT_TRUE(viewer->state.playing) << "from the beginning again";
+    viewer.frames(60);
+    EXPECT_FALSE(viewer->state.playing);
+    EXPECT_EQ(viewer->pathFrame(), path_.frames.size() - 1);
+}
+
+TEST_F(ViewerTest, WhatIsHiddenNamesItsHiders) {
+    Driven viewer(*context_, city_, path_);
+    const std::span<const uint8_t> reasons = viewer->culler().reasons();
+    size_t with_hiders = 0;
+    for (uint32_t object = 0; object < reasons.size() && with_hiders < 5; ++object) {
+        if (reasons[object] != 1 + static_cast<int>(Stage::kOcclusion)) continue;
+        viewer->state.chosen = object;
+        viewer->state.why.clear();
+        viewer.frames();
+        EXPECT_NE(viewer->state.why.find("behind"), std::string::npos) << viewer->state.why;
+        with_hiders += !viewer->state.hiders.empty();
+    }
+    EXPECT_EQ(with_hiders, 5u);
+}
+
+TEST_F(ViewerTest, DrawsRealScenesTheSameWithAndWithoutCulling) {
+    bool any = false;
+    for (const char* name : {"bsi-duplex", "gazebo-willowgarage", "aws-small-house"}) {
+        const std::optional<Scene> scene = sharedScene(name);
+        if (!scene) continue;
+        any = true;
+        const CameraPath path = seededCameras(*scene, 6, 4);
+        Driven viewer(*context_, *scene, path);
+        viewer->state.panels = false;
+        for (size_t frame = 0; frame < path.frames.size(); ++frame) {
+            viewer->goTo(frame);
+            const Image<Rgb> culled = viewer.picture();
+            viewer->culler().settings.stages = 0;
+            const Image<Rgb> all = viewer.picture();
+            viewer->culler().settings.stages = stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion);
+            EXPECT_EQ(differing(culled, all), 0u) << name << " frame " << frame;
+        }
+    }
+    if (!any) GTEST_SKIP() << "no scenes beside the repository";
+}
+
+}  // namespace
+}  // namespace sightline::viewer
