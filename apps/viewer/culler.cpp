@@ -94,7 +94,7 @@ std::span<const uint32_t> Culler::casters(const glm::dvec3& sun) {
 
 std::string Culler::nameOf(uint32_t object) const {
     const std::string path = objectPath(scene_, scene_.objects[object]);
-    return path.empty() ? fmt::format("object {}", scene_.objects[object].key) : "'" + oneLine(path, 60) + "'";
+    return path.empty() ? fmt::format("object {}", scene_.objects[object].key) : fmt::format("'{}'", oneLine(path, 60));
 }
 
 ObjectWhy Culler::why(uint32_t object) const {

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "sightline/tools/report/readable.h"
+
 namespace sightline::viewer {
 using namespace tools;
 namespace {
@@ -28,12 +30,7 @@ double meanOf(std::span<const float> values) {
     return count == 0 ? 0 : sum / static_cast<double>(count);
 }
 
-/// 1234567 as "1,234,567".
-std::string grouped(uint64_t number) {
-    std::string text = std::to_string(number);
-    for (size_t at = text.size(); at > 3;) text.insert(at -= 3, ",");
-    return text;
-}
+std::string grouped(uint64_t number) { return readable(static_cast<double>(number)); }
 
 /// One frame of them.
 class Panels {

@@ -321,7 +321,8 @@ void Viewer::drawLines(const GlView& view) {
         std::vector<std::pair<uint32_t, int>> open;
         if (tree.nodes.size() > 0) open.emplace_back(0, 0);
         while (!open.empty()) {
-            const auto [node, level] = open.back();
+            const uint32_t node = open.back().first;
+            const int level = open.back().second;
             open.pop_back();
             const BvhNode& children = tree.nodes[node];
             forEachSlot(usedSlots(children), [&](int slot) {
