@@ -76,6 +76,8 @@ constexpr Example kExamples[] = {
     {"sight", "sight model.glb --from 0,1.6,0 --to 12,1.6,3", "does something stand between two points?"},
     {"sight", "sight model.glb --from 0,1.6,0 --within 2 --visibility model.vis",
      "what a player who is there may see within two metres"},
+    {"view", "view model.glb", "fly through it; F leaves the culling camera where it is"},
+    {"view", "view model.glb --headless --screenshot p.png --frozen 6", "what the seventh camera left, as a picture"},
     {"profile", "profile model.glb", "what its frames wait for, and what each stage of the query is worth"},
     {"profile", "profile city:1:10000 --frames 4 --renderer gl --json profile.json",
      "of the software GL; cull --calibration reads the costs"},
