@@ -216,7 +216,7 @@ bool Viewer::isShown(uint32_t object) const {
     return object == *state.chosen || std::find(state.hiders.begin(), state.hiders.end(), object) != state.hiders.end();
 }
 
-void Viewer::drawObjects(const View& view) {
+void Viewer::drawObjects() {
     for (const uint32_t object : culler_.visible()) {
         if (!isShown(object)) continue;
         Paint paint;
@@ -239,7 +239,6 @@ void Viewer::drawObjects(const View& view) {
         }
         drawer_->draw(object, paint);
     }
-    static_cast<void>(view);
 }
 
 /// Whether an object that was culled is shown as what it is.
@@ -425,7 +424,7 @@ Status Viewer::frame(const Input& input, uint32_t width, uint32_t height) {
     glClearColor(kBackground.r, kBackground.g, kBackground.b, 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     drawer_->begin(gl_view, view.sections.all());
-    drawObjects(view);
+    drawObjects();
     triangles_ = drawer_->triangles();
     listGhosts();
     if (state.frozen || state.x_ray || state.casters || state.chosen) drawCulled(gl_view);

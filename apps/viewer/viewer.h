@@ -66,7 +66,7 @@ private:
     void keepRecording();
     void pressed(const Input& input);
     View viewOf(const FlyCamera& camera) const;
-    void drawObjects(const View& view);
+    void drawObjects();
     void drawCulled(const GlView& view);
     void drawLines(const GlView& view);
     Status pick(const View& view, float x, float y);
