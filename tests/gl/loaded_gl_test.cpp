@@ -116,7 +116,9 @@ TEST_F(LoadedGlTest, CostsAreAboveNothing) {
     Result<LoadedGl> gl = LoadedGl::create(*context_, items_);
     ASSERT_TRUE(gl.ok()) << gl.error().message;
     const CostView seen{view_, items_};
-    const DrawCosts costs = measureDrawCosts(*gl, {&seen, 1}, {.rounds = 2});
+    DrawCostSettings settings;
+    settings.rounds = 2;
+    const DrawCosts costs = measureDrawCosts(*gl, {&seen, 1}, settings);
     EXPECT_GE(costs.samples, 8u);
     EXPECT_GT(costs.object + costs.triangle + costs.vertex + costs.pixel + costs.sample + costs.frame, 0);
 }
