@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <initializer_list>
 
 namespace sightline {
 namespace {
@@ -27,7 +28,20 @@ Result<GlName> makeShader(GLenum kind, const std::string& source) {
     if (good == GL_TRUE) return shader;
     char log[512] = "";
     glGetShaderInfoLog(shader.get(), sizeof log, nullptr, log);
-    return fault(std::string(kind == GL_VERTEX_SHADER ? "vertex" : "fragment") + " shader: " + firstLine(log));
+    const char* const name = kind == GL_VERTEX_SHADER ? "vertex" : kind == GL_FRAGMENT_SHADER ? "fragment" : "compute";
+    return fault(std::string(name) + " shader: " + firstLine(log));
+}
+
+Result<GlName> linkProgram(std::initializer_list<const GlName*> shaders) {
+    GlName program(glCreateProgram(), [](uint32_t name) { glDeleteProgram(name); });
+    for (const GlName* shader : shaders) glAttachShader(program.get(), shader->get());
+    glLinkProgram(program.get());
+    GLint good = GL_FALSE;
+    glGetProgramiv(program.get(), GL_LINK_STATUS, &good);
+    if (good == GL_TRUE) return program;
+    char log[512] = "";
+    glGetProgramInfoLog(program.get(), sizeof log, nullptr, log);
+    return fault("program: " + firstLine(log));
 }
 
 GlName makeRenderbuffer(GLenum format, uint32_t width, uint32_t height) {
@@ -60,16 +74,13 @@ Result<GlName> makeGlProgram(const std::string& vertex_shader, const std::string
     if (!vertex) return vertex.error();
     const Result<GlName> fragment = makeShader(GL_FRAGMENT_SHADER, fragment_shader);
     if (!fragment) return fragment.error();
-    GlName program(glCreateProgram(), [](uint32_t name) { glDeleteProgram(name); });
-    glAttachShader(program.get(), vertex->get());
-    glAttachShader(program.get(), fragment->get());
-    glLinkProgram(program.get());
-    GLint good = GL_FALSE;
-    glGetProgramiv(program.get(), GL_LINK_STATUS, &good);
-    if (good == GL_TRUE) return program;
-    char log[512] = "";
-    glGetProgramInfoLog(program.get(), sizeof log, nullptr, log);
-    return fault("program: " + firstLine(log));
+    return linkProgram({&*vertex, &*fragment});
+}
+
+Result<GlName> makeGlComputeProgram(const std::string& shader) {
+    const Result<GlName> made = makeShader(GL_COMPUTE_SHADER, shader);
+    if (!made) return made.error();
+    return linkProgram({&*made});
 }
 
 Result<GlTarget> GlTarget::create(uint32_t colour_format, uint32_t width, uint32_t height) {

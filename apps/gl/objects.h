@@ -42,6 +42,8 @@ GlName makeGlVertexArray();
 
 /// Errors: the compiler's or the linker's first line.
 Result<GlName> makeGlProgram(const std::string& vertex_shader, const std::string& fragment_shader);
+/// The same of OpenGL 4.3 or later.
+Result<GlName> makeGlComputeProgram(const std::string& shader);
 
 /// An image to draw into: one colour and a 32-bit float depth per pixel.
 struct GlTarget {

@@ -65,22 +65,6 @@ GlName makeTexture(GLenum format, GLsizei levels, uint32_t width, uint32_t heigh
     return {name, [](uint32_t old) { glDeleteTextures(1, &old); }};
 }
 
-Result<GlName> makeComputeProgram(const std::string& source) {
-    GlName shader(glCreateShader(GL_COMPUTE_SHADER), [](uint32_t name) { glDeleteShader(name); });
-    const char* text = source.c_str();
-    glShaderSource(shader.get(), 1, &text, nullptr);
-    glCompileShader(shader.get());
-    GlName program(glCreateProgram(), [](uint32_t name) { glDeleteProgram(name); });
-    glAttachShader(program.get(), shader.get());
-    glLinkProgram(program.get());
-    GLint good = GL_FALSE;
-    glGetProgramiv(program.get(), GL_LINK_STATUS, &good);
-    if (good == GL_TRUE) return program;
-    char log[512] = "";
-    glGetShaderInfoLog(shader.get(), sizeof log, nullptr, log);
-    return Error{Error::Kind::kInput, std::string("OpenGL: compute shader: ") + log};
-}
-
 PassItem passItemOf(const DrawItem& item) {
     PassItem made;
     for (int i = 0; i < 3; ++i) made.columns[i] = glm::vec4(glm::vec3(item.transform[i]), 0.0f);
@@ -137,9 +121,9 @@ struct GlTwoPass::State {
 Status GlTwoPass::State::compile() {
     Result<GlName> draws = makeGlProgram(std::string(kTwoPassCommon) + kTwoPassVertex, kTwoPassFragment);
     if (!draws) return draws.error();
-    Result<GlName> culls = makeComputeProgram(std::string(kTwoPassCommon) + kTwoPassCull);
+    Result<GlName> culls = makeGlComputeProgram(std::string(kTwoPassCommon) + kTwoPassCull);
     if (!culls) return culls.error();
-    Result<GlName> reduces = makeComputeProgram(kTwoPassReduce);
+    Result<GlName> reduces = makeGlComputeProgram(kTwoPassReduce);
     if (!reduces) return reduces.error();
     draw_program = std::move(*draws);
     cull_program = std::move(*culls);

@@ -13,17 +13,13 @@
 
 namespace sightline {
 
-/// The caller's graphics interface: QueryDevice, for objects.
-class ObjectDevice {
+/// The caller's graphics interface, for objects.
+class ObjectDevice : public QuestionDevice {
 public:
     /// Draws objects as they look, with the depth test and with their depths written; what writes no depth may be drawn
     /// when all else is.
     /// @param objects  good until the call returns
     virtual void draw(std::span<const Visible> objects) = 0;
-    /// As of QueryDevice.
-    virtual void ask(uint32_t question, std::span<const Box3d> boxes) = 0;
-    virtual bool hasAnswer(uint32_t question) = 0;
-    virtual uint64_t answer(uint32_t question) = 0;
 
 protected:
     ~ObjectDevice() = default;
