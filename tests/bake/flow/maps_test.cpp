@@ -79,7 +79,10 @@ TEST_P(Maps, SeeWhatRaysSee) {
     EXPECT_LE(100 * (answer.visible.count() - answer.witnessed.count()), 3 * pairsOf(answer.visible));
 }
 
-TEST_P(Maps, SeeNoMoreThanTheRowsThatTheyCameWith) {
+/// Maps that were compiled with rows: of lq_e4m4 there is no compiled map.
+class CompiledMaps : public Maps {};
+
+TEST_P(CompiledMaps, SeeNoMoreThanTheRowsThatTheyCameWith) {
     QuakeMapFile map;
     if (!std::filesystem::exists(bspFile())) GTEST_SKIP() << "there is no such map: " << bspFile();
     ASSERT_NO_FATAL_FAILURE(readBsp(map));
@@ -95,6 +98,8 @@ TEST_P(Maps, SeeNoMoreThanTheRowsThatTheyCameWith) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Real, Maps, ::testing::Values("lq_e4m1", "lq_e2m2", "lqdm3", "lq_e1m5", "lq_e4m4"),
+                         [](const auto& map) { return std::string(map.param); });
+INSTANTIATE_TEST_SUITE_P(Real, CompiledMaps, ::testing::Values("lq_e4m1", "lq_e2m2", "lqdm3", "lq_e1m5"),
                          [](const auto& map) { return std::string(map.param); });
 
 /// Maps whose leaves are few enough to be cells.
