@@ -7,7 +7,7 @@
 namespace sightline::detail {
 namespace {
 
-constexpr double kLittle = 1.0 / 16.0;  // the eye's way, as a part of the distance
+constexpr double kLittle = 1.0 / 16.0;  // the eye's way, as a part of the distance or of the size
 constexpr uint32_t kLongest = 31;       // of Turn::wait
 
 bool areEqual(const ViewPlanes& a, const ViewPlanes& b) {
@@ -32,7 +32,7 @@ void Turns::begin(const Frame& frame) {
 }
 
 bool Turns::mayStand(const Pending& entry) const {
-    if (most_ == 0 || !entry.testable) return false;
+    if (most_ == 0) return false;
     const Array<Turn>& turns = entry.kind == Pending::Kind::kNode ? nodes_ : objects_;
     if (entry.index >= turns.size() || !turns[entry.index].kept) return false;
     const Turn turn = turns[entry.index];
@@ -40,7 +40,8 @@ bool Turns::mayStand(const Pending& entry) const {
     const uint32_t spread = entry.index * 0x9e3779b9u >> 24 & turn.wait;
     if (age > std::min({most_, turn.wait + spread, answer_ - since_})) return false;
     const double moved = glm::length(eyes_[answer_ % kEyes] - eyes_[(answer_ - age) % kEyes]);
-    return moved * static_cast<double>(entry.rect.nearness) <= kLittle;
+    if (entry.testable) return moved * static_cast<double>(entry.rect.nearness) <= kLittle;
+    return moved <= kLittle * glm::length(glm::dvec3(entry.box.max) - glm::dvec3(entry.box.min));
 }
 
 void Turns::note(const Pending& entry, bool kept) {

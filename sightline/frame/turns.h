@@ -13,7 +13,7 @@
 namespace sightline::detail {
 
 /// What a traversal remembers of each node and each object: when it was asked last, and what it answered. An answer may
-/// stand while the eye has moved little for the distance, and layers, sections and stages are the same; each time it is
+/// stand while the eye has moved little for the distance, or for the size of what stands around it, and layers, sections and stages are the same; each time it is
 /// found again it may stand twice as long.
 ///
 /// To keep what is not asked is sound, whatever is remembered. So what has moved to another place of the hierarchy

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/frame/turns.h"
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 #include "sightline/query/explain/explain.h"
@@ -116,6 +117,30 @@ TEST(Turns, AskAllAgainWhereTheEyeHasMovedFar) {
         }
     }
     EXPECT_EQ(unasked, 0u);
+}
+
+TEST(Turns, LeaveOutWhatStandsAroundAnEyeThatMovesLittle) {
+    MadeWorld made;
+    made.shapes = true;
+    glm::dmat4 across = glm::rotate(glm::dmat4(1.0), glm::radians(45.0), {0.0, 1.0, 0.0});
+    across = across * glm::scale(glm::dmat4(1.0), {20.0, 2.0, 0.2});
+    across[3] = {-7.0, -1.0, 2.0, 1.0};  // a wall before the eye, whose box reaches around it
+    made.add(across, true);
+    const Snapshot now = made.world.commit();
+    const auto looksWhere = [&](double step, uint32_t unasked_answers) {
+        Query query;
+        uint64_t looks = 0;
+        for (int frame = 0; frame < 20; ++frame) {
+            const View view = viewAt({frame % 2 ? step : 0.0, 0, 0}, {0, 0, -1}, {60.0, 320, 180});
+            const VisibleSet set = query.visible(now, view, {.unasked_answers = unasked_answers});
+            EXPECT_EQ(set.objects.size(), 1u);
+            looks += set.stats.second_looks;
+        }
+        return looks;
+    };
+    EXPECT_EQ(looksWhere(0.02, 0), 20u);
+    EXPECT_LE(looksWhere(0.02, 15), 7u);
+    EXPECT_EQ(looksWhere(2.0, 15), 20u) << "further than a sixteenth of its size";
 }
 
 TEST(Turns, GiveTheSameAnswersForTheSameCalls) {
