@@ -189,16 +189,21 @@ uint64_t gatherClusters(DepthTiles& tiles, const OccludeePlace& place, const Occ
     return polygons;
 }
 
-/// Whether a polygon of one of the clusters shows an open pixel, or is in doubt: the look would end at it, if it did not
-/// end before.
-bool isOpenStill(DepthTiles& tiles, const OccludeePlace& place, const Occluder& shape,
-                 const Array<ClusterLook>& clusters, const OpenPolygon& open) {
-    const auto* const at = std::find_if(clusters.data(), clusters.data() + clusters.size(),
-                                        [&](const ClusterLook& look) { return look.cluster == open.cluster; });
-    if (at == clusters.data() + clusters.size()) return false;
+/// The least w of what may be drawn of a cluster, 0 if that is not known; less than 0: it lies outside of the view.
+double leastW(const OccludeePlace& place, const Occluder& shape, uint32_t cluster) {
+    if (shape.clusters.size() == 1) return 0.0;
+    const BoxAnswer box(projectClusters(place.screen, shape, cluster), 0);
+    if (box.outside) return -1.0;
+    return box.doubt || !place.screen.perspective ? 0.0 : 1.0 / box.rect.nearness;
+}
+
+/// Whether a polygon shows an open pixel, or is in doubt: a look would end at it, if it did not end before.
+bool isOpenStill(DepthTiles& tiles, const OccludeePlace& place, const Occluder& shape, const OpenPolygon& open) {
+    const double w = leastW(place, shape, open.cluster);
+    if (w < 0.0) return false;
     ClusterWalk walk(place, shape, open.cluster);
     if (open.polygon >= walk.cluster.polygon_count) return false;
-    if (!walk.begin(at->w)) return true;
+    if (!walk.begin(w)) return true;
     const OccluderPolygon& polygon = shape.polygons[walk.cluster.first_polygon + open.polygon];
     if (tiles.end_column - tiles.first_column < tiles.columns && walk.liesBeside(tiles, polygon)) return false;
     OccludeePolygon occludee;
@@ -213,17 +218,17 @@ bool isOpenStill(DepthTiles& tiles, const OccludeePlace& place, const Occluder& 
 
 Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder& shape, TriangleScratch& scratch,
                    TriangleLook& look) {
-    bool in_view = false;
-    const uint64_t polygons = gatherClusters(tiles, place, shape, scratch.clusters, in_view);
     look.polygons = 0;
-    look.spent = polygons > look.most_polygons;
-    if (look.spent) return Sight::kVisible;
-    if (look.first.cluster < shape.clusters.size()) {
-        look.by_first = isOpenStill(tiles, place, shape, scratch.clusters, look.first);
+    if (look.first.cluster < shape.clusters.size() && look.most_polygons > 0) {
+        look.by_first = isOpenStill(tiles, place, shape, look.first);
         look.open = look.first;
         look.polygons = look.by_first;
         if (look.by_first) return Sight::kVisible;
     }
+    bool in_view = false;
+    const uint64_t polygons = gatherClusters(tiles, place, shape, scratch.clusters, in_view);
+    look.spent = polygons > look.most_polygons;
+    if (look.spent) return Sight::kVisible;
     scratch.undecided.clear();
     scratch.names.clear();
     const bool part = tiles.end_column - tiles.first_column < tiles.columns;
@@ -231,7 +236,8 @@ Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder
     for (const ClusterLook& next : scratch.clusters) {
         look.open.cluster = next.cluster;
         ClusterWalk walk(place, shape, next.cluster);
-        if (!walk.begin(next.w)) return Sight::kVisible;
+        look.in_doubt = !walk.begin(next.w);
+        if (look.in_doubt) return Sight::kVisible;
         for (uint32_t p = 0; p < walk.cluster.polygon_count; ++p) {
             look.open.polygon = p;
             ++look.polygons;
@@ -241,7 +247,8 @@ Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder
                 continue;
             }
             const Sight made = walk.polygon(polygon, occludee);
-            if (made == Sight::kVisible) return made;
+            look.in_doubt = made == Sight::kVisible;
+            if (look.in_doubt) return made;
             if (made == Sight::kOutside) continue;
             if (!tiles.clip(occludee.rect)) {
                 in_view = true;

@@ -29,7 +29,8 @@ struct TriangleLook {
     uint32_t polygons = 0;                  ///< that were looked at
     bool spent = false;                     ///< it ran into the limit
     bool by_first = false;                  ///< `first` is open still
-    OpenPolygon open;                       ///< where the answer is kVisible and nothing was in doubt
+    bool in_doubt = false;                  ///< it ended where it could not be said what lies where
+    OpenPolygon open;                       ///< where the answer is kVisible, unless the look was spent
 };
 
 /// The scratch memory of second looks.
@@ -41,9 +42,9 @@ struct TriangleScratch {
     explicit TriangleScratch(Memory* memory) : clusters(memory), undecided(memory), names(memory) {}
 };
 
-/// Asks an object's triangles until one has an open pixel: first clusters by their boxes, nearest first, then
-/// TriangleLook::first, then the clusters' polygons. Triangles are clipped at the near plane. A single-sided triangle that is turned away is not drawn, and so
-/// it shows nothing.
+/// Asks an object's triangles until one has an open pixel: first TriangleLook::first, then clusters by their boxes, then
+/// their polygons, nearest clusters first. Triangles are clipped at the near plane. A single-sided triangle that is
+/// turned away is not drawn, and so it shows nothing.
 ///
 /// @param place  makeOccludeePlace() of the object and shape.bounds
 /// @param shape  every triangle that may be drawn of the object, in its space

@@ -27,8 +27,8 @@ enum class Look : uint8_t {
 /// An object that was kept, and will be asked by its triangles.
 struct SecondLook {
     Pending entry;
-    uint32_t visible = 0;      ///< index into TraversalState::visible
-    bool skips_faces = false;  ///< its faces were not asked, for one of its polygons was open in the last answer
+    uint32_t visible = 0;     ///< index into TraversalState::visible
+    bool faces_left = false;  ///< its faces were not asked
 };
 
 /// Objects that were culled together.

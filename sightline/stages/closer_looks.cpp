@@ -16,8 +16,35 @@ TurnAnswer settle(const Frame& frame, const TraversalState& state, Look look, Si
 
 }  // namespace
 
-/// An object of which a polygon was open last is likely to be visible still. Its faces are then not worth asking: they
-/// are open wherever a polygon is.
+namespace {
+
+// What is noted of an object that was hidden, in place of an open polygon's cluster.
+constexpr uint32_t kHiddenByFaces = OpenPolygon::kNone - 1, kHiddenByTriangles = OpenPolygon::kNone - 2;
+
+/// What the last look at the object at a place found.
+OpenPolygon lastLook(const Frame& frame, const TraversalState& state, uint32_t place) {
+    return frame.settings.stateless ? OpenPolygon{OpenPolygon::kNone} : state.openAt(place);
+}
+
+/// Notes what was found of the object at a place.
+void note(const Frame& frame, TraversalState& state, uint32_t place, const OpenPolygon& open) {
+    if (frame.settings.stateless) return;
+    if (place >= state.open_at.size())
+        state.open_at.resize(frame.world->placed.size(), OpenPolygon{OpenPolygon::kNone});
+    state.open_at[place] = open;
+}
+
+TurnAnswer askFaces(const Frame& frame, TraversalState& state, const OccludeePlace& place, const Box3d& bounds) {
+    ++state.stats.faces_tested;
+    const TurnAnswer answer = settle(frame, state, Look::kFaces, askBox(state.tiles, place, bounds));
+    state.stats.faces_culled += answer.culled;
+    return answer;
+}
+
+}  // namespace
+
+/// Where triangles will be asked, faces are worth asking only if they decided last time: they are open wherever a
+/// polygon is.
 TurnAnswer cullByFaces(const Frame& frame, TraversalState& state, const Pending& entry) {
     const Look by_box = frame.settings.faces && entry.testable ? Look::kFaces : Look::kBox;
     if (entry.kind != Pending::Kind::kObject) return {};
@@ -25,32 +52,21 @@ TurnAnswer cullByFaces(const Frame& frame, TraversalState& state, const Pending&
     const bool in_layers = object.layers & frame.view.layers;
     const bool again =
         frame.settings.second_look && object.shape.index != 0 && in_layers && !frame.mayBeCoarse(entry.index);
-    const bool was_open = again && !frame.settings.stateless && state.openAt(entry.index).cluster != OpenPolygon::kNone;
-    if (frame.settings.faces && in_layers && !was_open) {
+    const bool by_faces = lastLook(frame, state, entry.index).cluster == kHiddenByFaces;
+    const bool asks_faces = frame.settings.faces && in_layers && (!again || by_faces);
+    if (asks_faces) {
         const OccludeePlace place = makeOccludeePlace(frame.screen, object.transform, object.bounds);
-        ++state.stats.faces_tested;
-        const TurnAnswer answer = settle(frame, state, Look::kFaces, askBox(state.tiles, place, object.bounds));
-        state.stats.faces_culled += answer.culled;
+        const TurnAnswer answer = askFaces(frame, state, place, object.bounds);
         if (answer.culled) return answer;
     }
     // Its triangles are asked once all is drawn: an object whose box is near may well be hidden by what is met later.
     if (again) {
-        state.second.push_back({entry, static_cast<uint32_t>(state.visible.size()), was_open});
+        state.second.push_back(
+            {entry, static_cast<uint32_t>(state.visible.size()), frame.settings.faces && !asks_faces});
         return {.look = Look::kTriangles};
     }
     return {.look = by_box};
 }
-
-namespace {
-
-/// Notes which polygon of the object at a place is open.
-void note(const Frame& frame, TraversalState& state, uint32_t place, const OpenPolygon& open) {
-    if (place >= state.open_at.size())
-        state.open_at.resize(frame.world->placed.size(), OpenPolygon{OpenPolygon::kNone});
-    state.open_at[place] = open;
-}
-
-}  // namespace
 
 /// Objects that are culled here were drawn, and may have hidden others. That is sound: along each ray the nearest point
 /// of all that was drawn has nothing in front of it, so that its object is kept, and it hides what they hid.
@@ -59,24 +75,28 @@ TurnAnswer cullByTriangles(const Frame& frame, TraversalState& state, const Seco
     const OccludeePlace place = makeOccludeePlace(frame.screen, object.transform, object.bounds);
     TriangleLook look;
     look.most_polygons = frame.settings.second_look_polygons - state.stats.second_look_polygons;
-    if (!frame.settings.stateless) look.first = state.openAt(kept.entry.index);
+    const OpenPolygon last = lastLook(frame, state, kept.entry.index);
+    look.first = last;
     ++state.stats.second_looks;
     const Sight sight =
         askTriangles(state.tiles, place, *frame.world->occluders[object.shape.index], state.looks, look);
     state.stats.second_look_polygons += look.polygons;
     state.stats.second_look_spent |= look.spent;
-    if (!frame.settings.stateless) {
-        const bool open = sight == Sight::kVisible && !look.spent;
-        note(frame, state, kept.entry.index, open ? look.open : OpenPolygon{OpenPolygon::kNone});
-    }
     TurnAnswer answer = settle(frame, state, Look::kTriangles, sight);
     state.stats.second_look_culled += answer.culled;
-    if (!answer.culled && frame.settings.faces && kept.skips_faces && !look.by_first) {
-        ++state.stats.faces_tested;
-        const TurnAnswer by_faces = settle(frame, state, Look::kFaces, askBox(state.tiles, place, object.bounds));
-        state.stats.faces_culled += by_faces.culled;
-        if (by_faces.culled) return by_faces;
+    OpenPolygon found{OpenPolygon::kNone};
+    if (answer.culled) {
+        // Which of both looks is to be taken the next time: faces are cheaper, and come before the object is drawn.
+        const bool known = !kept.faces_left || last.cluster == kHiddenByTriangles || frame.settings.stateless;
+        const bool by_faces = !known && askFaces(frame, state, place, object.bounds).culled;
+        found.cluster = by_faces ? kHiddenByFaces : kHiddenByTriangles;
+    } else if (kept.faces_left && (look.spent || look.in_doubt)) {
+        answer = askFaces(frame, state, place, object.bounds);
+        if (answer.culled) found.cluster = kHiddenByFaces;
+    } else if (!look.spent) {
+        found = look.open;
     }
+    note(frame, state, kept.entry.index, found);
     if (!answer.culled && look.spent) answer.look = Look::kBox;
     return answer;
 }

@@ -256,14 +256,13 @@ private:
         expectWithout(item, why, hiders);
     }
 
-    /// Without the look that was named, the object is kept or hidden otherwise.
+    /// What a closer look culled is kept by the rectangle around its box alone.
     void expectLook(uint32_t item, const Explanation& why) {
         if (!why.occlusion.by_faces && !why.occlusion.by_triangles) return;
         ++count.by_look;
         QuerySettings rough = settings_;
-        rough.second_look = false;
-        if (why.occlusion.by_faces) rough.faces = false;
-        EXPECT_EQ(int(reasonOf(now_, view_, rough, item)), 0) << at(item) << " is kept without the closer look";
+        rough.second_look = rough.faces = false;
+        EXPECT_EQ(int(reasonOf(now_, view_, rough, item)), 0) << at(item) << " is kept without the closer looks";
     }
 
     void expectWithout(uint32_t item, const Explanation& why, const std::vector<ObjectId>& hiders) {

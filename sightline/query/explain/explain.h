@@ -63,7 +63,7 @@ struct OcclusionReason {
     /// those that own pixels of the node's rectangle.
     bool outside_too = false;
     bool by_faces = false;                 ///< its box's rectangle is open: the faces of the box are hidden
-    bool by_triangles = false;             ///< the box is open: its own triangles are hidden
+    bool by_triangles = false;             ///< that rectangle is open: its own triangles are hidden
     Without without = Without::kNotAsked;  ///< the hiders
     Array<Hider> others;                   ///< which objects would then hide it, as `hiders` do now
 

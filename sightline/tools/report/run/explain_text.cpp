@@ -127,7 +127,7 @@ std::string withoutText(const OcclusionReason& reason, const NameOfObject& name)
 
 /// What was asked where the rectangle around its box was open.
 std::string askedText(const OcclusionReason& reason) {
-    if (reason.by_triangles) return " Its box is not hidden all over; its own triangles are.";
+    if (reason.by_triangles) return " The rectangle around its box is not hidden all over; its own triangles are.";
     if (reason.by_faces) return " The rectangle around its box is not hidden all over; the faces of the box are.";
     return "";
 }

@@ -63,7 +63,8 @@ TEST(ExplainText, SaysWhatOfAnObjectWasAsked) {
               "rectangle around its box is not hidden all over; the faces of the box are.");
     why.occlusion.by_faces = false;
     why.occlusion.by_triangles = true;
-    EXPECT_NE(explanationText(why, "it", nameOf).find(" Its box is not hidden all over; its own triangles are."),
+    EXPECT_NE(explanationText(why, "it", nameOf)
+                  .find(" The rectangle around its box is not hidden all over; its own triangles are."),
               std::string::npos);
     EXPECT_EQ(explanationClause(why, nameOf), "behind 'B' (71 %) and 'C' (29 %), by its triangles");
     why.verdict = Verdict::kOutsideFrustum;
