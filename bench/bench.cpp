@@ -21,6 +21,7 @@ constexpr Case kCases[] = {
     {"backface", benchBackface},
     {"bottleneck", benchBottleneck},
     {"bsp", benchBsp},
+    {"c", benchC},
     {"clipping", benchClipping},
     {"depth", benchDepth},
     {"eye", benchEye},

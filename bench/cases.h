@@ -21,6 +21,9 @@ Table benchBottleneck(const Options& options);
 /// back, with what is free looked up, in segments and in bits, beside back to front.
 Table benchBsp(const Options& options);
 
+/// Worlds of one to ten thousand boxes: the same questions through C and through C++.
+Table benchC(const Options& options);
+
 /// A walk through a city: guard band and outcodes beside naive clipping at six planes, and scanning without clipping.
 Table benchClipping(const Options& options);
 

@@ -1,6 +1,6 @@
 # What an installation holds: libraries, headers under <sightline/...>, the tool, and how to find them. Its components:
-#   runtime      what programs that link shared libraries need to run; of static ones the licence alone
-#   development  sightline::run, ::bsp and ::studies with their headers, and the files that find them
+#   runtime      libsightline, which programs that link it need to run, and the licence
+#   development  sightline::run, ::c, ::bsp and ::studies with their headers, and the files that find them
 #   tools        the programs with their completions, and the libraries that they are made of
 include(CMakePackageConfigHelpers)
 
@@ -26,6 +26,7 @@ endfunction()
 set(SIGHTLINE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/sightline)
 
 sightline_install(EXPORT sightline-runtime COMPONENT development LIBRARIES run HEADERS sightline.h)
+sightline_install(EXPORT sightline-c COMPONENT development LIBRARIES c shared HEADERS c/sightline.h)
 sightline_install(EXPORT sightline-studies COMPONENT development LIBRARIES bsp studies
   HEADERS studies/hidden/render.h studies/hidden/zbuffer/zbuffer.h)
 if(SIGHTLINE_TOOLS)
@@ -66,7 +67,7 @@ install(CODE "
   set(SIGHTLINE_EMBREE_FLAG $<$<BOOL:${SIGHTLINE_TOOLS}>:-lembree3>)
   set(CMAKE_INSTALL_FULL_LIBDIR \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR})
   set(CMAKE_INSTALL_FULL_INCLUDEDIR \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR})
-  foreach(name sightline sightline-studies)
+  foreach(name sightline sightline-c sightline-studies)
     configure_file(${PROJECT_SOURCE_DIR}/cmake/\${name}.pc.in
       \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/pkgconfig/\${name}.pc @ONLY)
   endforeach()" COMPONENT development)

@@ -10,6 +10,28 @@ function(sightline_library name)
   sightline_settings(sightline_${name})
 endfunction()
 
+# A shared library sightline_NAME (alias sightline::NAME) of an archive of this build, in a file named OUTPUT. Its C functions
+# alone are seen from outside; what none of them needs is left out.
+function(sightline_shared name output archive)
+  add_library(sightline_${name} SHARED $<TARGET_OBJECTS:${archive}>)
+  add_library(sightline::${name} ALIAS sightline_${name})
+  # Below 1.0 a minor version may change the interface.
+  set_target_properties(sightline_${name} PROPERTIES EXPORT_NAME ${name} OUTPUT_NAME ${output} LINKER_LANGUAGE CXX
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+    LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/sightline.map)
+  target_include_directories(sightline_${name} INTERFACE
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  get_target_property(libraries ${archive} LINK_LIBRARIES)
+  target_link_libraries(sightline_${name} PRIVATE ${libraries})
+  if(SIGHTLINE_SANITIZE)
+    target_link_options(sightline_${name} PUBLIC -fsanitize=${SIGHTLINE_SANITIZE})
+  endif()
+  if(NOT WIN32)
+    target_link_options(sightline_${name} PRIVATE
+      -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/sightline.map -Wl,--gc-sections)
+  endif()
+endfunction()
+
 # Settings that hold for every target: the language, the warnings, and arithmetic that is the same everywhere.
 function(sightline_settings target)
   target_compile_features(${target} PUBLIC cxx_std_20)
