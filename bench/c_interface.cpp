@@ -85,7 +85,8 @@ Table benchC(const Options&) {
         for (int round = 0; round < kRounds; ++round)
             for (int frame = 0; frame < kFrames; ++frame) {
                 const double angle = 2 * std::numbers::pi * frame / kFrames;
-                const glm::dvec3 eye(0.3 * std::sqrt(count) * std::cos(angle), 1.5, 0.3 * std::sqrt(count) * std::sin(angle));
+                const glm::dvec3 eye(0.3 * std::sqrt(count) * std::cos(angle), 1.5,
+                                     0.3 * std::sqrt(count) * std::sin(angle));
                 View view;
                 view.view = lookAt(eye, eye + glm::dvec3(std::sin(3 * angle), 0, std::cos(3 * angle)), {0, 1, 0});
                 view.projection = perspective(1, 16.0 / 9, 0.1);
@@ -107,8 +108,8 @@ Table benchC(const Options&) {
                 }
             }
         slDestroyQuery(c_query);
-        Rows{table, fmt::format("{} objects", count)}("query through C", through_c / (kRounds * kFrames), "us", "through C++",
-                                                      plain / (kRounds * kFrames),
+        Rows{table, fmt::format("{} objects", count)}("query through C", through_c / (kRounds * kFrames), "us",
+                                                      "through C++", plain / (kRounds * kFrames),
                                                       kept == c_kept ? "the same answers" : "answers differ");
     }
     return table;

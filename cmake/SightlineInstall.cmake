@@ -1,7 +1,10 @@
 # What an installation holds: libraries, headers under <sightline/...>, the tool, and how to find them. Its components:
 #   runtime      libsightline, which programs that link it need to run, and the licence
 #   development  sightline::run, ::c, ::bsp and ::studies with their headers, and the files that find them
-#   tools        the programs with their completions, and the libraries that they are made of
+#   tools        the programs with their completions
+#   tools-development  the libraries that these are made of
+#   python       the Python package
+#   documentation  the manual
 include(CMakePackageConfigHelpers)
 
 # Installs libraries with the headers of their users and exports them as sightline::NAME.
@@ -30,7 +33,7 @@ sightline_install(EXPORT sightline-c COMPONENT development LIBRARIES c shared HE
 sightline_install(EXPORT sightline-studies COMPONENT development LIBRARIES bsp studies
   HEADERS studies/hidden/render.h studies/hidden/zbuffer/zbuffer.h)
 if(SIGHTLINE_TOOLS)
-  sightline_install(EXPORT sightline-tools COMPONENT tools LIBRARIES lods scene import bake truth report
+  sightline_install(EXPORT sightline-tools COMPONENT tools-development LIBRARIES lods scene import bake truth report
     HEADERS bake/bake.h prepare/lod/lod_chain.h tools/scene/procedural.h tools/import/scene_file.h
             tools/load/load_world.h tools/truth/verify.h tools/report/page/page.h)
   # ./run.sh builds the tool alone: what it has not built is left out.
@@ -73,3 +76,7 @@ install(CODE "
   endforeach()" COMPONENT development)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
   COMPONENT runtime)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/manual COMPONENT documentation)
+install(FILES ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT documentation
+  PATTERN CMakeLists.txt EXCLUDE)

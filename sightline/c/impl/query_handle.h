@@ -9,7 +9,7 @@ struct slQuery {
     sightline::c::SharedHooks hooks;
     sightline::Query query{hooks->memory(), hooks->jobs()};
     sightline::VisibleSet last{};  ///< the last answer; of two eyes, what either sees
-    uint32_t objects = 0;  ///< of the last answer's snapshot
+    uint32_t objects = 0;          ///< of the last answer's snapshot
     sightline::ViewProblem problem = sightline::ViewProblem::kNone;
     mutable sightline::Array<uint8_t> reasons{hooks->memory()};
 

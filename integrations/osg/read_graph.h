@@ -1,0 +1,32 @@
+// What of a scene graph hides: the state that its drawables inherit, and their triangles.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include <osg/Drawable>
+#include <osg/StateSet>
+
+#include <sightline/c/sightline.h>
+
+namespace sightline_osg {
+
+/// How what is below a node is drawn.
+struct Style {
+    bool opaque = true;      ///< no state keeps its triangles from covering what is behind them
+    bool both_sides = true;  ///< no face is culled
+
+    /// With a node's own state; null: it has none. State that overrides what is below, or is protected from what is above, is
+    /// not followed: it makes all below hide nothing.
+    Style with(const osg::StateSet* state) const;
+};
+
+/// Of all nodes above one: what they say together.
+Style styleAbove(const osg::Node& node);
+
+/// An occluder of a drawable's triangles; null if it hides nothing: it is no geometry, or moves its vertices, or is not opaque.
+slOccluder* occluderOf(osg::Drawable& drawable, const Style& style);
+
+slBox boxOf(const osg::BoundingBox& box);
+
+}  // namespace sightline_osg
