@@ -12,15 +12,17 @@ include(CMakePackageConfigHelpers)
 #   EXPORT     the export set; sightline-config.cmake includes one file for each
 #   LIBRARIES  names as given to sightline_library
 #   HEADERS    of sightline/, that users include; what these include is installed, too, and no other header
+#   BUT        these and what they include, which belong to another component
 function(sightline_install)
-  cmake_parse_arguments(arg "" "EXPORT;COMPONENT" "LIBRARIES;HEADERS" ${ARGN})
+  cmake_parse_arguments(arg "" "EXPORT;COMPONENT" "LIBRARIES;HEADERS;BUT" ${ARGN})
   list(TRANSFORM arg_LIBRARIES PREPEND sightline_ OUTPUT_VARIABLE targets)
   install(TARGETS ${targets} EXPORT ${arg_EXPORT}
     ARCHIVE COMPONENT ${arg_COMPONENT} LIBRARY COMPONENT runtime NAMELINK_COMPONENT ${arg_COMPONENT}
     RUNTIME COMPONENT runtime)
   install(CODE "
     include(${PROJECT_SOURCE_DIR}/cmake/SightlineInstallHeaders.cmake)
-    sightline_install_headers(${PROJECT_SOURCE_DIR} \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR} ${arg_HEADERS})"
+    sightline_install_headers(${PROJECT_SOURCE_DIR} \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}
+      HEADERS ${arg_HEADERS} BUT ${arg_BUT})"
     COMPONENT ${arg_COMPONENT})
   install(EXPORT ${arg_EXPORT} NAMESPACE sightline:: DESTINATION ${SIGHTLINE_CMAKE_DIR}
     COMPONENT ${arg_COMPONENT})
@@ -35,7 +37,8 @@ sightline_install(EXPORT sightline-studies COMPONENT development LIBRARIES bsp s
 if(SIGHTLINE_TOOLS)
   sightline_install(EXPORT sightline-tools COMPONENT tools-development LIBRARIES lods scene import bake truth report
     HEADERS bake/bake.h prepare/lod/lod_chain.h tools/scene/procedural.h tools/import/scene_file.h
-            tools/load/load_world.h tools/truth/verify.h tools/report/page/page.h)
+            tools/load/load_world.h tools/truth/verify.h tools/report/page/page.h
+    BUT sightline.h c/sightline.h studies/hidden/render.h studies/hidden/zbuffer/zbuffer.h)
   # ./run.sh builds the tool alone: what it has not built is left out.
   install(TARGETS sightline COMPONENT tools)
   install(TARGETS sightline-bench COMPONENT tools OPTIONAL)

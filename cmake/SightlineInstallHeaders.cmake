@@ -1,8 +1,8 @@
 # Installs headers with all that they include, and nothing else; runs while installing.
 cmake_policy(VERSION 3.25)
 
-# ROOT/sightline/HEADER goes to DESTINATION/sightline/HEADER, for each HEADER and for what it includes, on and on.
-function(sightline_install_headers root destination)
+# Sets OUT to headers of ROOT/sightline/ and to all that they include, on and on.
+function(sightline_headers_of root out)
   set(todo ${ARGN})
   set(known ${ARGN})
   while(todo)
@@ -10,8 +10,6 @@ function(sightline_install_headers root destination)
     if(header MATCHES "-inl\\.h$")
       message(FATAL_ERROR "${header} is an internal, and no header of a user may include it")
     endif()
-    get_filename_component(folder ${header} DIRECTORY)
-    file(INSTALL ${root}/sightline/${header} DESTINATION ${destination}/sightline/${folder})
     file(STRINGS ${root}/sightline/${header} lines REGEX "^#include [\"<]sightline/")
     foreach(line ${lines})
       string(REGEX REPLACE "^#include [\"<]sightline/([^\">]+).*" "\\1" other ${line})
@@ -21,4 +19,20 @@ function(sightline_install_headers root destination)
       endif()
     endforeach()
   endwhile()
+  set(${out} ${known} PARENT_SCOPE)
+endfunction()
+
+# ROOT/sightline/HEADER goes to DESTINATION/sightline/HEADER, for each of HEADERS and for what it includes; but for what BUT
+# and theirs are, which another component has.
+function(sightline_install_headers root destination)
+  cmake_parse_arguments(arg "" "" "HEADERS;BUT" ${ARGN})
+  sightline_headers_of(${root} headers ${arg_HEADERS})
+  if(arg_BUT)
+    sightline_headers_of(${root} others ${arg_BUT})
+    list(REMOVE_ITEM headers ${others})
+  endif()
+  foreach(header ${headers})
+    get_filename_component(folder ${header} DIRECTORY)
+    file(INSTALL ${root}/sightline/${header} DESTINATION ${destination}/sightline/${folder})
+  endforeach()
 endfunction()
