@@ -42,3 +42,8 @@ fi
 step "release"
 build release
 ctest --preset release --output-log build/release/test.log
+
+if [ -n "$full" ]; then
+    step "packages, in a bare Debian"
+    tools/try_packages || [ $? -eq 77 ]
+fi

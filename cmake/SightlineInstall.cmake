@@ -35,6 +35,7 @@ sightline_install(EXPORT sightline-c COMPONENT development LIBRARIES c shared HE
 sightline_install(EXPORT sightline-studies COMPONENT development LIBRARIES bsp studies
   HEADERS studies/hidden/render.h studies/hidden/zbuffer/zbuffer.h)
 if(SIGHTLINE_TOOLS)
+  sightline_install(EXPORT sightline-bake COMPONENT development LIBRARIES bake_shared HEADERS c/bake/bake.h)
   sightline_install(EXPORT sightline-tools COMPONENT tools-development LIBRARIES lods scene import bake truth report
     HEADERS bake/bake.h prepare/lod/lod_chain.h tools/scene/procedural.h tools/import/scene_file.h
             tools/load/load_world.h tools/truth/verify.h tools/report/page/page.h

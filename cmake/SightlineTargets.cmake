@@ -18,7 +18,7 @@ function(sightline_shared name output archive)
   # Below 1.0 a minor version may change the interface.
   set_target_properties(sightline_${name} PROPERTIES EXPORT_NAME ${name} OUTPUT_NAME ${output} LINKER_LANGUAGE CXX
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-    LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/sightline.map)
+    LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/${output}.map)
   target_include_directories(sightline_${name} INTERFACE
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   get_target_property(libraries ${archive} LINK_LIBRARIES)
@@ -28,7 +28,7 @@ function(sightline_shared name output archive)
   endif()
   if(NOT WIN32)
     target_link_options(sightline_${name} PRIVATE
-      -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/sightline.map -Wl,--gc-sections)
+      -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/${output}.map -Wl,--gc-sections)
   endif()
 endfunction()
 

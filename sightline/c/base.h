@@ -35,7 +35,9 @@ typedef enum slStatus {
     SL_BAD_ARGUMENT, /**< a null pointer, an index beyond its array, or a value outside of its limits */
     SL_NO_DEFAULTS,  /**< a def, view or settings that did not begin as slDefault...() */
     SL_STALE_ID,     /**< an id that is null, or of something that was removed */
-    SL_BAD_FILE      /**< bytes that are no visibility file, or a damaged one */
+    SL_BAD_FILE,     /**< bytes that are no visibility file, or a damaged one */
+    SL_NO_MEMORY,    /**< of a bake: there is not enough */
+    SL_STOPPED       /**< of a bake: its caller ended it */
 } slStatus;
 
 /** The same in words: "an id is null, or of something that was removed". */

@@ -94,6 +94,7 @@ enum Cookie : uint32_t {
     kSightCookie,
     kLightCookie,
     kCasterCookie,
+    kBakeCookie,
 };
 
 }  // namespace sightline::c

@@ -75,6 +75,10 @@ const char* slStatusWords(slStatus status) {
             return "an id is null, or of something that was removed";
         case SL_BAD_FILE:
             return "the bytes are no visibility file, or a damaged one";
+        case SL_NO_MEMORY:
+            return "there is not enough memory";
+        case SL_STOPPED:
+            return "its caller ended it";
     }
     return "there is no such status";
 }
