@@ -321,6 +321,9 @@ TEST(CHooks, MemoryComesFromTheAllocatorAndGoesBack) {
         EXPECT_EQ(mine.memory.allocations, before) << "a query that has seen its like allocates nothing";
         // A snapshot outlives its world, and a query its snapshot.
         world.reset();
+        slVisibleSet two;
+        const uint8_t* eyes = nullptr;
+        ASSERT_EQ(slQueryStereo(query, now, &views[0], &views[1], nullptr, &two, &eyes), SL_OK);
         EXPECT_EQ(slSnapshotObjects(now), made.ids.size());
         ASSERT_EQ(slQueryVisible(query, now, &views[0], nullptr, &set), SL_OK);
         slReleaseSnapshot(now);

@@ -57,6 +57,21 @@ private:
 };
 using SharedHooks = std::shared_ptr<Hooks>;
 
+/// The hooks of all worlds that a query was asked about: it keeps the snapshots that it was asked last, of each eye, and with them
+/// memory of theirs. Declared before the query, so that it goes after it.
+class AskedHooks {
+public:
+    explicit AskedHooks(Memory* memory) : all_(memory) {}
+    void add(const SharedHooks& hooks) {
+        for (const SharedHooks& known : all_)
+            if (known == hooks) return;
+        all_.push_back(hooks);
+    }
+
+private:
+    Array<SharedHooks> all_;
+};
+
 /// @param from  usable: see checkHooks(); null: no hooks
 SharedHooks shareHooks(const slHooks* from);
 SharedHooks shareHooks(const slLog& log);

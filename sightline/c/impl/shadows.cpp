@@ -11,6 +11,7 @@ using c::fail;
 
 struct slShadows {
     c::SharedHooks hooks;
+    c::AskedHooks asked{hooks->memory()};
     ShadowQuery query{hooks->memory()};
 };
 
@@ -95,6 +96,7 @@ slStatus slFindCasters(slShadows* shadows, const slSnapshot* snapshot, const slV
     if (lamp.kind != LightKind::kDirectional && !how.cascades.empty())
         return fail(log, SL_BAD_ARGUMENT, __func__, "only a sun has cascades");
     const std::span<const Visible> seen(reinterpret_cast<const Visible*>(receivers->objects), receivers->count);
+    shadows->asked.add(snapshot->hooks);
     const CasterSet set = shadows->query.casters(snapshot->snapshot, to, seen, lamp, how);
     *set_out = {c::visibles(set.casters), set.cascades.data(), static_cast<uint32_t>(set.casters.size()),
                 set.stats.in_light};
