@@ -1,4 +1,5 @@
 # The steps of the consumer test; see CMakeLists.txt for its arguments.
+cmake_policy(VERSION 3.25)
 set(project ${CMAKE_CURRENT_LIST_DIR}/project)
 set(prefix ${WORK}/prefix)
 file(REMOVE_RECURSE ${prefix} ${WORK}/build)
