@@ -8,9 +8,11 @@
 #include <typeinfo>
 
 #include <osg/Geode>
+#include <osg/Geometry>
 #include <osg/MatrixTransform>
 #include <osg/Notify>
 #include <osg/PositionAttitudeTransform>
+#include <osg/ShapeDrawable>
 #include <osgUtil/CullVisitor>
 
 #include "integrations/osg/read_graph.h"
@@ -40,6 +42,29 @@ bool actsAtADistance(const osg::Node& node) {
 /// Its place, its vertices or its children may change while it is drawn.
 bool mayChange(const osg::Node& node) {
     return node.getDataVariance() == osg::Object::DYNAMIC || node.getUpdateCallback() || node.getEventCallback();
+}
+
+/// Its image may be larger than its box: lines and points have a width, and text turns to the eye.
+bool drawsBeyondItsBox(osg::Drawable& drawable) {
+    if (typeid(drawable) != typeid(osg::Geometry) && typeid(drawable) != typeid(osg::ShapeDrawable)) return true;
+    const osg::Geometry* const geometry = drawable.asGeometry();
+    for (unsigned i = 0; geometry && i < geometry->getNumPrimitiveSets(); ++i)
+        switch (geometry->getPrimitiveSet(i)->getMode()) {
+            case GL_TRIANGLES:
+            case GL_TRIANGLE_STRIP:
+            case GL_TRIANGLE_FAN:
+            case GL_QUADS:
+            case GL_QUAD_STRIP:
+            case GL_POLYGON: break;
+            default: return true;
+        }
+    return false;
+}
+
+/// Where faces are culled, OpenGL takes the other side of what a matrix mirrors.
+bool mirrors(const osg::Matrixd& m) {
+    const osg::Vec3d x(m(0, 0), m(0, 1), m(0, 2)), y(m(1, 0), m(1, 1), m(1, 2)), z(m(2, 0), m(2, 1), m(2, 2));
+    return (x ^ y) * z < 0;
 }
 
 osg::Matrixd matrixOf(const osg::NodePath& path) {
@@ -73,7 +98,8 @@ struct Culler::Reader {
         if (node.getCullCallback()) {
             add(node, plain ? mask : ~0u, {}, false);
         } else if (drawable) {
-            add(node, plain ? mask : ~0u, plain ? occluder(*drawable, style) : slOccluderId{}, active);
+            const bool known_side = style.both_sides || (!dynamic && !mirrors(matrixOf(path)));
+            add(node, plain ? mask : ~0u, plain && known_side ? occluder(*drawable, style) : slOccluderId{}, active);
         } else if (isPlainGroup(node) || isPlainTransform(node)) {
             dynamic |= node.asTransform() && mayChange(node);
             osg::Group& group = *node.asGroup();
@@ -102,9 +128,9 @@ struct Culler::Reader {
         Object object{path, {}, dynamic};
         slObjectDef def = slDefaultObjectDef();
         osg::BoundingBox box;
-        if (const osg::Drawable* const drawable = node.asDrawable()) {
+        if (osg::Drawable* const drawable = node.asDrawable()) {
             box = drawable->getBoundingBox();
-            bounded &= !mayChange(node);
+            bounded &= !mayChange(node) && !drawsBeyondItsBox(*drawable);
         } else {
             const osg::BoundingSphere& sphere = node.getBound();
             if (sphere.valid()) box.expandBy(sphere);
@@ -118,7 +144,7 @@ struct Culler::Reader {
         def.key = to.objects_.size();
         def.layers = mask;
         def.occluder = def.shape = occluder;
-        slAddObject(to.world_, &def, &object.id);
+        if (slAddObject(to.world_, &def, &object.id) != SL_OK) object.id = to.addAlways(def.key, mask);
         if (dynamic) to.dynamic_.push_back(static_cast<uint32_t>(to.objects_.size()));
         to.objects_.push_back(std::move(object));
     }
@@ -162,6 +188,17 @@ void Culler::read() {
     stale_ = false;
 }
 
+/// An object that is always visible, and hides nothing.
+slObjectId Culler::addAlways(uint64_t key, uint32_t mask) {
+    slObjectDef def = slDefaultObjectDef();
+    def.bounds = kNoBox;
+    def.key = key;
+    def.layers = mask;
+    slObjectId id{};
+    slAddObject(world_, &def, &id);
+    return id;
+}
+
 /// Moves what may have moved.
 void Culler::follow() {
     if (dynamic_.empty()) return;
@@ -169,7 +206,10 @@ void Culler::follow() {
         osg::NodePath path = objects_[index].path;
         if (!path.back()->asDrawable()) path.pop_back();
         const osg::Matrixd matrix = matrixOf(path);
-        slMoveObject(world_, objects_[index].id, matrix.ptr());
+        if (slMoveObject(world_, objects_[index].id, matrix.ptr()) == SL_OK) continue;
+        // No affine matrix: from now on it is always drawn.
+        slRemoveObject(world_, objects_[index].id);
+        objects_[index].id = addAlways(index, ~0u);
     }
     slReleaseSnapshot(snapshot_);
     slCommit(world_, &snapshot_);
@@ -183,7 +223,9 @@ slQuery* Culler::queryOf(osgUtil::CullVisitor& visitor) {
 
 void Culler::operator()(osg::Node* node, osg::NodeVisitor* visitor) {
     osgUtil::CullVisitor* const cull = visitor->asCullVisitor();
-    if (!cull || !cull->getViewport()) return (void)traverse(node, visitor);
+    const bool culls = cull && cull->getViewport() && cull->getNodeMaskOverride() == 0 &&
+                       (cull->getCullingMode() & osg::CullSettings::VIEW_FRUSTUM_SIDES_CULLING);
+    if (!culls) return (void)traverse(node, visitor);
     if (cull->getComputeNearFarMode() != osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR) {
         if (!warned_)
             OSG_WARN << "sightline: the camera computes its near and far planes from what it draws: nothing is culled "

@@ -66,6 +66,7 @@ private:
 
     void read();
     void follow();
+    slObjectId addAlways(uint64_t key, uint32_t mask);
     slQuery* queryOf(osgUtil::CullVisitor& visitor);
     void draw(osgUtil::CullVisitor& visitor) const;
 

@@ -17,12 +17,12 @@ class vtkProp;
 ///     renderer->GetCullers()->RemoveAllItems();
 ///     renderer->AddCuller(culler);
 ///
-/// Actors are objects, each under its matrix. One hides what is behind it if it draws opaque polygons of its own vertices as
-/// surfaces. All other props are always drawn. What is added, moved, or changed in its property, mapper or data is found by its
-/// modification time in each frame. For one renderer; the camera's clipping range must be set before the frame, as
+/// Actors of plain polygons are objects, each under its matrix. One hides what is behind it if it draws opaque polygons, as
+/// surfaces and where their points are. All other props are always drawn: other classes of actors and mappers, lines, points,
+/// wireframes, shaders of one's own, and what is offset in depth. What is added, moved, or changed is found in each frame. For one renderer; the camera's clipping range must be set before the frame, as
 /// vtkRenderer::ResetCameraClippingRange() does.
 ///
-/// Not known are shaders that move vertices or discard fragments: Ignore() the actors that have them.
+/// Ignore() is for actors that change while they are drawn.
 class vtkSightlineCuller : public vtkCuller {
 public:
     static vtkSightlineCuller* New();

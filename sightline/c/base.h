@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Ids are plain values, and a zeroed id is null. Defs come from slDefault...() and are copied. No call throws, and none
-// stops the program because of what it was given: it answers with a status, and says a sentence through slLog.
+// stops the program because of what it was given: it answers with a status, and says a sentence through slLog. Memory or
+// threads that run out end the program, but in a bake.
 #ifndef SIGHTLINE_C_BASE_H
 #define SIGHTLINE_C_BASE_H
 

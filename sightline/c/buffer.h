@@ -20,11 +20,12 @@ typedef struct slBuffer slBuffer;
 SL_API slStatus slCreateBuffer(uint32_t size, const slHooks* hooks, slBuffer** buffer_out);
 SL_API void slDestroyBuffer(slBuffer* buffer);
 
-/** Empties it for a view. A view that cannot be used draws nothing, and everything is SL_SEEN: slViewProblem() says why. */
+/** Empties it for a view. If the view cannot be used (SL_BAD_ARGUMENT, and the log hears why) it is empty, too: nothing is drawn, and
+ * everything is SL_SEEN until the next slBufferBegin(). */
 SL_API slStatus slBufferBegin(slBuffer* buffer, const slView* view);
 
 /** Draws an occluder, best the nearest first. The occluder must live until the next slBufferBegin().
- * @param transform      object to world; null: none
+ * @param transform      object to world, affine; null: none
  * @param triangles_out  that were drawn; may be null */
 SL_API slStatus slBufferDraw(slBuffer* buffer, const slOccluder* occluder, const double transform[16],
                              uint32_t* triangles_out);

@@ -16,7 +16,7 @@ typedef struct slLight {
     double direction[3]; /**< in which a sun and a spot shine [not zero] */
     double position[3];  /**< of a spot and of a point light */
     double half_angle;   /**< of a spot [radians, above 0, below 1.5] */
-    double near, range;  /**< of a spot and a point light: nearer casts nothing, farther is not lit [world units] */
+    double z_near, range;  /**< of a spot and a point light: nearer casts nothing, farther is not lit [world units] */
     uint32_t cookie;
 } slLight;
 SL_API slLight slDefaultLight(void);
@@ -41,7 +41,7 @@ typedef struct slCasterSet {
     uint64_t in_light; /**< objects that a shadow map without culling would draw */
 } slCasterSet;
 
-/** The scratch of one thread. */
+/** The scratch of one thread. It keeps the memory of the snapshot that it was asked last until it is asked again, or destroyed. */
 typedef struct slShadows slShadows;
 
 /** @param hooks  null: none */

@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-/** The scratch of one thread. */
+/** The scratch of one thread. It keeps the memory of the snapshot that it was asked last until it is asked again, or destroyed. */
 typedef struct slSight slSight;
 
 /** @param hooks  null: none */

@@ -50,7 +50,7 @@ typedef struct slView {
  * of slPerspective() with 60 degrees and a near plane at 0.1. */
 SL_API slView slDefaultView(void);
 
-/** World to eye of an eye that looks at a target. Right-handed. */
+/** World to eye of an eye that looks at a target. Right-handed. A null pointer: nothing is written. */
 SL_API void slLookAt(double view_out[16], const double eye[3], const double target[3], const double up[3]);
 
 /** OpenGL's perspective.

@@ -75,7 +75,7 @@ typedef struct slMeshPart {
 
 typedef struct slClustersDef {
     slMesh mesh;
-    const slMeshPart* parts; /**< that do not overlap  [size: part_count]; null: one single-sided part that hides */
+    const slMeshPart* parts; /**< that do not overlap  [size: part_count]; none: one single-sided part that hides */
     size_t part_count;
     slLog log;
     uint32_t cookie;
@@ -120,7 +120,8 @@ SL_API slStatus slAddLods(slWorld* world, const slLod* levels, size_t count, slL
 typedef struct slObjectDef {
     slBox bounds; /**< of all that may ever be drawn of it: all poses and levels [object units]. Empty or not finite: it
                                 is always visible, and never hides */
-    double transform[16];  /**< object to world, affine */
+    double transform[16];  /**< object to world, affine. One that mirrors turns the front of its triangles around, as in glTF: a renderer
+                                that culls faces as OpenGL does shows their other side */
     uint64_t key;          /**< yours */
     slOccluderId occluder; /**< what it hides with, or null */
     slOccluderId

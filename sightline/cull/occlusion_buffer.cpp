@@ -32,7 +32,11 @@ ViewProblem OcclusionBuffer::begin(const View& view) {
     const ViewProblem problem = problemOf(view);
     usable_ = problem == ViewProblem::kNone;
     transforms_used_ = 0;
-    if (!usable_) return problem;
+    if (!usable_) {
+        // What was drawn may be gone by now, and seams would look at it.
+        tiles_.clear(0, 0);
+        return problem;
+    }
     screen_ = makeScreen(view, size_);
     tiles_.clear(screen_.width, screen_.height);
     return problem;

@@ -25,6 +25,11 @@ public:
     void begin(const Snapshot& now, const View& view, const QuerySettings& settings,
                std::span<const uint32_t> shown = {});
     uint32_t parts() const { return count_; }
+    /// Lets go of the snapshot that was asked last.
+    void forget() {
+        frame_.snapshot = {};
+        frame_.world = nullptr;
+    }
     void run(uint32_t part);
     void finish();
     /// Lets the stages work that look at the whole answer, up to and with one of them.

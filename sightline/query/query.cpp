@@ -84,6 +84,7 @@ void Query::Impl::ask(std::span<detail::Answer* const> eyes_asked, const Snapsho
 VisibleSet Query::visible(const Snapshot& now, const View& view, const QuerySettings& settings) {
     Impl& impl = *impl_;
     impl.takeUp(false);
+    if (impl.right) impl.right->forget();
     impl.shown.mark(impl.before, detail::remembersShown(view, settings));
     detail::Answer* const eye = &impl.left;
     const View* const from = &view;

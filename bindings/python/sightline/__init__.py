@@ -91,6 +91,25 @@ def _array(values, dtype, shape, name):
     return array
 
 
+def _ids(values):
+    """Ids of World.add(), and nothing that could be taken for them."""
+    ids = numpy.asarray(values)
+    if ids.dtype != _ID:
+        raise TypeError("ids are arrays of World.add(), with the fields index and generation")
+    return _array(numpy.atleast_1d(ids), _ID, (None,), "ids")
+
+
+def _whole(values, dtype, name):
+    """Whole numbers that the type can hold."""
+    array = numpy.asarray(values)
+    if array.dtype.kind not in "iu" and not (array.dtype.kind == "O" and all(isinstance(v, int) for v in array.ravel())):
+        raise TypeError(f"{name} are whole numbers, not {array.dtype}")
+    limits = numpy.iinfo(dtype)
+    if array.size and (int(array.min()) < limits.min or int(array.max()) > limits.max):
+        raise ValueError(f"{name} are {limits.min} to {limits.max}")
+    return array.astype(dtype)
+
+
 def _at(array, kind):
     return _ffi.cast(kind, array.ctypes.data)
 
@@ -104,7 +123,9 @@ def _view_of(pointer, count, dtype, owner):
     if count == 0 or pointer == _ffi.NULL:
         return numpy.empty(0, dtype)
     held = _ffi.gc(_ffi.cast("char*", pointer), lambda _, owner=owner: None)
-    return numpy.frombuffer(_ffi.buffer(held, count * dtype.itemsize), dtype)
+    array = numpy.frombuffer(_ffi.buffer(held, count * dtype.itemsize), dtype)
+    array.flags.writeable = False
+    return array
 
 
 def version():
@@ -120,7 +141,7 @@ class Occluder:
 
     def __init__(self, positions, indices, double_sided=False):
         positions = _array(positions, "f4", (None, 3), "positions")
-        indices = _array(indices, "u4", (None, 3), "indices")
+        indices = _array(_whole(indices, "u4", "indices"), "u4", (None, 3), "indices")
         definition = _ffi.new("slOccluderDef*", _lib.slDefaultOccluderDef())
         definition.mesh.positions = _at(positions, "float*")
         definition.mesh.vertex_count = len(positions)
@@ -198,23 +219,23 @@ class World:
         if transforms is not None:
             transforms = _array(transforms, "f8", (count, 4, 4), "transforms")
             fill("transform", transforms.swapaxes(1, 2), "f8", (4, 4))
-        fill("key", numpy.arange(count) if keys is None else keys, "u8", ())
-        fill("occluder", occluder, "u4", ())
-        fill("shape", shape, "u4", ())
-        fill("layers", layers, "u4", ())
+        fill("key", _whole(numpy.arange(count) if keys is None else keys, "u8", "keys"), "u8", ())
+        for field, values in (("occluder", occluder), ("shape", shape), ("layers", layers)):
+            fill(field, _whole(values, "u4", field), "u4", ())
         ids = numpy.zeros(count, _ID)
         _check(_lib.slAddObjects(self._handle, defs, count, _at(ids, "slObjectId*")))
         return ids
 
     def move(self, ids, transforms):
         """transforms: [ids, 4, 4]"""
-        ids = _array(ids, _ID, (None,), "ids")
+        ids = _ids(ids)
         transforms = _array(transforms, "f8", (len(ids), 4, 4), "transforms")
         columns = numpy.ascontiguousarray(transforms.swapaxes(1, 2))
         _check(_lib.slMoveObjects(self._handle, _at(ids, "slObjectId*"), _at(columns, "double*"), len(ids)))
 
     def remove(self, ids):
-        for one in _array(ids, _ID, (None,), "ids"):
+        """One after the other: those before a stale one are gone when it is told."""
+        for one in _ids(ids):
             _check(_lib.slRemoveObject(self._handle, _ffi.new("slObjectId*", [int(one["index"]), int(one["generation"])])[0]))
 
     def attach(self, file):
@@ -316,7 +337,7 @@ class Query:
         for name, value in settings.items():
             if not hasattr(to, name) or name == "cookie":
                 raise TypeError(f"there is no setting {name}")
-            if name == "stages" and not isinstance(value, int):
+            if name == "stages" and not hasattr(value, "__index__"):
                 value = sum(1 << STAGES.index(stage) for stage in value)
             setattr(to, name, value)
         return to
@@ -391,8 +412,9 @@ class Buffer:
         self._drawn = []
 
     def begin(self, view):
+        status = _lib.slBufferBegin(self._handle, view._view)
         self._drawn.clear()
-        _check(_lib.slBufferBegin(self._handle, view._view))
+        _check(status)
 
     def draw(self, occluder, transform=None):
         """Triangles that were drawn."""

@@ -61,6 +61,9 @@ slStatus addObjects(const slBakeDef& def, const slLog& log, tools::Scene& scene)
             return fail(log, SL_BAD_ARGUMENT, kBake, "an object's mesh is none of def.meshes");
         if (c::isProjective(from.transform))
             return fail(log, SL_BAD_ARGUMENT, kBake, "an object's transform is not affine: is it transposed?");
+        for (const double number : from.transform)
+            if (!std::isfinite(number))
+                return fail(log, SL_BAD_ARGUMENT, kBake, "an object's transform is not finite");
         tools::SceneObject& object = scene.objects.emplace_back();
         object.key = from.key;
         object.mesh = from.mesh;
@@ -68,6 +71,24 @@ slStatus addObjects(const slBakeDef& def, const slLog& log, tools::Scene& scene)
         object.name = from.name ? from.name : "";
     }
     return SL_OK;
+}
+
+/// Why a portal is none, or null. Whether walls are where it stands is looked at by the bake.
+const char* wrongWith(const tools::ScenePortal& portal, const tools::Scene& scene) {
+    constexpr double kAway = 0.5;  // walls are as thick as twice this at most [world units]
+    glm::dvec3 area(0.0);
+    for (size_t k = 0; k < portal.polygon.size(); ++k) {
+        const glm::dvec3& p = portal.polygon[k];
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return "a portal's corner is not finite";
+        for (const uint32_t cell : portal.cells) {
+            const Box3d& box = scene.cells[cell].bounds;
+            for (int axis = 0; axis < 3; ++axis)
+                if (p[axis] < box.min[axis] - kAway || p[axis] > box.max[axis] + kAway)
+                    return "a portal's corner does not lie on both of its cells";
+        }
+        area += glm::cross(p - portal.polygon[0], portal.polygon[(k + 1) % portal.polygon.size()] - portal.polygon[0]);
+    }
+    return glm::length(area) > 0 ? nullptr : "a portal has no area";
 }
 
 slStatus addCells(const slBakeDef& def, const slLog& log, tools::Scene& scene) {
@@ -99,6 +120,7 @@ slStatus addCells(const slBakeDef& def, const slLog& log, tools::Scene& scene) {
         portal.cells[0] = from.cells[0];
         portal.cells[1] = from.cells[1];
         for (size_t k = 0; k < from.corner_count; ++k) portal.polygon.push_back(c::vec(from.corners[k]));
+        if (const char* const wrong = wrongWith(portal, scene)) return fail(log, SL_BAD_ARGUMENT, kBake, wrong);
         // Counter-clockwise as seen from the first cell, whichever way round it came.
         const glm::dvec3 normal =
             glm::cross(portal.polygon[1] - portal.polygon[0], portal.polygon[2] - portal.polygon[0]);

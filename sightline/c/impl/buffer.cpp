@@ -79,6 +79,7 @@ slStatus slBufferBegin(slBuffer* buffer, const slView* view) {
 slStatus slBufferDraw(slBuffer* buffer, const slOccluder* occluder, const double transform[16],
                       uint32_t* triangles_out) {
     if (!buffer || !occluder) return failNull(buffer, __func__);
+    if (transform && c::isProjective(transform)) return fail(buffer->log(), SL_BAD_ARGUMENT, __func__, c::kProjective);
     const uint32_t drawn = buffer->buffer.draw(occluder->occluder, c::matrix(transform));
     if (triangles_out) *triangles_out = drawn;
     return SL_OK;
@@ -100,6 +101,7 @@ slStatus slBufferAsk(slBuffer* buffer, const slBox* boxes, size_t count, uint8_t
 
 slStatus slBufferAskOriented(slBuffer* buffer, const slBox* box, const double transform[16], slSeen* seen_out) {
     if (!buffer || !box || !seen_out) return failNull(buffer, __func__);
+    if (transform && c::isProjective(transform)) return fail(buffer->log(), SL_BAD_ARGUMENT, __func__, c::kProjective);
     *seen_out = seen(buffer->buffer.ask(widened(c::box(*box)), c::matrix(transform)));
     return SL_OK;
 }

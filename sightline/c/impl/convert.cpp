@@ -20,8 +20,7 @@ glm::dmat4 matrix(const double m[16]) {
 }
 
 bool isProjective(const double m[16]) {
-    const bool known = std::isfinite(m[3]) && std::isfinite(m[7]) && std::isfinite(m[11]) && std::isfinite(m[15]);
-    return known && (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1);
+    return !(m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1);
 }
 
 const slVisible* visibles(std::span<const Visible> from) {
@@ -52,14 +51,14 @@ slStatus toView(const slView* from, const slLog& log, const char* call, View& vi
     if (!from) return fail(log, SL_BAD_ARGUMENT, call, "the view is null");
     if (from->cookie != kViewCookie)
         return fail(log, SL_NO_DEFAULTS, call, "the view did not begin as slDefaultView()");
-    const auto space = static_cast<size_t>(from->clip_space);
+    const uint32_t space = numberOf(from->clip_space);
     if (space >= std::size(kClipSpaces)) return fail(log, SL_BAD_ARGUMENT, call, "there is no such clip_space");
     if (addPlanes(from->sections, from->section_count, view.sections) != SL_OK ||
         addPlanes(from->window, from->window_count, view.window) != SL_OK)
         return fail(log, SL_BAD_ARGUMENT, call, "a view has no more than SL_MOST_PLANES sections and window planes");
     view.view = matrix(from->view);
     view.projection = matrix(from->projection);
-    if (from->clip_space != SL_OPENGL) setMatrices(view, view.view, view.projection, kClipSpaces[space].space);
+    if (space != SL_OPENGL) setMatrices(view, view.view, view.projection, kClipSpaces[space].space);
     view.width = from->width;
     view.height = from->height;
     view.jitter = from->jitter;
@@ -102,7 +101,7 @@ slStatus toSettings(const slQuerySettings* from, const slLog& log, const char* c
     to.unasked_answers = from->unasked_answers;
     to.stateless = from->stateless;
     to.time_stages = from->time_stages;
-    to.windows = static_cast<PortalWindows>(from->windows);
+    to.windows = static_cast<PortalWindows>(numberOf(from->windows));
     const char* wrong = nullptr;
     forEachSetting([&](const auto& row) {
         const auto value = static_cast<double>(to.*row.member);
@@ -119,8 +118,11 @@ namespace {
 
 uint32_t indexAt(const slMesh& mesh, size_t size, size_t i) {
     if (!mesh.indices) return static_cast<uint32_t>(i);
-    if (size == 2) return static_cast<const uint16_t*>(mesh.indices)[i];
-    return static_cast<const uint32_t*>(mesh.indices)[i];
+    const char* const at = static_cast<const char*>(mesh.indices) + i * size;
+    uint16_t small = 0;
+    uint32_t large = 0;
+    if (size == 2) return std::memcpy(&small, at, sizeof small), small;
+    return std::memcpy(&large, at, sizeof large), large;
 }
 
 }  // namespace
@@ -144,7 +146,8 @@ slStatus toMesh(const slMesh& from, const slLog& log, const char* call, MeshCopy
             return wrong(sentence);
         }
     static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-    if (stride == sizeof(glm::vec3)) {
+    const auto isAligned = [](const void* at) { return reinterpret_cast<uintptr_t>(at) % alignof(uint32_t) == 0; };
+    if (stride == sizeof(glm::vec3) && isAligned(from.positions)) {
         mesh.view.positions = {reinterpret_cast<const glm::vec3*>(from.positions), from.vertex_count};
     } else {
         mesh.positions.resize(from.vertex_count);
@@ -153,7 +156,7 @@ slStatus toMesh(const slMesh& from, const slLog& log, const char* call, MeshCopy
                         sizeof(glm::vec3));
         mesh.view.positions = mesh.positions;
     }
-    if (from.indices && index_size == 4) {
+    if (from.indices && index_size == 4 && isAligned(from.indices)) {
         mesh.view.indices = {static_cast<const uint32_t*>(from.indices), indices};
     } else {
         mesh.indices.resize(indices);

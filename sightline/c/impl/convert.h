@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -25,12 +26,23 @@ inline slBox box(const Box3d& from) {
 }
 /// Null is the identity.
 glm::dmat4 matrix(const double m[16]);
-/// A matrix whose last row is known and is not 0 0 0 1.
+/// A matrix whose last row is not 0 0 0 1.
 bool isProjective(const double m[16]);
+inline constexpr char kProjective[] =
+    "the transform is not affine: its last row is not 0 0 0 1. Matrices are column-major: is it transposed?";
 
 inline ObjectId id(slObjectId from) { return {from.index, from.generation}; }
 inline slObjectId id(ObjectId from) { return {from.index, from.generation}; }
 inline slVisible visible(const Visible& from) { return {from.key, id(from.id)}; }
+
+/// What a caller wrote into a field of an enumeration, whatever it is.
+template <class Enumeration>
+uint32_t numberOf(const Enumeration& field) {
+    uint32_t number = 0;
+    static_assert(sizeof field == sizeof number);
+    std::memcpy(&number, &field, sizeof number);
+    return number;
+}
 
 /// The library's arrays as the caller reads them: the same numbers in the same places.
 const slVisible* visibles(std::span<const Visible> from);

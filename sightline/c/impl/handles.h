@@ -57,19 +57,15 @@ private:
 };
 using SharedHooks = std::shared_ptr<Hooks>;
 
-/// The hooks of all worlds that a query was asked about: it keeps the snapshots that it was asked last, of each eye, and with them
-/// memory of theirs. Declared before the query, so that it goes after it.
+/// The hooks of the world that a query was asked about last, whose snapshot it keeps. Declared before the query, so that it goes
+/// after it.
 class AskedHooks {
 public:
-    explicit AskedHooks(Memory* memory) : all_(memory) {}
-    void add(const SharedHooks& hooks) {
-        for (const SharedHooks& known : all_)
-            if (known == hooks) return;
-        all_.push_back(hooks);
-    }
+    /// Takes up the hooks of the next question. The ones before must live until it has been asked: they are returned.
+    [[nodiscard]] SharedHooks exchange(const SharedHooks& next) { return std::exchange(last_, next); }
 
 private:
-    Array<SharedHooks> all_;
+    SharedHooks last_;
 };
 
 /// @param from  usable: see checkHooks(); null: no hooks

@@ -7,32 +7,9 @@
 #include "sightline/c/impl/handles.h"
 
 namespace sightline::c {
-namespace {
 
-/// The allocator hook for what holds the hooks themselves.
-template <class T>
-struct HookAllocator {
-    using value_type = T;
-    slAllocator hook;
-
-    explicit HookAllocator(const slAllocator& from) : hook(from) {}
-    template <class Other>
-    explicit HookAllocator(const HookAllocator<Other>& other) : hook(other.hook) {}
-
-    T* allocate(size_t count) { return static_cast<T*>(HookMemory(hook).allocate(count * sizeof(T), alignof(T))); }
-    void deallocate(T* memory, size_t count) { HookMemory(hook).deallocate(memory, count * sizeof(T), alignof(T)); }
-    template <class Other>
-    bool operator==(const HookAllocator<Other>& other) const {
-        return hook.allocate == other.hook.allocate && hook.user == other.hook.user;
-    }
-};
-
-}  // namespace
-
-SharedHooks shareHooks(const slHooks* from) {
-    const slHooks hooks = from ? *from : slHooks{};
-    return std::allocate_shared<Hooks>(HookAllocator<Hooks>(hooks.allocator), hooks);
-}
+/// Not in the hooks' own memory: a query may hold them for longer than the world that brought them.
+SharedHooks shareHooks(const slHooks* from) { return std::make_shared<Hooks>(from ? *from : slHooks{}); }
 
 SharedHooks shareHooks(const slLog& log) {
     slHooks hooks{};

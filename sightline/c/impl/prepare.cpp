@@ -62,11 +62,15 @@ slStatus slPrepareClusters(const slClustersDef* def, slClusters** clusters_out) 
     if (const slStatus status = c::toMesh(def->mesh, def->log, __func__, mesh)) return status;
     std::vector<MeshPart> parts;
     const auto triangles = static_cast<uint32_t>(mesh.view.triangles());
-    if (!def->parts) parts.push_back({0, triangles});
+    if (!def->parts || def->part_count == 0) parts.push_back({0, triangles});
+    std::vector<uint8_t> taken(triangles, 0);
     for (size_t i = 0; def->parts && i < def->part_count; ++i) {
         const slMeshPart& from = def->parts[i];
         if (from.first > triangles || from.count > triangles - from.first)
             return fail(def->log, SL_BAD_ARGUMENT, __func__, "a part reaches beyond the mesh's triangles");
+        for (uint32_t t = from.first; t < from.first + from.count; ++t)
+            if (taken[t]++)
+                return fail(def->log, SL_BAD_ARGUMENT, __func__, "two parts have the same triangle");
         parts.push_back({from.first, from.count, from.double_sided, from.hides});
     }
     *clusters_out = c::makeHandle<slClusters>(c::shareHooks(def->log), prepareDrawClusters(mesh.view, parts));

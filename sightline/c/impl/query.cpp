@@ -96,7 +96,7 @@ slStatus ask(slQuery* query, const slSnapshot* snapshot, const slView* view, con
     QuerySettings how;
     if (const slStatus status = c::toView(view, query->log(), call, to)) return status;
     if (const slStatus status = c::toSettings(settings, query->log(), call, how)) return status;
-    query->asked.add(snapshot->hooks);
+    const c::SharedHooks before = query->asked.exchange(snapshot->hooks);
     query->last = query->query.visible(snapshot->snapshot, to, how);
     query->objects = snapshot->snapshot.objectCount();
     noteProblem(*query, call);
@@ -153,7 +153,7 @@ slStatus slQueryStereo(slQuery* query, const slSnapshot* snapshot, const slView*
     if (const slStatus status = c::toView(left, query->log(), __func__, views[0])) return status;
     if (const slStatus status = c::toView(right, query->log(), __func__, views[1])) return status;
     if (const slStatus status = c::toSettings(settings, query->log(), __func__, how)) return status;
-    query->asked.add(snapshot->hooks);
+    const c::SharedHooks before = query->asked.exchange(snapshot->hooks);
     const StereoSet set = query->query.visibleStereo(snapshot->snapshot, views[0], views[1], how);
     query->last = {};
     query->last.objects = set.objects;

@@ -7,7 +7,7 @@
 
 struct slQuery {
     sightline::c::SharedHooks hooks;
-    sightline::c::AskedHooks asked{hooks->memory()};
+    sightline::c::AskedHooks asked{};
     sightline::Query query{hooks->memory(), hooks->jobs()};
     sightline::VisibleSet last{};  ///< the last answer; of two eyes, what either sees
     uint32_t objects = 0;          ///< of the last answer's snapshot

@@ -11,7 +11,7 @@ using c::fail;
 
 struct slShadows {
     c::SharedHooks hooks;
-    c::AskedHooks asked{hooks->memory()};
+    c::AskedHooks asked{};
     ShadowQuery query{hooks->memory()};
 };
 
@@ -21,7 +21,7 @@ slLight slDefaultLight(void) {
     to.kind = static_cast<slLightKind>(from.kind);
     for (int axis = 0; axis < 3; ++axis) to.direction[axis] = from.direction[axis];
     to.half_angle = from.half_angle;
-    to.near = from.near;
+    to.z_near = from.near;
     to.range = from.range;
     to.cookie = c::kLightCookie;
     return to;
@@ -52,13 +52,14 @@ namespace {
 slStatus toLight(const slLight& from, const slLog& log, const char* call, Light& to) {
     if (from.cookie != c::kLightCookie)
         return fail(log, SL_NO_DEFAULTS, call, "the light did not begin as slDefaultLight()");
-    if (from.kind != SL_SUN && from.kind != SL_SPOT && from.kind != SL_POINT_LIGHT)
+    const uint32_t kind = c::numberOf(from.kind);
+    if (kind > SL_POINT_LIGHT)
         return fail(log, SL_BAD_ARGUMENT, call, "there is no such kind of light");
-    to.kind = static_cast<LightKind>(from.kind);
+    to.kind = static_cast<LightKind>(kind);
     to.direction = c::vec(from.direction);
     to.position = c::vec(from.position);
     to.half_angle = from.half_angle;
-    to.near = from.near;
+    to.near = from.z_near;
     to.range = from.range;
     return SL_OK;
 }
@@ -84,7 +85,7 @@ slStatus slFindCasters(slShadows* shadows, const slSnapshot* snapshot, const slV
                        const slVisibleSet* receivers, const slLight* light, const slCasterSettings* settings,
                        slCasterSet* set_out) {
     const slLog log = shadows ? shadows->hooks->log() : slLog{};
-    if (!shadows || !snapshot || !receivers || !light || !set_out)
+    if (!shadows || !snapshot || !receivers || (!receivers->objects && receivers->count > 0) || !light || !set_out)
         return fail(log, SL_BAD_ARGUMENT, __func__, "a pointer is null");
     View to;
     Light lamp;
@@ -96,7 +97,7 @@ slStatus slFindCasters(slShadows* shadows, const slSnapshot* snapshot, const slV
     if (lamp.kind != LightKind::kDirectional && !how.cascades.empty())
         return fail(log, SL_BAD_ARGUMENT, __func__, "only a sun has cascades");
     const std::span<const Visible> seen(reinterpret_cast<const Visible*>(receivers->objects), receivers->count);
-    shadows->asked.add(snapshot->hooks);
+    const c::SharedHooks before = shadows->asked.exchange(snapshot->hooks);
     const CasterSet set = shadows->query.casters(snapshot->snapshot, to, seen, lamp, how);
     *set_out = {c::visibles(set.casters), set.cascades.data(), static_cast<uint32_t>(set.casters.size()),
                 set.stats.in_light};

@@ -11,7 +11,7 @@ using c::fail;
 
 struct slSight {
     c::SharedHooks hooks;
-    c::AskedHooks asked{hooks->memory()};
+    c::AskedHooks asked{};
     SightQuery query{hooks->memory()};
     Array<ObjectId> ignored{hooks->memory()};
 };
@@ -54,7 +54,7 @@ slStatus slSightLook(slSight* sight, const slSnapshot* snapshot, const double fr
         for (size_t i = 0; i < settings->ignored_count; ++i) sight->ignored.push_back(c::id(settings->ignored[i]));
         how.ignored = sight->ignored;
     }
-    sight->asked.add(snapshot->hooks);
+    const c::SharedHooks before = sight->asked.exchange(snapshot->hooks);
     const SightLine line = sight->query.look(snapshot->snapshot, c::vec(from), c::vec(to), how);
     *line_out = {line.blocked, c::visible(line.by)};
     return SL_OK;
@@ -63,7 +63,7 @@ slStatus slSightLook(slSight* sight, const slSnapshot* snapshot, const double fr
 slStatus slSightFrom(slSight* sight, const slSnapshot* snapshot, const slBox* region, uint32_t layers,
                      slRegionSet* set_out) {
     if (!sight || !snapshot || !region || !set_out) return failNull(sight, __func__);
-    sight->asked.add(snapshot->hooks);
+    const c::SharedHooks before = sight->asked.exchange(snapshot->hooks);
     const RegionSet set = sight->query.seenFrom(snapshot->snapshot, c::box(*region), layers);
     *set_out = {c::visibles(set.objects), static_cast<uint32_t>(set.objects.size()), set.known};
     return SL_OK;

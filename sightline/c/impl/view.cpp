@@ -29,15 +29,16 @@ slView slDefaultView(void) {
 }
 
 void slLookAt(double view_out[16], const double eye[3], const double target[3], const double up[3]) {
+    if (!view_out || !eye || !target || !up) return;
     copyMatrix(lookAt(c::vec(eye), c::vec(target), c::vec(up)), view_out);
 }
 
 void slPerspective(double projection_out[16], double fov_y, double aspect, double z_near, double z_far) {
-    copyMatrix(perspective(fov_y, aspect, z_near, z_far), projection_out);
+    if (projection_out) copyMatrix(perspective(fov_y, aspect, z_near, z_far), projection_out);
 }
 
 void slOrthographic(double projection_out[16], double height, double aspect, double z_near, double z_far) {
-    copyMatrix(orthographic(height, aspect, z_near, z_far), projection_out);
+    if (projection_out) copyMatrix(orthographic(height, aspect, z_near, z_far), projection_out);
 }
 
 const char* slViewProblem(const slView* from) {

@@ -79,15 +79,12 @@ slObjectDef slDefaultObjectDef(void) {
 
 namespace {
 
-constexpr char kProjective[] =
-    "the transform is not affine: its last row is not 0 0 0 1. Matrices are column-major: is it transposed?";
-
 /// What is wrong with a def, or null.
 slStatus check(const slWorld& world, const slObjectDef& def, const char* call) {
     const auto wrong = [&](const char* what) { return fail(world.log(), SL_BAD_ARGUMENT, call, what); };
     if (def.cookie != c::kObjectCookie)
         return fail(world.log(), SL_NO_DEFAULTS, call, "a def did not begin as slDefaultObjectDef()");
-    if (c::isProjective(def.transform)) return wrong(kProjective);
+    if (c::isProjective(def.transform)) return wrong(c::kProjective);
     if (def.occluder.index > world.occluders) return wrong("def.occluder is none of this world's");
     if (def.shape.index > world.occluders) return wrong("def.shape is none of this world's");
     if (def.clusters.index > world.clusters) return wrong("def.clusters are none of this world's");
@@ -134,7 +131,7 @@ slStatus slMoveObject(slWorld* world, slObjectId id, const double transform[16])
 slStatus slMoveObjects(slWorld* world, const slObjectId* ids, const double* transforms, size_t count) {
     if (!world || ((!ids || !transforms) && count > 0)) return c::failNull(world, __func__);
     for (size_t i = 0; i < count; ++i)
-        if (c::isProjective(transforms + 16 * i)) return fail(world->log(), SL_BAD_ARGUMENT, __func__, kProjective);
+        if (c::isProjective(transforms + 16 * i)) return fail(world->log(), SL_BAD_ARGUMENT, __func__, c::kProjective);
     bool stale = false;
     for (size_t i = 0; i < count; ++i) stale |= !world->world.move(c::id(ids[i]), c::matrix(transforms + 16 * i));
     return stale ? fail(world->log(), SL_STALE_ID, __func__) : SL_OK;
