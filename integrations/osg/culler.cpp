@@ -55,11 +55,44 @@ bool drawsBeyondItsBox(osg::Drawable& drawable) {
             case GL_TRIANGLE_FAN:
             case GL_QUADS:
             case GL_QUAD_STRIP:
-            case GL_POLYGON: break;
-            default: return true;
+            case GL_POLYGON:
+                break;
+            default:
+                return true;
         }
     return false;
 }
+
+/// Looks at all that a node may draw which is left to OpenSceneGraph.
+class Inspection : public osg::NodeVisitor {
+public:
+    /// @param above  how what is below the node is drawn
+    Inspection(osg::Node& node, const Style& above) : NodeVisitor(TRAVERSE_ALL_CHILDREN), style_(above) {
+        setTraversalMask(~0u);
+        setNodeMaskOverride(~0u);
+        node.accept(*this);
+    }
+    /// Whether all of it stays in the node's bound, may be hidden, and does nothing to others.
+    bool mayBeLeftOut() const { return left_out_; }
+
+    void apply(osg::Node& node) override {
+        const bool loads =
+            std::strcmp(node.className(), "PagedLOD") == 0 || std::strcmp(node.className(), "ProxyNode") == 0;
+        const bool turns = node.asTransform() && !isPlainTransform(node);
+        const Style above = style_;
+        style_ = style_.with(node.getStateSet());
+        if (mayChange(node) || actsAtADistance(node) || node.getCullCallback() || !node.getCullingActive() || loads ||
+            turns || !style_.keeps_depth || (node.asDrawable() && drawsBeyondItsBox(*node.asDrawable())) ||
+            std::strcmp(node.className(), "Billboard") == 0)
+            left_out_ = false;
+        if (left_out_) traverse(node);
+        style_ = above;
+    }
+
+private:
+    Style style_;
+    bool left_out_ = true;
+};
 
 /// Where faces are culled, OpenGL takes the other side of what a matrix mirrors.
 bool mirrors(const osg::Matrixd& m) {
@@ -99,21 +132,22 @@ struct Culler::Reader {
             add(node, plain ? mask : ~0u, {}, false);
         } else if (drawable) {
             const bool known_side = style.both_sides || (!dynamic && !mirrors(matrixOf(path)));
-            add(node, plain ? mask : ~0u, plain && known_side ? occluder(*drawable, style) : slOccluderId{}, active);
+            add(node, plain ? mask : ~0u, plain && known_side ? occluder(*drawable, style) : slOccluderId{},
+                active && style.keeps_depth);
         } else if (isPlainGroup(node) || isPlainTransform(node)) {
             dynamic |= node.asTransform() && mayChange(node);
             osg::Group& group = *node.asGroup();
             for (unsigned i = 0; i < group.getNumChildren(); ++i) visit(*group.getChild(i), style, mask, plain, active);
         } else {
-            const bool still = !mayChange(node) && node.getNumChildrenRequiringUpdateTraversal() == 0 &&
-                               node.getNumChildrenRequiringEventTraversal() == 0;
-            add(node, plain ? mask : ~0u, {}, active && still && !actsAtADistance(node));
+            add(node, plain ? mask : ~0u, {},
+                active && node.isCullingActive() && Inspection(node, above).mayBeLeftOut());
         }
         dynamic = moved;
         path.pop_back();
     }
 
     slOccluderId occluder(osg::Drawable& drawable, const Style& style) {
+        if (!style.opaque) return {};
         const auto [at, fresh] = known.try_emplace({&drawable, style.both_sides});
         if (!fresh) return at->second;
         if (slOccluder* const prepared = occluderOf(drawable, style)) {
@@ -134,6 +168,7 @@ struct Culler::Reader {
         } else {
             const osg::BoundingSphere& sphere = node.getBound();
             if (sphere.valid()) box.expandBy(sphere);
+            if (bounded) to.spheres_.push_back({&node, sphere});
             // Its own transform is in its bound already.
             object.path.pop_back();
         }
@@ -176,6 +211,7 @@ void Culler::read() {
     objects_.clear();
     visible_.clear();
     dynamic_.clear();
+    spheres_.clear();
     const slWorldDef def = slDefaultWorldDef();
     slCreateWorld(&def, &world_);
     Reader reader{*this};
@@ -185,7 +221,6 @@ void Culler::read() {
             reader.visit(*group->getChild(i), above, ~0u, true, true);
     slCommit(world_, &snapshot_);
     stats_.objects = static_cast<uint32_t>(objects_.size());
-    stale_ = false;
 }
 
 /// An object that is always visible, and hides nothing.
@@ -199,8 +234,10 @@ slObjectId Culler::addAlways(uint64_t key, uint32_t mask) {
     return id;
 }
 
-/// Moves what may have moved.
+/// Moves what may have moved, or reads the graph anew if a node that is left to OpenSceneGraph has another bound now.
 void Culler::follow() {
+    for (const auto& [node, sphere] : spheres_)
+        if (node->getBound() != sphere) return read();
     if (dynamic_.empty()) return;
     for (const uint32_t index : dynamic_) {
         osg::NodePath path = objects_[index].path;
@@ -244,7 +281,7 @@ void Culler::operator()(osg::Node* node, osg::NodeVisitor* visitor) {
     // Views that cull at once take turns here, and nowhere else in a frame that changes nothing.
     const std::lock_guard lock(mutex_);
     const unsigned frame = visitor->getFrameStamp() ? visitor->getFrameStamp()->getFrameNumber() : frame_ + 1;
-    if (stale_) read();
+    if (stale_.exchange(false)) read();
     else if (frame != frame_) follow();
     frame_ = frame;
     slVisibleSet set{};
@@ -267,6 +304,7 @@ void Culler::draw(osgUtil::CullVisitor& visitor) const {
         for (; inside.size() > depth; inside.pop_back()) {
             if (inside.back()->asTransform()) visitor.popModelViewMatrix();
             if (inside.back()->getStateSet()) visitor.popStateSet();
+            visitor.popFromNodePath();
         }
     };
     for (const uint32_t index : visible_) {
@@ -279,6 +317,7 @@ void Culler::draw(osgUtil::CullVisitor& visitor) const {
             osg::Node* const node = path[k];
             drawn = visitor.validNodeMask(*node);
             if (!drawn) break;
+            visitor.pushOntoNodePath(node);
             if (node->getStateSet()) visitor.pushStateSet(node->getStateSet());
             if (osg::Transform* const transform = node->asTransform()) {
                 const osg::ref_ptr<osg::RefMatrix> matrix = new osg::RefMatrix(*visitor.getModelViewMatrix());

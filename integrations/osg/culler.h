@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <mutex>
@@ -32,8 +33,10 @@ struct CullerStats {
 ///     root->setCullCallback(new sightline_osg::Culler(*root));
 ///
 /// Each drawable under groups, geodes and transforms is an object, which hides others if it is opaque geometry of plain
-/// vertices. Every other node (a level of detail, a switch, a node with callbacks of its own) is one object that hides
-/// nothing, and is left to OpenSceneGraph where it may be seen; lights, clip planes and cameras always are.
+/// vertices whose state is known to hide nothing less. Every other node (a level of detail, a switch, a node with callbacks
+/// of its own) is one object that hides nothing, and is left to OpenSceneGraph where it may be seen. Always drawn are lights,
+/// clip planes and cameras, lines, points and text, what may change by itself, and what is drawn without the depth test or
+/// beside its depth.
 ///
 /// Transforms whose data variance is DYNAMIC, or that have an update callback, are read anew each frame. What else changes (nodes that come and go, masks,
 /// state, vertices) must be told by changed(). The planes of near and far must be known before the traversal: while the
@@ -78,8 +81,10 @@ private:
     std::vector<uint32_t> visible_;                      ///< of the last view, in the graph's order
     std::vector<uint32_t> dynamic_;                      ///< objects that may move
     std::map<osgUtil::CullVisitor*, slQuery*> queries_;  ///< one a view
-    unsigned frame_ = ~0u;                               ///< that was followed last
-    bool stale_ = true;
+    /// Nodes that are left to OpenSceneGraph and may be left out, with the bounds that they were read with.
+    std::vector<std::pair<osg::Node*, osg::BoundingSphere>> spheres_;
+    unsigned frame_ = ~0u;  ///< that was followed last
+    std::atomic<bool> stale_{true};
     bool warned_ = false;
     CullerStats stats_;
 };

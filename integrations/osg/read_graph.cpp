@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "integrations/osg/read_graph.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include <osg/ColorMask>
 #include <osg/CullFace>
 #include <osg/Depth>
@@ -19,35 +22,64 @@ namespace {
 
 constexpr unsigned kForced = osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
 
-constexpr GLenum kSeenThroughModes[] = {
-    GL_BLEND,
-    GL_ALPHA_TEST,
-    GL_STENCIL_TEST,
-    GL_POLYGON_STIPPLE,
-    GL_COLOR_LOGIC_OP,
-    GL_SAMPLE_ALPHA_TO_COVERAGE_ARB,
-    GL_VERTEX_PROGRAM_ARB,
-    GL_FRAGMENT_PROGRAM_ARB,
-    GL_CLIP_PLANE0,
-    GL_CLIP_PLANE1,
-    GL_CLIP_PLANE2,
-    GL_CLIP_PLANE3,
-    GL_CLIP_PLANE4,
-    GL_CLIP_PLANE5,
+/// Modes that may be on of what hides. Any other may let what is behind be seen.
+constexpr GLenum kHarmlessModes[] = {
+    GL_LIGHTING,       GL_LIGHT0, GL_LIGHT1,          GL_LIGHT2,      GL_LIGHT3,       GL_LIGHT4,         GL_LIGHT5,
+    GL_LIGHT6,         GL_LIGHT7, GL_DEPTH_TEST,      GL_CULL_FACE,   GL_NORMALIZE,    GL_RESCALE_NORMAL, GL_FOG,
+    GL_COLOR_MATERIAL, GL_DITHER, GL_MULTISAMPLE_ARB, GL_LINE_SMOOTH, GL_POINT_SMOOTH, GL_LINE_STIPPLE,
 };
+constexpr GLenum kOffsetModes[] = {GL_POLYGON_OFFSET_FILL, GL_POLYGON_OFFSET_LINE, GL_POLYGON_OFFSET_POINT};
+
+/// Attributes that do nothing to where and whether a surface covers what is behind it, or only if a mode is on, or of which
+/// isSeenThrough() looks at the values. Any other may draw a thing elsewhere than it is.
+constexpr osg::StateAttribute::Type kKnownAttributes[] = {
+    osg::StateAttribute::MATERIAL,       osg::StateAttribute::LIGHT,
+    osg::StateAttribute::LIGHTMODEL,     osg::StateAttribute::FOG,
+    osg::StateAttribute::CULLFACE,       osg::StateAttribute::DEPTH,
+    osg::StateAttribute::SHADEMODEL,     osg::StateAttribute::FRONTFACE,
+    osg::StateAttribute::POLYGONMODE,    osg::StateAttribute::LINEWIDTH,
+    osg::StateAttribute::LINESTIPPLE,    osg::StateAttribute::POINT,
+    osg::StateAttribute::COLORMASK,      osg::StateAttribute::BLENDFUNC,
+    osg::StateAttribute::BLENDEQUATION,  osg::StateAttribute::BLENDCOLOR,
+    osg::StateAttribute::ALPHAFUNC,      osg::StateAttribute::STENCIL,
+    osg::StateAttribute::POLYGONSTIPPLE, osg::StateAttribute::POLYGONOFFSET,
+    osg::StateAttribute::LOGICOP,        osg::StateAttribute::TEXENV,
+    osg::StateAttribute::TEXMAT,         osg::StateAttribute::HINT,
+    osg::StateAttribute::CLIPPLANE,      osg::StateAttribute::PROGRAM,
+    osg::StateAttribute::VERTEXPROGRAM,  osg::StateAttribute::FRAGMENTPROGRAM,
+};
+
+template <class Range, class Value>
+bool isAmong(const Range& range, const Value& value) {
+    return std::find(std::begin(range), std::end(range), value) != std::end(range);
+}
 
 template <class Attribute>
 const Attribute* attributeOf(const osg::StateSet& state, osg::StateAttribute::Type type) {
     return static_cast<const Attribute*>(state.getAttribute(type));
 }
 
+/// Whether what is nearer hides it, by its depth as it is.
+/// @param whole  it is state of all that is culled: a viewport is then the image's own
+bool keepsItsDepth(const osg::StateSet& state, bool whole) {
+    if (const auto* depth = attributeOf<osg::Depth>(state, osg::StateAttribute::DEPTH))
+        if ((depth->getFunction() != osg::Depth::LESS && depth->getFunction() != osg::Depth::LEQUAL) ||
+            depth->getZNear() != 0 || depth->getZFar() != 1)
+            return false;
+    for (const GLenum mode : kOffsetModes)
+        if (state.getMode(mode) & osg::StateAttribute::ON) return false;
+    for (const auto& [key, attribute] : state.getAttributeList())
+        if (!isAmong(kKnownAttributes, key.first) && !(whole && key.first == osg::StateAttribute::VIEWPORT))
+            return false;
+    const osg::StateAttribute::GLModeValue test = state.getMode(GL_DEPTH_TEST);
+    return test & (osg::StateAttribute::INHERIT | osg::StateAttribute::ON);
+}
+
 /// Whether attributes let what is behind a triangle be seen, or draw it elsewhere than where its vertices are.
 bool isSeenThrough(const osg::StateSet& state) {
     using Kind = osg::StateAttribute;
     if (const auto* depth = attributeOf<osg::Depth>(state, Kind::DEPTH))
-        if (!depth->getWriteMask() ||
-            (depth->getFunction() != osg::Depth::LESS && depth->getFunction() != osg::Depth::LEQUAL))
-            return true;
+        if (!depth->getWriteMask()) return true;
     if (const auto* mask = attributeOf<osg::ColorMask>(state, Kind::COLORMASK))
         if (!mask->getRedMask() || !mask->getGreenMask() || !mask->getBlueMask()) return true;
     if (const auto* front = attributeOf<osg::FrontFace>(state, Kind::FRONTFACE))
@@ -64,18 +96,17 @@ bool isSeenThrough(const osg::StateSet& state) {
 
 }  // namespace
 
-Style Style::with(const osg::StateSet* state) const {
+Style Style::with(const osg::StateSet* state, bool whole) const {
     if (!state) return *this;
     Style style = *this;
+    if (!keepsItsDepth(*state, whole)) style.keeps_depth = style.opaque = false;
     if (isSeenThrough(*state)) style.opaque = false;
-    for (const GLenum mode : kSeenThroughModes)
-        if (state->getMode(mode) & osg::StateAttribute::ON) style.opaque = false;
+    for (const auto& [mode, value] : state->getModeList())
+        if (value & osg::StateAttribute::ON && !isAmong(kHarmlessModes, mode)) style.opaque = false;
     if (state->getRenderingHint() == osg::StateSet::TRANSPARENT_BIN) style.opaque = false;
     const osg::StateAttribute::GLModeValue culls = state->getMode(GL_CULL_FACE);
     if (culls & kForced) style.opaque = false;
     if (!(culls & osg::StateAttribute::INHERIT)) style.both_sides = !(culls & osg::StateAttribute::ON);
-    const osg::StateAttribute::GLModeValue depth = state->getMode(GL_DEPTH_TEST);
-    if (!(depth & osg::StateAttribute::INHERIT) && !(depth & osg::StateAttribute::ON)) style.opaque = false;
     return style;
 }
 
@@ -84,9 +115,10 @@ Style styleAbove(const osg::Node& node) {
     bool first = true;
     for (const osg::NodePath& path : node.getParentalNodePaths()) {
         Style style;
-        for (const osg::Node* above : path) style = style.with(above->getStateSet());
+        for (const osg::Node* above : path) style = style.with(above->getStateSet(), true);
         // Of several ways to the node the one counts by which it hides least.
         all.opaque = (first || all.opaque) && style.opaque;
+        all.keeps_depth = (first || all.keeps_depth) && style.keeps_depth;
         all.both_sides = (first || all.both_sides) && style.both_sides;
         first = false;
     }

@@ -13,12 +13,14 @@ namespace sightline_osg {
 
 /// How what is below a node is drawn.
 struct Style {
-    bool opaque = true;      ///< no state keeps its triangles from covering what is behind them
-    bool both_sides = true;  ///< no face is culled
+    bool opaque = true;       ///< no state keeps its triangles from covering what is behind them
+    bool keeps_depth = true;  ///< it is drawn where it is and hidden by what is nearer: it may be left out
+    bool both_sides = true;   ///< no face is culled
 
     /// With a node's own state; null: it has none. State that overrides what is below, or is protected from what is above, is
     /// not followed: it makes all below hide nothing.
-    Style with(const osg::StateSet* state) const;
+    /// @param whole  it is the state of a node above all that is culled, as the camera's
+    Style with(const osg::StateSet* state, bool whole = false) const;
 };
 
 /// Of all nodes above one: what they say together.

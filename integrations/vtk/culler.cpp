@@ -115,7 +115,8 @@ bool isConvex(vtkPoints& points, vtkIdType count, const vtkIdType* corners) {
     };
     const vtkVector3d normal = minus(at(1), at(0)).Cross(minus(at(2), at(0)));
     for (vtkIdType k = 0; k < count; ++k) {
-        const vtkVector3d side = minus(at(k + 1), at(k)), next = minus(at(k + 2), at(k + 1)), from = minus(at(k), at(0));
+        const vtkVector3d side = minus(at(k + 1), at(k)), next = minus(at(k + 2), at(k + 1)),
+                          from = minus(at(k), at(0));
         if (!(side.Cross(next).Dot(normal) > 0)) return false;
         if (std::abs(from.Dot(normal)) > 1e-6 * normal.Norm() * from.Norm()) return false;
         // A star turns one way all around, too, but its corners do not lie around the first one in their order.

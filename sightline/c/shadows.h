@@ -13,10 +13,10 @@ typedef enum slLightKind { SL_SUN = 0, SL_SPOT, SL_POINT_LIGHT } slLightKind;
 
 typedef struct slLight {
     slLightKind kind;
-    double direction[3]; /**< in which a sun and a spot shine [not zero] */
-    double position[3];  /**< of a spot and of a point light */
-    double half_angle;   /**< of a spot [radians, above 0, below 1.5] */
-    double z_near, range;  /**< of a spot and a point light: nearer casts nothing, farther is not lit [world units] */
+    double direction[3];  /**< in which a sun and a spot shine [not zero] */
+    double position[3];   /**< of a spot and of a point light */
+    double half_angle;    /**< of a spot [radians, above 0, below 1.5] */
+    double z_near, range; /**< of a spot and a point light: nearer casts nothing, farther is not lit [world units] */
     uint32_t cookie;
 } slLight;
 SL_API slLight slDefaultLight(void);

@@ -120,7 +120,8 @@ SL_API slStatus slAddLods(slWorld* world, const slLod* levels, size_t count, slL
 typedef struct slObjectDef {
     slBox bounds; /**< of all that may ever be drawn of it: all poses and levels [object units]. Empty or not finite: it
                                 is always visible, and never hides */
-    double transform[16];  /**< object to world, affine. One that mirrors turns the front of its triangles around, as in glTF: a renderer
+    double transform
+        [16]; /**< object to world, affine. One that mirrors turns the front of its triangles around, as in glTF: a renderer
                                 that culls faces as OpenGL does shows their other side */
     uint64_t key;          /**< yours */
     slOccluderId occluder; /**< what it hides with, or null */

@@ -13,6 +13,7 @@
 #include <osg/LightSource>
 #include <osg/MatrixTransform>
 #include <osg/PolygonMode>
+#include <osg/PolygonOffset>
 #include <osg/Switch>
 #include <osgUtil/CullVisitor>
 #include <osgUtil/RenderStage>
@@ -169,6 +170,75 @@ TEST(OsgCuller, LetsNothingHideThatIsSeenThrough) {
         looked.wall->getDrawable(0)->setDataVariance(osg::Object::DYNAMIC);
         EXPECT_EQ(looked.drawn(), 2u) << "vertices that may move";
     }
+}
+
+/// State by which a thing is drawn although something stands before it.
+TEST(OsgCuller, LeavesOutNothingThatIsDrawnBesideItsDepth) {
+    const std::vector<osg::ref_ptr<osg::StateAttribute>> attributes = {
+        new osg::Depth(osg::Depth::ALWAYS), new osg::Depth(osg::Depth::GREATER),
+        new osg::Depth(osg::Depth::LESS, 0, 0.0001), new osg::PolygonOffset(-10, -1e6f),
+        new osg::Viewport(0, 0, 10, 10)};
+    for (const auto& attribute : attributes) {
+        Wall looked;
+        looked.placed->getOrCreateStateSet()->setAttributeAndModes(attribute, osg::StateAttribute::ON);
+        EXPECT_EQ(looked.drawn(), 2u) << attribute->className();
+        Wall hides;
+        hides.wall->getOrCreateStateSet()->setAttributeAndModes(attribute, osg::StateAttribute::ON);
+        EXPECT_EQ(hides.drawn(), 2u) << attribute->className() << " of the wall";
+    }
+    Wall looked;
+    looked.placed->getOrCreateStateSet()->setMode(GL_DEPTH_TEST, osg::StateAttribute::OFF);
+    EXPECT_EQ(looked.drawn(), 2u);
+    for (const GLenum mode : {GL_SCISSOR_TEST, GL_CLIP_PLANE0 + 6, GL_SAMPLE_COVERAGE_ARB}) {
+        Wall cut;
+        cut.wall->getOrCreateStateSet()->setMode(static_cast<GLenum>(mode), osg::StateAttribute::ON);
+        EXPECT_EQ(cut.drawn(), 2u) << mode;
+    }
+}
+
+/// A drawable that is opaque in one place and glass in another.
+TEST(OsgCuller, SharedDrawablesHideWhereTheyAreOpaque) {
+    Wall looked;
+    const osg::ref_ptr<osg::MatrixTransform> aside = new osg::MatrixTransform(osg::Matrixd::translate(100, 0, 0));
+    aside->addChild(looked.wall);
+    const osg::ref_ptr<osg::Group> glass = new osg::Group;
+    glass->getOrCreateStateSet()->setAttributeAndModes(new osg::BlendFunc, osg::StateAttribute::ON);
+    glass->addChild(looked.wall);
+    looked.root->removeChild(looked.wall);
+    looked.root->insertChild(0, aside);
+    looked.root->insertChild(1, glass);
+    EXPECT_EQ(looked.drawn(), 2u) << "the glass, and the box behind it";
+}
+
+TEST(OsgCuller, MirroredFacesHideNothing) {
+    Wall looked;
+    const osg::ref_ptr<osg::MatrixTransform> mirror = new osg::MatrixTransform(osg::Matrixd::scale(-1, 1, 1));
+    mirror->addChild(looked.wall);
+    looked.wall->getOrCreateStateSet()->setAttributeAndModes(new osg::CullFace);
+    looked.root->removeChild(looked.wall);
+    looked.root->insertChild(0, mirror);
+    EXPECT_EQ(looked.drawn(), 2u);
+}
+
+TEST(OsgCuller, FollowsTheBoundsOfOtherNodes) {
+    Wall looked;
+    const osg::ref_ptr<osg::Switch> either = new osg::Switch;
+    either->addChild(geode(box({-1, -1, -9}, {1, 1, -8})), true);
+    either->addChild(geode(box({-1, -1, 3}, {1, 1, 4})), false);
+    looked.root->addChild(either);
+    looked.cullBySightline();
+    EXPECT_EQ(looked.draw().size(), 1u);
+    either->setValue(0, false);
+    either->setValue(1, true);
+    EXPECT_EQ(looked.draw().size(), 2u) << "it shows what stands before the wall now";
+    const osg::ref_ptr<osg::MatrixTransform> moving = new osg::MatrixTransform(osg::Matrixd::translate(0, 0, -20));
+    moving->setDataVariance(osg::Object::DYNAMIC);
+    moving->addChild(geode(box({-1, -1, -1}, {1, 1, 1})));
+    const osg::ref_ptr<osg::Switch> above = new osg::Switch;
+    above->addChild(moving, true);
+    looked.root->addChild(above);
+    looked.culler->changed();
+    EXPECT_EQ(looked.draw().size(), 3u) << "what may move below a switch is always drawn";
 }
 
 TEST(OsgCuller, HidesByTheSidesThatAreDrawn) {

@@ -62,8 +62,7 @@ slStatus addObjects(const slBakeDef& def, const slLog& log, tools::Scene& scene)
         if (c::isProjective(from.transform))
             return fail(log, SL_BAD_ARGUMENT, kBake, "an object's transform is not affine: is it transposed?");
         for (const double number : from.transform)
-            if (!std::isfinite(number))
-                return fail(log, SL_BAD_ARGUMENT, kBake, "an object's transform is not finite");
+            if (!std::isfinite(number)) return fail(log, SL_BAD_ARGUMENT, kBake, "an object's transform is not finite");
         tools::SceneObject& object = scene.objects.emplace_back();
         object.key = from.key;
         object.mesh = from.mesh;

@@ -19,9 +19,7 @@ glm::dmat4 matrix(const double m[16]) {
     return to;
 }
 
-bool isProjective(const double m[16]) {
-    return !(m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1);
-}
+bool isProjective(const double m[16]) { return !(m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1); }
 
 const slVisible* visibles(std::span<const Visible> from) {
     static_assert(sizeof(slVisible) == sizeof(Visible) && offsetof(slVisible, key) == offsetof(Visible, key) &&

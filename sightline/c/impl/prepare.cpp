@@ -69,8 +69,7 @@ slStatus slPrepareClusters(const slClustersDef* def, slClusters** clusters_out) 
         if (from.first > triangles || from.count > triangles - from.first)
             return fail(def->log, SL_BAD_ARGUMENT, __func__, "a part reaches beyond the mesh's triangles");
         for (uint32_t t = from.first; t < from.first + from.count; ++t)
-            if (taken[t]++)
-                return fail(def->log, SL_BAD_ARGUMENT, __func__, "two parts have the same triangle");
+            if (taken[t]++) return fail(def->log, SL_BAD_ARGUMENT, __func__, "two parts have the same triangle");
         parts.push_back({from.first, from.count, from.double_sided, from.hides});
     }
     *clusters_out = c::makeHandle<slClusters>(c::shareHooks(def->log), prepareDrawClusters(mesh.view, parts));

@@ -53,8 +53,7 @@ slStatus toLight(const slLight& from, const slLog& log, const char* call, Light&
     if (from.cookie != c::kLightCookie)
         return fail(log, SL_NO_DEFAULTS, call, "the light did not begin as slDefaultLight()");
     const uint32_t kind = c::numberOf(from.kind);
-    if (kind > SL_POINT_LIGHT)
-        return fail(log, SL_BAD_ARGUMENT, call, "there is no such kind of light");
+    if (kind > SL_POINT_LIGHT) return fail(log, SL_BAD_ARGUMENT, call, "there is no such kind of light");
     to.kind = static_cast<LightKind>(kind);
     to.direction = c::vec(from.direction);
     to.position = c::vec(from.position);
