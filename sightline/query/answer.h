@@ -29,6 +29,7 @@ public:
     void forget() {
         frame_.snapshot = {};
         frame_.world = nullptr;
+        memory_of_stages_.cells.forget();
     }
     void run(uint32_t part);
     void finish();

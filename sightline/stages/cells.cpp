@@ -16,6 +16,8 @@ void CellMemory::begin(const Frame& frame) {
     rows_filled_ &= same;
     now_ = frame.snapshot;
     layers_ = frame.view.layers;
+    // Cells of a world that is not asked any more are not held.
+    if (pvs_of_ && (!now_ || now_.state().cell_state.cells != pvs_of_)) pvs_of_ = nullptr;
     if (!now_ || !frame.usable || !now_.state().cell_state.cells) return;
     const CellState& cells = now_.state().cell_state;
     stages_ = frame.stages & kCellStages;

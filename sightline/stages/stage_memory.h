@@ -40,6 +40,13 @@ public:
           flood_(memory),
           candidates_(memory) {}
 
+    /// Lets go of the snapshot that was asked last.
+    void forget() {
+        now_ = {};
+        pvs_of_ = nullptr;
+        stages_ = 0;
+        rows_filled_ = flooded_ = false;
+    }
     /// Takes up a view: finds the cells that the eye may be in.
     void begin(const Frame& frame);
     /// Stage::kPvs: the candidates are the objects that the rows of the eye's view cells show or, without these, the

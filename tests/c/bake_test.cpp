@@ -144,6 +144,18 @@ TEST(CBake, TellsWhatIsWrong) {
     refused([](House& h, slBakeDef&) { h.portals[0].door = 0; }, "that moves");
     refused([](House& h, slBakeDef&) { h.meshes[0].mesh.index_count = 5; }, "not three a triangle");
     refused([](House& h, slBakeDef&) { h.made[0].positions[0].x = std::nanf(""); }, "not finite");
+    refused([](House& h, slBakeDef&) { h.objects[0].transform[12] = std::nan(""); }, "transform is not finite");
+    refused([](House& h, slBakeDef&) { h.corners[1][2] = std::nan(""); }, "corner is not finite");
+    refused(
+        [](House& h, slBakeDef&) {
+            for (auto& corner : h.corners) corner[1] = 1;
+        },
+        "a portal has no area");
+    refused(
+        [](House& h, slBakeDef&) {
+            for (auto& corner : h.corners) corner[0] = 50;
+        },
+        "does not lie on both of its cells");
     slBakeDef none{};
     none.hooks.log = house.heard.log();
     slBaked* baked = nullptr;

@@ -98,6 +98,15 @@ TEST(CWorld, ReadsMeshesAsTheyLie) {
     slOccluder* unindexed = nullptr;
     ASSERT_EQ(slPrepareOccluder(&def, &unindexed), SL_OK);
     EXPECT_EQ(slOccluderTriangles(unindexed), 12u);
+    // From places that no compiler would choose.
+    std::vector<char> bytes(1 + soup.size() * sizeof(glm::vec3));
+    std::memcpy(bytes.data() + 1, soup.data(), bytes.size() - 1);
+    def.mesh.positions = reinterpret_cast<const float*>(bytes.data() + 1);
+    slOccluder* misaligned = nullptr;
+    ASSERT_EQ(slPrepareOccluder(&def, &misaligned), SL_OK);
+    EXPECT_EQ(slOccluderTriangles(misaligned), 12u);
+    slDestroyOccluder(misaligned);
+    def.mesh.positions = &soup[0].x;
     const std::vector<uint8_t> hides(12, 0);
     def.hides = hides.data();
     slOccluder* glass = nullptr;
@@ -168,6 +177,12 @@ TEST(CWorld, NullPointersAreAnsweredEverywhere) {
     slVisibility* file = nullptr;
     const double point[3] = {0, 0, 0};
     slSightLine line;
+    slVisibleSet none_there{};
+    none_there.count = 3;
+    const slLight sun = slDefaultLight();
+    slCasterSet casters;
+    slLookAt(nullptr, nullptr, nullptr, nullptr);
+    slPerspective(nullptr, 1, 1, 1, 2);
     ASSERT_EQ(slCreateBuffer(64, &hooks, &buffer), SL_OK);
     ASSERT_EQ(slCreateSight(&hooks, &sight), SL_OK);
     ASSERT_EQ(slCreateShadows(&hooks, &shadows), SL_OK);
@@ -198,6 +213,7 @@ TEST(CWorld, NullPointersAreAnsweredEverywhere) {
         slQueryExplain(query.query, now, &view, nullptr, {}, nullptr),
         slDrawAnswer(query.query, now, &view, 7, nullptr),
         slFindCasters(shadows, now, &view, nullptr, nullptr, nullptr, nullptr),
+        slFindCasters(shadows, now, &view, &none_there, &sun, nullptr, &casters),
         slSightLook(sight, now, point, nullptr, nullptr, &line),
         slSightFrom(sight, now, nullptr, 1, nullptr),
         slBufferBegin(buffer, nullptr),
@@ -330,6 +346,46 @@ TEST(CHooks, MemoryComesFromTheAllocatorAndGoesBack) {
         slDestroyQuery(query);
     }
     EXPECT_EQ(mine.memory.bytes, 0u);
+}
+
+/// A query that was asked about one world and then about another keeps nothing of the first one, of either eye.
+TEST(CHooks, AWorldsMemoryCanGoOnceAQueryWasAskedAboutAnother) {
+    const MadeWorld made(3, 100);
+    const CWorld other(made);
+    slSnapshot* const there = other.commit();
+    slQuery* query = nullptr;
+    slSight* sight = nullptr;
+    slShadows* shadows = nullptr;
+    ASSERT_EQ(slCreateQuery(nullptr, &query), SL_OK);
+    ASSERT_EQ(slCreateSight(nullptr, &sight), SL_OK);
+    ASSERT_EQ(slCreateShadows(nullptr, &shadows), SL_OK);
+    const slView view = viewOf(viewAt({0, 0, 40}, {0, 0, 0}));
+    const double from[3] = {0, 0, 0}, to[3] = {1, 2, 3};
+    const slLight sun = slDefaultLight();
+    slVisibleSet set;
+    slCasterSet casters;
+    slSightLine line;
+    const auto askAll = [&](const slSnapshot* now, bool pair) {
+        const uint8_t* eyes = nullptr;
+        if (pair) ASSERT_EQ(slQueryStereo(query, now, &view, &view, nullptr, &set, &eyes), SL_OK);
+        else ASSERT_EQ(slQueryVisible(query, now, &view, nullptr, &set), SL_OK);
+        ASSERT_EQ(slSightLook(sight, now, from, to, nullptr, &line), SL_OK);
+        ASSERT_EQ(slFindCasters(shadows, now, &view, &set, &sun, nullptr, &casters), SL_OK);
+    };
+    auto arena = std::make_unique<HookedMemory>();
+    {
+        const CWorld world(made, arena->hooks());
+        slSnapshot* const here = world.commit();
+        askAll(here, true);
+        askAll(there, false);
+        slReleaseSnapshot(here);
+    }
+    EXPECT_EQ(arena->memory.bytes, 0u);
+    arena.reset();
+    slDestroyQuery(query);
+    slDestroySight(sight);
+    slDestroyShadows(shadows);
+    slReleaseSnapshot(there);
 }
 
 /// Rooms, as a visibility file of which every row sees all: portals and doors decide.
@@ -468,6 +524,11 @@ TEST(CClusters, DrawWhatIsTurnedToTheEye) {
     EXPECT_GT(drawn, triangles / 4);
     EXPECT_LT(drawn, triangles * 9 / 10);
     const auto most = static_cast<uint32_t>(triangles);
+    const slMeshPart twice[] = {{0, 8, false, true}, {7, 4, false, true}};
+    def.parts = twice;
+    def.part_count = 2;
+    def.log = slSilence();
+    EXPECT_EQ(slPrepareClusters(&def, &clusters), SL_BAD_ARGUMENT);
     const slMeshPart beyond = {most - 4, 5, false, true};
     def.parts = &beyond;
     def.part_count = 1;
@@ -523,11 +584,19 @@ TEST(CBuffer, AnswersAsItsImageShows) {
     EXPECT_EQ(image.covered[0], 0);
     EXPECT_TRUE(image.perspective);
     EXPECT_NEAR(1.0 / image.nearness[middle], 5.0, 0.1);
+    const double transposed[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -10, 0, 0, 0, 1};
+    EXPECT_EQ(slBufferDraw(buffer, cube, transposed, nullptr), SL_BAD_ARGUMENT);
+    EXPECT_EQ(slBufferAskOriented(buffer, boxes.data(), transposed, &one), SL_BAD_ARGUMENT);
+    // After a view that cannot be used the buffer is empty: what was drawn may be gone.
     slView broken = view;
     broken.width = 0;
     EXPECT_EQ(slBufferBegin(buffer, &broken), SL_BAD_ARGUMENT);
-    slDestroyBuffer(buffer);
     slDestroyOccluder(cube);
+    ASSERT_EQ(slBufferImage(buffer, &image), SL_OK);
+    EXPECT_EQ(image.width, 0u);
+    ASSERT_EQ(slBufferAsk(buffer, boxes.data(), 1, seen.data()), SL_OK);
+    EXPECT_EQ(seen[0], SL_SEEN);
+    slDestroyBuffer(buffer);
 }
 
 TEST(CView, MatricesAreTheLibrarys) {

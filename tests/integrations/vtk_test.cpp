@@ -7,8 +7,12 @@
 #include <vtkActor2D.h>
 #include <vtkAutoInit.h>
 #include <vtkCamera.h>
+#include <vtkCellArray.h>
 #include <vtkCubeSource.h>
+#include <vtkFollower.h>
 #include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRenderWindow.h>
@@ -104,6 +108,60 @@ TEST_F(VtkCuller, KeepsWhatItDoesNotKnow) {
     EXPECT_EQ(kept(), (std::set<vtkProp*>{wall, cube, label, empty}));
     culler->Ignore(wall);
     EXPECT_EQ(kept().size(), 4u);
+}
+
+/// One thing in another's place, which no latest time tells.
+TEST_F(VtkCuller, NoticesWhatIsReplaced) {
+    vtkNew<vtkCubeSource> before;
+    before->SetBounds(-1, 1, -1, 1, 3, 4);
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputConnection(before->GetOutputPort());
+    mapper->Update();
+    vtkNew<vtkProperty> glass;
+    glass->SetOpacity(0.5);
+    cube->GetProperty()->SetColor(1, 0, 0);
+    EXPECT_EQ(kept().size(), 1u);
+    vtkSmartPointer<vtkMapper> old = cube->GetMapper();
+    cube->SetMapper(mapper);
+    EXPECT_EQ(ask().size(), 2u) << "another mapper, before the wall";
+    cube->SetMapper(old);
+    EXPECT_EQ(kept().size(), 1u);
+    wall->SetProperty(glass);
+    EXPECT_EQ(ask().size(), 2u) << "another property";
+    vtkNew<vtkProperty> solid;
+    wall->SetProperty(solid);
+    EXPECT_EQ(kept().size(), 1u);
+    wall->ForceTranslucentOn();
+    EXPECT_EQ(ask().size(), 2u);
+}
+
+TEST_F(VtkCuller, KeepsWhatDrawsBeyondItsBox) {
+    vtkNew<vtkFollower> follower;
+    show(cube_source, follower);
+    vtkNew<vtkActor> lines;
+    show(cube_source, lines);
+    lines->GetProperty()->SetRepresentationToWireframe();
+    vtkNew<vtkActor> on_top;
+    show(cube_source, on_top);
+    on_top->GetMapper()->SetRelativeCoincidentTopologyPolygonOffsetParameters(0, -66000);
+    props = {wall, cube, follower, lines, on_top};
+    EXPECT_EQ(kept(), (std::set<vtkProp*>{wall, follower, lines, on_top}));
+}
+
+/// A polygon like a U, through whose opening the cube is seen.
+TEST_F(VtkCuller, PolygonsThatAreNotConvexHideNothing) {
+    vtkNew<vtkPoints> points;
+    for (const auto& p : {std::pair(-5, -5), {5, -5}, {5, 5}, {2, 5}, {2, -3}, {-2, -3}, {-2, 5}, {-5, 5}})
+        points->InsertNextPoint(p.first, p.second, 0);
+    vtkNew<vtkCellArray> cells;
+    cells->InsertNextCell({0, 1, 2, 3, 4, 5, 6, 7});
+    vtkNew<vtkPolyData> u;
+    u->SetPoints(points);
+    u->SetPolys(cells);
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(u);
+    wall->SetMapper(mapper);
+    EXPECT_EQ(kept().size(), 2u);
 }
 
 TEST_F(VtkCuller, HidesByTheSidesThatAreDrawn) {

@@ -72,6 +72,7 @@ class Answers(unittest.TestCase):
         query = sightline.Query()
         seen = query.visible(made.now, VIEW)
         self.assertFalse(seen.objects.flags.owndata)
+        self.assertFalse(seen.objects.flags.writeable)
         copy = seen.keys.copy()
         del query
         gc.collect()
@@ -164,6 +165,14 @@ class Answers(unittest.TestCase):
         with self.assertRaises(sightline.Error) as raised:
             world.attach(b"no visibility file")
         self.assertEqual(raised.exception.status, "SL_BAD_FILE")
+        with self.assertRaises(TypeError):
+            world.remove([1])
+        with self.assertRaises(TypeError):
+            world.add([[[0, 0, 0], [1, 1, 1]]], keys=[1.5])
+        with self.assertRaises(ValueError):
+            world.add([[[0, 0, 0], [1, 1, 1]]], keys=[-1])
+        with self.assertRaises(ValueError):
+            sightline.Occluder(CUBE, FACES + 2**32)
         with self.assertRaises(KeyError):
             world.set_door("no such door", 1)
         self.assertEqual(len(sightline.version()), 3)
