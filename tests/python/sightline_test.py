@@ -173,6 +173,8 @@ class Answers(unittest.TestCase):
             world.add([[[0, 0, 0], [1, 1, 1]]], keys=[-1])
         with self.assertRaises(ValueError):
             sightline.Occluder(CUBE, FACES + 2**32)
+        with self.assertRaises(TypeError):
+            sightline.View(numpy.eye(4) * 1j, numpy.eye(4))
         with self.assertRaises(KeyError):
             world.set_door("no such door", 1)
         self.assertEqual(len(sightline.version()), 3)

@@ -115,6 +115,8 @@ def _at(array, kind):
 
 
 def _column_major(matrix, name):
+    if numpy.iscomplexobj(matrix):
+        raise TypeError(f"{name} is a matrix of real numbers")
     return _array(numpy.asarray(matrix, dtype="f8").T, "f8", (4, 4), name)
 
 
