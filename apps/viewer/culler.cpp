@@ -33,6 +33,7 @@ Culler::Culler(const Scene& scene, LoadedWorld world, const QuerySettings& asked
         bounds_.push_back(transformBox(scene.meshes[of.mesh].bounds, of.transform));
     }
     settings.time_stages = true;
+    settings.proofs = false;  // it shows the buffer, and the same answer whenever a switch is as it was
     if (!hasCells()) return;
     for (const auto& name : now_.state().cell_state.cells->doors) doors_.push_back({std::string(name), 1.0f});
     set_.assign(doors_.size(), 1.0f);

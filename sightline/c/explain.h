@@ -37,7 +37,9 @@ typedef struct slExplanation {
     slVisible object;
     uint32_t together; /**< objects that were culled in one step with it, itself included */
     bool unasked;      /**< the query's last answer kept it without a question; this is what a question finds */
-    bool on_screen;    /**< its box has an image: `rect` and `depth` hold */
+    bool
+        proved; /**< the query's last answer culled it by a certificate, which names the hiders; drawing would keep it */
+    bool on_screen; /**< its box has an image: `rect` and `depth` hold */
     slRect rect;
     double depth;          /**< of its nearest point, along the direction of view [world units] */
     const char* plane;     /**< of the frustum, that it is farthest outside of: "left"; null: it is not outside */

@@ -53,6 +53,7 @@ typedef struct slQuerySettings {
     double cost_object, cost_triangle, cost_vertex, cost_pixel; /**< [nanoseconds] */
     uint32_t bins;                                              /**< strips that threads can share [1 to 16] */
     uint32_t unasked_answers; /**< so long an object may be kept without being asked again [answers] */
+    bool proofs;              /**< cull by certificates, by what hid a node or an object before, without drawing */
     bool stateless;           /**< answer each view by itself */
     bool time_stages;         /**< measure each stage */
     uint32_t cookie;
@@ -99,6 +100,7 @@ typedef struct slQueryStats {
     uint64_t nodes_visited;      /**< of the hierarchy */
     uint64_t occluder_triangles; /**< offered to the rasterizer */
     uint64_t unasked;            /**< nodes and objects kept without a question */
+    uint64_t proved;             /**< nodes and objects culled by certificates */
     uint64_t second_looks;       /**< objects asked by their own triangles */
     uint64_t nanoseconds;
     bool budget_spent;      /**< occluders were left out: occluder_triangles */

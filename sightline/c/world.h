@@ -93,7 +93,7 @@ SL_API const uint32_t* slClusterTriangles(const slClusters* clusters, size_t* co
 typedef struct slWorldDef {
     slHooks hooks;
     uint32_t objects; /**< room for so many from the start [hint] */
-    bool volumes;     /**< prepare what SL_STAGE_VOLUMES needs */
+    bool volumes;     /**< prepare what SL_STAGE_VOLUMES and slQuerySettings::proofs need */
     uint32_t cookie;
 } slWorldDef;
 SL_API slWorldDef slDefaultWorldDef(void);

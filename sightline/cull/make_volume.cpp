@@ -45,7 +45,7 @@ Front frontOf(const VolumeView& view, const VolumePlace& place, const VolumeFace
 struct Maker {
     const VolumeView& view;
     const VolumePlace& place;
-    const VolumePart& part;
+    const VolumePart part;
     OccluderVolume& volume;
     VolumeOutline& outline;
     Front fronts[VolumePart::kMaxFaces] = {};
@@ -58,6 +58,7 @@ struct Maker {
     glm::dvec3 corner(uint32_t i) const { return place.linear * place.parts->corners[i] + place.shift; }
 
     bool make();
+    bool addAllBut(const VolumeFace& face, uint32_t side, bool& reverse);
     void look();
     bool trace();
     bool traceFace();
@@ -262,6 +263,26 @@ bool Maker::make() {
     return true;
 }
 
+/// The planes of a face, but for that of a side.
+/// @param reverse  receives whether its outline is seen to run the other way round
+bool Maker::addAllBut(const VolumeFace& of, uint32_t side, bool& reverse) {
+    Front front = frontOf(view, place, of, false);
+    if (!front.seen && of.double_sided) front = frontOf(view, place, of, true);
+    if (!front.seen || of.count > OccluderVolume::kMaxSides) return false;
+    reverse = place.flips != front.flipped;
+    outline.count = of.count;
+    farthest = 0;
+    for (uint32_t k = 0; k < of.count; ++k) {
+        outline.corner[k] = corner(place.parts->outline[of.first + (reverse ? of.count - 1 - k : k)]);
+        farthest = std::max(farthest, glm::length(outline.corner[k]));
+    }
+    if (!std::isfinite(farthest)) return false;
+    const uint32_t left_out = reverse ? (2 * of.count - 2 - side) % of.count : side;
+    for (uint32_t k = 0; k < of.count; ++k)
+        if (k != left_out && !addSide(k, (k + 1) % of.count)) return false;
+    return addFace(front) && addNear(of, front);
+}
+
 }  // namespace
 
 VolumeView makeVolumeView(const View& view, const Screen& screen, const glm::dvec3& offset) {
@@ -342,8 +363,19 @@ double roughPixels(const VolumeView& view, const VolumePlace& place, uint32_t in
 bool makeVolume(const VolumeView& view, const VolumePlace& place, uint32_t part, OccluderVolume& volume,
                 VolumeOutline& outline) {
     if (!place.usable) return false;
-    Maker maker{view, place, place.parts->parts[part], volume, outline};
+    Maker maker{view, place, place.parts->part(part), volume, outline};
     return maker.make();
+}
+
+bool makeSeamVolume(const VolumeView& view, const VolumePlace& one, const VolumePlace& other, const VolumeSeam& seam,
+                    OccluderVolume& volume) {
+    if (!one.usable || !other.usable || !view.screen.perspective) return false;
+    VolumeOutline outline;
+    volume.planes = 0;
+    Maker makers[2] = {{view, one, VolumePart(), volume, outline}, {view, other, VolumePart(), volume, outline}};
+    bool reverse[2];
+    return makers[0].addAllBut(one.parts->faces[seam.face[0]], seam.side[0], reverse[0]) &&
+           makers[1].addAllBut(other.parts->faces[seam.face[1]], seam.side[1], reverse[1]) && reverse[0] == reverse[1];
 }
 
 double visiblePixels(const VolumeView& view, const VolumeOutline& outline) {

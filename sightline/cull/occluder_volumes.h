@@ -97,10 +97,34 @@ struct VolumeOutline {
     uint32_t count = 0;
 };
 
+/// @param part     of VolumeParts::part()
 /// @param outline  filled if the volume is made
 /// @returns false if the part shows no front face, or if the volume's planes would be known too badly
 bool makeVolume(const VolumeView& view, const VolumePlace& place, uint32_t part, OccluderVolume& volume,
                 VolumeOutline& outline);
+
+/// Two faces with sides that lie exactly on one line and run opposite ways.
+struct VolumeSeam {
+    uint32_t face[2] = {};  ///< in VolumeParts::faces, of one object and of the same or another one
+    uint32_t side[2] = {};  ///< of its outline: from this corner to the next
+};
+
+/// Finds such sides, by exact predicates on where the corners stand.
+/// @returns false also where it is not known exactly where they stand: objects that are not only moved or turned by right
+///          angles, unless their transforms are the same
+bool findSeam(const VolumeParts& one, const glm::dmat4& transform, const VolumeParts& other,
+              const glm::dmat4& other_transform, VolumeSeam& seam);
+
+/// The volume of what lies behind two faces close to the line where they meet: their planes, but for those of the two
+/// sides. Perspective views.
+///
+/// Why nothing in it can be seen. The planes through the eye and the two sides are one plane, of which each face claims the
+/// half that the other one does not: the sides run opposite ways, and both faces are seen from the side that their outlines
+/// run around counter-clockwise, or both from the other one. So a point that is above all other planes is, with that one, in the volume of the
+/// one face or of the other; on the plane itself, in both.
+/// @param seam  findSeam() has found it, for where the objects stand now
+bool makeSeamVolume(const VolumeView& view, const VolumePlace& one, const VolumePlace& other, const VolumeSeam& seam,
+                    OccluderVolume& volume);
 
 /// The part of an outline that is in view.  [pixels of the buffer]
 double visiblePixels(const VolumeView& view, const VolumeOutline& outline);

@@ -272,7 +272,7 @@ void FaceMaker::make() {
     Memory* memory = finder.memory;
     for (uint32_t p = 0; p < finder.patches.size(); ++p)
         if (finder.find(p) == p && finder.patches[p].length() > 0) kept.push_back(p);
-    constexpr size_t kMostFaces = 4 * VolumeParts::kMaxParts;
+    constexpr size_t kMostFaces = VolumeParts::kMaxFaces;
     std::sort(kept.begin(), kept.end(), [&](uint32_t a, uint32_t b) {
         const double p = finder.patches[a].length(), q = finder.patches[b].length();
         return p != q ? p > q : a < b;

@@ -30,7 +30,8 @@ struct PartMaker {
     void findNeighbours();
     bool fits(std::span<const uint32_t> faces, uint32_t face, double size) const;
     void growBodies();
-    void addPart(std::span<const uint32_t> faces);
+    void addPart(std::span<const uint32_t> faces) { out.parts.push_back(makePart(faces)); }
+    VolumePart makePart(std::span<const uint32_t> faces);
     void addEdges(VolumePart& part, std::span<const uint32_t> faces);
     void listFaces();
     std::span<const uint32_t> outlineOf(uint32_t face) const {
@@ -100,7 +101,7 @@ void PartMaker::growBodies() {
     }
 }
 
-void PartMaker::addPart(std::span<const uint32_t> faces) {
+VolumePart PartMaker::makePart(std::span<const uint32_t> faces) {
     VolumePart part;
     part.first_face = static_cast<uint32_t>(out.members.size());
     part.face_count = static_cast<uint32_t>(faces.size());
@@ -118,7 +119,7 @@ void PartMaker::addPart(std::span<const uint32_t> faces) {
     } else {
         part.body = body_of[faces[0]];
     }
-    out.parts.push_back(part);
+    return part;
 }
 
 void PartMaker::addEdges(VolumePart& part, std::span<const uint32_t> faces) {
@@ -141,8 +142,10 @@ void PartMaker::listFaces() {
     findNeighbours();
     body_of.assign(out.faces.size(), VolumePart::kNone);
     growBodies();
-    for (uint32_t face = 0; face < out.faces.size() && out.parts.size() < VolumeParts::kMaxParts; ++face)
-        addPart(std::span(&face, 1));
+    for (uint32_t face = 0; face < out.faces.size(); ++face) {
+        Array<VolumePart>& to = out.parts.size() < VolumeParts::kMaxParts ? out.parts : out.more;
+        to.push_back(makePart(std::span(&face, 1)));
+    }
 }
 
 }  // namespace

@@ -52,9 +52,23 @@ struct VolumeParts {
     Array<uint32_t> members;  ///< faces of parts, one part after the other
     Array<VolumeEdge> edges;  ///< sides of bodies, one body after the other
     Array<VolumePart> parts;
+    Array<VolumePart> more;  ///< single faces that `parts` has no room for, by falling area
+    static constexpr uint32_t kMaxFaces = 1024;
+
+    /// One of `parts` or, behind them, of `more`.
+    const VolumePart& part(uint32_t i) const { return i < parts.size() ? parts[i] : more[i - parts.size()]; }
+    /// The part that is a face alone.
+    uint32_t partOf(uint32_t face) const { return partCount() - static_cast<uint32_t>(faces.size()) + face; }
+    uint32_t partCount() const { return static_cast<uint32_t>(parts.size() + more.size()); }
 
     explicit VolumeParts(Memory* memory = defaultMemory())
-        : corners(memory), outline(memory), faces(memory), members(memory), edges(memory), parts(memory) {}
+        : corners(memory),
+          outline(memory),
+          faces(memory),
+          members(memory),
+          edges(memory),
+          parts(memory),
+          more(memory) {}
 };
 
 }  // namespace sightline

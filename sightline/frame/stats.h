@@ -26,6 +26,11 @@ struct QueryStats {
     uint64_t nodes_visited = 0;
     uint64_t occluder_triangles = 0;
     uint64_t unasked = 0;
+    uint64_t proved = 0;
+    uint64_t proofs_sought = 0;
+    uint64_t proofs_found = 0;
+    uint64_t proof_rays = 0;
+    uint64_t proof_cuts = 0;
     uint64_t seam_pixels = 0;
     uint64_t closed_gaps = 0;
     uint64_t faces_tested = 0;
@@ -79,6 +84,14 @@ inline constexpr CounterRow kQueryCounters[] = {
      "offered to the rasterizer"},
     {"unasked", &QueryStats::unasked, "nodes and objects", CounterRow::kRare,
      "kept without a question, because the answers before had kept them"},
+    {"proved", &QueryStats::proved, "nodes and objects", CounterRow::kRare,
+     "culled by certificates: by what hid them in an answer before"},
+    {"proofs_sought", &QueryStats::proofs_sought, "nodes and objects", CounterRow::kRare,
+     "for which a certificate was looked for"},
+    {"proofs_found", &QueryStats::proofs_found, "nodes and objects", CounterRow::kRare, "of these, with success"},
+    {"proof_rays", &QueryStats::proof_rays, "rays", CounterRow::kRare, "that were shot for it"},
+    {"proof_cuts", &QueryStats::proof_cuts, "polygons", CounterRow::kRare,
+     "of outlines, from which shadows were taken one by one"},
     {"seam_pixels", &QueryStats::seam_pixels, "pixels", CounterRow::kWork,
      "resolved by the union of the polygons that share them"},
     {"closed_gaps", &QueryStats::closed_gaps, "pixels", CounterRow::kRare,

@@ -11,6 +11,7 @@
 #include "sightline/frame/image_part.h"
 #include "sightline/frame/pending.h"
 #include "sightline/frame/place_range.h"
+#include "sightline/frame/proof_memory.h"
 #include "sightline/frame/stats.h"
 #include "sightline/frame/turns.h"
 #include "sightline/world/world_state.h"
@@ -90,6 +91,7 @@ struct TraversalState {
           looks(memory),
           open_at(memory),
           turns(memory),
+          proofs(memory),
           visits(memory),
           volumes(memory) {}
 
@@ -106,6 +108,7 @@ struct TraversalState {
     /// the answer; what has moved to another place meanwhile is asked in vain.
     Array<OpenPolygon> open_at;
     Turns turns;              ///< it outlives the answer, too
+    ProofMemory proofs;       ///< and so does this
     Array<NodeVisit> visits;  ///< the queue, where the traversal is in any order
     OpenVolumes volumes;
     QueryStats stats;

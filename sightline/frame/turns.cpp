@@ -7,8 +7,8 @@
 namespace sightline::detail {
 namespace {
 
-constexpr double kLittle = 1.0 / 16.0;  // the eye's way, as a part of the distance or of the size
-constexpr uint32_t kLongest = 31;       // of Turn::wait
+constexpr double kLittle = 1.0 / 16.0, kLittleProved = 1.0 / 4.0;  // Turns::little_
+constexpr uint32_t kLongest = 31;                                  // of Turn::wait
 
 bool areEqual(const ViewPlanes& a, const ViewPlanes& b) {
     return std::equal(a.all().begin(), a.all().end(), b.all().begin(), b.all().end());
@@ -16,12 +16,17 @@ bool areEqual(const ViewPlanes& a, const ViewPlanes& b) {
 
 }  // namespace
 
-void Turns::begin(const Frame& frame) {
+void Turns::begin(const Frame& frame, bool by_proofs) {
     most_ = 0;
     if (frame.settings.stateless || !frame.screen.perspective) return;
-    most_ = std::min(frame.settings.unasked_answers, kEyes - 1);
+    most_ = std::min((by_proofs ? 4 : 1) * frame.settings.unasked_answers, kEyes - 1);
+    little_ = by_proofs ? kLittleProved : kLittle;
     eyes_[++answer_ % kEyes] = frame.frustum.eye;
-    if (frame.view.layers != layers_ || frame.stages != stages_ || !areEqual(frame.view.sections, sections_)) {
+    // What was not proved to be hidden may well be: drawing asks it.
+    const bool other_way = by_proofs_ && !by_proofs;
+    by_proofs_ = by_proofs;
+    if (other_way || frame.view.layers != layers_ || frame.stages != stages_ ||
+        !areEqual(frame.view.sections, sections_)) {
         since_ = answer_;
         layers_ = frame.view.layers;
         stages_ = frame.stages;
@@ -40,8 +45,8 @@ bool Turns::mayStand(const Pending& entry) const {
     const uint32_t spread = entry.index * 0x9e3779b9u >> 24 & turn.wait;
     if (age > std::min({most_, turn.wait + spread, answer_ - since_})) return false;
     const double moved = glm::length(eyes_[answer_ % kEyes] - eyes_[(answer_ - age) % kEyes]);
-    if (entry.testable) return moved * static_cast<double>(entry.rect.nearness) <= kLittle;
-    return moved <= kLittle * glm::length(glm::dvec3(entry.box.max) - glm::dvec3(entry.box.min));
+    if (entry.testable) return moved * static_cast<double>(entry.rect.nearness) <= little_;
+    return moved <= little_ * glm::length(glm::dvec3(entry.box.max) - glm::dvec3(entry.box.min));
 }
 
 void Turns::note(const Pending& entry, bool kept) {

@@ -23,7 +23,8 @@ public:
     explicit Turns(Memory* memory) : objects_(memory), nodes_(memory) {}
 
     /// Takes up a view. Nothing stands in parallel views, and with QuerySettings::stateless.
-    void begin(const Frame& frame);
+    /// @param by_proofs  hidden is what is proved so: answers may stand longer, for questions are the greater part of the work
+    void begin(const Frame& frame, bool by_proofs);
     /// Whether a node or an object may be kept without a question.
     bool mayStand(const Pending& entry) const;
     /// Notes what was found of a node or an object that was asked.
@@ -46,6 +47,8 @@ private:
     uint32_t since_ = 0;  ///< the answer from which on the same was asked for
     uint32_t layers_ = 0, stages_ = 0;
     ViewPlanes sections_;
+    bool by_proofs_ = false;
+    double little_ = 0;  ///< the way that an eye may go, as a part of the distance or of the size
     uint32_t most_ = 0;  ///< answers that any may stand; 0: nothing is remembered
     size_t places_ = 0, node_count_ = 0;
 };

@@ -49,6 +49,7 @@ struct QuerySettings {
     double cost_pixel = 0;
     uint32_t bins = 1;
     uint32_t unasked_answers = 15;
+    bool proofs = true;
     bool stateless = false;
     bool time_stages = false;
 };
@@ -144,6 +145,8 @@ inline constexpr auto kQuerySettings = std::tuple{
         "unasked_answers", nullptr, &QuerySettings::unasked_answers, "answers", 0, 63,
         "for so many at most, keep what was kept before without asking whether it is hidden by now, while the eye "
         "moves little; 0: ask each time"),
+    settingRow("proofs", nullptr, &QuerySettings::proofs, "", 0, 1,
+               "cull by certificates, by what hid a node or an object before, without drawing, where that does"),
     settingRow("stateless", nullptr, &QuerySettings::stateless, "", 0, 1,
                "answer each view by itself: keep nothing unasked, and do not ask first what decided the last answer"),
     settingRow("time_stages", nullptr, &QuerySettings::time_stages, "", 0, 1,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <glm/glm.hpp>
@@ -20,6 +21,8 @@ struct Box {
     bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
     Vector center() const { return T(0.5) * min + T(0.5) * max; }
     Vector size() const { return max - min; }
+    /// @param i  bit 0: at the greatest x; bit 1: y; bit 2: z
+    Vector corner(uint32_t i) const { return {i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z}; }
     void grow(const Vector& point) {
         min = glm::min(min, point);
         max = glm::max(max, point);

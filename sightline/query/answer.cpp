@@ -24,6 +24,7 @@ void Answer::begin(const Snapshot& now, const View& view, const QuerySettings& s
     chooseStages(frame_, memory_of_stages_, settings.time_stages ? choose_nanoseconds_ : nullptr);
     count_ = now ? partCount(frame_) : 1;
     while (parts_.size() < count_) parts_.push_back(makeOwned<TraversalState>(memory_, memory_));
+    parts_[0]->proofs.begin(frame_);
     merged_.clear();
     memory_of_stages_.lods.clear();
     memory_of_stages_.clusters.clear();
@@ -33,8 +34,22 @@ void Answer::begin(const Snapshot& now, const View& view, const QuerySettings& s
 void Answer::run(uint32_t part) {
     const Stopwatch watch;
     TraversalState& state = *parts_[part];
-    traverse(frame_, state, count_ == 1 ? ImagePart() : imagePart(part, count_, frame_.columns()),
-             frame_.settings.time_stages);
+    ProofMemory& proofs = state.proofs;
+    const ImagePart image = count_ == 1 ? ImagePart() : imagePart(part, count_, frame_.columns());
+    const bool by_proofs = proofs.way() == ProofMemory::Way::kProofs;
+    const bool occludes = frame_.world && frame_.usable && frame_.uses(Stage::kOcclusion);
+    if (occludes) state.turns.begin(frame_, by_proofs);
+    traverse(frame_, state, image, frame_.settings.time_stages);
+    if (by_proofs && proofs.way() != ProofMemory::Way::kProofs) {
+        state.turns.begin(frame_, false);
+        traverse(frame_, state, image, frame_.settings.time_stages);
+    }
+    if (proofs.way() == ProofMemory::Way::kTilesAndSeek) proofs.seekAll(frame_, state.visible.size());
+    state.stats.proofs_sought = proofs.sought;
+    state.stats.proofs_found = proofs.found;
+    state.stats.proof_rays = proofs.rays;
+    state.stats.proof_cuts = proofs.cuts();
+    proofs.noteAnswered(state.stats);
     state.stats.nanoseconds = watch.nanoseconds();
 }
 
@@ -175,6 +190,27 @@ bool Answer::wasUnasked(ObjectId id) const {
         const TraversalState& state = *parts_[part];
         const auto is = [&](const Visible& v) { return v.id == id; };
         if (state.turns.wasUnasked(place) && std::any_of(state.visible.begin(), state.visible.end(), is)) return true;
+    }
+    return false;
+}
+
+bool Answer::certificateOf(ObjectId id, Array<Visible>& out) const {
+    const ProofMemory& proofs = parts_[0]->proofs;
+    if (!frame_.world || proofs.way() != ProofMemory::Way::kProofs) return false;
+    const uint32_t place = frame_.world->placeOf(id);
+    const auto named = [&](ObjectId hider) {
+        const uint32_t at = frame_.world->placeOf(hider);
+        const auto is = [&](const Visible& v) { return v.id == hider; };
+        if (at != PlacedBvh::kNone && std::none_of(out.begin(), out.end(), is))
+            out.push_back(frame_.world->placed[at].visible);
+    };
+    for (const ProofMemory::Culled& culled : proofs.culled) {
+        if (!culled.places.holds(place)) continue;
+        for (const uint32_t number : culled.certificate.all()) {
+            named(proofs.hider(number).object);
+            if (proofs.hider(number).other_part != HidingPart::kNone) named(proofs.hider(number).other);
+        }
+        return true;
     }
     return false;
 }

@@ -56,6 +56,8 @@ public:
     void reasons(std::span<uint8_t> reasons) const;
     /// As Query::DepthImage has it.  [size: pixels of the buffer]
     void depthImage(Seams seams, std::span<float> nearness, std::span<uint8_t> covered);
+    /// Whether a certificate culled an object in this answer, and the objects that it names.
+    bool certificateOf(ObjectId id, Array<Visible>& out) const;
     /// Whether an object of the answer was kept without a question by a part that kept it.
     bool wasUnasked(ObjectId id) const;
     uint32_t width() const { return parts_[0]->tiles.width; }

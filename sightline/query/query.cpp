@@ -261,6 +261,15 @@ void Query::reasons(std::span<uint8_t> reasons, uint8_t eye) const {
 Explanation Query::explain(const Snapshot& now, const View& view, ObjectId id, const QuerySettings& settings) const {
     Explanation why = Explainer(now, view, settings, impl_->last(), impl_->memory).explain(id);
     why.unasked = impl_->left.wasUnasked(id) || (impl_->stereo && impl_->right->wasUnasked(id));
+    if (!impl_->left.certificateOf(id, why.certificate) || why.verdict != Verdict::kVisible) return why;
+    // Drawing keeps what the last answer proved to be hidden.
+    if (why.certificate.empty()) {
+        why.verdict = Verdict::kOutsideFrustum;
+        why.frustum.by_triangles = true;
+        return why;
+    }
+    why.verdict = Verdict::kOccluded;
+    for (const Visible& hider : why.certificate) why.occlusion.hiders.push_back({hider.id, hider.key, 0});
     return why;
 }
 

@@ -138,7 +138,8 @@ public:
     Explanation explain(const Snapshot& now, const View& view, ObjectId id, const QuerySettings& settings = {}) const;
 
     /// The occlusion buffer after the last answer, for pictures: nearness per buffer pixel, row 0 at the bottom, 0
-    /// where nothing is known to cover the whole pixel. Occluders that came after the last object are not in it.
+    /// where nothing is known to cover the whole pixel. Occluders that came after the last object are not in it. If the
+    /// answer was given by certificates (QuerySettings::proofs), there is none: 0 by 0 pixels.
     struct DepthImage {
         uint32_t width = 0, height = 0;
         bool perspective = true;           ///< nearness is 1/w; else minus the depth in eye space, and 0 is a depth too

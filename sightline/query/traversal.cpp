@@ -23,9 +23,11 @@ struct RowsInUse {
     uint32_t boxes = 0, rects = 0, turns = 0;
     const PipelineStep* at_end = nullptr;
 
-    explicit RowsInUse(const Frame& frame) {
+    RowsInUse(const Frame& frame, bool drawn) {
+        const PipelineStep::In other = drawn ? PipelineStep::In::kProved : PipelineStep::In::kDrawn;
         for (const PipelineStep& row : kPipeline) {
             if (!frame.uses(row.stage) || (row.stage == Stage::kVolumes && frame.volumes.empty())) continue;
+            if (row.in == other) continue;
             if (row.by_box) by_box[boxes++] = &row;
             if (row.by_rect) by_rect[rects++] = &row;
             if (row.in_turn) in_turn[turns++] = &row;
@@ -38,14 +40,18 @@ template <class Observer>
 class Traversal {
 public:
     Traversal(const Frame& frame, TraversalState& state, Observer& observer)
-        : frame_(frame), state_(state), observer_(observer), rows_(frame) {}
+        : frame_(frame),
+          state_(state),
+          observer_(observer),
+          drawn_(state.proofs.way() != ProofMemory::Way::kProofs),
+          rows_(frame, drawn_) {}
 
     void run() {
         observer_.begin(frame_, state_);
         if (!frame_.world) return;
         if (!frame_.usable) return keepEverything();
         const bool in_order = frame_.uses(Stage::kOcclusion);
-        if (in_order) clearTiles();
+        if (in_order && drawn_) clearTiles();
         if (state_.part.whole())
             for (const uint32_t row : frame_.world->unbounded) keepInDoubt(frame_.world->objects[row]);
         if (!frame_.world->bvh.nodes.empty()) in_order ? runInOrder() : runInAnyOrder();
@@ -59,7 +65,6 @@ private:
         tiles.clear(frame_.screen.width, frame_.screen.height,
                     frame_.settings.masked ? OcclusionDetail::kMasked : OcclusionDetail::kFull);
         tiles.gap = closedGap(frame_.settings);
-        state_.turns.begin(frame_);
         if (!state_.part.whole()) tiles.keepColumns(state_.part.first_column, state_.part.end_column);
     }
 
@@ -116,6 +121,12 @@ private:
         return live;
     }
 
+    /// Where certificates are sought for what is hidden.
+    void noteHidden(const Pending& entry) {
+        if (state_.proofs.way() != ProofMemory::Way::kTilesAndSeek) return;
+        state_.proofs.hidden.push_back({entry.box, entry.index, entry.below.count, entry.kind});
+    }
+
     Group groupOf(uint32_t index, uint32_t planes) {
         ++state_.stats.nodes_visited;
         const PlacedBvh& bvh = frame_.world->bvh;
@@ -140,14 +151,16 @@ private:
     void runInOrder() {
         forEachStart([&](uint32_t node, uint32_t slots) { open(node, rootPlanes(), slots); });
         descendInOrder(
-            state_.queue, [&] { return waiting_ > 0 && !observer_.ended(); },
-            [&](const Pending& entry) { takeTurn(entry); });
-        if (observer_.ended()) return;
+            state_.queue, [&] { return waiting_ > 0 && !ended(); }, [&](const Pending& entry) { takeTurn(entry); });
+        if (ended()) return;
         // The looks at the end ask a buffer in which all is drawn that was found: their answers do not depend on when
         // the last object was decided.
         while (!state_.second.empty() && !state_.queue.empty()) takeTurn(state_.queue.pop());
         lookAgain();
     }
+
+    /// The observer knows enough, or certificates do not do for this view.
+    bool ended() const { return observer_.ended() || (!drawn_ && state_.proofs.way() != ProofMemory::Way::kProofs); }
 
     void queue(const Pending& entry) {
         waiting_ += entry.kind != Pending::Kind::kCluster;
@@ -202,6 +215,7 @@ private:
             if (answer.settled) break;
             if (!answer.culled) continue;
             noteCulled(entry.below, answer.stage);
+            noteHidden(entry);
             state_.turns.note(entry, false);
             return observer_.culledInTurn(entry, answer.stage, answer.look);
         }
@@ -220,7 +234,7 @@ private:
         if (!again) observer_.kept(entry, look);
         // Where nothing else is left to ask it hides nothing.
         const bool others = waiting_ > 0 || state_.second.size() > (again ? 1u : 0u);
-        if (others && !(entry.testable && isSmall(frame_.screen, entry.rect))) offerOccluder(entry.index);
+        if (drawn_ && others && !(entry.testable && isSmall(frame_.screen, entry.rect))) offerOccluder(entry.index);
     }
 
     /// Queues the clusters of an object's occluder, or draws it at once if there is one only.
@@ -275,6 +289,7 @@ private:
             state_.turns.note(next.entry, !answer.culled);
             if (answer.culled) {
                 noteCulled(next.entry.below, answer.stage);
+                noteHidden(next.entry);
                 observer_.culledInTurn(next.entry, answer.stage, answer.look);
                 state_.visible[next.visible].id = ObjectId();
                 ++gone;
@@ -321,6 +336,7 @@ private:
     const Frame& frame_;
     TraversalState& state_;
     Observer& observer_;
+    const bool drawn_;  ///< else certificates alone say what is hidden
     const RowsInUse rows_;
     uint32_t waiting_ = 0;  ///< nodes and objects in the queue; without any, nothing is left to hide
 };

@@ -22,7 +22,11 @@ struct TurnAnswer {
 /// A step of the pipeline: a stage, or a part of one. It works at one or more of these moments; the others are null.
 /// Each moment may only narrow what the moments before it have left. It keeps what it is in doubt about.
 struct PipelineStep {
+    /// Answers that it has a part in.
+    enum class In : uint8_t { kAll, kDrawn, kProved };
+
     Stage stage;
+    In in = In::kAll;
     /// Once a frame, before the descent: chooses what the view fixes, and narrows the frame's candidates.
     void (*choose)(Frame& frame, StageMemory& memory) = nullptr;
     /// Eight boxes, the children of a node that is opened. Returns a bit for each that it culls.
@@ -48,6 +52,7 @@ uint32_t cullSmall(const Frame& frame, TraversalState& state, Group& group, uint
 void chooseVolumes(Frame& frame, StageMemory& memory);
 uint32_t cullInVolumes(const Frame& frame, TraversalState& state, Group& group, uint32_t live);
 TurnAnswer keepUnasked(const Frame& frame, TraversalState& state, const Pending& entry);
+TurnAnswer cullProved(const Frame& frame, TraversalState& state, const Pending& entry);
 TurnAnswer cullHidden(const Frame& frame, TraversalState& state, const Pending& entry);
 TurnAnswer cullByFaces(const Frame& frame, TraversalState& state, const Pending& entry);
 TurnAnswer cullByTriangles(const Frame& frame, TraversalState& state, const SecondLook& kept);
@@ -63,8 +68,9 @@ inline constexpr PipelineStep kPipeline[] = {
     {.stage = Stage::kContribution, .by_box = cullSmall},
     {.stage = Stage::kVolumes, .choose = chooseVolumes, .by_box = cullInVolumes},
     {.stage = Stage::kOcclusion, .in_turn = keepUnasked},
-    {.stage = Stage::kOcclusion, .in_turn = cullHidden},
-    {.stage = Stage::kOcclusion, .in_turn = cullByFaces, .at_end = cullByTriangles},
+    {.stage = Stage::kOcclusion, .in = PipelineStep::In::kProved, .in_turn = cullProved},
+    {.stage = Stage::kOcclusion, .in = PipelineStep::In::kDrawn, .in_turn = cullHidden},
+    {.stage = Stage::kOcclusion, .in = PipelineStep::In::kDrawn, .in_turn = cullByFaces, .at_end = cullByTriangles},
     {.stage = Stage::kLod, .of_answer = chooseLods},
     {.stage = Stage::kClusters, .of_answer = cullClusters},
 };

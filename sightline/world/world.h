@@ -42,9 +42,10 @@ private:
 
 /// How a world is set up.
 struct WorldDef {
-    uint32_t objects = 0;              ///< room for so many from the start  [hint]
-    bool volumes = false;              ///< prepare occluders for Stage::kVolumes, which culls nothing otherwise;
-                                       ///< addOccluder() then takes about as long as prepareOccluder()
+    uint32_t objects = 0;  ///< room for so many from the start  [hint]
+    bool volumes = true;   ///< prepare the parts that occluders hide by in Stage::kVolumes and in certificates
+                           ///< (QuerySettings::proofs), which cull nothing otherwise; addOccluder() then takes
+                           ///< about as long as prepareOccluder()
     Memory* memory = defaultMemory();  ///< of the world and its snapshots; outlives them. It must be thread-safe if
                                        ///< other threads than the world's release snapshots
 };

@@ -17,7 +17,7 @@ public:
     explicit WorldState(Memory* from);
 
     Memory* const memory;
-    bool volumes = false;  ///< WorldDef::volumes
+    bool volumes = true;  ///< WorldDef::volumes
     OccluderTable occluders{memory};
     ClusterTable clusters{memory};
     LodTable lods{memory};

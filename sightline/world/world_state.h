@@ -14,6 +14,7 @@
 #include "sightline/geom/draw_clusters.h"
 #include "sightline/geom/lod.h"
 #include "sightline/geom/occluder.h"
+#include "sightline/tree/bvh.h"
 #include "sightline/tree/world_bvh.h"
 #include "sightline/world/attached_cells.h"
 #include "sightline/world/cell_objects.h"
@@ -71,9 +72,10 @@ using PlacedObjectTable = Paged<PlacedObject, 128>;
 struct HeldOccluder : Occluder {
     Array<InnerOccluder> inner;  ///< finest first
     VolumeParts parts;           ///< none unless WorldDef::volumes
+    Bvh faces;                   ///< over those of the parts
 
     HeldOccluder(const Occluder& from, std::span<const InnerOccluder> levels, bool volumes, Memory* memory)
-        : Occluder(memory), inner(memory), parts(memory) {
+        : Occluder(memory), inner(memory), parts(memory), faces(memory) {
         Occluder::operator=(from);
         inner.reserve(levels.size());
         for (const InnerOccluder& level : levels) {
@@ -82,7 +84,13 @@ struct HeldOccluder : Occluder {
             held.outside = level.outside;
             held.error = level.error;
         }
-        if (volumes) parts = findVolumeParts(from, memory);
+        if (!volumes) return;
+        parts = findVolumeParts(from, memory);
+        Array<Box3d> boxes(parts.faces.size(), Box3d(), memory);
+        for (size_t i = 0; i < boxes.size(); ++i)
+            for (uint32_t k = 0; k < parts.faces[i].count; ++k)
+                boxes[i].grow(parts.corners[parts.outline[parts.faces[i].first + k]]);
+        if (!boxes.empty()) faces = buildBvh(boxes, memory);
     }
 };
 

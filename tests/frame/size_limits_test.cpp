@@ -52,7 +52,7 @@ TEST(SizeLimits, DoNothingUnlessAsked) {
     const Snapshot now = made.world.commit();
     Query query;
     View view = viewFrom({0, 0, 0}, {1, 0, 0}, kCamera);
-    QuerySettings settings;
+    QuerySettings settings{.proofs = false};
     const auto plain = reasonsOf(query, now, view, settings);
     for (const double off : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
         settings.max_distance = settings.contribution = off;

@@ -51,7 +51,7 @@ TEST(Credits, AddUpToWhatTheOcclusionStageCulled) {
             View view = randomView(random, kCamera);
             if (frame % 3 == 1) view.projection = orthographic(15, 16.0 / 9.0, 0.1, 100);
             if (seed % 3 == 0 && frame % 2) view.layers = 2;
-            const QueryStats stats = query.visible(now, view).stats;
+            const QueryStats stats = query.visible(now, view, {.proofs = false}).stats;
             const std::vector<uint8_t> reasons = reasonsOf(query, now);
             double expected = 0, expected_weight = 0, hidden = 0, weight = 0;
             for (size_t i = 0; i < reasons.size(); ++i) {

@@ -216,7 +216,10 @@ TEST(Query, IsTheSameOnEveryInstructionSetAndThread) {
             for (int i = 0; i < 10; ++i) answer = keysOf(own.visible(now, view));
         });
     for (std::thread& thread : threads) thread.join();
-    for (const auto& answer : answers) EXPECT_EQ(answer, expected);
+    // The same calls before, for an answer may depend on them.
+    std::vector<uint64_t> tenth = expected;
+    for (int i = 1; i < 10; ++i) tenth = keysOf(query.visible(now, view));
+    for (const auto& answer : answers) EXPECT_EQ(answer, tenth);
 }
 
 TEST(Query, StagesCanBeLeftOutAndOnlyAdd) {

@@ -178,7 +178,7 @@ class Snapshot:
 class World:
     """Objects that come, move and go."""
 
-    def __init__(self, objects=0, volumes=False):
+    def __init__(self, objects=0, volumes=True):
         definition = _ffi.new("slWorldDef*", _lib.slDefaultWorldDef())
         definition.hooks = _hooks()[0]
         definition.objects, definition.volumes = objects, volumes

@@ -69,7 +69,7 @@ slStatus toSettings(const slQuerySettings* from, const slLog& log, const char* c
     if (!from) return SL_OK;
     if (from->cookie != kSettingsCookie)
         return fail(log, SL_NO_DEFAULTS, call, "the settings did not begin as slDefaultQuerySettings()");
-    static_assert(std::tuple_size_v<decltype(kQuerySettings)> == 30, "slQuerySettings lacks a setting");
+    static_assert(std::tuple_size_v<decltype(kQuerySettings)> == 31, "slQuerySettings lacks a setting");
     to.stages = from->stages;
     to.portal_depth = from->portal_depth;
     to.portal_work = from->portal_work;
@@ -97,6 +97,7 @@ slStatus toSettings(const slQuerySettings* from, const slLog& log, const char* c
     to.cost_pixel = from->cost_pixel;
     to.bins = from->bins;
     to.unasked_answers = from->unasked_answers;
+    to.proofs = from->proofs;
     to.stateless = from->stateless;
     to.time_stages = from->time_stages;
     to.windows = static_cast<PortalWindows>(numberOf(from->windows));

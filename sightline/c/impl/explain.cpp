@@ -56,12 +56,14 @@ struct Text {
 
 void addHiders(Text& text, const slExplanation& why) {
     const uint32_t told = std::min<uint32_t>(why.hider_count, SL_MOST_HIDERS);
-    for (uint32_t i = 0; i < told; ++i)
-        text.add("%s%" PRIu64 " (%.0f %%)",
+    for (uint32_t i = 0; i < told; ++i) {
+        text.add("%s%" PRIu64,
                  i == 0         ? (told > 1 ? "objects " : "object ")
                  : i + 1 < told ? ", "
                                 : " and ",
-                 why.hiders[i].object.key, 100.0 * why.hiders[i].share);
+                 why.hiders[i].object.key);
+        if (!why.proved) text.add(" (%.0f %%)", 100.0 * why.hiders[i].share);
+    }
     if (told < why.hider_count) text.add(" and %u more", why.hider_count - told);
 }
 
@@ -95,6 +97,7 @@ slStatus slQueryExplain(const slQuery* query, const slSnapshot* snapshot, const 
             out.hiders[i] = {{hiders[i].key, c::id(hiders[i].id)}, hiders[i].share};
         out.sufficient = why.occlusion.sufficient;
     }
+    out.proved = why.verdict == Verdict::kOccluded && !why.certificate.empty() && why.occlusion.hiders[0].share == 0;
     if (why.verdict == Verdict::kVisible) {
         out.because = wordsOf(why.visible.because);
         out.open_pixel = why.visible.because == KeptBecause::kOpenPixel;

@@ -43,6 +43,7 @@ slQuerySettings slDefaultQuerySettings(void) {
     to.cost_pixel = from.cost_pixel;
     to.bins = from.bins;
     to.unasked_answers = from.unasked_answers;
+    to.proofs = from.proofs;
     to.stateless = from.stateless;
     to.time_stages = from.time_stages;
     to.cookie = c::kSettingsCookie;
@@ -188,6 +189,7 @@ slStatus slQueryGetStats(const slQuery* query, slQueryStats* stats_out) {
     to.nodes_visited = from.nodes_visited;
     to.occluder_triangles = from.occluder_triangles;
     to.unasked = from.unasked;
+    to.proved = from.proved;
     to.second_looks = from.second_looks;
     to.nanoseconds = from.nanoseconds;
     to.budget_spent = from.budget_spent;

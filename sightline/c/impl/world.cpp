@@ -15,6 +15,7 @@ using c::fail;
 slWorldDef slDefaultWorldDef(void) {
     slWorldDef def{};
     def.cookie = c::kWorldCookie;
+    def.volumes = WorldDef().volumes;
     return def;
 }
 

@@ -142,6 +142,9 @@ struct Explanation {
     /// The query whose answer is explained kept it without a question, QuerySettings::unasked_answers; all else says what
     /// it answers when it is asked. Set by Query::explain() alone.
     bool unasked = false;
+    /// The query whose answer is explained culled it by a certificate: the objects that were named. If drawing would keep
+    /// it, they are its hiders, with no share. Set by Query::explain() alone.
+    Array<Visible> certificate;
     bool on_screen = false;  ///< its box has an image: `rect` and `depth` hold
     ImageRect rect;          ///< of its box
     double depth = 0;        ///< of its box's nearest point, along the direction of view  [world units]
@@ -154,7 +157,7 @@ struct Explanation {
     ClustersReason clusters;  ///< of what is kept, and of what the stage culls, with that stage
     CellsReason cells;        ///< of what has bounds, in a world with cells
 
-    explicit Explanation(Memory* memory = defaultMemory()) : occlusion(memory), cells(memory) {}
+    explicit Explanation(Memory* memory = defaultMemory()) : certificate(memory), occlusion(memory), cells(memory) {}
 };
 
 /// How much is asked.

@@ -67,8 +67,9 @@ LoadSettings loadSettings(bool volumes, double occluder_error, bool clusters, do
 }
 
 LoadSettings loadSettings(const QuerySettings& settings, double cluster_test) {
-    LoadSettings load = loadSettings((settings.stages & stageBit(Stage::kVolumes)) != 0, settings.occluder_error,
-                                     (settings.stages & stageBit(Stage::kClusters)) != 0, cluster_test);
+    LoadSettings load =
+        loadSettings((settings.stages & stageBit(Stage::kVolumes)) != 0 || settings.proofs, settings.occluder_error,
+                     (settings.stages & stageBit(Stage::kClusters)) != 0, cluster_test);
     load.lods = (settings.stages & stageBit(Stage::kLod)) != 0;
     return load;
 }

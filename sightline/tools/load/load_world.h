@@ -19,7 +19,7 @@ struct LoadedWorld {
 };
 
 struct LoadSettings {
-    bool volumes = false;  ///< WorldDef::volumes
+    bool volumes = true;  ///< WorldDef::volumes
     /// How each mesh is prepared. Buildings have many walls of some tens of large polygons: `few` is 64.
     OccluderSettings occluders = {.few = 64};
     bool inner = false;  ///< prepare simpler occluders for dense meshes, too: prepareInner()

@@ -1,0 +1,323 @@
+// What of a convex occludee no shadow volume has hidden yet: the outline in the image, less the shadows, piece by piece.
+// SPDX-License-Identifier: MIT
+#include "sightline/cull/proofs/uncovered.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace sightline {
+namespace {
+
+constexpr double kMargin = 1e-9, kMostMargin = 1e-3;  // of the image's half width
+
+double sizeOf(const glm::dvec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
+double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+}  // namespace
+
+bool makeShadow(const ImageFrame& frame, Shadow& shadow) {
+    const OccluderVolume& volume = shadow.volume;
+    shadow.line_count = shadow.face_count = 0;
+    for (uint32_t i = 0; i < volume.planes; ++i) {
+        const glm::dvec3 normal(volume.normal[i][0], volume.normal[i][1], volume.normal[i][2]);
+        const double still = volume.slack[i][0], turn = volume.slack[i][1];
+        if (volume.distance[i] == 0) {
+            Shadow::Line& line = shadow.lines[shadow.line_count++];
+            line.line = frame.lineOf(normal);
+            line.line.z -= turn * frame.longest;
+            line.still = still;
+            continue;
+        }
+        if (shadow.face_count == Shadow::kMostFaces) return false;
+        shadow.slack[shadow.face_count][0] = still;
+        shadow.slack[shadow.face_count][1] = turn;
+        shadow.faces[shadow.face_count++] = {normal, static_cast<double>(volume.distance[i])};
+    }
+    return true;
+}
+
+double Uncovered::Piece::area() const {
+    double sum = 0;
+    for (uint32_t i = 1; i + 1 < count; ++i) sum += cross(corner[i] - corner[0], corner[i + 1] - corner[0]);
+    return 0.5 * sum;
+}
+
+/// The hull, counter-clockwise; false if it has too many corners.
+bool Uncovered::Cloud::outline(Piece& piece) {
+    std::sort(point, point + count,
+              [](const glm::dvec2& a, const glm::dvec2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+    piece.count = 0;
+    if (count == 0) return true;
+    glm::dvec2 hull[2 * kMostOfPiece + 2];
+    uint32_t made = 0, least = 2;
+    const auto add = [&](const glm::dvec2& p) {
+        while (made >= least && cross(hull[made - 1] - hull[made - 2], p - hull[made - 2]) <= 0) --made;
+        if (made == std::size(hull)) return false;
+        hull[made++] = p;
+        return true;
+    };
+    for (uint32_t i = 0; i < count; ++i)
+        if (!add(point[i])) return false;
+    least = made + 1;
+    for (uint32_t i = count - 1; i-- > 0;)
+        if (!add(point[i])) return false;
+    if (made > 1) --made;
+    if (made > kMostOfPiece) return false;
+    std::copy(hull, hull + made, piece.corner);
+    piece.count = made;
+    return true;
+}
+
+/// Parts a piece at a line: `within` where dot(line, (u, v, 1)) >= 0. Each may be empty.
+/// @returns false if one of them has too many corners
+bool Uncovered::split(const Piece& from, const glm::dvec3& line, Piece& within, Piece& outside) {
+    within.count = outside.count = 0;
+    double height[kMostOfPiece];
+    for (uint32_t i = 0; i < from.count; ++i)
+        height[i] = line.x * from.corner[i].x + line.y * from.corner[i].y + line.z;
+    for (uint32_t i = 0; i < from.count; ++i)
+        if (std::isnan(height[i])) return false;
+    for (uint32_t i = 0; i < from.count; ++i) {
+        const uint32_t next = i + 1 == from.count ? 0 : i + 1;
+        if (within.count + 2 > kMostOfPiece || outside.count + 2 > kMostOfPiece) return false;
+        if (height[i] >= 0) within.corner[within.count++] = from.corner[i];
+        if (height[i] < 0) outside.corner[outside.count++] = from.corner[i];
+        if ((height[i] >= 0) == (height[next] >= 0)) continue;
+        const double t = height[i] / (height[i] - height[next]);
+        const glm::dvec2 at = from.corner[i] + t * (from.corner[next] - from.corner[i]);
+        within.corner[within.count++] = at;
+        outside.corner[outside.count++] = at;
+    }
+    return true;
+}
+
+bool Uncovered::push(const Piece& piece) {
+    if (piece.count == 0) return true;
+    if (next_count_ == kMostPieces) return false;
+    next_[next_count_++] = piece;
+    return true;
+}
+
+bool Uncovered::addPoint(Cloud& cloud, const glm::dvec3& q) const {
+    if (cloud.count == kMostPoints) return false;
+    const double w = glm::dot(frame_.w, q);
+    if (!(w > 1e-6 * sizeOf(q))) return false;
+    cloud.point[cloud.count++] = {glm::dot(frame_.x, q) / w, glm::dot(frame_.y, q) / w};
+    return true;
+}
+
+/// Leaves what of the body is not before the near plane.
+bool Uncovered::clipNear(const VolumeView& view, const glm::dvec3* corners, uint32_t count, bool box) {
+    double height[kMostCorners];
+    is_box_ = false;
+    bool all = true;
+    for (uint32_t i = 0; i < count; ++i) {
+        height[i] = glm::dot(glm::dvec3(view.near), corners[i]) + view.near.w + view.near_guard + error_;
+        all = all && height[i] >= 0;
+    }
+    body_count_ = 0;
+    for (uint32_t i = 0; i < count; ++i)
+        if (height[i] >= 0) body_[body_count_++] = corners[i];
+    if (all) {
+        is_box_ = box;
+        return true;
+    }
+    for (uint32_t i = 0; i < count; ++i)
+        for (uint32_t k = 0; k < count; ++k) {
+            if (!(height[i] >= 0 && height[k] < 0) || (box && !std::has_single_bit(i ^ k))) continue;
+            if (body_count_ == kMostPoints) return false;
+            body_[body_count_++] = corners[i] + height[i] / (height[i] - height[k]) * (corners[k] - corners[i]);
+        }
+    return true;
+}
+
+bool Uncovered::begin(const VolumeView& view, const ImageFrame& frame, const glm::dvec3* corners, uint32_t count,
+                      double error, bool box) {
+    frame_ = frame;
+    error_ = error;
+    piece_count_ = 0;
+    if (!frame.usable || count == 0 || count > kMostCorners || !clipNear(view, corners, count, box)) return false;
+    Cloud cloud;
+    nearest_ = 1e300;
+    farthest_ = reach_ = 0;
+    for (uint32_t i = 0; i < body_count_; ++i) {
+        if (!addPoint(cloud, body_[i])) return false;
+        const double w = glm::dot(frame.w, body_[i]);
+        nearest_ = std::min(nearest_, w);
+        farthest_ = std::max(farthest_, w);
+        reach_ = std::max(reach_, sizeOf(body_[i]));
+    }
+    // So far a corner may be elsewhere in the image, and twice that; and what rounding does to one far beside it.
+    const double scale = std::max(glm::length(frame.x), glm::length(frame.y));
+    double beside = scale * reach_ / nearest_;
+    for (uint32_t i = 0; i < cloud.count; ++i)
+        beside = std::max({beside, std::abs(cloud.point[i].x), std::abs(cloud.point[i].y)});
+    margin_ = kMargin + 4.0 * scale * error / nearest_ + 0x1p-48 * beside;
+    if (!(margin_ < kMostMargin)) return false;
+    Piece piece, rest;
+    if (!std::isfinite(reach_) || !cloud.outline(piece)) return false;
+    const double edge = 1.0 + margin_;
+    for (const glm::dvec3& side :
+         {glm::dvec3(1, 0, edge), glm::dvec3(-1, 0, edge), glm::dvec3(0, 1, edge), glm::dvec3(0, -1, edge)}) {
+        Piece within;
+        if (!split(piece, side, within, rest)) return false;
+        piece = within;
+    }
+    next_count_ = 0;
+    push(piece);
+    std::swap(pieces_[0], next_[0]);
+    piece_count_ = next_count_;
+    return true;
+}
+
+/// The image of what of the body is not above a plane.
+/// @returns false if it cannot be told
+bool Uncovered::cutOff(const glm::dvec4& plane, Piece& out) const {
+    double height[kMostPoints];
+    bool none = true;
+    for (uint32_t i = 0; i < body_count_; ++i) {
+        height[i] = glm::dot(glm::dvec3(plane), body_[i]) + plane.w;
+        none = none && height[i] > 0;
+    }
+    out.count = 0;
+    if (none) return true;
+    Cloud cloud;
+    for (uint32_t i = 0; i < body_count_; ++i) {
+        if (height[i] > 0) continue;
+        if (!addPoint(cloud, body_[i])) return false;
+        for (uint32_t k = 0; k < body_count_; ++k) {
+            if (height[k] <= 0 || (is_box_ && !std::has_single_bit(i ^ k))) continue;
+            if (!addPoint(cloud, body_[i] + height[i] / (height[i] - height[k]) * (body_[k] - body_[i]))) return false;
+        }
+    }
+    return cloud.outline(out);
+}
+
+/// How a piece lies to lines, and a bit for each that crosses it.
+Uncovered::Meets Uncovered::meets(const Piece& piece, const glm::dvec3* lines, uint32_t count, uint32_t& crossing) {
+    crossing = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        const glm::dvec3 line = lines[i];
+        bool some = false, all = true;
+        for (uint32_t k = 0; k < piece.count; ++k) {
+            const bool within = line.x * piece.corner[k].x + line.y * piece.corner[k].y + line.z >= 0;
+            some |= within;
+            all &= within;
+        }
+        if (!some) return Meets::kNot;
+        crossing |= uint32_t{!all} << i;
+    }
+    return crossing ? Meets::kPartly : Meets::kWhole;
+}
+
+/// What of a piece lies within lines; what lies outside of one is added to the next pieces.
+/// @returns null if there is no room
+const Uncovered::Piece* Uncovered::cutAlong(const Piece& piece, const glm::dvec3* lines, uint32_t crossing,
+                                            Piece* both) {
+    const Piece* left = &piece;
+    uint32_t at = 0;
+    for (; crossing && left->count > 0; crossing &= crossing - 1) {
+        Piece outside;
+        if (!split(*left, lines[std::countr_zero(crossing)], both[at], outside) || !push(outside)) return nullptr;
+        left = &both[at];
+        at = 1 - at;
+    }
+    return left;
+}
+
+/// Adds what lies before a face to the next pieces.
+bool Uncovered::keepBefore(const Piece& piece, const Piece& before) {
+    Piece both[2], outside;
+    both[0] = piece;
+    uint32_t at = 0;
+    for (uint32_t i = 0; i < before.count && both[at].count > 0; ++i) {
+        const glm::dvec2 a = before.corner[i], b = before.corner[(i + 1) % before.count];
+        const double length = glm::length(b - a);
+        if (!(length > 0)) continue;
+        const glm::dvec2 in = glm::dvec2(a.y - b.y, b.x - a.x) / length;
+        if (!split(both[at], {in, margin_ - glm::dot(in, a)}, both[1 - at], outside)) return false;
+        at = 1 - at;
+    }
+    return push(both[at]);
+}
+
+double Uncovered::remove(const Shadow& shadow, double least) {
+    glm::dvec3 lines[OccluderVolume::kMaxPlanes];
+    for (uint32_t i = 0; i < shadow.line_count; ++i) {
+        lines[i] = shadow.lines[i].line;
+        lines[i].z -= 2.0 * (shadow.lines[i].still + error_) / nearest_ + kMargin;
+    }
+    Piece cuts[Shadow::kMostFaces];
+    bool known = false;
+    double before = 0, after = 0;
+    next_count_ = 0;
+    for (uint32_t i = 0; i < piece_count_; ++i) {
+        const Piece& piece = pieces_[i];
+        uint32_t crossing = 0;
+        before += piece.area();
+        if (meets(piece, lines, shadow.line_count, crossing) == Meets::kNot) {
+            if (!push(piece)) return 0;
+            continue;
+        }
+        ++cuts_;
+        for (uint32_t face = 0; face < shadow.face_count && !known; ++face) {
+            const glm::dvec4& plane = shadow.faces[face];
+            const double slack = shadow.slack[face][0] + 2.0 * error_ + (shadow.slack[face][1] + 1e-12) * reach_;
+            if (!cutOff({glm::dvec3(plane), plane.w - slack - 1e-12 * std::abs(plane.w)}, cuts[face])) return 0;
+        }
+        known = true;
+        const uint32_t kept = next_count_;
+        Piece both[2];
+        const Piece* const within = cutAlong(piece, lines, crossing, both);
+        if (!within) return 0;
+        if (within->count == 0) {  // it misses the piece after all
+            next_count_ = kept;
+            if (!push(piece)) return 0;
+            continue;
+        }
+        for (uint32_t face = 0; face < shadow.face_count; ++face)
+            if (cuts[face].count > 0 && !keepBefore(*within, cuts[face])) return 0;
+    }
+    if (!known) return 0;
+    for (uint32_t i = 0; i < next_count_; ++i) after += next_[i].area();
+    if (next_count_ > 0 && !(before - after > least * before)) return 0;
+    for (uint32_t i = 0; i < next_count_; ++i) pieces_[i] = next_[i];
+    piece_count_ = next_count_;
+    return piece_count_ == 0 ? 1.0 : 1.0 - after / before;
+}
+
+const Uncovered::Piece& Uncovered::largest() const {
+    uint32_t at = 0;
+    double most = -1;
+    for (uint32_t i = 0; i < piece_count_; ++i)
+        if (const double area = pieces_[i].area(); area > most) most = area, at = i;
+    return pieces_[at];
+}
+
+glm::dvec3 Uncovered::direction() const {
+    const Piece& piece = largest();
+    glm::dvec2 middle(0.0);
+    for (uint32_t i = 0; i < piece.count; ++i) middle += piece.corner[i];
+    middle /= piece.count;
+    return frame_.back * glm::dvec3(middle, 1.0);
+}
+
+bool Uncovered::besideSlit(glm::dvec3 (&directions)[2]) const {
+    constexpr double kNarrow = 1e-3, kWidest = 1e-4;  // of its length; of the image's half width
+    const Piece& piece = largest();
+    glm::dvec2 along(0.0), middle(0.0);
+    for (uint32_t i = 0; i < piece.count; ++i) {
+        const glm::dvec2 side = piece.corner[(i + 1) % piece.count] - piece.corner[i];
+        if (glm::dot(side, side) > glm::dot(along, along)) along = side;
+        middle += piece.corner[i] / static_cast<double>(piece.count);
+    }
+    const double length = glm::length(along), width = piece.area() / length;
+    if (!(width < kNarrow * length) || !(width < kWidest)) return false;
+    const glm::dvec2 across = glm::dvec2(-along.y, along.x) / length * (4 * width + 1e-8);
+    for (int i = 0; i < 2; ++i)
+        directions[i] = frame_.back * glm::dvec3(i == 0 ? middle + across : middle - across, 1.0);
+    return true;
+}
+
+}  // namespace sightline

@@ -1,0 +1,199 @@
+// The certificates of a query: which parts of which objects hid each node and each object, and when to rest on them.
+// SPDX-License-Identifier: MIT
+//
+// Satyan Coorg, Seth Teller. Temporally Coherent Conservative Visibility. 1996.
+// Satyan Coorg, Seth Teller. Real-Time Occlusion Culling for Models with Large Occluders. 1997.
+// Tom Hudson, Dinesh Manocha, Jonathan Cohen, Ming Lin, Kenneth Hoff, Hansong Zhang. Accelerated Occlusion Culling Using
+// Shadow Frusta. 1997.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "sightline/cull/occluder_volumes.h"
+#include "sightline/cull/proofs/image_frame.h"
+#include "sightline/cull/proofs/uncovered.h"
+#include "sightline/frame/frame.h"
+#include "sightline/frame/pending.h"
+#include "sightline/frame/stats.h"
+
+namespace sightline::detail {
+
+/// A part of an object that hides others, as VolumeParts::part() counts them.
+struct HidingPart {
+    static constexpr uint32_t kNone = ~0u;
+    ObjectId object;
+    uint32_t part = 0;
+    ObjectId other;  ///< of a seam: a face of this object meets a face of that one
+    uint32_t other_part = kNone;
+    bool operator==(const HidingPart&) const = default;
+};
+
+/// Parts that together hid a node or an object.
+struct Certificate {
+    static constexpr uint32_t kMost = 12;
+    uint32_t count = 0;
+    uint32_t hiders[kMost];  ///< of ProofMemory
+
+    std::span<const uint32_t> all() const { return {hiders, count}; }
+};
+
+/// What one traversal remembers of who hid what, and what it has made for the view at hand.
+///
+/// Nothing here is trusted. A certificate is a guess whom to ask first: who hides, where it stands, and what it hides is
+/// found anew for each view. So it does no harm where a node or a place holds something else by now.
+class ProofMemory {
+public:
+    /// How an answer finds what is hidden.
+    enum class Way : uint8_t {
+        kTiles,         ///< by drawing
+        kTilesAndSeek,  ///< the same; then certificates are sought for what is hidden
+        kProofs,        ///< by certificates alone: nothing is drawn
+    };
+
+    explicit ProofMemory(Memory* memory)
+        : of_node_(memory),
+          of_place_(memory),
+          certificates_(memory),
+          free_(memory),
+          hiders_(memory),
+          number_(memory),
+          shadows_(memory),
+          nodes_(memory),
+          faces_(memory),
+          places_(memory),
+          hidden(memory),
+          culled(memory) {}
+
+    /// Takes up a view, and decides how it is answered.
+    void begin(const Frame& frame);
+    Way way() const { return way_; }
+    /// No certificate is sought any more for something in this view, which is kept. If that happens too often, it is
+    /// answered by drawing.
+    void passOver(size_t visible) {
+        if (++passed_over_ > 16 + visible / 8) way_ = Way::kTilesAndSeek;
+    }
+    /// What was found to be hidden by drawing, where certificates are sought.
+    struct Hidden {
+        Box3f box;
+        uint32_t index = 0;
+        uint32_t objects = 0;
+        Pending::Kind kind = Pending::Kind::kNode;
+    };
+
+    /// What this answer culled, and by which certificate.
+    struct Culled {
+        PlaceRange places;
+        Certificate certificate;
+    };
+
+    /// Whether the certificate of a node or an object holds; what does not hold is forgotten.
+    bool holds(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box);
+    bool hasCertificate(Pending::Kind kind, uint32_t index) const;
+    /// Names who may hide a node or an object together, from wherever that is known; of more than Certificate::kMost the
+    /// first.
+    void propose(const Frame& frame, Pending::Kind kind, uint32_t index, std::span<const HidingPart> parts);
+    /// Looks for a certificate: by the parts that hid something just now, then by rays.
+    bool seek(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box);
+    /// Looks for certificates for all that is `hidden`, within a budget, and decides how the next view is answered.
+    void seekAll(const Frame& frame, size_t visible);
+    /// A view was answered: compares the work of both ways, and decides how the next one is.
+    void noteAnswered(const QueryStats& stats);
+
+    /// The parts whose shadows hid a node or an object by the last certificate that held or was found; good until the
+    /// next call.
+    Certificate certificateOf(Pending::Kind kind, uint32_t index) const;
+    HidingPart hider(uint32_t number) const { return hiders_[number].part; }
+
+    uint32_t sought = 0;  ///< for this view
+    uint32_t found = 0;
+    uint64_t rays = 0;
+    uint64_t cuts() const { return rest_.cuts() - cuts_before_; }
+
+private:
+    static constexpr uint32_t kNone = ~0u;
+    static constexpr uint32_t kPlaces = 256;  ///< objects whose place in the view is remembered
+    static constexpr uint32_t kLast = 4;
+    static constexpr uint32_t kFailed = 1u << 31;  ///< with the answer in which nothing was found
+
+    struct Hider {
+        HidingPart part;
+        uint32_t answer = 0;  ///< for which `shadow` was made
+        uint32_t shadow = kNone;
+    };
+    /// An object that may hide, as this view has it.
+    struct Place {
+        uint32_t answer = 0, place = kNone;
+        bool hides = false;
+        const HeldOccluder* occluder = nullptr;
+        VolumePlace at;
+    };
+    struct Hit {
+        double t;
+        uint32_t place, part;
+    };
+
+    Array<uint32_t>& numbers(Pending::Kind kind) { return kind == Pending::Kind::kNode ? of_node_ : of_place_; }
+    const Array<uint32_t>& numbers(Pending::Kind kind) const {
+        return kind == Pending::Kind::kNode ? of_node_ : of_place_;
+    }
+    void forget(Pending::Kind kind, uint32_t index);
+    void makeRoom(const Frame& frame, Pending::Kind kind, uint32_t index);
+    bool noteFailed(const Frame& frame, Pending::Kind kind, uint32_t index);
+    bool hasFailed(Pending::Kind kind, uint32_t index) const;
+    void write(const Frame& frame, Pending::Kind kind, uint32_t index, const Certificate& certificate);
+    uint32_t numberOf(const HidingPart& part);
+    const Shadow* shadowOf(const Frame& frame, uint32_t hider);
+    bool makeVolumeOf(const Frame& frame, const HidingPart& part, OccluderVolume& volume);
+    bool take(const Frame& frame, const HidingPart& part, Certificate& certificate);
+    bool takeHit(const Frame& frame, double enters, Certificate& certificate);
+    bool takeSeam(const Frame& frame, Certificate& certificate);
+    const Place& placeAt(const Frame& frame, uint32_t place);
+    uint32_t cornersOf(const Frame& frame, uint32_t place, glm::dvec3* corners, double& error, bool& box) const;
+    bool takeUp(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box);
+    bool isCovered(const Frame& frame, const Certificate& certificate, const Box3f& box, Pending::Kind kind,
+                   uint32_t index);
+    uint32_t seekBelow(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box);
+    void rest();
+    void shoot(const Frame& frame, const glm::dvec3& direction, double far);
+    void meet(const Frame& frame, uint32_t place, const glm::dvec3& direction, double far);
+    void clear();
+
+    Array<uint32_t> of_node_, of_place_;  ///< 1 + index into certificates_, or kFailed; 0: none
+    Array<Certificate> certificates_;
+    Array<uint32_t> free_;
+    Array<Hider> hiders_;
+    Array<uint32_t> number_;  ///< a hash table of 1 + index into hiders_
+    Array<Shadow> shadows_;
+    Array<uint32_t> nodes_;
+    Array<uint32_t> faces_;
+    Array<Place> places_;  ///< [size: kPlaces]
+    Hit hits_[16];
+    uint32_t hit_count_ = 0;
+    uint32_t last_[kLast] = {kNone, kNone, kNone, kNone};
+    Certificate latest_;  ///< that was found
+    Uncovered rest_;
+    VolumeView view_;
+    ImageFrame image_;
+
+    Way way_ = Way::kTiles;
+    bool possible_ = false;     ///< for this view
+    uint64_t cuts_before_ = 0;  ///< Uncovered::cuts() at the start of the answer
+    uint32_t passed_over_ = 0;
+    bool spent_ = false;  ///< certificates were not sought for all
+    uint32_t answer_ = 0;
+    uint32_t answers_ = 0;     ///< by certificates, since something was drawn
+    uint32_t rest_until_ = 0;  ///< the answer up to which certificates are not sought: they did not do
+    uint32_t rest_for_ = 0;
+    uint32_t drawn_ = 0;                      ///< views in turn for which certificates were not sought to the end
+    uint64_t drawn_visible_ = 0;              ///< of the last answer that was drawn
+    double drawn_work_ = 0, proof_work_ = 0;  ///< of an answer, about  [microseconds]
+    bool next_by_proofs_ = false;
+    uint32_t layers_ = 0, stages_ = 0;
+
+public:
+    Array<Hidden> hidden;
+    Array<Culled> culled;
+};
+
+}  // namespace sightline::detail

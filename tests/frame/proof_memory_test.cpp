@@ -1,0 +1,266 @@
+// Certificates in a query: what they cull is hidden, whatever moves meanwhile, and whoever proposed them.
+// SPDX-License-Identifier: MIT
+#include "sightline/frame/proof_memory.h"
+
+#include <gtest/gtest.h>
+
+#include "sightline/query/explain/explain.h"
+#include "tests/support/made_world.h"
+#include "tests/support/targets.h"
+
+namespace sightline::test {
+using namespace studies;
+namespace {
+
+using detail::Certificate;
+using detail::Pending;
+using detail::ProofMemory;
+
+/// Rooms of 6 x 3 x 6 units with doorways, and things in them. Walls are boxes that meet face to face.
+struct Rooms : MadeWorld {
+    static constexpr int kSide = 4;
+    std::vector<size_t> walls, things;
+
+    explicit Rooms(uint64_t seed) {
+        Random random(seed);
+        shapes = true;
+        const auto wall = [&](double x0, double z0, double x1, double z1, double low, double high) {
+            walls.push_back(transforms.size());
+            add({x0, low, z0}, {x1, high, z1});
+        };
+        add({0, -0.5, 0}, {6 * kSide, 0, 6 * kSide});
+        add({0, 3, 0}, {6 * kSide, 3.5, 6 * kSide});
+        for (int line = 0; line <= kSide; ++line)
+            for (int room = 0; room < kSide; ++room)
+                for (const bool along_x : {false, true}) {
+                    const double at = 6 * line - 0.125, from = 6 * room, door = from + 1 + double(random.below(4));
+                    const auto piece = [&](double a, double b, double low, double high) {
+                        if (along_x) wall(a, at, b, at + 0.25, low, high);
+                        else wall(at, a, at + 0.25, b, low, high);
+                    };
+                    if (line == 0 || line == kSide || random.below(3) == 0) {
+                        piece(from, from + 6, 0, 3);
+                        continue;
+                    }
+                    piece(from, door, 0, 3);
+                    piece(door + 1, from + 6, 0, 3);
+                    piece(door, door + 1, 2, 3);
+                }
+        for (int i = 0; i < 400; ++i) {
+            const glm::dvec3 p(random.uniform(0.3, 6 * kSide - 1), random.uniform(0, 2),
+                               random.uniform(0.3, 6 * kSide - 1));
+            things.push_back(transforms.size());
+            add(p, p + glm::dvec3(random.uniform(0.1, 0.7), random.uniform(0.1, 0.9), random.uniform(0.1, 0.7)),
+                random.below(2) == 0, random.below(8) == 0 ? 2 : 1);
+        }
+    }
+    void moveTo(size_t object, const glm::dvec3& by) {
+        transforms[object][3] += glm::dvec4(by, 0);
+        world.move(ids[object], transforms[object]);
+    }
+};
+
+struct Steps {
+    glm::dvec3 eye, step;
+    double turn = 0, speed = 0;
+
+    explicit Steps(Random& random) { jump(random); }
+    void jump(Random& random) {
+        eye = {random.uniform(0.5, 6 * Rooms::kSide - 0.5), random.uniform(0.4, 2.4),
+               random.uniform(0.5, 6 * Rooms::kSide - 0.5)};
+        step = glm::dvec3(random.uniform(-0.03, 0.03), 0, random.uniform(-0.03, 0.03));
+        turn = random.uniform(0, 6.28);
+        speed = random.uniform(-0.02, 0.02);
+    }
+    View next(double degrees = 70, double near = 0.05) {
+        eye += step;
+        turn += speed;
+        return viewFrom(eye, {std::cos(turn), -0.1, std::sin(turn)}, {degrees, 320, 180, near});
+    }
+};
+
+TEST(Proofs, KeepWhatIsSeenInRoomsWhoseWallsMove) {
+    uint64_t proved = 0, drawn = 0, frames = 0, kept = 0, kept_alone = 0;
+    for (uint64_t seed = 1; seed <= 6; ++seed) {
+        Rooms rooms(seed);
+        Random random(seed);
+        Steps steps(random);
+        Query query;
+        for (int frame = 0; frame < 160; ++frame) {
+            if (frame % 40 == 39) steps.jump(random);
+            if (frame % 10 == 9) {
+                rooms.moveTo(rooms.walls[random.below(rooms.walls.size())],
+                             {random.uniform(-1, 1), 0, random.uniform(-1, 1)});
+                rooms.moveTo(rooms.things[random.below(rooms.things.size())],
+                             {random.uniform(-2, 2), 0, random.uniform(-2, 2)});
+            }
+            View view = steps.next(frame / 20 % 3 == 2 ? 140 : 70, frame / 16 % 4 == 3 ? 0.8 : 0.05);
+            if (frame % 50 > 44) view.layers = 1;
+            const Snapshot now = rooms.world.commit();
+            const std::string what = "seed " + std::to_string(seed) + " frame " + std::to_string(frame);
+            VisibleSet set;
+            if (view.layers == ~0u) set = expectSound(rooms, query, now, view, {}, what, 2);
+            else set = query.visible(now, view, {});
+            proved += set.stats.proved;
+            drawn += set.stats.occluder_triangles > 0;
+            ++frames;
+            kept += set.objects.size();
+            kept_alone += Query().visible(now, view, {.stateless = true}).objects.size();
+        }
+    }
+    EXPECT_GT(proved, 10 * frames);
+    EXPECT_LT(4 * drawn, 3 * frames);
+    EXPECT_LT(100 * kept, 115 * kept_alone);
+    RecordProperty("drawn", std::to_string(drawn) + " of " + std::to_string(frames));
+    RecordProperty("kept", std::to_string(kept) + " beside " + std::to_string(kept_alone));
+}
+
+/// Whatever a certificate names: nothing is culled by it that is seen.
+TEST(Proofs, AreNotBelievedWhatTheyDoNotShow) {
+    uint64_t tried = 0, held = 0;
+    for (uint64_t seed = 1; seed <= 4; ++seed) {
+        Rooms rooms(seed);
+        const Snapshot now = rooms.world.commit();
+        Random random(seed);
+        Steps steps(random);
+        for (int frame = 0; frame < 6; ++frame) {
+            steps.jump(random);
+            const View view = steps.next();
+            const std::vector<uint8_t> seen = rooms.seen(view, 3);
+            detail::Frame of;
+            of.begin(now, view, {});
+            ProofMemory memory(defaultMemory());
+            memory.begin(of);
+            const detail::SnapshotState& state = now.state();
+            for (int i = 0; i < 40'000; ++i) {
+                const size_t object = random.below(rooms.transforms.size());
+                const uint32_t place = state.placeOf(rooms.ids[object]);
+                std::vector<detail::HidingPart> proposal;
+                for (uint64_t more = random.below(4); more > 0; --more) {
+                    detail::HidingPart part{rooms.ids[random.below(rooms.ids.size())], uint32_t(random.below(12)), {}};
+                    if (random.below(4) == 0) {
+                        part.other = rooms.ids[random.below(rooms.ids.size())];
+                        part.other_part = uint32_t(random.below(12));
+                    }
+                    if (random.below(50) == 0) part.object.generation += 1;
+                    proposal.push_back(part);
+                }
+                const uint32_t slot = state.bvh.slot[state.bvh.order[place]];
+                const Box3f box =
+                    boxOf(eyeBoxes(state.bvh.nodes[slot / 8], state.bvh.origin - of.frustum.eye), int(slot % 8));
+                memory.propose(of, Pending::Kind::kObject, place, proposal);
+                const bool holds = memory.holds(of, Pending::Kind::kObject, place, box);
+                EXPECT_FALSE(holds && seen[object]) << "seed " << seed << " frame " << frame << " object " << object;
+                ++tried;
+                held += holds;
+            }
+        }
+    }
+    EXPECT_GT(held, tried / 1000);
+    RecordProperty("held", std::to_string(held) + " of " + std::to_string(tried));
+}
+
+TEST(Proofs, AreTheSameAgainAndWithEveryInstructionSet) {
+    std::vector<std::vector<uint64_t>> first;
+    forEachTarget([&](const std::string& target) {
+        Rooms rooms(3);
+        Random random(3);
+        Steps steps(random);
+        Query query;
+        const Snapshot now = rooms.world.commit();
+        for (size_t frame = 0; frame < 40; ++frame) {
+            const VisibleSet set = query.visible(now, steps.next(), {});
+            std::vector<uint64_t> keys = keysOf(set);
+            keys.push_back(set.stats.proved);
+            if (frame >= first.size()) first.push_back(keys);
+            EXPECT_EQ(keys, first[frame]) << target << ", frame " << frame;
+        }
+    });
+}
+
+TEST(Proofs, OfNoWorldAndOfNoUsableViewAreNone) {
+    Rooms rooms(1);
+    Random random(1);
+    Steps steps(random);
+    const Snapshot now = rooms.world.commit();
+    Query query;
+    EXPECT_TRUE(query.visible(Snapshot(), steps.next()).objects.empty());
+    for (int frame = 0; frame < 12; ++frame) {
+        query.visible(now, steps.next());
+        if (frame % 4 == 1) EXPECT_TRUE(query.visible(Snapshot(), steps.next()).objects.empty());
+        View view = steps.next();
+        view.projection[0][0] = NAN;
+        if (frame % 4 == 2) EXPECT_EQ(query.visible(now, view).objects.size(), rooms.ids.size());
+    }
+}
+
+/// Without the stage of the frustum what is beside the image is kept.
+TEST(Proofs, KeepWhatIsOutsideIfNobodyAsksTheFrustum) {
+    Rooms rooms(1);
+    Random random(1);
+    Steps steps(random);
+    const Snapshot now = rooms.world.commit();
+    const QuerySettings occlusion{.stages = stageBit(Stage::kOcclusion)};
+    Query query;
+    for (int frame = 0; frame < 40; ++frame) {
+        const View view = steps.next();
+        const std::set<uint64_t> kept = keySetOf(query.visible(now, view, occlusion));
+        QuerySettings stateless = occlusion;
+        stateless.stateless = true;
+        for (const uint64_t key : keysOf(Query().visible(now, view, stateless))) EXPECT_TRUE(kept.count(key)) << key;
+    }
+}
+
+TEST(Proofs, AreToldOfByExplanations) {
+    Rooms rooms(2);
+    Random random(2);
+    Steps steps(random);
+    Query query;
+    const Snapshot now = rooms.world.commit();
+    uint64_t told = 0;
+    for (int frame = 0; frame < 60; ++frame) {
+        const View view = steps.next();
+        const VisibleSet set = query.visible(now, view, {});
+        if (set.stats.proved == 0) continue;
+        const std::vector<uint8_t> kept = keptOf(set, rooms.ids.size()), reasons = reasonsOf(query, now);
+        for (size_t object = 0; object < rooms.ids.size(); object += 7) {
+            const Explanation why = query.explain(now, view, rooms.ids[object]);
+            if (kept[object] || reasons[object] != 1 + static_cast<int>(Stage::kOcclusion)) {
+                EXPECT_TRUE(why.certificate.empty() && (why.verdict == Verdict::kVisible) == (kept[object] != 0))
+                    << object;
+                continue;
+            }
+            EXPECT_EQ(why.verdict, Verdict::kOccluded) << object;
+            for (const Visible& hider : why.certificate) {
+                EXPECT_TRUE(rooms.hides[hider.key]);
+                ++told;
+            }
+        }
+    }
+    EXPECT_GT(told, 100u);
+}
+
+TEST(Proofs, AreOffIfNobodyWantsThemOrPartsWereNotPrepared) {
+    for (const bool prepared : {true, false}) {
+        MadeWorld made;
+        if (!prepared) made.world = World::create({.volumes = false});
+        made.cube = made.world.addOccluder(prepareOccluder(made.mesh.view()));
+        made.add({-6, -6, -10}, {6, 6, -9});
+        for (int i = 0; i < 40; ++i) made.add({i % 8 - 4.0, i / 8 - 2.0, -20}, {i % 8 - 3.7, i / 8 - 1.7, -19.5});
+        const Snapshot now = made.world.commit();
+        for (const QuerySettings& settings :
+             {QuerySettings{}, QuerySettings{.proofs = false}, QuerySettings{.stateless = true}}) {
+            Query query;
+            uint64_t proved = 0;
+            for (int frame = 0; frame < 10; ++frame) {
+                const VisibleSet set = query.visible(now, viewFrom({0.01 * frame, 0, 0}, {0, 0, -1}), settings);
+                EXPECT_EQ(set.objects.size(), 1u);
+                proved += set.stats.proved;
+            }
+            EXPECT_EQ(proved > 0, prepared && settings.proofs && !settings.stateless);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace sightline::test
