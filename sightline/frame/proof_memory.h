@@ -77,7 +77,6 @@ public:
     struct Hidden {
         Box3f box;
         uint32_t index = 0;
-        uint32_t objects = 0;
         Pending::Kind kind = Pending::Kind::kNode;
     };
 

@@ -124,7 +124,7 @@ private:
     /// Where certificates are sought for what is hidden.
     void noteHidden(const Pending& entry) {
         if (state_.proofs.way() != ProofMemory::Way::kTilesAndSeek) return;
-        state_.proofs.hidden.push_back({entry.box, entry.index, entry.below.count, entry.kind});
+        state_.proofs.hidden.push_back({entry.box, entry.index, entry.kind});
     }
 
     Group groupOf(uint32_t index, uint32_t planes) {

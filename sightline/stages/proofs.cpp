@@ -3,10 +3,8 @@
 #include "sightline/frame/proof_memory.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
-#include "sightline/math/stretch.h"
 #include "sightline/stages/occluder_form.h"
 #include "sightline/stages/pipeline.h"
 #include "sightline/tree/descend.h"
@@ -450,8 +448,8 @@ bool ProofMemory::takeHit(const Frame& frame, double enters, Certificate& certif
         if (hit.t > enters && ++tries > kMostTries) return false;
         const ObjectId id = idAt(frame, hit.place);
         const uint32_t body = placeAt(frame, hit.place).at.parts->part(hit.part).body;
-        if (body != VolumePart::kNone && take(frame, {id, body}, certificate)) return true;
-        if (take(frame, {id, hit.part}, certificate)) return true;
+        if (body != VolumePart::kNone && take(frame, {id, body, {}}, certificate)) return true;
+        if (take(frame, {id, hit.part, {}}, certificate)) return true;
     }
     return false;
 }
