@@ -51,6 +51,8 @@ public:
         kProofs,        ///< by certificates alone: nothing is drawn
     };
 
+    static constexpr uint32_t kMostSought = 32;  ///< for one view
+
     explicit ProofMemory(Memory* memory)
         : of_node_(memory),
           of_place_(memory),

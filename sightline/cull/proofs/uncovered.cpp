@@ -37,6 +37,22 @@ bool makeShadow(const ImageFrame& frame, Shadow& shadow) {
     return true;
 }
 
+bool Shadow::holds(const Box3f& box) const {
+    double reach = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        reach += std::max(std::abs(static_cast<double>(box.min[axis])), std::abs(static_cast<double>(box.max[axis])));
+    for (uint32_t plane = 0; plane < volume.planes; ++plane) {
+        double lowest = volume.distance[plane];
+        for (int axis = 0; axis < 3; ++axis) {
+            const double n = volume.normal[plane][axis];
+            lowest += n * static_cast<double>(n > 0 ? box.min[axis] : box.max[axis]);
+        }
+        const double still = volume.slack[plane][0], turn = volume.slack[plane][1];
+        if (!(lowest > still + turn * reach)) return false;
+    }
+    return true;
+}
+
 double Uncovered::Piece::area() const {
     double sum = 0;
     for (uint32_t i = 1; i + 1 < count; ++i) sum += cross(corner[i] - corner[0], corner[i + 1] - corner[0]);

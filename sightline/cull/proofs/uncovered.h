@@ -27,6 +27,9 @@ struct Shadow {
     Line lines[OccluderVolume::kMaxPlanes];  ///< planes through the eye
     glm::dvec4 faces[kMostFaces];            ///< the others
     double slack[kMostFaces][2];
+
+    /// Whether a box lies wholly in the volume, as testVolume() has it.
+    bool holds(const Box3f& box) const;
 };
 /// @returns false if it has too many faces
 bool makeShadow(const ImageFrame& frame, Shadow& shadow);

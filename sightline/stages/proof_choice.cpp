@@ -1,0 +1,137 @@
+// Whether an answer rests on certificates: what they miss, and what they cost beside drawing.
+// SPDX-License-Identifier: MIT
+#include "sightline/frame/proof_memory.h"
+
+#include <algorithm>
+
+#include "sightline/tree/descend.h"
+
+namespace sightline::detail {
+namespace {
+
+constexpr uint32_t kMostAnswers = 128;  // by certificates alone, one after the other
+constexpr uint32_t kShortRest = 64, kLongRest = 512;
+constexpr double kMostWork = 0.8;    // of that of drawing
+constexpr uint32_t kFewAnswers = 4;  // that are given before the work is compared
+constexpr uint64_t kMostCuts = 600;  // polygons cut for one view that is drawn
+constexpr uint32_t kMostDrawn = 16;  // views, one after the other, for which certificates are sought
+constexpr double kMostLoose = 0.12;  // of what is visible: that certificates may keep although it is hidden
+constexpr size_t kMostHiders = 1u << 16;
+
+}  // namespace
+
+void ProofMemory::begin(const Frame& frame) {
+    if (++answer_ == 0) {  // numbers of answers begin anew
+        clear();
+        places_.clear();
+        answer_ = 1;
+    }
+    shadows_.clear();
+    hidden.clear();
+    culled.clear();
+    cuts_before_ = rest_.cuts();
+    sought = found = passed_over_ = 0;
+    rays = 0;
+    way_ = Way::kTiles;
+    const QuerySettings& settings = frame.settings;
+    possible_ = settings.proofs && !settings.stateless && settings.bins <= 1 && frame.usable && frame.world &&
+                !frame.world->bvh.nodes.empty() && frame.uses(Stage::kOcclusion) && frame.uses(Stage::kFrustum);
+    // Clusters are held against what was drawn.
+    if (possible_ && frame.uses(Stage::kClusters) && frame.world->clusters.size() > 1) possible_ = false;
+    if (!possible_) return;
+    view_ = makeVolumeView(frame.view, frame.screen, frame.world->bvh.origin - frame.frustum.eye);
+    image_ = makeImageFrame(frame.screen);
+    possible_ = view_.usable && image_.usable;
+    if (!possible_) return;
+    if (hiders_.size() > kMostHiders) clear();
+    if (places_.empty()) places_.resize(kPlaces);
+    if (frame.view.layers != layers_ || frame.stages != stages_) next_by_proofs_ = false;
+    layers_ = frame.view.layers;
+    stages_ = frame.stages;
+    if (next_by_proofs_ && answers_ < kMostAnswers) {
+        way_ = Way::kProofs;
+        return;
+    }
+    answers_ = 0;
+    next_by_proofs_ = false;
+    if (static_cast<int32_t>(answer_ - rest_until_) >= 0) way_ = Way::kTilesAndSeek;
+}
+
+bool ProofMemory::hasFailed(Pending::Kind kind, uint32_t index) const {
+    const Array<uint32_t>& of = numbers(kind);
+    return index < of.size() && (of[index] & kFailed) && ((answer_ - of[index]) & ~kFailed) < kMostAnswers;
+}
+
+/// Looks for certificates for a node or an object that is hidden, or else for what is below it.
+/// @returns how many objects are left without
+uint32_t ProofMemory::seekBelow(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box) {
+    if (cuts() >= kMostCuts) {
+        spent_ = true;
+        return 0;
+    }
+    if (holds(frame, kind, index, box)) return 0;
+    if (!hasFailed(kind, index)) {
+        if (sought >= kMostSought) {
+            spent_ = true;
+            return 0;
+        }
+        if (seek(frame, kind, index, box)) return 0;
+    }
+    if (kind == Pending::Kind::kObject) return 1;
+    const PlacedBvh& bvh = frame.world->bvh;
+    const BvhNode& node = bvh.nodes[index];
+    const EyeBoxes boxes = eyeBoxes(node, bvh.origin - frame.frustum.eye);
+    uint32_t slots = frame.candidateSlots(node) & usedSlots(node);
+    if (frame.uses(Stage::kFrustum)) slots &= ~testFrustum(frame.frustum, boxes, allPlanes(frame) & 63).outside;
+    uint32_t left = 0;
+    forEachSlot(slots, [&](int slot) {
+        const uint32_t child = node.child[slot];
+        const bool leaf = child & BvhNode::kLeaf;
+        if (leaf && (!frame.isInLayers(child & ~BvhNode::kLeaf) || frame.sizes.drops(child & ~BvhNode::kLeaf))) return;
+        left += seekBelow(frame, leaf ? Pending::Kind::kObject : Pending::Kind::kNode, child & ~BvhNode::kLeaf,
+                          boxOf(boxes, slot));
+    });
+    return left;
+}
+
+void ProofMemory::seekAll(const Frame& frame, size_t visible) {
+    uint64_t loose = 0;
+    spent_ = false;
+    for (const Hidden& one : hidden) loose += seekBelow(frame, one.kind, one.index, one.box);
+    if (spent_) {
+        if (++drawn_ >= kMostDrawn) rest();
+        return;
+    }
+    if (static_cast<double>(loose) <= kMostLoose * static_cast<double>(visible) + 1) next_by_proofs_ = true, drawn_ = 0;
+    else rest();
+}
+
+/// Nobody seeks certificates for some answers, and for more if that did not do before.
+void ProofMemory::rest() {
+    next_by_proofs_ = false;
+    drawn_ = 0;
+    rest_for_ = std::clamp(2 * rest_for_, kShortRest, kLongRest);
+    rest_until_ = answer_ + rest_for_;
+}
+
+void ProofMemory::noteAnswered(const QueryStats& stats) {
+    const auto n = [](uint64_t count) { return static_cast<double>(count); };
+    // What each unit took on several scenes, about. Time itself must not decide: answers would differ.
+    if (way_ != Way::kProofs) {
+        const double work =
+            0.3 * n(stats.occluder_triangles) + 0.4 * n(stats.second_look_polygons) + 5 * n(stats.nodes_visited);
+        drawn_work_ += (work - drawn_work_) / (drawn_work_ > 0 ? 4 : 1);
+        drawn_visible_ = stats.visible;
+        return;
+    }
+    const double work =
+        0.7 * n(stats.proof_cuts) + 8 * n(stats.proof_rays) + n(stats.proved) + 3 * n(stats.nodes_visited);
+    // More is kept: it is seen, or not proved to be hidden. Drawing tells.
+    if (n(stats.visible) > (1 + kMostLoose) * n(drawn_visible_) + 3) next_by_proofs_ = false;
+    proof_work_ += (work - proof_work_) / (answers_ > 0 ? 8 : 1);
+    if (++answers_ == kShortRest) rest_for_ = 0;
+    // The first of them have much to find.
+    if (answers_ >= kFewAnswers && proof_work_ > (answers_ < 4 * kFewAnswers ? 3 : kMostWork) * drawn_work_) rest();
+}
+
+}  // namespace sightline::detail
