@@ -33,6 +33,7 @@ struct HidingPart {
 struct Certificate {
     static constexpr uint32_t kMost = 12;
     uint32_t count = 0;
+    bool closely = false;    ///< of an object: polygon by polygon
     uint32_t hiders[kMost];  ///< of ProofMemory
 
     std::span<const uint32_t> all() const { return {hiders, count}; }
@@ -56,6 +57,8 @@ public:
     explicit ProofMemory(Memory* memory)
         : of_node_(memory),
           of_place_(memory),
+          seen_node_(memory),
+          seen_place_(memory),
           certificates_(memory),
           free_(memory),
           hiders_(memory),
@@ -95,7 +98,8 @@ public:
     /// first.
     void propose(const Frame& frame, Pending::Kind kind, uint32_t index, std::span<const HidingPart> parts);
     /// Looks for a certificate: by the parts that hid something just now, then by rays.
-    bool seek(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box);
+    /// @param closely  polygon by polygon, too: of what is surely hidden, or was hidden just now
+    bool seek(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, bool closely);
     /// Looks for certificates for all that is `hidden`, within a budget, and decides how the next view is answered.
     void seekAll(const Frame& frame, size_t visible);
     /// A view was answered: compares the work of both ways, and decides how the next one is.
@@ -110,12 +114,15 @@ public:
     uint32_t found = 0;
     uint64_t rays = 0;
     uint64_t cuts() const { return rest_.cuts() - cuts_before_; }
+    uint64_t polygons = 0;  ///< of occludees that were turned towards the eye or away from it
 
 private:
     static constexpr uint32_t kNone = ~0u;
     static constexpr uint32_t kPlaces = 256;  ///< objects whose place in the view is remembered
     static constexpr uint32_t kLast = 4;
-    static constexpr uint32_t kFailed = 1u << 31;  ///< with the answer in which nothing was found
+    static constexpr uint32_t kMostPolygons = 48;   ///< of an object that is one body
+    static constexpr uint32_t kMostClusters = 128;  ///< of an object; one of more is one body, by its box
+    static constexpr uint32_t kFailed = 1u << 31;   ///< with the answer in which nothing was found
 
     struct Hider {
         HidingPart part;
@@ -129,6 +136,25 @@ private:
         const HeldOccluder* occluder = nullptr;
         VolumePlace at;
     };
+    /// What of a node or an object is held against shadows at once.
+    struct Body {
+        enum Form : uint8_t {
+            kWhole,    ///< the box around all of it: for single shadows
+            kBox,      ///< the box around a cluster
+            kHull,     ///< of the polygons that may face the eye
+            kPolygon,  ///< one of these
+        };
+        uint32_t first = 0, end = 0;  ///< clusters of the object's shape
+        Form form = kHull;
+        uint32_t polygon = 0;
+    };
+    /// Its corners, relative to the eye.
+    struct Corners {
+        glm::dvec3 at[Uncovered::kMostCorners];
+        uint32_t count = 0;  ///< 0: nothing of it faces the eye
+        double error = 0;    ///< no corner lies elsewhere by more
+        bool box = true;     ///< they are those of a box
+    };
     struct Hit {
         double t;
         uint32_t place, part;
@@ -140,27 +166,39 @@ private:
     }
     void forget(Pending::Kind kind, uint32_t index);
     void makeRoom(const Frame& frame, Pending::Kind kind, uint32_t index);
-    bool noteFailed(const Frame& frame, Pending::Kind kind, uint32_t index);
+    Array<uint32_t>& seen(Pending::Kind kind) { return kind == Pending::Kind::kNode ? seen_node_ : seen_place_; }
+    bool isStillSeen(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box);
+    bool noteFailed(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box);
     bool hasFailed(Pending::Kind kind, uint32_t index) const;
     void write(const Frame& frame, Pending::Kind kind, uint32_t index, const Certificate& certificate);
     uint32_t numberOf(const HidingPart& part);
     const Shadow* shadowOf(const Frame& frame, uint32_t hider);
     bool makeVolumeOf(const Frame& frame, const HidingPart& part, OccluderVolume& volume);
     bool take(const Frame& frame, const HidingPart& part, Certificate& certificate);
+    double shareOf(const Frame& frame, uint32_t hider, const Certificate& certificate);
     bool takeHit(const Frame& frame, double enters, Certificate& certificate);
     bool takeSeam(const Frame& frame, Certificate& certificate);
     const Place& placeAt(const Frame& frame, uint32_t place);
-    uint32_t cornersOf(const Frame& frame, uint32_t place, glm::dvec3* corners, double& error, bool& box) const;
-    bool takeUp(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box);
-    bool isCovered(const Frame& frame, const Certificate& certificate, const Box3f& box, Pending::Kind kind,
-                   uint32_t index);
+    const Occluder* shapeAt(const Frame& frame, uint32_t place) const;
+    uint32_t clustersOf(const Frame& frame, Pending::Kind kind, uint32_t index) const;
+    template <class Try>
+    bool forEachBody(const Frame& frame, Pending::Kind kind, uint32_t index, bool closely, Try hides) const;
+    void takeUpObject(const Frame& frame, uint32_t place, const Body& body);
+    void takeUp(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, const Body& body);
+    bool hiddenBy(const Frame& frame, const Certificate& certificate, const Body& body);
+    bool hiddenByLast(const Frame& frame, Certificate& out);
+    bool isCovered(const Frame& frame, const Certificate& certificate, Pending::Kind kind, uint32_t index,
+                   const Box3f& box);
+    bool seekBody(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, const Body& body,
+                  Certificate& out);
     uint32_t seekBelow(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box);
     void rest();
     void shoot(const Frame& frame, const glm::dvec3& direction, double far);
     void meet(const Frame& frame, uint32_t place, const glm::dvec3& direction, double far);
     void clear();
 
-    Array<uint32_t> of_node_, of_place_;  ///< 1 + index into certificates_, or kFailed; 0: none
+    Array<uint32_t> of_node_, of_place_;      ///< 1 + index into certificates_, or kFailed; 0: none
+    Array<uint32_t> seen_node_, seen_place_;  ///< where on its box it was seen: a ray met nobody before; 0: not known
     Array<Certificate> certificates_;
     Array<uint32_t> free_;
     Array<Hider> hiders_;
@@ -171,9 +209,11 @@ private:
     Array<Place> places_;  ///< [size: kPlaces]
     Hit hits_[16];
     uint32_t hit_count_ = 0;
+    glm::dvec3 last_ray_{0.0};  ///< that met nobody: to where it enters the box; 0: none, or the eye is in the box
     uint32_t last_[kLast] = {kNone, kNone, kNone, kNone};
     Certificate latest_;  ///< that was found
-    Uncovered rest_;
+    Corners corners_;     ///< of the body at hand
+    Uncovered rest_;      ///< and what is left of it
     VolumeView view_;
     ImageFrame image_;
 
@@ -189,6 +229,7 @@ private:
     uint32_t drawn_ = 0;                      ///< views in turn for which certificates were not sought to the end
     uint64_t drawn_visible_ = 0;              ///< of the last answer that was drawn
     double drawn_work_ = 0, proof_work_ = 0;  ///< of an answer, about  [microseconds]
+    double expected_work_ = 0;                ///< of an answer that rests on what has been found so far
     bool next_by_proofs_ = false;
     uint32_t layers_ = 0, stages_ = 0;
 

@@ -11,9 +11,11 @@ namespace {
 
 constexpr uint32_t kMostAnswers = 128;  // by certificates alone, one after the other
 constexpr uint32_t kShortRest = 64, kLongRest = 512;
-constexpr double kMostWork = 0.8;    // of that of drawing
-constexpr uint32_t kFewAnswers = 4;  // that are given before the work is compared
-constexpr uint64_t kMostCuts = 600;  // polygons cut for one view that is drawn
+constexpr double kMostWork = 0.85;                       // of that of drawing
+constexpr double kMostExpected = 0.7;                    // the same, of what is only expected
+constexpr double kWorkOfProof = 1, kWorkOfHider = 0.75;  // about, of a certificate in an answer
+constexpr uint32_t kFewAnswers = 4;                      // that are given before the work is compared
+constexpr uint64_t kMostCuts = 600;                      // polygons cut for one view that is drawn
 constexpr uint32_t kMostDrawn = 16;  // views, one after the other, for which certificates are sought
 constexpr double kMostLoose = 0.12;  // of what is visible: that certificates may keep although it is hidden
 constexpr size_t kMostHiders = 1u << 16;
@@ -31,7 +33,7 @@ void ProofMemory::begin(const Frame& frame) {
     culled.clear();
     cuts_before_ = rest_.cuts();
     sought = found = passed_over_ = 0;
-    rays = 0;
+    rays = polygons = 0;
     way_ = Way::kTiles;
     const QuerySettings& settings = frame.settings;
     possible_ = settings.proofs && !settings.stateless && settings.bins <= 1 && frame.usable && frame.world &&
@@ -69,13 +71,16 @@ uint32_t ProofMemory::seekBelow(const Frame& frame, Pending::Kind kind, uint32_t
         spent_ = true;
         return 0;
     }
-    if (holds(frame, kind, index, box)) return 0;
+    if (hasCertificate(kind, index)) {  // it is held against a view once answers rest on it
+        expected_work_ += kWorkOfProof + kWorkOfHider * certificateOf(kind, index).count;
+        return 0;
+    }
     if (!hasFailed(kind, index)) {
         if (sought >= kMostSought) {
             spent_ = true;
             return 0;
         }
-        if (seek(frame, kind, index, box)) return 0;
+        if (seek(frame, kind, index, box, true)) return 0;
     }
     if (kind == Pending::Kind::kObject) return 1;
     const PlacedBvh& bvh = frame.world->bvh;
@@ -97,13 +102,12 @@ uint32_t ProofMemory::seekBelow(const Frame& frame, Pending::Kind kind, uint32_t
 void ProofMemory::seekAll(const Frame& frame, size_t visible) {
     uint64_t loose = 0;
     spent_ = false;
+    expected_work_ = 0;
     for (const Hidden& one : hidden) loose += seekBelow(frame, one.kind, one.index, one.box);
-    if (spent_) {
-        if (++drawn_ >= kMostDrawn) rest();
-        return;
-    }
-    if (static_cast<double>(loose) <= kMostLoose * static_cast<double>(visible) + 1) next_by_proofs_ = true, drawn_ = 0;
-    else rest();
+    if (static_cast<double>(loose) > kMostLoose * static_cast<double>(visible) + 1) return rest();
+    if (drawn_work_ > 0 && expected_work_ > kMostExpected * drawn_work_) return rest();
+    if (!spent_) next_by_proofs_ = true, drawn_ = 0;
+    else if (++drawn_ >= kMostDrawn) rest();
 }
 
 /// Nobody seeks certificates for some answers, and for more if that did not do before.
@@ -119,13 +123,13 @@ void ProofMemory::noteAnswered(const QueryStats& stats) {
     // What each unit took on several scenes, about. Time itself must not decide: answers would differ.
     if (way_ != Way::kProofs) {
         const double work =
-            0.3 * n(stats.occluder_triangles) + 0.4 * n(stats.second_look_polygons) + 5 * n(stats.nodes_visited);
+            0.18 * n(stats.occluder_triangles) + 0.4 * n(stats.second_look_polygons) + 6 * n(stats.nodes_visited);
         drawn_work_ += (work - drawn_work_) / (drawn_work_ > 0 ? 4 : 1);
         drawn_visible_ = stats.visible;
         return;
     }
-    const double work =
-        0.7 * n(stats.proof_cuts) + 8 * n(stats.proof_rays) + n(stats.proved) + 3 * n(stats.nodes_visited);
+    const double work = 0.55 * n(stats.proof_cuts) + 0.03 * n(polygons) + 6 * n(stats.proof_rays) + n(stats.proved) +
+                        3 * n(stats.nodes_visited);
     // More is kept: it is seen, or not proved to be hidden. Drawing tells.
     if (n(stats.visible) > (1 + kMostLoose) * n(drawn_visible_) + 3) next_by_proofs_ = false;
     proof_work_ += (work - proof_work_) / (answers_ > 0 ? 8 : 1);

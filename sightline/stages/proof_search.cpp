@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/stages/proof_bodies.h"
 #include "sightline/tree/descend.h"
 
 namespace sightline::detail {
 namespace {
 
 constexpr uint32_t kMostTries = 2;    // of parts along a ray that are not before the occludee's box
+constexpr uint32_t kTrusts = 3;       // times that a ray is believed, in 2 bits
+constexpr double kEnough = 0.999;     // of what is left: nobody hides more
 constexpr double kLeastTaken = 0.02;  // of what is left: less is not worth a place in a certificate
 
 /// A ray from the eye against eight boxes: which one it may meet. It decides nothing that has to be sure.
@@ -110,30 +113,43 @@ void ProofMemory::shoot(const Frame& frame, const glm::dvec3& direction, double 
     });
 }
 
+/// What of the rest a part hides; 0: nothing, or it cannot be in a certificate with the others.
+double ProofMemory::shareOf(const Frame& frame, uint32_t hider, const Certificate& certificate) {
+    if (certificate.count == Certificate::kMost) return 0;
+    const std::span<const uint32_t> all = certificate.all();
+    if (std::find(all.begin(), all.end(), hider) != all.end()) return 0;
+    const Shadow* const shadow = shadowOf(frame, hider);
+    return shadow ? rest_.share(*shadow) : 0;
+}
+
 /// Adds a part to a certificate, if it hides enough of what is left.
 bool ProofMemory::take(const Frame& frame, const HidingPart& part, Certificate& certificate) {
-    if (certificate.count == Certificate::kMost) return false;
-    const uint32_t number = numberOf(part);
-    const std::span<const uint32_t> all = certificate.all();
-    if (std::find(all.begin(), all.end(), number) != all.end()) return false;
-    const Shadow* shadow = shadowOf(frame, number);
-    if (!shadow || !(rest_.remove(*shadow, kLeastTaken) > 0)) return false;
-    certificate.hiders[certificate.count++] = number;
+    const uint32_t hider = numberOf(part);
+    if (!(shareOf(frame, hider, certificate) > kLeastTaken)) return false;
+    rest_.remove(*shadowOf(frame, hider));
+    certificate.hiders[certificate.count++] = hider;
     return true;
 }
 
-/// Takes what a ray has met: a body, or else a face.
+/// Takes that of what a ray has met that hides most: a body or a face.
 bool ProofMemory::takeHit(const Frame& frame, double enters, Certificate& certificate) {
     uint32_t tries = 0;
+    HidingPart best;
+    double most = kLeastTaken;
     for (uint32_t i = 0; i < hit_count_; ++i) {
         const Hit hit = hits_[i];
-        if (hit.t > enters && ++tries > kMostTries) return false;
+        if (hit.t > enters && ++tries > kMostTries) break;
         const ObjectId id = idAt(frame, hit.place);
         const uint32_t body = placeAt(frame, hit.place).at.parts->part(hit.part).body;
-        if (body != VolumePart::kNone && take(frame, {id, body, {}}, certificate)) return true;
-        if (take(frame, {id, hit.part, {}}, certificate)) return true;
+        for (const uint32_t part : {body, hit.part}) {
+            if (part == VolumePart::kNone) continue;
+            const double share = shareOf(frame, numberOf({id, part, {}}), certificate);
+            if (share > most) most = share, best = {id, part, {}};
+            if (part == body && share > 0) break;
+        }
+        if (most > kEnough) break;
     }
-    return false;
+    return most > kLeastTaken && take(frame, best, certificate);
 }
 
 /// Closes a slit between two faces that meet.
@@ -156,19 +172,24 @@ bool ProofMemory::takeSeam(const Frame& frame, Certificate& certificate) {
     return false;
 }
 
-bool ProofMemory::seek(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box) {
-    ++sought;
-    Certificate out;
+/// Whether one of the parts that hid something just now hides the body at hand; it is added to a certificate.
+bool ProofMemory::hiddenByLast(const Frame& frame, Certificate& out) {
     for (const uint32_t last : last_) {
-        if (last == kNone) continue;
-        const Shadow* shadow = shadowOf(frame, last);
-        if (!shadow || !shadow->holds(box)) continue;
+        if (last == kNone || out.count == Certificate::kMost) continue;
+        const Shadow* const shadow = shadowOf(frame, last);
+        if (!shadow || !shadow->holds(corners_.at, corners_.count, corners_.error)) continue;
         out.hiders[out.count++] = last;
-        write(frame, kind, index, out);
-        ++found;
         return true;
     }
-    if (!takeUp(frame, kind, index, box)) return noteFailed(frame, kind, index);
+    return false;
+}
+
+/// Adds to a certificate whom a body needs.
+bool ProofMemory::seekBody(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, const Body& body,
+                           Certificate& out) {
+    takeUp(frame, kind, index, box, body);
+    if (hiddenBy(frame, out, body) || hiddenByLast(frame, out)) return true;
+    if (rest_.nothing()) return false;
     for (uint32_t i = 0; i < std::min(latest_.count, kLast) && !rest_.nothing(); ++i)
         take(frame, hiders_[latest_.hiders[i]].part, out);
     while (!rest_.nothing()) {
@@ -180,8 +201,23 @@ bool ProofMemory::seek(const Frame& frame, Pending::Kind kind, uint32_t index, c
             shoot(frame, direction, rest_.farthest());
             if (takeHit(frame, enters, out)) continue;
         }
-        if (!takeSeam(frame, out)) return noteFailed(frame, kind, index);
+        if (takeSeam(frame, out)) continue;
+        last_ray_ = enters * direction;
+        return false;
     }
+    return true;
+}
+
+bool ProofMemory::seek(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, bool closely) {
+    ++sought;
+    Certificate out;
+    last_ray_ = glm::dvec3(0.0);
+    if (isStillSeen(frame, kind, index, box)) return noteFailed(frame, kind, index, box);
+    if (!forEachBody(frame, kind, index, closely, [&](const Body& body) {
+            out.closely |= body.form == Body::kPolygon;
+            return seekBody(frame, kind, index, box, body, out);
+        }))
+        return noteFailed(frame, kind, index, box);
     write(frame, kind, index, out);
     latest_ = out;
     if (out.count > 0) {
@@ -193,10 +229,38 @@ bool ProofMemory::seek(const Frame& frame, Pending::Kind kind, uint32_t index, c
 }
 
 /// Nothing was found for a node or an object: while views are drawn nobody asks again for some answers.
-bool ProofMemory::noteFailed(const Frame& frame, Pending::Kind kind, uint32_t index) {
+bool ProofMemory::noteFailed(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box) {
     makeRoom(frame, kind, index);
     numbers(kind)[index] = kFailed | answer_;
+    if (last_ray_ == glm::dvec3(0.0)) return false;
+    uint32_t at = kTrusts;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double size = static_cast<double>(box.max[axis]) - box.min[axis];
+        const double part = size > 0 ? (last_ray_[axis] - box.min[axis]) / size : 0.5;
+        at = at << 10 | static_cast<uint32_t>((part > 0 ? std::min(part, 1.0) : 0.0) * 1023.0);
+    }
+    seen(kind)[index] = at;
+    last_ray_ = glm::dvec3(0.0);
     return false;
+}
+
+/// Whether a ray to where a node or an object was seen last meets nobody before it. It is believed a few times; then what
+/// is left of it is looked at again.
+bool ProofMemory::isStillSeen(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box) {
+    if (index >= seen(kind).size() || seen(kind)[index] >> 30 == 0) return false;
+    uint32_t& at = seen(kind)[index];
+    glm::dvec3 q;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double part = (at >> (20 - 10 * axis) & 1023) / 1023.0;
+        q[axis] = box.min[axis] + part * (static_cast<double>(box.max[axis]) - box.min[axis]);
+    }
+    at -= 1u << 30;
+    const double far = glm::dot(image_.w, q);
+    if (!(far > 0)) return false;
+    const glm::dvec3 direction = q / far;
+    if (std::max(std::abs(glm::dot(image_.x, direction)), std::abs(glm::dot(image_.y, direction))) > 1) return false;
+    shoot(frame, direction, std::min(entry(box, direction), far));
+    return hit_count_ == 0;
 }
 
 }  // namespace sightline::detail

@@ -11,6 +11,7 @@ using SizeOptions = CullTool;
 using SectionOptions = CullTool;
 using ClusterOptions = CullTool;
 using LodOptions = CullTool;
+using MemoryOptions = CullTool;
 
 using PathOptions = CullTool;
 
@@ -129,6 +130,27 @@ TEST_F(SizeOptions, HysteresisKeepsWhatTheFrameBeforeShowed) {
     for (size_t i = 0; i < 24; ++i) EXPECT_EQ(other["frames"][i]["visible"], kept["frames"][i]["visible"]) << i;
     expectError("cull city:1:10 --hysteresis 0.1", 2, "--hysteresis");
     expectError("cull city:1:10 --distance 5 --hysteresis 1.5", 2, "--hysteresis");
+}
+
+TEST_F(MemoryOptions, AQueryThatRemembersIsJudgedInOrder) {
+    const std::string walk = "city:1:400 --path walk --frames 60 --seed 3 ";
+    const json alone = cull(walk), kept = cull(walk + "--remember --verify --rays 2000 --threads 2"),
+               again = cull(walk + "--remember --threads 1");
+    EXPECT_EQ(alone["stateless"], true);
+    EXPECT_EQ(kept["stateless"], false);
+    EXPECT_EQ(kept["repeat"], 1);
+    EXPECT_EQ(kept["verification"]["false_culls"], 0);
+    uint64_t proved = 0, unasked = 0;
+    for (size_t i = 0; i < 60; ++i) {
+        EXPECT_EQ(kept["frames"][i]["visible"], again["frames"][i]["visible"]) << i;
+        proved += kept["frames"][i].value("proved", 0u);
+        unasked += kept["frames"][i].value("unasked", 0u);
+        EXPECT_EQ(alone["frames"][i].value("proved", 0u), 0u);
+    }
+    EXPECT_GT(proved, 60u);
+    EXPECT_GT(unasked, 60u);
+    EXPECT_NE(succeed("cull " + walk + "--remember --size 320x180").out.find("without drawing"), std::string::npos);
+    expectError("cull city:1:10 --frames 2 --remember --repeat 3", 2, "--repeat");
 }
 
 TEST_F(LodOptions, LevelsSaveTrianglesAndTellThePixelsThatTheyChange) {

@@ -131,7 +131,7 @@ void hold(Random& random, const std::vector<Hider>& hiders, const View& view, co
             if (!(sum > 0)) continue;
             p /= sum;
         }
-        if (inView(p)) EXPECT_TRUE(truth.hides(Real3(p))) << p.x << " " << p.y << " " << p.z;
+        if (inView(p)) { EXPECT_TRUE(truth.hides(Real3(p))) << p.x << " " << p.y << " " << p.z; }
     }
 }
 

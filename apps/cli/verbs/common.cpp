@@ -172,6 +172,12 @@ void addStereoOption(CLI::App& verb, RunOptions& options) {
 void addQueryOptions(CLI::App& verb, RunOptions& options) {
     addStereoOption(verb, options);
     addSettingOptions(verb, options.settings, {"bins", "hysteresis"});
+    verb.add_flag_callback(
+            "--remember", [&options] { options.settings.stateless = false; },
+            "frames in order, by one query that remembers what hid and what was visible, as a game asks; else each "
+            "frame "
+            "stands by itself")
+        ->group("Culling");
     verb.add_option("--query-threads", options.query_threads, "share the bins of each query among so many threads")
         ->check(CLI::Range(1u, kMostThreads))
         ->type_name("N")
@@ -207,6 +213,12 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     const QuerySettings& settings = options.settings;
     if (settings.hysteresis > 0 && !(settings.max_distance > 0) && !(settings.contribution > 0))
         return usageError("--hysteresis: there is no limit; see --distance and --contribution");
+    if (!settings.stateless) {
+        const CLI::Option* const repeat = verb.get_option_no_throw("--repeat");
+        if (repeat && repeat->count() > 0 && options.repeat > 1)
+            return usageError("--remember: each frame is asked once; --repeat would ask it again");
+        options.repeat = 1;
+    }
     if (options.query_threads > 1 && settings.bins == 1 && options.stereo == 0)
         return usageError("--query-threads: one bin has nothing to share; see --bins");
     const Result<uint32_t> use = readStages("--use", options.use), skip = readStages("--skip", options.skip);

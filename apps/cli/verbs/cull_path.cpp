@@ -144,6 +144,7 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     command += settingWords(run.settings) + sectionOptionsOf(run.sections) + visibilityOptionsOf(run.visibility) +
                clusterOptionsOf(run.cluster_test);
     if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
+    if (!run.settings.stateless) command += " --remember";
     QuerySettings asked;
     asked.max_distance = run.settings.max_distance;
     asked.contribution = run.settings.contribution;
@@ -223,7 +224,8 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     const auto since = [&] {
         return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
     };
-    const size_t done = shareOut(path.frames.size(), options.threads, interrupted, [&](uint32_t thread) {
+    const uint32_t threads = run.settings.stateless ? options.threads : 1;  // what remembers is asked in order
+    const size_t done = shareOut(path.frames.size(), threads, interrupted, [&](uint32_t thread) {
         const auto answerer = std::make_shared<Answerer>(options.query_threads);
         if (options.credits) answerer->book.emplace(now, weights);
         return [&, thread, answerer](size_t i) {
@@ -314,8 +316,8 @@ Status explainFalseCulls(const Scene& scene, const RunOptions& options, const Cu
         if (!frame.verification || frame.verification->rows.empty()) continue;
         const std::string file = fmt::format("{}replay-frame-{}.json", directoryOfOutputs(options), i);
         CameraPath path;
-        if (run.settings.hysteresis > 0 && i > 0) path.frames.push_back(run.frames[i - 1].camera);
-        path.frames.push_back(frame.camera);
+        const size_t first = !run.settings.stateless ? 0 : run.settings.hysteresis > 0 && i > 0 ? i - 1 : i;
+        for (size_t k = first; k <= i; ++k) path.frames.push_back(run.frames[k].camera);
         if (Status written = writeFileAside(file, cameraPathJson(path)); !written) return written;
         const auto& rows = frame.verification->rows;
         for (size_t k = 0; k < std::min(rows.size(), kMostLines); ++k)

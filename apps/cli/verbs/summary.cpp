@@ -219,6 +219,22 @@ void addLods(std::string& text, const CullRun& run) {
     text += '\n';
 }
 
+/// What a query that remembers did without drawing.
+void addMemory(std::string& text, const CullRun& run) {
+    if (run.settings.stateless || run.frames.empty()) return;
+    uint64_t undrawn = 0, proved = 0, unasked = 0;
+    for (const FrameResult& frame : run.frames) {
+        undrawn += frame.stats.occluder_triangles == 0;
+        proved += frame.stats.proved;
+        unasked += frame.stats.unasked;
+    }
+    const auto frames = static_cast<double>(run.frames.size());
+    fmt::format_to(std::back_inserter(text),
+                   "remembered   {:>10} of {} without drawing; a frame {} certificates held, {} kept unasked\n",
+                   undrawn, counted(run.frames.size(), "frame"), rounded(static_cast<double>(proved) / frames),
+                   rounded(static_cast<double>(unasked) / frames));
+}
+
 }  // namespace
 
 void noteFrames(const Scene& scene, const RunOptions& options, std::optional<LoadedWorld> world, CullRun& run) {
@@ -270,6 +286,7 @@ void printSummary(std::FILE* out, const CullRun& run) {
     addLods(text, run);
     fmt::format_to(std::back_inserter(text), "query        {:>10.1f} us mean, {:.1f} us median, {:.1f} us at most\n",
                    time / frames, medianQuery(run), slowest);
+    addMemory(text, run);
     if (budget_spent)
         fmt::format_to(std::back_inserter(text),
                        "the work budget was spent in some frames: more was kept than need be\n");
@@ -316,6 +333,7 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
                visibilityOptionsOf(options.visibility) + clusterOptionsOf(options.cluster_test);
     if (options.jitter != View().jitter) command += fmt::format(" --jitter {}", options.jitter);
     if (options.stereo > 0) command += fmt::format(" --stereo {}", options.stereo);
+    if (!options.settings.stateless) command += " --remember";
     if (verify) command += fmt::format(" --verify --rays {}", options.rays);
     return command;
 }

@@ -37,18 +37,12 @@ bool makeShadow(const ImageFrame& frame, Shadow& shadow) {
     return true;
 }
 
-bool Shadow::holds(const Box3f& box) const {
-    double reach = 0;
-    for (int axis = 0; axis < 3; ++axis)
-        reach += std::max(std::abs(static_cast<double>(box.min[axis])), std::abs(static_cast<double>(box.max[axis])));
+bool Shadow::holds(const glm::dvec3* corners, uint32_t count, double error) const {
     for (uint32_t plane = 0; plane < volume.planes; ++plane) {
-        double lowest = volume.distance[plane];
-        for (int axis = 0; axis < 3; ++axis) {
-            const double n = volume.normal[plane][axis];
-            lowest += n * static_cast<double>(n > 0 ? box.min[axis] : box.max[axis]);
-        }
-        const double still = volume.slack[plane][0], turn = volume.slack[plane][1];
-        if (!(lowest > still + turn * reach)) return false;
+        const glm::dvec3 normal(volume.normal[plane][0], volume.normal[plane][1], volume.normal[plane][2]);
+        const double least = volume.slack[plane][0] + 2.0 * error - volume.distance[plane];
+        for (uint32_t i = 0; i < count; ++i)
+            if (!(glm::dot(normal, corners[i]) > least + volume.slack[plane][1] * sizeOf(corners[i]))) return false;
     }
     return true;
 }
@@ -150,6 +144,7 @@ bool Uncovered::clipNear(const VolumeView& view, const glm::dvec3* corners, uint
 
 bool Uncovered::begin(const VolumeView& view, const ImageFrame& frame, const glm::dvec3* corners, uint32_t count,
                       double error, bool box) {
+    ++cuts_;
     frame_ = frame;
     error_ = error;
     piece_count_ = 0;
@@ -258,7 +253,7 @@ bool Uncovered::keepBefore(const Piece& piece, const Piece& before) {
     return push(both[at]);
 }
 
-double Uncovered::remove(const Shadow& shadow, double least) {
+double Uncovered::share(const Shadow& shadow) {
     glm::dvec3 lines[OccluderVolume::kMaxPlanes];
     for (uint32_t i = 0; i < shadow.line_count; ++i) {
         lines[i] = shadow.lines[i].line;
@@ -297,10 +292,15 @@ double Uncovered::remove(const Shadow& shadow, double least) {
     }
     if (!known) return 0;
     for (uint32_t i = 0; i < next_count_; ++i) after += next_[i].area();
-    if (next_count_ > 0 && !(before - after > least * before)) return 0;
+    return next_count_ == 0 ? 1.0 : std::max(0.0, 1.0 - after / before);
+}
+
+double Uncovered::remove(const Shadow& shadow, double least) {
+    const double taken = share(shadow);
+    if (!(taken > least)) return 0;
     for (uint32_t i = 0; i < next_count_; ++i) pieces_[i] = next_[i];
     piece_count_ = next_count_;
-    return piece_count_ == 0 ? 1.0 : 1.0 - after / before;
+    return taken;
 }
 
 const Uncovered::Piece& Uncovered::largest() const {

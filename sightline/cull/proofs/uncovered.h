@@ -28,8 +28,9 @@ struct Shadow {
     glm::dvec4 faces[kMostFaces];            ///< the others
     double slack[kMostFaces][2];
 
-    /// Whether a box lies wholly in the volume, as testVolume() has it.
-    bool holds(const Box3f& box) const;
+    /// Whether a body lies wholly in the volume.
+    /// @param corners  relative to the eye, each off by `error` at most
+    bool holds(const glm::dvec3* corners, uint32_t count, double error) const;
 };
 /// @returns false if it has too many faces
 bool makeShadow(const ImageFrame& frame, Shadow& shadow);
@@ -59,12 +60,14 @@ public:
     /// @returns false if the body cannot be told apart from the eye, and stays visible
     bool begin(const VolumeView& view, const ImageFrame& frame, const glm::dvec3* corners, uint32_t count, double error,
                bool box);
+    /// The share of what is left that a volume of the same view hides, at least; 0 also where it cannot be told.
+    double share(const Shadow& shadow);
     /// Takes away what a volume of the same view hides, if that is more than a share of what is left.
     /// @returns the share that it took; 0: nothing
     double remove(const Shadow& shadow, double least = 0);
     /// Takes up a body of which nothing can be seen.
     void clear() { piece_count_ = 0; }
-    /// Pieces that volumes were taken from so far, over all bodies.
+    /// Outlines that were made, and pieces that volumes were taken from, so far over all bodies.
     uint64_t cuts() const { return cuts_; }
     bool nothing() const { return piece_count_ == 0; }
     /// Into the middle of the largest piece: dot(frame.w, direction) = 1.
@@ -116,8 +119,8 @@ private:
     uint32_t body_count_ = 0;
     bool is_box_ = false;
     double error_ = 0, nearest_ = 0, farthest_ = 0, reach_ = 0;
-    double margin_ = 0;  ///< by which cuts are too large
-    Piece pieces_[kMostPieces], next_[kMostPieces];
+    double margin_ = 0;                              ///< by which cuts are too large
+    Piece pieces_[kMostPieces], next_[kMostPieces];  ///< what is left; what share() would leave
     uint64_t cuts_ = 0;
     uint32_t piece_count_ = 0, next_count_ = 0;
 };
