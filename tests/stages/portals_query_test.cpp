@@ -178,7 +178,7 @@ TEST(CellStages, AreExplained) {
         Query query;
         for (int frame = 0; frame < 24; ++frame) {
             View view = viewAt(randomEye(rooms, random), rooms.pointInside(random), kRoomCamera);
-            QuerySettings settings{.bins = frame % 4 == 3 ? 2u : 1u};
+            QuerySettings settings{.bins = frame % 4 == 3 ? 2u : 1u, .proofs = false};
             query.visible(now, view, settings);
             const std::vector<uint8_t> reasons = reasonsOf(query, now);
             Explainer explainer(now, view, settings);
