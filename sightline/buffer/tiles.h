@@ -28,6 +28,7 @@ struct DrawnCluster {
     const glm::dmat4* transform = nullptr;  ///< must outlive the frame
     uint64_t transform_hash = 0;
     bool clockwise = false;     ///< of its polygons, those that come out clockwise
+    bool backs = false;         ///< these are backs: those alone that have two sides
     uint32_t first_vertex = 0;  ///< in DepthTiles::px, py, pd
     uint32_t object = ~0u;      ///< in DepthTiles::objects, if vertices lie before the near plane
     uint32_t cluster = 0;

@@ -165,6 +165,7 @@ inline void keepDrawn(const ClusterDraw& c, int8_t turn, size_t first, bool regu
     DrawnCluster& record = c.tiles.drawn.emplace_back(c.drawn);
     record.first_vertex = static_cast<uint32_t>(first);
     record.clockwise = turn < 0;
+    record.backs = turn != c.front;
     c.tiles.vertex_count = first + (c.cluster.vertex_count + 7u) / 8 * 8;
     if (regular) return;
     record.object = static_cast<uint32_t>(c.tiles.objects.size());

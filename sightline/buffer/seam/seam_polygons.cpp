@@ -32,8 +32,9 @@ public:
     Maker(DepthTiles& tiles, uint32_t drawn)
         : tiles_(tiles), drawn_(drawn), cluster_(record().occluder->clusters[record().cluster]) {}
 
-    /// Makes one of the cluster's polygons: none if it is turned away, two triangles of a quadrangle that is not flat.
+    /// Makes one of the cluster's polygons: none if it is turned away or not drawn from there, two triangles of a quadrangle that is not flat.
     void make(uint32_t p) {
+        if (!isDrawn(p)) return;
         source_ = static_cast<uint8_t>(p);
         uint8_t v[4];
         const int corners = take(p, v);
@@ -46,6 +47,8 @@ public:
     /// @param px,py  of the cluster's vertices
     void bound(uint32_t p, const double* px, const double* py, float (&box)[4]) {
         constexpr float kAll = std::numeric_limits<float>::infinity();
+        box[0] = box[1] = kAll, box[2] = box[3] = -kAll;
+        if (!isDrawn(p)) return;
         uint8_t v[4];
         const int corners = take(p, v);
         double x0 = px[v[0]], y0 = py[v[0]], x1 = x0, y1 = y0, area2 = 0;
@@ -60,8 +63,7 @@ public:
         }
         const double e = record().position_error + 0x1p-10;
         if (before) box[0] = box[1] = -kAll, box[2] = box[3] = kAll;
-        else if (area2 < -8.0 * e * (x1 - x0 + y1 - y0)) box[0] = box[1] = kAll, box[2] = box[3] = -kAll;
-        else {
+        else if (!(area2 < -8.0 * e * (x1 - x0 + y1 - y0))) {
             const auto moved = [&](double at, double by) {
                 const double clamped = std::clamp(at, -1e9, 1e9);
                 return static_cast<float>(clamped + by * (e + std::abs(clamped) * 0x1p-22));
@@ -77,6 +79,11 @@ private:
     double d(uint8_t v) { return tiles_.pd[size_t{record().first_vertex} + v]; }
     double areaOf(uint8_t i, uint8_t j, uint8_t k) {
         return (x(j) - x(i)) * (y(k) - y(i)) - (x(k) - x(i)) * (y(j) - y(i));
+    }
+
+    /// Whether a polygon is drawn if it winds as those of this record do.
+    bool isDrawn(uint32_t p) {
+        return !record().backs || record().occluder->polygons[cluster_.first_polygon + p].double_sided;
     }
 
     /// The corners of a polygon, counter-clockwise on the screen; returns how many.
