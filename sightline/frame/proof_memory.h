@@ -96,7 +96,8 @@ public:
     bool hasCertificate(Pending::Kind kind, uint32_t index) const;
     /// Names who may hide a node or an object together, from wherever that is known; of more than Certificate::kMost the
     /// first.
-    void propose(const Frame& frame, Pending::Kind kind, uint32_t index, std::span<const HidingPart> parts);
+    void propose(const Frame& frame, Pending::Kind kind, uint32_t index, std::span<const HidingPart> parts,
+                 bool closely = false);
     /// Looks for a certificate: by the parts that hid something just now, then by rays.
     /// @param closely  polygon by polygon, too: of what is surely hidden, or was hidden just now
     bool seek(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, bool closely);
@@ -123,6 +124,7 @@ private:
     static constexpr uint32_t kMostPolygons = 48;   ///< of an object that is one body
     static constexpr uint32_t kMostClusters = 128;  ///< of an object; one of more is one body, by its box
     static constexpr uint32_t kFailed = 1u << 31;   ///< with the answer in which nothing was found
+    static constexpr uint32_t kClosely = 1u << 30;  ///< with kFailed: polygon by polygon
 
     struct Hider {
         HidingPart part;
@@ -168,7 +170,7 @@ private:
     void makeRoom(const Frame& frame, Pending::Kind kind, uint32_t index);
     Array<uint32_t>& seen(Pending::Kind kind) { return kind == Pending::Kind::kNode ? seen_node_ : seen_place_; }
     bool isStillSeen(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box);
-    bool noteFailed(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box);
+    bool noteFailed(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, bool closely);
     bool hasFailed(Pending::Kind kind, uint32_t index) const;
     void write(const Frame& frame, Pending::Kind kind, uint32_t index, const Certificate& certificate);
     uint32_t numberOf(const HidingPart& part);

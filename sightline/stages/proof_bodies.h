@@ -24,8 +24,7 @@ bool ProofMemory::forEachBody(const Frame& frame, Pending::Kind kind, uint32_t i
         if (parts > 1 && hides(body)) continue;
         body.form = Body::kHull;
         if (hides(body)) continue;
-        if (!closely || !shape || parts > 1 || (body.end - body.first > 1 && shape->polygons.size() > kMostPolygons))
-            return false;
+        if (!closely || !shape || shape->polygons.size() > kMostPolygons) return false;
         body.form = Body::kPolygon;
         for (uint32_t i = body.first; i < body.end; ++i) {
             const OccluderCluster& cluster = shape->clusters[i];

@@ -61,7 +61,8 @@ void ProofMemory::begin(const Frame& frame) {
 
 bool ProofMemory::hasFailed(Pending::Kind kind, uint32_t index) const {
     const Array<uint32_t>& of = numbers(kind);
-    return index < of.size() && (of[index] & kFailed) && ((answer_ - of[index]) & ~kFailed) < kMostAnswers;
+    return index < of.size() && (of[index] & kFailed) && (of[index] & kClosely) &&
+           ((answer_ - of[index]) & (kClosely - 1)) < kMostAnswers;
 }
 
 /// Looks for certificates for a node or an object that is hidden, or else for what is below it.
@@ -71,16 +72,17 @@ uint32_t ProofMemory::seekBelow(const Frame& frame, Pending::Kind kind, uint32_t
         spent_ = true;
         return 0;
     }
-    if (hasCertificate(kind, index)) {  // it is held against a view once answers rest on it
+    const auto count = [&] {  // it is held against a view once answers rest on it
         expected_work_ += kWorkOfProof + kWorkOfHider * certificateOf(kind, index).count;
-        return 0;
-    }
+        return 0u;
+    };
+    if (hasCertificate(kind, index)) return count();
     if (!hasFailed(kind, index)) {
         if (sought >= kMostSought) {
             spent_ = true;
             return 0;
         }
-        if (seek(frame, kind, index, box, true)) return 0;
+        if (seek(frame, kind, index, box, true)) return count();
     }
     if (kind == Pending::Kind::kObject) return 1;
     const PlacedBvh& bvh = frame.world->bvh;

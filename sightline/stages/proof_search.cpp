@@ -187,6 +187,7 @@ bool ProofMemory::hiddenByLast(const Frame& frame, Certificate& out) {
 /// Adds to a certificate whom a body needs.
 bool ProofMemory::seekBody(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, const Body& body,
                            Certificate& out) {
+    last_ray_ = glm::dvec3(0.0);
     takeUp(frame, kind, index, box, body);
     if (hiddenBy(frame, out, body) || hiddenByLast(frame, out)) return true;
     if (rest_.nothing()) return false;
@@ -212,12 +213,12 @@ bool ProofMemory::seek(const Frame& frame, Pending::Kind kind, uint32_t index, c
     ++sought;
     Certificate out;
     last_ray_ = glm::dvec3(0.0);
-    if (isStillSeen(frame, kind, index, box)) return noteFailed(frame, kind, index, box);
+    if (!closely && isStillSeen(frame, kind, index, box)) return noteFailed(frame, kind, index, box, closely);
     if (!forEachBody(frame, kind, index, closely, [&](const Body& body) {
             out.closely |= body.form == Body::kPolygon;
             return seekBody(frame, kind, index, box, body, out);
         }))
-        return noteFailed(frame, kind, index, box);
+        return noteFailed(frame, kind, index, box, closely);
     write(frame, kind, index, out);
     latest_ = out;
     if (out.count > 0) {
@@ -229,9 +230,9 @@ bool ProofMemory::seek(const Frame& frame, Pending::Kind kind, uint32_t index, c
 }
 
 /// Nothing was found for a node or an object: while views are drawn nobody asks again for some answers.
-bool ProofMemory::noteFailed(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box) {
+bool ProofMemory::noteFailed(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, bool closely) {
     makeRoom(frame, kind, index);
-    numbers(kind)[index] = kFailed | answer_;
+    numbers(kind)[index] = kFailed | (closely ? kClosely : 0) | (answer_ & (kClosely - 1));
     if (last_ray_ == glm::dvec3(0.0)) return false;
     uint32_t at = kTrusts;
     for (int axis = 0; axis < 3; ++axis) {

@@ -60,8 +60,10 @@ void ProofMemory::write(const Frame& frame, Pending::Kind kind, uint32_t index, 
     certificates_[of[index] - 1] = certificate;
 }
 
-void ProofMemory::propose(const Frame& frame, Pending::Kind kind, uint32_t index, std::span<const HidingPart> parts) {
+void ProofMemory::propose(const Frame& frame, Pending::Kind kind, uint32_t index, std::span<const HidingPart> parts,
+                          bool closely) {
     Certificate certificate;
+    certificate.closely = closely;
     for (const HidingPart& part : parts)
         if (certificate.count < Certificate::kMost) certificate.hiders[certificate.count++] = numberOf(part);
     write(frame, kind, index, certificate);

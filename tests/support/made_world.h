@@ -22,7 +22,7 @@ using namespace studies;
 /// Boxes of one shared unit cube, some of which hide.
 struct MadeWorld {
     TestMesh mesh = boxMesh(), other;  ///< the other is drawn of objects whose shape is not the cube
-    std::vector<uint8_t> is_other;
+    std::vector<uint8_t> is_other, other_double_sided;
     std::vector<glm::dmat4> transforms;
     std::vector<uint8_t> hides;
     std::vector<ObjectId> ids;
@@ -97,6 +97,7 @@ struct MadeWorld {
         for (size_t i = 0; i < transforms.size(); ++i) {
             DrawItem item;
             item.mesh = (is_other[i] ? other : mesh).view();
+            if (is_other[i]) item.double_sided = other_double_sided;
             if (!hides[i]) item.writes_depth = no;
             item.transform = transforms[i];
             item.id = static_cast<uint32_t>(i);

@@ -12,6 +12,7 @@
 #include <optional>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -311,20 +312,25 @@ Status explainFalseCulls(const Scene& scene, const RunOptions& options, const Cu
         const std::string line = fmt::format(fmt::runtime(format), values...);
         (void)std::fwrite(line.data(), 1, line.size(), stderr);
     };
+    bool first_fault = true;
     for (size_t i = 0; i < run.frames.size(); ++i) {
         const FrameResult& frame = run.frames[i];
         if (!frame.verification || frame.verification->rows.empty()) continue;
         const std::string file = fmt::format("{}replay-frame-{}.json", directoryOfOutputs(options), i);
         CameraPath path;
-        const size_t first = !run.settings.stateless ? 0 : run.settings.hysteresis > 0 && i > 0 ? i - 1 : i;
-        for (size_t k = first; k <= i; ++k) path.frames.push_back(run.frames[k].camera);
-        if (Status written = writeFileAside(file, cameraPathJson(path)); !written) return written;
+        const bool remembers =
+            !run.settings.stateless;  // then all frames before it repeat it, and the first repeats all
+        const bool again = !remembers || std::exchange(first_fault, false);
+        const size_t first = remembers ? 0 : run.settings.hysteresis > 0 && i > 0 ? i - 1 : i;
+        for (size_t k = first; k <= i && again; ++k) path.frames.push_back(run.frames[k].camera);
+        if (again)
+            if (Status written = writeFileAside(file, cameraPathJson(path)); !written) return written;
         const auto& rows = frame.verification->rows;
         for (size_t k = 0; k < std::min(rows.size(), kMostLines); ++k)
             say("false cull: frame {}: object {} \"{}\" is seen at pixel ({:.3f}, {:.3f}) by {}\n", i, rows[k].key,
                 oneLine(objectPath(scene, scene.objects[rows[k].object]), 200), rows[k].x, rows[k].y, rows[k].witness);
         if (rows.size() > kMostLines) say("false cull: frame {}: and {} more\n", i, rows.size() - kMostLines);
-        say("replay: {}\n", replayCommand(options, run, file));
+        if (again) say("replay: {}\n", replayCommand(options, run, file));
     }
     return success();
 }

@@ -221,7 +221,7 @@ void addLods(std::string& text, const CullRun& run) {
 
 /// What a query that remembers did without drawing.
 void addMemory(std::string& text, const CullRun& run) {
-    if (run.settings.stateless || run.frames.empty()) return;
+    if (run.settings.stateless || run.frames.empty() || !(run.settings.stages & stageBit(Stage::kOcclusion))) return;
     uint64_t undrawn = 0, proved = 0, unasked = 0;
     for (const FrameResult& frame : run.frames) {
         undrawn += frame.stats.occluder_triangles == 0;
