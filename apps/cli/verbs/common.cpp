@@ -174,9 +174,8 @@ void addQueryOptions(CLI::App& verb, RunOptions& options) {
     addSettingOptions(verb, options.settings, {"bins", "hysteresis"});
     verb.add_flag_callback(
             "--remember", [&options] { options.settings.stateless = false; },
-            "frames in order, by one query that remembers what hid and what was visible, as a game asks; else each "
-            "frame "
-            "stands by itself")
+            "frames in order, by one query that remembers what hid and what was visible, as a game asks; "
+            "else each frame stands by itself")
         ->group("Culling");
     verb.add_option("--query-threads", options.query_threads, "share the bins of each query among so many threads")
         ->check(CLI::Range(1u, kMostThreads))

@@ -318,8 +318,8 @@ Status explainFalseCulls(const Scene& scene, const RunOptions& options, const Cu
         if (!frame.verification || frame.verification->rows.empty()) continue;
         const std::string file = fmt::format("{}replay-frame-{}.json", directoryOfOutputs(options), i);
         CameraPath path;
-        const bool remembers =
-            !run.settings.stateless;  // then all frames before it repeat it, and the first repeats all
+        // What remembers is repeated from the first frame on; one file does.
+        const bool remembers = !run.settings.stateless;
         const bool again = !remembers || std::exchange(first_fault, false);
         const size_t first = remembers ? 0 : run.settings.hysteresis > 0 && i > 0 ? i - 1 : i;
         for (size_t k = first; k <= i && again; ++k) path.frames.push_back(run.frames[k].camera);
