@@ -192,6 +192,37 @@ TEST(Proofs, AreNotBelievedWhatTheyDoNotShow) {
     RecordProperty("held", std::to_string(held) + " of " + std::to_string(tried));
 }
 
+/// No cluster is left out, the last neither.
+TEST(Proofs, OfLargeMeshesHoldAllOfTheirClusters) {
+    uint64_t found = 0;
+    for (const uint64_t seed : {2, 4, 6}) {
+        Rooms rooms(seed);
+        const Snapshot now = rooms.world.commit();
+        const detail::SnapshotState& state = now.state();
+        Random random(seed);
+        Steps steps(random);
+        ProofMemory memory(defaultMemory());
+        for (int frame = 0; frame < 60; ++frame) {
+            steps.jump(random);
+            const View view = steps.next();
+            const std::vector<uint8_t> seen = rooms.seen(view, 3);
+            detail::Frame of;
+            of.begin(now, view, {});
+            memory.begin(of);
+            for (const size_t mound : rooms.mounds) {
+                const uint32_t place = state.placeOf(rooms.ids[mound]);
+                const uint32_t slot = state.bvh.slot[state.bvh.order[place]];
+                const Box3f box =
+                    boxOf(eyeBoxes(state.bvh.nodes[slot / 8], state.bvh.origin - of.frustum.eye), int(slot % 8));
+                if (!memory.seek(of, Pending::Kind::kObject, place, box, true)) continue;
+                EXPECT_FALSE(seen[mound]) << "seed " << seed << " frame " << frame << " object " << mound;
+                ++found;
+            }
+        }
+    }
+    EXPECT_GT(found, 1000u);
+}
+
 TEST(Proofs, AreTheSameAgainAndWithEveryInstructionSet) {
     std::vector<std::vector<uint64_t>> first;
     forEachTarget([&](const std::string& target) {
