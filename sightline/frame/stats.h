@@ -91,7 +91,7 @@ inline constexpr CounterRow kQueryCounters[] = {
     {"proofs_found", &QueryStats::proofs_found, "nodes and objects", CounterRow::kRare, "of these, with success"},
     {"proof_rays", &QueryStats::proof_rays, "rays", CounterRow::kRare, "that were shot for it"},
     {"proof_cuts", &QueryStats::proof_cuts, "polygons", CounterRow::kRare,
-     "of outlines, from which shadows were taken one by one"},
+     "outlines that were made, and pieces of them that shadows were taken from"},
     {"seam_pixels", &QueryStats::seam_pixels, "pixels", CounterRow::kWork,
      "resolved by the union of the polygons that share them"},
     {"closed_gaps", &QueryStats::closed_gaps, "pixels", CounterRow::kRare,
