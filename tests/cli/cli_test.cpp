@@ -114,6 +114,12 @@ TEST_F(Cli, CullWritesTheSchemaToStandardOutputAlone) {
     EXPECT_EQ(out["verification"]["reported"], reported);
     EXPECT_GE(out["verification"]["samples"], 1);
     EXPECT_LE(out["verification"]["exactly_visible"], reported);
+    // Every object of every frame is decided: what is culled is hidden, what is kept is seen or could have been culled.
+    const json& proofs = out["verification"]["proofs"];
+    EXPECT_EQ(proofs["culled_hidden"], out["verification"]["culled"]);
+    EXPECT_EQ(proofs["culled_undecided"], 0);
+    EXPECT_EQ(proofs["kept_undecided"], 0);
+    EXPECT_EQ(out["verification"]["exactly_visible"].get<int>() + proofs["kept_hidden"].get<int>(), reported);
     EXPECT_NE(outcome.err.find("verified"), std::string::npos);  // the summary went there
 }
 

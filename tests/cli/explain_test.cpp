@@ -54,6 +54,10 @@ TEST_F(ExplainVerb, LetsWitnessesLookForWhatIsCulled) {
     const json culled = answersOf("made:walls --object 3 --rays 1000")[0];
     EXPECT_EQ(culled["witness"]["seen"], false);
     EXPECT_GE(culled["witness"]["rays"], 1000);
+    EXPECT_EQ(culled["witness"]["proved_hidden"], true);
+    EXPECT_EQ(culled["witness"]["by_named"], true) << "the wall that is named hides it alone";
+    EXPECT_GE(culled["witness"]["hiders"].size(), 1u);
+    EXPECT_FALSE(answersOf("made:walls --object 3 --rays 1000 --no-proofs")[0]["witness"].contains("proved_hidden"));
     EXPECT_NE(run("explain made:walls --object 3").out.find("rays meets it, and no sample"), std::string::npos);
     // What may be visible and was left out as asked is not called false.
     const json left_out = answersOf("made:walls --object 7 --distance 0.001 --rays 1000")[0];
@@ -199,6 +203,7 @@ TEST_F(ExplainVerb, NamesDoubts) {
     EXPECT_EQ(off["kept"]["because"], "stage off");
     EXPECT_EQ(off["kept"]["stage"], "occlusion");
     EXPECT_EQ(off["witness"]["seen"], false);
+    EXPECT_EQ(off["witness"]["proved_hidden"], true);
 }
 
 TEST_F(ExplainVerb, ReportsTellOfTheirSlowestAndLoosestFrames) {

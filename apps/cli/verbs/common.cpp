@@ -152,6 +152,8 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
         ->type_name("N")
         ->capture_default_str()
         ->group("Culling");
+    verb.add_flag("--no-proofs", options.no_proofs, "let rays and an id-buffer alone judge: no exact proofs")
+        ->group("Culling");
 }
 
 void addStereoOption(CLI::App& verb, RunOptions& options) {

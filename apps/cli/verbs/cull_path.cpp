@@ -66,6 +66,7 @@ VerificationRow rowOf(const FrameVerdict& verdict, const FrameResult& frame, con
     row.id_samples = verdict.id_samples;
     row.supersampling = verdict.supersampling;
     row.unconfirmed = verdict.unconfirmed;
+    row.proofs = verdict.proofs;
     std::vector<uint64_t> keys, lossy;
     for (size_t i = 0; i < verdict.seen.size(); ++i)
         if (verdict.seen[i]) (isLossy(frame.reasons[i], run) ? lossy : keys).push_back(scene.objects[i].key);
@@ -146,6 +147,7 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
                clusterOptionsOf(run.cluster_test);
     if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
     if (!run.settings.stateless) command += " --remember";
+    if (options.no_proofs) command += " --no-proofs";
     QuerySettings asked;
     asked.max_distance = run.settings.max_distance;
     asked.contribution = run.settings.contribution;
@@ -257,6 +259,7 @@ void verifyPath(const Scene& scene, const RunOptions& options, CullRun& run) {
     WitnessSettings settings;
     settings.rays = options.rays;
     settings.aimed_rays = std::min(settings.aimed_rays, options.rays / 5);
+    settings.prove = !options.no_proofs;
     if (interrupted()) return;
     const Witness witness(scene);
     Progress progress("verifying", "frames", run.frames.size());

@@ -116,7 +116,7 @@ Status explainInFrame(const ExplainOptions& options, const AskedScene& asked, co
             const uint32_t object = objects[i];
             ObjectAnswer answer{options.first_frame, object, explainer.explain(asked.loaded.ids[object]), {}, eye.eye};
             if (isUsable(eye.view) && saysMore(answer.why.verdict))
-                answer.sighting = lookFor(asked.scene, eye.view, object, options);
+                answer.sighting = lookFor(asked.scene, eye.view, object, namedHiders(answer.why), options);
             fmt::print(readerOf(options), "{}", answerText(asked, answer));
             body["answers"].push_back(answerJson(asked, answer));
             if (i == 0 && eye.eye != kRightEye)

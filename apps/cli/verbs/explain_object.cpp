@@ -21,6 +21,7 @@
 #include "sightline/tools/report/run/explain_text.h"
 #include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/scene/suggestion.h"
+#include "sightline/tools/truth/cull_proof.h"
 #include "sightline/tools/truth/verify.h"
 
 namespace sightline::cli {
@@ -177,13 +178,23 @@ std::string sightingText(const ObjectAnswer& answer) {
     if (answer.why.verdict != Verdict::kVisible)
         return sighting.seen
                    ? fmt::format("The {} sees it all the same at pixel ({:.1f}, {:.1f}): a false cull!",
-                                 sighting.witness == "rays" ? "witness of rays" : "id-buffer", sighting.x, sighting.y)
-                   : fmt::format("None of {} rays meets it, and no sample of an id-buffer.", grouped(sighting.rays));
+                                 sighting.witness == "rays"    ? "witness of rays"
+                                 : sighting.witness == "proof" ? "exact proof"
+                                                               : "id-buffer",
+                                 sighting.x, sighting.y)
+                   : fmt::format("None of {} rays meets it, and no sample of an id-buffer{}.", grouped(sighting.rays),
+                                 sighting.by_named        ? ", and by exact arithmetic these alone hide all of it"
+                                 : sighting.proved_hidden ? ", and by exact arithmetic no point of it is visible"
+                                                          : "");
     if (sighting.seen)
         return fmt::format("is seen: {} at pixel ({:.1f}, {:.1f}).",
-                           sighting.witness == "rays" ? "a ray meets it" : "the id-buffer has it", sighting.x,
-                           sighting.y);
-    std::string text = fmt::format("is seen by no witness, of {} rays and an id-buffer", grouped(sighting.rays));
+                           sighting.witness == "rays"    ? "a ray meets it"
+                           : sighting.witness == "proof" ? "by exact arithmetic nothing hides it"
+                                                         : "the id-buffer has it",
+                           sighting.x, sighting.y);
+    std::string text = sighting.proved_hidden
+                           ? "is hidden, which exact arithmetic proves"
+                           : fmt::format("is seen by no witness, of {} rays and an id-buffer", grouped(sighting.rays));
     const VisibleReason& kept = answer.why.visible;
     if (kept.because == KeptBecause::kOpenPixel)
         text += kept.by_triangles ? ": it is kept because pixels of the occlusion buffer say less than rays"
@@ -333,7 +344,15 @@ std::vector<EyeView> eyesOfFrame(const CameraFrame& camera, const RunOptions& op
     return {{first, kLeftEye}, {shiftedEye(first, options.stereo), kRightEye}};
 }
 
-Sighting lookFor(const Scene& scene, const View& view, uint32_t object, const RunOptions& options) {
+std::vector<uint32_t> namedHiders(const Explanation& why) {
+    std::vector<uint32_t> objects;
+    if (why.verdict != Verdict::kOccluded || !why.occlusion.sufficient || why.occlusion.outside_too) return objects;
+    for (const Hider& hider : why.occlusion.hiders) objects.push_back(AskedScene::objectOf(hider.id));
+    return objects;
+}
+
+Sighting lookFor(const Scene& scene, const View& view, uint32_t object, std::vector<uint32_t> named,
+                 const RunOptions& options) {
     // Witnesses tell where they saw what was culled: so this object, and no other, is called culled.
     std::vector<uint8_t> culled(scene.objects.size(), 0);
     culled[object] = 1;
@@ -350,6 +369,22 @@ Sighting lookFor(const Scene& scene, const View& view, uint32_t object, const Ru
         sighting.y = seen.y;
         sighting.witness = seen.witness;
     }
+    if (sighting.seen || options.no_proofs) return sighting;
+    const SceneFacts facts(scene);
+    CullProver prover(facts, view);
+    const CullProof proof = prover.prove(object);
+    if (proof.result == ProofResult::kSeen) {
+        sighting.seen = true;
+        sighting.x = proof.x;
+        sighting.y = proof.y;
+        sighting.witness = "proof";
+    }
+    sighting.proved_hidden = proof.result == ProofResult::kProved;
+    sighting.hiders = proof.hiders;
+    if (!sighting.proved_hidden || named.empty()) return sighting;
+    named.push_back(object);  // of its own triangles some hide others
+    std::sort(named.begin(), named.end());
+    sighting.by_named = prover.proveBy(object, named).result == ProofResult::kProved;
     return sighting;
 }
 
@@ -432,6 +467,13 @@ Json answerJson(const AskedScene& asked, const ObjectAnswer& answer) {
             out["witness"]["pixel"] = {sighting.x, sighting.y};
             out["witness"]["by"] = sighting.witness;
         }
+        if (sighting.proved_hidden) {
+            out["witness"]["proved_hidden"] = true;
+            out["witness"]["hiders"] = Json::array();
+            for (const uint32_t hider : sighting.hiders)
+                out["witness"]["hiders"].push_back(objectJson(asked.scene, hider));
+        }
+        if (sighting.by_named) out["witness"]["by_named"] = true;
     }
     out["text"] =
         explanationText(why, titleOf(asked.scene, answer.object), [&](ObjectId id) { return asked.nameOf(id); });

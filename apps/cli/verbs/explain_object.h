@@ -57,8 +57,11 @@ struct ExplainOptions : RunOptions {
 struct Sighting {
     bool seen = false;
     double x = 0, y = 0;  ///< [pixels from the left and the top]
-    std::string witness;  ///< "rays" or "id-buffer"
+    std::string witness;  ///< "rays", "id-buffer" or "proof"
     uint64_t rays = 0;
+    bool proved_hidden = false;    ///< by exact arithmetic: no point of it is visible
+    std::vector<uint32_t> hiders;  ///< then: the objects whose shadows the proof took
+    bool by_named = false;         ///< even if the hiders that the explanation names, and it itself, hid alone
 };
 
 /// One object in one frame.
@@ -94,7 +97,11 @@ struct EyeView {
 std::vector<EyeView> eyesOfFrame(const CameraFrame& camera, const RunOptions& options);
 
 /// Lets the witnesses look for an object, kept or culled.
-Sighting lookFor(const Scene& scene, const View& view, uint32_t object, const RunOptions& options);
+/// @param named  objects that are said to hide it; empty: that is not asked
+Sighting lookFor(const Scene& scene, const View& view, uint32_t object, std::vector<uint32_t> named,
+                 const RunOptions& options);
+/// The hiders that an explanation names, as objects of the scene; none if they are no sufficient set.
+std::vector<uint32_t> namedHiders(const Explanation& why);
 
 /// The answer in sentences, at most 100 characters a line.
 std::string answerText(const AskedScene& asked, const ObjectAnswer& answer);

@@ -89,7 +89,7 @@ Result<std::vector<View>> chooseViews(const CameraPath& path, const RunOptions& 
 
 void addFrameOptions(CLI::App& verb, RunOptions& options) {
     addSceneOptions(verb, options);
-    verb.remove_option(verb.get_option("--rays"));
+    for (const char* name : {"--rays", "--no-proofs"}) verb.remove_option(verb.get_option(name));
     verb.get_option("--threads")->description("that the reference renderer draws with (default: 1)");
     verb.get_option("--repeat")->description("times of stages and costs are medians of so many");
 }

@@ -150,6 +150,18 @@ void addSums(std::string& text, const Verification& sum, const CullRun& run) {
                    rounded(static_cast<double>(sum.id_samples)));
     fmt::format_to(std::back_inserter(text), "over-estimate {:.3f}: {} reported, {} exactly visible, over {}\n",
                    sum.overEstimate(), grouped(sum.reported), grouped(sum.exactly_visible), counted(judged, "frame"));
+    if (sum.proofs) {
+        const ProofCounts& proofs = *sum.proofs;
+        fmt::format_to(std::back_inserter(text),
+                       "proved       {} of {} culled objects hidden, by exact arithmetic; so are {} that were kept",
+                       grouped(proofs.culled_hidden),
+                       grouped(proofs.culled_hidden + proofs.culled_undecided + sum.false_culls),
+                       grouped(proofs.kept_hidden));
+        if (proofs.culled_undecided + proofs.kept_undecided > 0)
+            fmt::format_to(std::back_inserter(text), "; undecided: {} culled, {} kept",
+                           grouped(proofs.culled_undecided), grouped(proofs.kept_undecided));
+        text += "\n";
+    }
     if (sum.lossy_seen > 0)
         fmt::format_to(
             std::back_inserter(text),
@@ -334,7 +346,7 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     if (options.jitter != View().jitter) command += fmt::format(" --jitter {}", options.jitter);
     if (options.stereo > 0) command += fmt::format(" --stereo {}", options.stereo);
     if (!options.settings.stateless) command += " --remember";
-    if (verify) command += fmt::format(" --verify --rays {}", options.rays);
+    if (verify) command += fmt::format(" --verify --rays {}{}", options.rays, options.no_proofs ? " --no-proofs" : "");
     return command;
 }
 

@@ -181,7 +181,8 @@ void addView(CLI::App& tool, int& exit_code) {
     CLI::App* verb = tool.add_subcommand(kViewVerb.name, kViewVerb.about);
     const auto options = std::make_shared<ViewOptions>();
     addSceneOptions(*verb, *options);
-    for (const char* name : {"--json", "--rays", "--repeat", "--threads"})  // of verbs that run through a path
+    for (const char* name :
+         {"--json", "--rays", "--no-proofs", "--repeat", "--threads"})  // of verbs that run through a path
         verb->remove_option(verb->get_option(name));
     verb->add_flag("--headless", options->headless, "draw one frame without a window, for --screenshot");
     verb->add_option("--screenshot", options->screenshot, "write the picture, and end")->type_name("FILE.png");

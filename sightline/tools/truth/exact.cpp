@@ -159,30 +159,54 @@ void ExactSight::corners(uint32_t object, uint32_t triangle, glm::dvec3 (&points
     ObjectTriangles(facts_, object, sight_.eye()).corners(triangle, points);
 }
 
-bool ExactSight::hidden(const SightRay& ray, double t, uint32_t by_others_than) const {
-    const double slack = depthSlack(ray, t);
-    const double from = ray.t_near - slack, to = t - slack;
+/// Calls found(object, triangle, crossing) for triangles that hide and may be met at t in [from, to], until it returns true.
+template <class Found>
+void ExactSight::forEachHider(const SightRay& ray, double from, double to, uint32_t by_others_than,
+                              Found&& found) const {
     const RayFrame frame(ray);
     const glm::dvec3 origin = ray.origin + sight_.eye();
-    const double box_slack = 1e-12 * (largest(origin) + std::abs(t));
-    bool found = false;
+    const double box_slack = 1e-12 * (largest(origin) + std::abs(to));
+    bool done = false;
     const auto touches = [&](const Box3d& box) {
-        return !found && meets(origin, ray.direction, from, to, box, box_slack);
+        return !done && meets(origin, ray.direction, from, to, box, box_slack);
     };
     facts_.objects().walk(touches, [&](uint32_t object) {
         if (object == by_others_than || !touches(facts_.box(object))) return;
         const MeshFacts& mesh = facts_.facts(object);
         const ObjectTriangles triangles(facts_, object, sight_.eye());
         triangles.forEach(ray, from, to, [&](uint32_t triangle) {
-            if (found || !mesh.hides[triangle]) return;
+            if (done || !mesh.hides[triangle]) return;
             glm::dvec3 points[3];
             triangles.corners(triangle, points);
             const Crossing met = cross(frame, points, triangles.rounding());
             if (!met.perhaps || !(met.front_perhaps || mesh.double_sided[triangle])) return;
-            found = met.t >= from && met.t_low < to;
+            done = found(object, triangle, met);
         });
     });
+}
+
+bool ExactSight::hidden(const SightRay& ray, double t, uint32_t by_others_than) const {
+    const double slack = depthSlack(ray, t);
+    const double from = ray.t_near - slack, to = t - slack;
+    bool found = false;
+    forEachHider(ray, from, to, by_others_than, [&](uint32_t, uint32_t, const Crossing& met) {
+        found = met.t >= from && met.t_low < to;
+        return found;
+    });
     return found;
+}
+
+void ExactSight::hidersOn(const SightRay& ray, std::vector<Met>& met) const {
+    met.clear();
+    const double slack = depthSlack(ray, ray.t_far), from = ray.t_near - slack, to = ray.t_far + slack;
+    forEachHider(ray, from, to, ~0u, [&](uint32_t object, uint32_t triangle, const Crossing& crossing) {
+        if (crossing.t >= from && crossing.t_low <= to) met.push_back({object, triangle});
+        return false;
+    });
+}
+
+double ExactSight::roundingOf(uint32_t object) const {
+    return ObjectTriangles(facts_, object, sight_.eye()).rounding();
 }
 
 bool ExactSight::seesObject(const glm::dvec2& place, uint32_t object) const {
@@ -203,8 +227,10 @@ bool ExactSight::seesObject(const glm::dvec2& place, uint32_t object) const {
 }
 
 bool ExactSight::seesPoint(uint32_t object, uint32_t triangle, const glm::dvec3& point, glm::dvec2& place) const {
-    if (!sight_.project(point, place)) return false;
-    const SightRay ray = sight_.rayThrough(place);
+    return sight_.project(point, place) && seesPointOn(sight_.rayThrough(place), object, triangle, point);
+}
+
+bool ExactSight::seesPointOn(const SightRay& ray, uint32_t object, uint32_t triangle, const glm::dvec3& point) const {
     const ObjectTriangles triangles(facts_, object, sight_.eye());
     glm::dvec3 points[3];
     triangles.corners(triangle, points);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "sightline/tools/truth/scene_facts.h"
 #include "sightline/tools/truth/sight.h"
@@ -28,11 +29,24 @@ public:
     /// @param point  relative to the eye
     /// @param place  receives where it appears
     bool seesPoint(uint32_t object, uint32_t triangle, const glm::dvec3& point, glm::dvec2& place) const;
+    /// The same of a point on a given line of sight, in the frustum or not.
+    bool seesPointOn(const SightRay& ray, uint32_t object, uint32_t triangle, const glm::dvec3& point) const;
 
     /// The corners of a triangle, relative to the eye.
     void corners(uint32_t object, uint32_t triangle, glm::dvec3 (&points)[3]) const;
 
+    struct Met {
+        uint32_t object = 0, triangle = 0;
+    };
+    /// The triangles that hide and that a ray may meet, with every doubt for them: none that it meets is missing.
+    void hidersOn(const SightRay& ray, std::vector<Met>& met) const;
+
+    /// How far the positions of an object may be off, relative to the eye  [world units].
+    double roundingOf(uint32_t object) const;
+
 private:
+    template <class Found>
+    void forEachHider(const SightRay& ray, double from, double to, uint32_t by_others_than, Found&& found) const;
     bool hidden(const SightRay& ray, double t, uint32_t by_others_than) const;
 
     const SceneFacts& facts_;

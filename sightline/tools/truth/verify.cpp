@@ -1,4 +1,4 @@
-// Judges visible sets by two witnesses that share no code with what they judge.
+// Judges visible sets by witnesses that share no code with what they judge.
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/truth/verify.h"
 
@@ -9,6 +9,7 @@
 #include "sightline/base/assert.h"
 #include "sightline/base/random.h"
 #include "sightline/tools/truth/aim.h"
+#include "sightline/tools/truth/cull_proof.h"
 #include "sightline/tools/truth/exact.h"
 #include "sightline/tools/truth/id_buffer.h"
 #include "sightline/tools/truth/rays.h"
@@ -59,6 +60,12 @@ public:
         glm::dvec2 place;
         if (exact_.seesPoint(object, target.triangle, target.point, place)) convict(object, place, "rays");
         else ++aimed_tries_[object];
+    }
+
+    /// A point of the object was found that nothing hides.
+    void found(uint32_t object, double x, double y) {
+        if (open(object)) verdict.false_culls.push_back({object, x, y, "proof"});
+        verdict.seen[object] = 1;
     }
 
     FrameVerdict finish() {
@@ -133,6 +140,21 @@ struct Witness::Impl {
         }
     }
 
+    /// Decides of each object whether it is seen.
+    void prove(Trial& trial, const View& view, std::span<const uint8_t> culled) const {
+        CullProver prover(facts, view);
+        ProofCounts counts;
+        for (uint32_t object = 0; object < culled.size(); ++object) {
+            if (trial.verdict.seen[object]) continue;
+            const CullProof proof = prover.prove(object);
+            if (proof.result == ProofResult::kSeen) trial.found(object, proof.x, proof.y);
+            else if (proof.result == ProofResult::kProved)
+                ++(culled[object] ? counts.culled_hidden : counts.kept_hidden);
+            else ++(culled[object] ? counts.culled_undecided : counts.kept_undecided);
+        }
+        trial.verdict.proofs = counts;
+    }
+
     SceneFacts facts;
     RayScene rays;
 };
@@ -162,6 +184,7 @@ FrameVerdict Witness::judge(const View& view, std::span<const uint8_t> culled, c
             drawIdBuffer(impl_->facts, view, sight, pass,
                          [&](uint32_t object, const glm::dvec2& place) { trial.sighted(object, place, "id-buffer"); });
     }
+    if (settings.prove) impl_->prove(trial, view, culled);
     return trial.finish();
 }
 

@@ -1,15 +1,17 @@
-// Judges visible sets by two witnesses that share no code with what they judge.
+// Judges visible sets by witnesses that share no code with what they judge.
 // SPDX-License-Identifier: MIT
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "sightline/geom/view.h"
 #include "sightline/tools/scene/scene.h"
+#include "sightline/tools/truth/proof_counts.h"
 
 namespace sightline::tools {
 
@@ -17,7 +19,7 @@ namespace sightline::tools {
 struct FalseCull {
     uint32_t object = 0;       ///< index into Scene::objects
     double x = 0, y = 0;       ///< a place where it is seen [pixels from the left and the top]
-    const char* witness = "";  ///< "rays" or "id-buffer"
+    const char* witness = "";  ///< "rays", "id-buffer" or "proof"
 };
 
 struct FrameVerdict {
@@ -28,6 +30,7 @@ struct FrameVerdict {
     uint32_t supersampling = 0;          ///< samples per pixel and axis that it had; 0: none was drawn
     uint64_t unconfirmed = 0;            ///< sightings of culled objects that exact arithmetic did not bear out:
                                          ///< grazing edges and surfaces that float cannot tell apart
+    std::optional<ProofCounts> proofs;   ///< if they were asked for
     std::vector<uint8_t> seen;           ///< per object of the scene: 1 if any witness saw it
     uint64_t exactly_visible = 0;        ///< objects with seen = 1
 };
@@ -39,12 +42,15 @@ struct WitnessSettings {
     uint32_t supersampling = 4;    ///< per axis; 0: no id-buffer
     uint64_t id_sample_limit = 1ull << 26;  ///< larger frames are drawn with fewer samples per axis, and say so
     uint64_t seed = 1;
+    /// Prove of each object that it is hidden, or find where it is seen: cull_proof.h. `seen` is then what is seen, and no
+    /// lower bound, but for what is undecided.
+    bool prove = false;
 };
 
 /// Holds the scene in the form that the witnesses need (an Embree scene and draw lists). The scene must
 /// outlive it. judge() is const and thread-safe; it uses one thread and, for the id-buffer, up to 200 MB.
 ///
-/// Neither witness convicts alone: a culled object counts as seen only if the sighting holds in double, relative to
+/// Neither rays nor samples convict alone: a culled object counts as seen only if the sighting holds in double, relative to
 /// the eye, against all triangles of the scene (exact.h). Surfaces at equal depth, up to 1e-9 of the distance, are
 /// both visible. Deforming meshes are seen in their rest pose and hide nothing.
 class Witness {

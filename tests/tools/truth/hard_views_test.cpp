@@ -1,4 +1,4 @@
-// Views chosen to hurt, on real scenes and the city: whatever the query culls, no witness sees.
+// Views chosen to hurt, on real scenes and the city: whatever the query culls, no witness sees, and is proved to be hidden.
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
@@ -72,6 +72,7 @@ void expectNothingSeenIsCulled(const Scene& scene, uint64_t rounds) {
         for (const NamedView& named : hardViews(scene, seed)) {
             query.visible(now, named.view);
             WitnessSettings settings{.rays = full ? 1000000u : 20000u};
+            settings.prove = true;
             settings.aimed_rays = settings.rays / 2;
             settings.supersampling = named.view.width > 1000 && !full ? 0 : named.view.width == 1 ? 32 : 2;
             test::expectNoFalseCulls(witness, named.view, test::reasonsOf(query, now), settings,

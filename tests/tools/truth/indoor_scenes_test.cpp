@@ -124,7 +124,7 @@ Totals expectNothingSeenIsCulled(const Scene& scene, const BakedScene& baked, bo
             totals.known += set.stats.stages[static_cast<int>(Stage::kPvs)].culled > 0;
             ++totals.frames;
             expectNoFalseCulls(witness, view, reasonsOf(query, now),
-                               {.rays = 20000, .aimed_rays = 10000, .supersampling = 2},
+                               {.rays = 20000, .aimed_rays = 10000, .supersampling = 2, .prove = true},
                                scene.name + ", round " + std::to_string(round) + ", frame " + std::to_string(frame));
         }
     }
@@ -201,7 +201,8 @@ TEST(IndoorScenes, MirrorsHideNothingThatIsSeen) {
         ++mirrors;
         // Without the id-buffer, which looks at one point of each object: that may lie beside the glass.
         expectNoFalseCulls(witness, view, reasonsOf(query, now),
-                           {.rays = 20000, .aimed_rays = 10000, .supersampling = 0}, "mirror " + std::to_string(i));
+                           {.rays = 20000, .aimed_rays = 10000, .supersampling = 0, .prove = true},
+                           "mirror " + std::to_string(i));
     }
     EXPECT_EQ(mirrors, 24u);
     EXPECT_GT(by_cells, 0u);

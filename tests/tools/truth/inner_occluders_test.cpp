@@ -76,7 +76,8 @@ TEST(InnerOccluders, HideNothingThatIsSeen) {
             drawn += query.visible(now, view, settings).stats.occluder_triangles;
             const std::vector<uint8_t> reasons = test::reasonsOf(query, now);
             for (uint8_t reason : reasons) culled += reason == 1 + static_cast<int>(Stage::kOcclusion);
-            test::expectNoFalseCulls(witness, view, reasons, {.rays = 20000, .aimed_rays = 10000, .supersampling = 2},
+            test::expectNoFalseCulls(witness, view, reasons,
+                                     {.rays = 20000, .aimed_rays = 10000, .supersampling = 2, .prove = true},
                                      "seed " + std::to_string(seed) + ", view " + std::to_string(i));
         }
     }

@@ -51,10 +51,13 @@ inline std::vector<DrawItem> itemsOf(const SceneFacts& facts) {
     return items;
 }
 
-/// Asks the witness of a query's answer to a view; what was culled and is seen is a failure each.
+/// Asks the witness of a query's answer to a view; what was culled and is seen is a failure each, and so is what was culled and
+/// cannot be proved to be hidden, if that is asked for.
 inline void expectNoFalseCulls(const Witness& witness, const View& view, const std::vector<uint8_t>& reasons,
                                const WitnessSettings& looks, const std::string& what) {
-    for (const FalseCull& cull : witness.judge(view, reasons, looks).false_culls)
+    const FrameVerdict verdict = witness.judge(view, reasons, looks);
+    if (verdict.proofs) EXPECT_EQ(verdict.proofs->culled_undecided, 0u) << what;
+    for (const FalseCull& cull : verdict.false_culls)
         ADD_FAILURE() << what << ": object " << cull.object << " is seen at (" << cull.x << ", " << cull.y << ") by "
                       << cull.witness << " but was culled by stage " << int(reasons[cull.object]) - 1;
 }

@@ -49,7 +49,7 @@ void expectNothingSeenIsCulled(const Scene& scene, uint64_t frames) {
         const CameraFrame& camera = path.frames[frame];
         View view = makeView(camera, 320, 180);
         QuerySettings settings;
-        WitnessSettings looks{.rays = 20000, .aimed_rays = 10000, .supersampling = 2};
+        WitnessSettings looks{.rays = 20000, .aimed_rays = 10000, .supersampling = 2, .prove = true};
         query.visible(now, view, settings);
         const std::vector<uint8_t> whole = reasonsOf(query, now);
         for (uint64_t i = 0, planes = 1 + random.below(2); i < planes; ++i)

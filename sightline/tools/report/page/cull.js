@@ -15,10 +15,13 @@ const against = (value, middle) => middle > 0 ? short(value / middle) + '×' : v
 function cullVerdict({verification, frames}) {
   if (!verification)
     return verdict('', 'Not verified', 'Run it with --verify to let two witnesses judge every cull.');
-  const {false_culls: wrong, culled, samples, id_samples: ids} = verification;
+  const {false_culls: wrong, culled, samples, id_samples: ids, proofs} = verification;
+  const exactly = proofs && ` ${grouped(proofs.culled_hidden)} are proved to be hidden by exact arithmetic` +
+    (proofs.culled_undecided ? `, and of ${grouped(proofs.culled_undecided)} neither is known.` : '.');
   return verdict(wrong ? 'bad' : 'good',
     `${grouped(wrong)} of ${grouped(culled)} culled objects ${wrong === 1 ? 'was' : 'were'} visible`,
-    `proof by ${grouped(samples)} rays and ${grouped(ids)} id-buffer samples over ${plural(frames.length, 'frame')}`);
+    `held against ${grouped(samples)} rays and ${grouped(ids)} id-buffer samples over ` +
+    `${plural(frames.length, 'frame')}.${exactly || ''}`);
 }
 const interruption = (run) => run.interrupted && verdict('note', 'The run was interrupted',
   `${run.frames.length} of ${run.frames_wanted > run.frames.length ? grouped(run.frames_wanted) : 'more'} frames ` +
@@ -306,6 +309,12 @@ function proofCard(run, film) {
       ['Second witness', `an id-buffer of ${grouped(sums.id_samples)} samples, ` +
         `${least === most ? square(most) : `${square(least)} to ${square(most)}`} a pixel, drawn by a plain z-buffer ` +
         'that shares no code with the culling.'],
+      ...(sums.proofs ? [['Third witness', 'exact proofs: the shadows of triangles are taken from each object until ' +
+        `nothing is left of it, or a place where nothing hides it. ${grouped(sums.proofs.culled_hidden)} times a culled ` +
+        `object was proved to be hidden, ${grouped(sums.proofs.kept_hidden)} times one that was kept.` +
+        (sums.proofs.culled_undecided + sums.proofs.kept_undecided ?
+          ` Undecided: ${grouped(sums.proofs.culled_undecided)} culled, ${grouped(sums.proofs.kept_undecided)} kept.`
+          : '')]] : []),
       ['Judged', `${grouped(sums.culled)} times an object was culled in a frame; ${grouped(sums.false_culls)} of ` +
         `them were seen by a witness. ${grouped(sums.unconfirmed)} sightings did not hold in exact arithmetic: edges ` +
         'that graze, and surfaces that float cannot tell apart.'],

@@ -14,6 +14,13 @@ using Json = nlohmann::ordered_json;
 
 std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+Json proofsJson(const ProofCounts& proofs) {
+    return {{"culled_hidden", proofs.culled_hidden},
+            {"culled_undecided", proofs.culled_undecided},
+            {"kept_hidden", proofs.kept_hidden},
+            {"kept_undecided", proofs.kept_undecided}};
+}
+
 /// @param scene  whose objects are listed; null: they are left out
 Json verificationJson(const VerificationRow& verification, const FrameResult& frame, const Scene* scene) {
     Json out;
@@ -23,6 +30,7 @@ Json verificationJson(const VerificationRow& verification, const FrameResult& fr
     out["id_samples"] = verification.id_samples;
     out["supersampling"] = verification.supersampling;
     out["unconfirmed"] = verification.unconfirmed;
+    if (verification.proofs) out["proofs"] = proofsJson(*verification.proofs);
     out["exactly_visible"] = verification.exactly_visible;
     out["reported"] = frame.visible.size();
     if (verification.lossy_seen > 0) out["lossy_seen"] = verification.lossy_seen;
@@ -148,6 +156,7 @@ Json sumsJson(const Verification& sum) {
     out["aimed_samples"] = sum.aimed_rays;
     out["id_samples"] = sum.id_samples;
     out["unconfirmed"] = sum.unconfirmed;
+    if (sum.proofs) out["proofs"] = proofsJson(*sum.proofs);
     if (sum.lossy_seen > 0) out["lossy_seen"] = sum.lossy_seen;
     out["culled"] = sum.culled;
     out["over_estimate"] = std::isfinite(sum.overEstimate()) ? Json(sum.overEstimate()) : Json(nullptr);

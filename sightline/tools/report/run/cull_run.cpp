@@ -34,6 +34,7 @@ std::optional<Verification> sumVerification(const CullRun& run) {
         sum->id_samples += row.id_samples;
         sum->unconfirmed += row.unconfirmed;
         sum->lossy_seen += row.lossy_seen;
+        if (row.proofs) (sum->proofs ? *sum->proofs : sum->proofs.emplace()) += *row.proofs;
         sum->least_supersampling = std::min(sum->least_supersampling, row.supersampling);
         sum->most_supersampling = std::max(sum->most_supersampling, row.supersampling);
         sum->exactly_visible += row.exactly_visible;

@@ -11,6 +11,7 @@
 #include "sightline/geom/view.h"
 #include "sightline/tools/scene/camera_path.h"
 #include "sightline/tools/scene/scene.h"
+#include "sightline/tools/truth/proof_counts.h"
 
 namespace sightline::tools {
 
@@ -37,10 +38,11 @@ struct VerificationRow {
     uint64_t rays = 0;         ///< aimed ones included
     uint64_t aimed_rays = 0;   ///< at culled objects
     uint64_t id_samples = 0;
-    uint32_t supersampling = 0;    ///< samples of the id-buffer per pixel and axis
-    uint64_t unconfirmed = 0;      ///< sightings of culled objects that exact arithmetic did not bear out
-    uint64_t exactly_visible = 0;  ///< none that distance or contribution culled
-    uint64_t lossy_seen = 0;       ///< seen, and culled by distance or contribution: no false culls
+    uint32_t supersampling = 0;         ///< samples of the id-buffer per pixel and axis
+    uint64_t unconfirmed = 0;           ///< sightings of culled objects that exact arithmetic did not bear out
+    std::optional<ProofCounts> proofs;  ///< if there were any; counts objects, of two eyes both's
+    uint64_t exactly_visible = 0;       ///< none that distance or contribution culled
+    uint64_t lossy_seen = 0;            ///< seen, and culled by distance or contribution: no false culls
     std::vector<FalseCullRow> rows;
     std::vector<uint32_t> kept_unseen;  ///< objects that were kept and that no witness saw, ascending
 };
@@ -144,6 +146,7 @@ struct Verification {
     uint64_t false_culls = 0, rays = 0, id_samples = 0, exactly_visible = 0, reported = 0;
     uint64_t culled = 0;  ///< object-frames that were judged
     uint64_t aimed_rays = 0, unconfirmed = 0, lossy_seen = 0;
+    std::optional<ProofCounts> proofs;  ///< of the frames that have some
     uint32_t least_supersampling = 0, most_supersampling = 0;
     /// Reported over exactly visible; 1 if neither saw anything.
     double overEstimate() const;

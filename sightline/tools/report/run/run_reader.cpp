@@ -199,6 +199,9 @@ VerificationRow verificationOf(const At& at, std::vector<uint64_t>& unseen) {
     if (const auto side = at.maybe("supersampling"))
         row.supersampling = static_cast<uint32_t>(side->whole(0, kMostSupersampling));
     if (const auto unconfirmed = at.maybe("unconfirmed")) row.unconfirmed = unconfirmed->whole();
+    if (const auto proofs = at.maybe("proofs"))
+        row.proofs = ProofCounts{proofs->member("culled_hidden").whole(), proofs->member("culled_undecided").whole(),
+                                 proofs->member("kept_hidden").whole(), proofs->member("kept_undecided").whole()};
     if (const auto seen = at.maybe("lossy_seen")) row.lossy_seen = seen->whole();
     if (const auto list = at.maybe("list"))
         for (size_t i = 0; i < list->size(); ++i) {

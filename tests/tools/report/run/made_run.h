@@ -63,6 +63,7 @@ inline CullRun madeRun(const Scene& scene, size_t frames = 2) {
         row.supersampling = 4;
         row.id_samples = 64 * 36 * 16;
         row.exactly_visible = 2;
+        row.proofs = ProofCounts{2, 0, i, 1};
         frame.verification = row;
         run.frames.push_back(frame);
     }

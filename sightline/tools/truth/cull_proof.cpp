@@ -1,0 +1,374 @@
+// Proves that culled objects are hidden: every point of them, by exact arithmetic on the triangles of the scene.
+// SPDX-License-Identifier: MIT
+#include "sightline/tools/truth/cull_proof.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <list>
+#include <unordered_map>
+#include <utility>
+
+#include "sightline/tools/truth/exact.h"
+#include "sightline/tools/truth/shadow_pieces.h"
+#include "sightline/tools/truth/sight.h"
+
+namespace sightline::tools {
+namespace {
+
+/// Triangles that hid something just now, which are tried on the next piece before a search.
+constexpr size_t kRecent = 6;
+/// What one box may cost: it is a try.
+constexpr uint64_t kBoxWork = 300;
+/// A mesh of so few triangles is not tried by boxes.
+constexpr size_t kFewTriangles = 8;
+/// So many places that are left end the proof of an object.
+constexpr int kMostOpen = 64;
+
+/// The planes of a view, relative to the eye.
+struct ProofView {
+    SightOrigin origin;
+    glm::dvec2 half_size{0.0};  ///< of the viewport  [pixels]
+    std::vector<ViewPlane>
+        sides;                    ///< left, right, bottom, top, widened by the jitter; far: no sight line comes back in
+    std::vector<ViewPlane> cuts;  ///< near plane and sections: what hides is cut by them, too
+    std::vector<ViewPlane> of_question;  ///< these, and the window's
+
+    ProofView(const View& view, const SightLines& sight) : half_size(0.5 * view.width, 0.5 * view.height) {
+        const glm::dmat4 m = view.projection * glm::dmat4(glm::dmat3(view.view));
+        const auto row = [&](int r) { return glm::dvec4(m[0][r], m[1][r], m[2][r], m[3][r]); };
+        const glm::dvec4 x = row(0), y = row(1), z = row(2), w = row(3);
+        origin.eye = sight.eye();
+        if (sight.orthographic()) {
+            const glm::dvec3 along = glm::cross(glm::dvec3(x), glm::dvec3(y));
+            origin.direction = glm::dot(along, glm::dvec3(z)) < 0 ? -along : along;
+        }
+        const glm::dvec4 wide = (1 + view.jitter / half_size.x) * w, high = (1 + view.jitter / half_size.y) * w;
+        sides = {wide + x, wide - x, high + y, high - y};
+        // Where depth runs towards the eye, the far plane is what stands before it.
+        const bool outward = runsOutward(view);
+        sides.push_back(outward ? w - z : w + z);
+        cuts.push_back(outward ? w + z : w - z);
+        const auto add = [&](const ViewPlanes& planes, std::vector<ViewPlane>& to) {
+            for (const glm::dvec4& plane : planes.all())
+                to.emplace_back(glm::dvec3(plane), plane.w + glm::dot(glm::dvec3(plane), origin.eye));
+        };
+        add(view.sections, cuts);
+        of_question = cuts;
+        add(view.window, of_question);
+    }
+
+    /// The sight line to a point: from where it is drawn, to there.
+    SightRay rayTo(const glm::dvec3& point) const {
+        SightRay ray;
+        ray.direction = glm::normalize(origin.parallel() ? origin.direction : point);
+        if (origin.parallel()) ray.origin = point - glm::dot(point, ray.direction) * ray.direction;
+        ray.t_near = origin.parallel() ? -std::numeric_limits<double>::infinity() : 0;
+        ray.t_far = glm::dot(point - ray.origin, ray.direction);
+        for (const ViewPlane& plane : cuts) {
+            const double slope = glm::dot(glm::dvec3(plane), ray.direction);
+            if (slope > 0)
+                ray.t_near = std::max(ray.t_near, -(glm::dot(glm::dvec3(plane), ray.origin) + plane.w) / slope);
+        }
+        return ray;
+    }
+
+    glm::dvec2 pixelOf(const glm::dvec3& point) const {
+        const auto at = [&](const ViewPlane& plane) { return glm::dot(glm::dvec3(plane), point) + plane.w; };
+        const double left = at(sides[0]), right = at(sides[1]), bottom = at(sides[2]), top = at(sides[3]);
+        return half_size * glm::dvec2((left - right) / (left + right), (bottom - top) / (bottom + top));
+    }
+};
+
+/// How large a triangle looks, or nearly: who hides most is asked first.
+double sizeInSight(const ExactTriangle& triangle, const SightOrigin& origin) {
+    const glm::dvec3 a = triangle.corners[0].about(), b = triangle.corners[1].about(), c = triangle.corners[2].about();
+    if (origin.parallel()) return std::abs(glm::dot(glm::cross(b - a, c - a), origin.direction));
+    return std::abs(glm::dot(a, glm::cross(b, c))) / (glm::length(a) * glm::length(b) * glm::length(c));
+}
+
+}  // namespace
+
+struct CullProver::Impl {
+    Impl(const SceneFacts& scene_facts, const View& view, uint64_t work)
+        : facts(scene_facts),
+          sight(view),
+          exact(facts, sight),
+          planes(view, sight),
+          most_work(work),
+          pieces(planes.origin) {}
+
+    CullProof prove(uint32_t which, const std::vector<uint32_t>* hiders_allowed);
+
+private:
+    /// A triangle that hides, and the lines of its shadow in the part at hand.
+    struct Hider {
+        uint32_t object = 0, number = 0;
+        ExactTriangle triangle;
+        bool is_drawn = false, has_lines = false, hides = false;
+        std::vector<uint32_t> lines;
+        uint64_t key() const { return uint64_t{object} << 32 | number; }
+    };
+
+    ExactTriangle triangleOf(uint32_t of, uint32_t triangle) const;
+    bool isDrawn(uint32_t of, uint32_t triangle, int facing) const;
+    bool isOutside() const;
+    bool isBoxHidden(const Box3d& box);
+    void lookAtTriangle(uint32_t triangle);
+    void beginPart();
+    bool clip(Piece& piece);
+    template <class Open>
+    bool cover(Piece whole, uint64_t end, Open&& open);
+    bool take(Hider& hider, const Piece& piece);
+    bool takeByRecent(const Piece& piece);
+    bool takeBySearch(const Piece& piece, const glm::dvec3& at);
+    void hasHidden(std::list<Hider>::iterator hider);
+    double widthOf(const Piece& piece) const;
+
+    const SceneFacts& facts;
+    const SightLines sight;
+    const ExactSight exact;
+    const ProofView planes;
+    const uint64_t most_work;
+
+    uint32_t object = 0;  ///< that is proved
+    const std::vector<uint32_t>* allowed = nullptr;
+    CullProof proof;
+    int open = 0;
+    std::list<Hider> hiders;  ///< that were met, the last that hid something first
+    std::unordered_map<uint64_t, std::list<Hider>::iterator> known;
+
+    ShadowPieces pieces;  ///< of the part at hand
+    std::vector<Piece> left;
+    std::vector<ExactSight::Met> met;
+    std::vector<std::list<Hider>::iterator> asked;
+};
+
+ExactTriangle CullProver::Impl::triangleOf(uint32_t of, uint32_t triangle) const {
+    const Mesh& mesh = facts.mesh(of);
+    ExactTriangle result;
+    for (size_t k = 0; k < 3; ++k)
+        result.corners[k] =
+            ExactCorner(facts.scene().objects[of].transform,
+                        glm::dvec3(mesh.positions[mesh.indices[3 * size_t{triangle} + k]]), planes.origin);
+    result.findFacing(planes.origin);
+    return result;
+}
+
+bool CullProver::Impl::isDrawn(uint32_t of, uint32_t triangle, int facing) const {
+    if (facing == 0) return false;
+    const bool mirrored = glm::determinant(glm::dmat3(facts.scene().objects[of].transform)) < 0;
+    return facts.facts(of).double_sided[triangle] || (facing > 0) != mirrored;
+}
+
+// A part: a triangle, or a face of a box.
+
+void CullProver::Impl::beginPart() {
+    left.clear();
+    known.clear();
+    if (hiders.size() > kRecent) hiders.resize(kRecent);
+    for (auto hider = hiders.begin(); hider != hiders.end(); ++hider) {
+        hider->has_lines = false;
+        known.emplace(hider->key(), hider);
+    }
+}
+
+bool CullProver::Impl::clip(Piece& piece) {
+    for (const auto* list : {&planes.sides, &planes.of_question})
+        for (const ViewPlane& plane : *list)
+            if (!pieces.clip(plane, piece)) return false;
+    return true;
+}
+
+bool CullProver::Impl::take(Hider& hider, const Piece& piece) {
+    ++proof.cuts;
+    if (!hider.has_lines) {
+        hider.has_lines = true;
+        hider.hides = pieces.shadow(hider.triangle, planes.cuts, hider.lines);
+    }
+    return hider.hides && pieces.subtract(piece, hider.lines, left);
+}
+
+void CullProver::Impl::hasHidden(std::list<Hider>::iterator hider) {
+    const auto place = std::lower_bound(proof.hiders.begin(), proof.hiders.end(), hider->object);
+    if (place == proof.hiders.end() || *place != hider->object) proof.hiders.insert(place, hider->object);
+    hiders.splice(hiders.begin(), hiders, hider);
+}
+
+bool CullProver::Impl::takeByRecent(const Piece& piece) {
+    size_t tried = 0;
+    for (auto hider = hiders.begin(); hider != hiders.end() && tried < kRecent; ++hider, ++tried)
+        if (hider->is_drawn && take(*hider, piece)) {
+            hasHidden(hider);
+            return true;
+        }
+    return false;
+}
+
+/// By triangles that hide a place of the piece. All that were asked are kept: lines of the part name them.
+bool CullProver::Impl::takeBySearch(const Piece& piece, const glm::dvec3& at) {
+    exact.hidersOn(planes.rayTo(at), met);
+    asked.clear();
+    for (const ExactSight::Met& hit : met) {
+        if (allowed && !std::binary_search(allowed->begin(), allowed->end(), hit.object)) continue;
+        const auto [place, is_new] = known.try_emplace(uint64_t{hit.object} << 32 | hit.triangle, hiders.end());
+        if (is_new) {
+            Hider& hider = hiders.emplace_back();
+            hider.object = hit.object;
+            hider.number = hit.triangle;
+            hider.triangle = triangleOf(hit.object, hit.triangle);
+            hider.is_drawn = isDrawn(hit.object, hit.triangle, hider.triangle.facing);
+            place->second = std::prev(hiders.end());
+        }
+        if (place->second->is_drawn) asked.push_back(place->second);
+    }
+    const auto size = [&](const auto& hider) { return sizeInSight(hider->triangle, planes.origin); };
+    std::sort(asked.begin(), asked.end(), [&](const auto& a, const auto& b) { return size(a) > size(b); });
+    for (const auto& hider : asked)
+        if (take(*hider, piece)) {
+            hasHidden(hider);
+            return true;
+        }
+    return false;
+}
+
+double CullProver::Impl::widthOf(const Piece& piece) const {
+    double area = 0, around = 0;
+    const size_t count = piece.corners.size();
+    const glm::dvec2 first = planes.pixelOf(pieces.cornerOf(piece, 0));
+    for (size_t i = 0; i < count; ++i) {
+        const glm::dvec2 a = planes.pixelOf(pieces.cornerOf(piece, i)) - first;
+        const glm::dvec2 b = planes.pixelOf(pieces.cornerOf(piece, (i + 1) % count)) - first;
+        area += 0.5 * (a.x * b.y - a.y * b.x);
+        around += glm::length(b - a);
+    }
+    return around > 0 ? 4 * std::abs(area) / around : 0;
+}
+
+/// Takes shadows from a part until nothing is left. Calls open(piece, place) where none hides; ends if that returns false, or
+/// when so many cuts have been made.
+/// @returns true if all was hidden
+template <class Open>
+bool CullProver::Impl::cover(Piece whole, uint64_t end, Open&& open_at) {
+    bool all = true;
+    left.push_back(std::move(whole));
+    while (!left.empty()) {
+        if (proof.cuts >= end) return false;
+        const Piece piece = std::move(left.back());
+        left.pop_back();
+        if (takeByRecent(piece)) continue;
+        const glm::dvec3 at = pieces.middle(piece);
+        if (takeBySearch(piece, at)) continue;
+        all = false;
+        if (!open_at(piece, at)) return false;
+    }
+    return all;
+}
+
+/// True if the object's box lies outside of the view: most objects do.
+bool CullProver::Impl::isOutside() const {
+    const Box3d& box = facts.box(object);
+    const glm::dvec3 middle = box.center() - planes.origin.eye;
+    // The box was rounded where the object stands, and `middle` here.
+    const glm::dvec3 far = glm::abs(planes.origin.eye) + glm::max(glm::abs(box.min), glm::abs(box.max));
+    const glm::dvec3 reach = 0.5 * box.size() + exact.roundingOf(object) + 0x1p-48 * (far.x + far.y + far.z);
+    const Triple<Rounded> all{{middle.x, reach.x}, {middle.y, reach.y}, {middle.z, reach.z}};
+    for (const auto* list : {&planes.sides, &planes.of_question})
+        for (const ViewPlane& plane : *list)
+            if ((dot(Triple<Rounded>{plane.x, plane.y, plane.z}, all) + plane.w).sign() == -1) return true;
+    return false;
+}
+
+bool CullProver::Impl::isBoxHidden(const Box3d& box) {
+    const glm::dmat4& transform = facts.scene().objects[object].transform;
+    ExactCorner corners[8];
+    for (int i = 0; i < 8; ++i)
+        corners[i] = ExactCorner(
+            transform, {(i & 1 ? box.max : box.min).x, (i & 2 ? box.max : box.min).y, (i & 4 ? box.max : box.min).z},
+            planes.origin);
+    const auto beyond = [&](const ViewPlane& plane, int side) {
+        return std::all_of(std::begin(corners), std::end(corners),
+                           [&](const ExactCorner& corner) { return sideOf(plane, corner) * side > 0; });
+    };
+    for (const auto* list : {&planes.sides, &planes.of_question})
+        for (const ViewPlane& plane : *list)
+            if (beyond(plane, -1)) return true;
+    // A sight line into the box passes its front in the view only if no plane cuts the front off.
+    for (const ViewPlane& plane : planes.of_question)
+        if (!beyond(plane, 1)) return false;
+
+    bool has_front = false;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int side = 0; side < 2; ++side) {
+            const int at = side << axis, u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3, other = 1 << axis;
+            ExactTriangle face{{corners[at], corners[at | u], corners[at | v]}};
+            face.findFacing(planes.origin);
+            if (face.facing == 0) continue;
+            if (sideOf(face, corners[at ^ other]) == face.facing) continue;  // the eye is on the side of the rest
+            has_front = true;
+            beginPart();
+            Piece whole = pieces.beginParallelogram(face);
+            if (!clip(whole)) continue;
+            if (!cover(std::move(whole), std::min(most_work, proof.cuts + kBoxWork),
+                       [](const Piece&, const glm::dvec3&) { return false; }))
+                return false;
+        }
+    return has_front;
+}
+
+void CullProver::Impl::lookAtTriangle(uint32_t triangle) {
+    const ExactTriangle face = triangleOf(object, triangle);
+    if (!isDrawn(object, triangle, face.facing)) return;
+    beginPart();
+    Piece whole = pieces.begin(face);
+    if (!clip(whole)) return;
+    cover(std::move(whole), most_work, [&](const Piece& piece, const glm::dvec3& at) {
+        ++open;
+        const bool seen = exact.seesPointOn(planes.rayTo(at), object, triangle, at);
+        const double width = widthOf(piece);
+        if (seen || proof.result == ProofResult::kProved || width > proof.width) {
+            proof.result = seen ? ProofResult::kSeen : ProofResult::kOpen;
+            const glm::dvec2 pixel = planes.pixelOf(at);
+            proof.x = planes.half_size.x + pixel.x;
+            proof.y = planes.half_size.y - pixel.y;
+            proof.width = width;
+        }
+        return !seen && open < kMostOpen;
+    });
+}
+
+CullProof CullProver::Impl::prove(uint32_t which, const std::vector<uint32_t>* hiders_allowed) {
+    object = which;
+    allowed = hiders_allowed;
+    proof = {};
+    open = 0;
+    hiders.clear();
+    const auto isDone = [&] {
+        return proof.cuts >= most_work || proof.result == ProofResult::kSeen || open >= kMostOpen;
+    };
+    if (!facts.box(object).empty() && !isOutside()) {
+        const Mesh& mesh = facts.mesh(object);
+        const bool many = mesh.triangles() > kFewTriangles;
+        facts.facts(object).triangles(mesh).walk(
+            [&](const Box3d& box) { return !isDone() && !(many && isBoxHidden(box)); },
+            [&](uint32_t triangle) {
+                if (!isDone()) lookAtTriangle(triangle);
+            });
+    }
+    if (proof.result == ProofResult::kProved && proof.cuts >= most_work) proof.result = ProofResult::kUndecided;
+    if (proof.result != ProofResult::kProved) proof.hiders.clear();
+    return std::move(proof);
+}
+
+CullProver::CullProver(const SceneFacts& facts, const View& view, uint64_t work)
+    : impl_(std::make_unique<Impl>(facts, view, work)) {}
+CullProver::~CullProver() = default;
+
+CullProof CullProver::prove(uint32_t object) { return impl_->prove(object, nullptr); }
+
+CullProof CullProver::proveBy(uint32_t object, const std::vector<uint32_t>& hiders) {
+    return impl_->prove(object, &hiders);
+}
+
+}  // namespace sightline::tools

@@ -1,0 +1,59 @@
+// Proves that culled objects are hidden: every point of them, by exact arithmetic on the triangles of the scene.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "sightline/geom/view.h"
+#include "sightline/tools/truth/scene_facts.h"
+
+namespace sightline::tools {
+
+enum class ProofResult : uint8_t {
+    kProved,     ///< no point of it is visible
+    kSeen,       ///< a point of it is visible beyond rounding
+    kOpen,       ///< what is left is narrower than what rounding can tell: CullProof::width
+    kUndecided,  ///< the proof would be more work than was allowed
+};
+
+struct CullProof {
+    ProofResult result = ProofResult::kProved;
+    double x = 0, y = 0;           ///< of kSeen and kOpen: where  [pixels from the left and the top]
+    double width = 0;              ///< of kOpen: of the widest place that is left  [pixels]
+    uint64_t cuts = 0;             ///< shadows that were held against pieces
+    std::vector<uint32_t> hiders;  ///< of kProved: the objects that hide it, rising; those whose triangles were taken
+};
+
+/// The third witness, and the only complete one. What can be seen of an object is where a triangle of it faces the eye, within the view
+/// widened by the jitter. That is a flat part. From it the shadows of triangles that hide are taken, until nothing is
+/// left; what is left where no triangle hides is seen. A box around many triangles is tried first: what hides the
+/// faces that its front shows hides all in it.
+///
+/// All that is decided is decided by the sign of a number, which is exact: of the triangles' corners where the
+/// transforms put them, of the eye as a double, of the view's planes as doubles. Double arithmetic only guesses which
+/// triangle to take next. Surfaces at equal depth are both visible. A triangle that the eye sees from its edge is not
+/// drawn. Deforming meshes are proved in their rest pose, and hide nothing.
+///
+/// Not thread-safe: each thread has its own.
+class CullProver {
+public:
+    /// @param facts  outlive it
+    /// @param view   isUsable(view); its eye_radius is ignored
+    /// @param work   the most shadows that are held against the pieces of one object
+    CullProver(const SceneFacts& facts, const View& view, uint64_t work = 1000000);
+    ~CullProver();
+
+    CullProof prove(uint32_t object);
+
+    /// The same with these objects alone as hiders: what a certificate says, checked by somebody who trusts nobody.
+    /// @param hiders  rising
+    CullProof proveBy(uint32_t object, const std::vector<uint32_t>& hiders);
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sightline::tools

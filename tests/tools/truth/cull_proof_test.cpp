@@ -1,0 +1,282 @@
+// Exact proofs against scenes whose answer is known, and against rays in made ones.
+// SPDX-License-Identifier: MIT
+#include "sightline/tools/truth/cull_proof.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sightline/base/random.h"
+#include "sightline/tools/truth/verify.h"
+#include "test_scenes.h"
+#include "tests/support/random.h"
+#include "tests/support/views.h"
+
+namespace sightline {
+using namespace tools;
+namespace {
+
+using namespace test;
+
+View usualView() { return viewBy(perspective(1.0, 4.0 / 3, 0.1), 320, 240); }
+View parallelView() { return viewBy(orthographic(8, 4.0 / 3, 0.1, 100), 320, 240); }
+
+CullProof prove(const Scene& scene, const View& view, uint32_t object) {
+    const SceneFacts facts(scene);
+    return CullProver(facts, view).prove(object);
+}
+
+#define EXPECT_HIDDEN(...) EXPECT_EQ(int(prove(__VA_ARGS__).result), int(ProofResult::kProved))
+#define EXPECT_SEEN(...) EXPECT_EQ(int(prove(__VA_ARGS__).result), int(ProofResult::kSeen))
+
+using Objects = std::vector<uint32_t>;
+
+TEST(CullProofs, TellHiddenFromSeen) {
+    for (const View& view : {usualView(), parallelView()}) {
+        Scene scene = emptyScene();
+        const uint32_t wall = addSquare(scene, 2), box = addBox(scene, glm::vec3(0.3f));
+        addObject(scene, box, moved({0, 0, -3}));
+        addObject(scene, wall, moved({0, 0, -5}));
+        addObject(scene, box, moved({0, 0, -8}));    // behind the wall
+        addObject(scene, box, moved({3.4, 0, -8}));  // beside it
+        addObject(scene, box, moved({0, 0, 5}));     // behind the eye
+        for (const uint32_t seen : {0u, 1u, 3u}) EXPECT_SEEN(scene, view, seen);
+        for (const uint32_t hidden : {2u, 4u}) EXPECT_HIDDEN(scene, view, hidden);
+        EXPECT_EQ(prove(scene, view, 2).hiders, Objects{1});
+        EXPECT_EQ(prove(scene, view, 4).hiders, Objects{});
+    }
+}
+
+TEST(CullProofs, SayWhereAThingIsSeen) {
+    Scene scene = emptyScene();
+    addObject(scene, addBox(scene, glm::vec3(0.1f)), moved({-1, 0.6, -3}));
+    const CullProof proof = prove(scene, usualView(), 0);
+    const double scale = 120 / std::tan(0.5) / 3;
+    EXPECT_NEAR(proof.x, 160 - scale, 12);
+    EXPECT_NEAR(proof.y, 120 - 0.6 * scale, 12);
+}
+
+/// A wall of panels whose sides are met by corners of others, turned and stretched in every way: nothing shows between them.
+TEST(CullProofs, CloseSeamsThatAreExact) {
+    for (uint64_t seed = 0; seed < 20; ++seed) {
+        Random random(seed);
+        Scene scene = emptyScene();
+        std::vector<glm::vec3> positions;
+        std::vector<uint32_t> indices;
+        const auto panel = [&](float left, float right, float low, float high) {
+            const auto first = static_cast<uint32_t>(positions.size());
+            positions.insert(positions.end(), {{left, low, 0}, {right, low, 0}, {right, high, 0}, {left, high, 0}});
+            for (const uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) indices.push_back(first + i);
+        };
+        float cuts[6] = {-3};
+        for (int row = 0; row < 5; ++row) cuts[row + 1] = row == 4 ? 3.0f : cuts[row] + float(random.uniform(0.4, 1.4));
+        for (int row = 0; row < 5; ++row) {
+            const auto middle = static_cast<float>(random.uniform(-0.8, 2));
+            panel(-3, middle, cuts[row], cuts[row + 1]);
+            panel(middle, 3, cuts[row], cuts[row + 1]);
+        }
+        glm::dmat4 transform = moved({random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), -5});
+        const double angle = random.uniform(-0.4, 0.4);
+        transform[0] = glm::dvec4(std::cos(angle), std::sin(angle), 0.1, 0);
+        transform[1] = glm::dvec4(-std::sin(angle), std::cos(angle), random.uniform(-0.3, 0.3), 0);
+        const uint32_t wall = addMesh(scene, positions, indices);
+        const uint32_t first = addObject(scene, wall, transform);
+        const uint32_t behind = addObject(scene, addBox(scene, {2.2f, 2.2f, 0.2f}), moved({0, 0, -9}));
+        for (const View& view : {usualView(), parallelView()}) {
+            ASSERT_EQ(prove(scene, view, behind).hiders, Objects{first}) << "seed " << seed;
+            // A corner that moves by as little as a float can opens a slit.
+            Scene open = scene;
+            const float seam =
+                *std::min_element(cuts, cuts + 6, [](float a, float b) { return std::abs(a) < std::abs(b); });
+            auto& corners = open.meshes[wall].positions;
+            const auto corner = std::find_if(corners.begin(), corners.end(),
+                                             [&](const glm::vec3& p) { return p.y == seam && std::abs(p.x) < 3; });
+            corner->y = std::nextafter(corner->y, -9.0f);
+            EXPECT_NE(int(prove(open, view, behind).result), int(ProofResult::kProved)) << "seed " << seed;
+        }
+    }
+}
+
+TEST(CullProofs, SeeThroughBackFacesAndWhatDoesNotHide) {
+    const auto behind = [](uint32_t material, bool turned, bool mirrored, bool deforms) {
+        Scene scene = emptyScene();
+        glm::dmat4 transform = moved({0, 0, -4});
+        if (turned) transform[0][0] = transform[2][2] = -1;
+        if (mirrored) transform[1][1] = -1;
+        const uint32_t wall = addSquare(scene, 2, material);
+        scene.meshes[wall].deforms = deforms;
+        addObject(scene, wall, transform);
+        return prove(scene, usualView(), addObject(scene, addBox(scene, glm::vec3(0.3f)), moved({0, 0, -8}))).result;
+    };
+    for (const bool mirrored : {false, true}) {
+        EXPECT_EQ(behind(0, false, mirrored, false), ProofResult::kProved);
+        EXPECT_EQ(behind(0, true, mirrored, false), ProofResult::kSeen);
+        EXPECT_EQ(behind(1, true, mirrored, false), ProofResult::kProved);
+        EXPECT_EQ(behind(0, false, mirrored, true), ProofResult::kSeen);
+        for (const uint32_t material : {2u, 3u, 4u})
+            EXPECT_EQ(behind(material, false, mirrored, false), ProofResult::kSeen);
+    }
+}
+
+/// What the near plane or a section cuts away of a wall hides nothing; a window cuts nothing.
+TEST(CullProofs, CutWhatHidesByTheViewsPlanes) {
+    Scene scene = emptyScene();
+    glm::dmat4 leaning = moved({0, 0, -3});
+    leaning[1] = glm::dvec4(0, 1, 1.3, 0);  // its upper half comes to the eye and past it
+    addObject(scene, addSquare(scene, 6, 1), leaning);
+    const uint32_t box = addBox(scene, glm::vec3(0.2f));
+    const uint32_t low = addObject(scene, box, moved({0, -1.5, -8})), high = addObject(scene, box, moved({0, 1.5, -8}));
+    View view = usualView();
+    EXPECT_HIDDEN(scene, view, low);
+    EXPECT_HIDDEN(scene, view, high);
+    view.projection = perspective(1.0, 4.0 / 3, 2.7);  // y = 0.2 and above of the wall is nearer
+    EXPECT_HIDDEN(scene, view, low);
+    EXPECT_SEEN(scene, view, high);
+    view = usualView();
+    view.sections.add({0, -1, 0, 0.3});  // leaves what is below 0.3
+    EXPECT_HIDDEN(scene, view, low);
+    EXPECT_HIDDEN(scene, view, high);  // it was cut away itself
+    view.sections = {};
+    view.sections.add({0, 0, -1, -2.6});  // leaves what is behind z = -2.6
+    EXPECT_HIDDEN(scene, view, low);
+    EXPECT_SEEN(scene, view, high);
+    view.sections = {};
+    view.window.add({0, 0, -1, -2.6});
+    EXPECT_HIDDEN(scene, view, high);
+    scene.objects.erase(scene.objects.begin());
+    EXPECT_SEEN(scene, view, 1);
+    view.window.add({0, -1, 0, 0});  // what is below
+    EXPECT_HIDDEN(scene, view, 1);
+    EXPECT_SEEN(scene, view, 0);
+}
+
+TEST(CullProofs, EqualDepthIsVisible) {
+    Scene scene = emptyScene();
+    const uint32_t small = addSquare(scene, 1), large = addSquare(scene, 3);
+    addObject(scene, large, moved({0, 0, -5}));
+    addObject(scene, small, moved({0, 0, -5}));
+    EXPECT_NE(int(prove(scene, usualView(), 1).result), int(ProofResult::kProved));
+    scene.objects[1].transform = moved({0, 0, std::nextafter(-5.0, -6.0)});  // behind by what a double can tell
+    EXPECT_HIDDEN(scene, usualView(), 1);
+}
+
+TEST(CullProofs, HoldForEveryShiftOfTheImage) {
+    Scene scene = emptyScene();
+    const double edge = 8 * std::tan(0.5) * 4.0 / 3, pixel = edge / 160;
+    addObject(scene, addSquare(scene, 1), moved({edge + 1 + 0.5 * pixel, 0, -8}));
+    View view = usualView();
+    view.jitter = 0;
+    EXPECT_HIDDEN(scene, view, 0);
+    view.jitter = 0.4;
+    EXPECT_HIDDEN(scene, view, 0);
+    view.jitter = 0.6;
+    EXPECT_SEEN(scene, view, 0);
+}
+
+TEST(CullProofs, ByNamedHidersAlone) {
+    Scene scene = emptyScene();
+    const uint32_t wall = addSquare(scene, 1);
+    addObject(scene, wall, moved({-1, 0, -4}));
+    addObject(scene, wall, moved({1, 0, -4}));
+    addObject(scene, wall, moved({0, 0, -30}));
+    const uint32_t behind = addObject(scene, addBox(scene, {0.8f, 0.5f, 0.5f}), moved({0, 0, -7}));
+    const SceneFacts facts(scene);
+    CullProver prover(facts, usualView());
+    EXPECT_EQ(prover.prove(behind).hiders, (Objects{0, 1}));
+    const auto by = [&](const Objects& hiders) { return prover.proveBy(behind, hiders).result; };
+    EXPECT_EQ(by({0, 1}), ProofResult::kProved);
+    EXPECT_EQ(by({0, 1, 2}), ProofResult::kProved);
+    for (const Objects& few : {Objects{}, Objects{0}, Objects{1}, Objects{0, 2}, Objects{2}})
+        EXPECT_NE(int(by(few)), int(ProofResult::kProved));
+}
+
+/// Triangles of any size and place, in meshes of one and of many, seen in every way: all is decided, and rays agree.
+TEST(CullProofs, AgreeWithRays) {
+    uint64_t hidden = 0, seen = 0, by_rays = 0;
+    for (uint64_t seed = 0; seed < 60; ++seed) {
+        Random random(seed);
+        Scene scene = emptyScene();
+        const double size = std::pow(10.0, random.uniform(-2, 3));
+        for (int object = 0; object < 60; ++object) {
+            std::vector<glm::vec3> positions;
+            std::vector<uint32_t> indices;
+            const uint64_t triangles = random.below(3) ? 1 + random.below(4) : 1 + random.below(40);
+            const double reach = random.below(4) ? 0.5 : 3;
+            for (uint32_t i = 0; i < 3 * triangles; ++i) {
+                positions.push_back(glm::vec3(size * randomVector(random, reach)));
+                indices.push_back(i);
+            }
+            glm::dmat4 transform = moved(size * randomVector(random, 4.0));
+            for (int column = 0; column < 3; ++column) transform[column] = glm::dvec4(randomVector(random, 1.0), 0);
+            addObject(scene, addMesh(scene, positions, indices, random.below(5) ? 1 : uint32_t(random.below(4))),
+                      transform);
+        }
+        View view = seed % 4 == 3 ? viewBy(orthographic(6 * size, 4.0 / 3, 0.01 * size, 30 * size), 320, 240)
+                                  : viewBy(perspective(1.2, 4.0 / 3, 0.01 * size), 320, 240);
+        view.view = lookAt(size * randomVector(random, 1.0), size * randomVector(random, 3.0), {0, 1, 0});
+        view.jitter = 0;
+        const SceneFacts facts(scene);
+        CullProver prover(facts, view);
+        const std::vector<uint8_t> all(scene.objects.size(), 1);
+        const FrameVerdict verdict =
+            Witness(scene).judge(view, all, {.rays = 40000, .aimed_rays = 20000, .supersampling = 2, .seed = seed});
+        for (uint32_t object = 0; object < scene.objects.size(); ++object) {
+            const CullProof proof = prover.prove(object);
+            EXPECT_TRUE(proof.result == ProofResult::kProved || proof.result == ProofResult::kSeen)
+                << "seed " << seed << " object " << object << ": width " << proof.width << " after " << proof.cuts;
+            EXPECT_FALSE(proof.result == ProofResult::kProved && verdict.seen[object])
+                << "seed " << seed << " object " << object;
+            hidden += proof.result == ProofResult::kProved;
+            seen += proof.result == ProofResult::kSeen;
+            by_rays += verdict.seen[object];
+            if (proof.result != ProofResult::kProved || proof.hiders.empty()) continue;
+            EXPECT_EQ(int(prover.proveBy(object, proof.hiders).result), int(ProofResult::kProved)) << "seed " << seed;
+        }
+    }
+    EXPECT_GT(hidden, 500u);
+    EXPECT_GT(seen, 500u);
+    EXPECT_GE(by_rays, seen * 95 / 100) << "of " << seen;
+}
+
+TEST(CullProofs, GiveUpWhereTheWorkIsSpent) {
+    Scene scene = emptyScene();
+    const uint32_t tile = addSquare(scene, 0.5f);
+    for (int x = -4; x <= 4; ++x)
+        for (int y = -4; y <= 4; ++y) addObject(scene, tile, moved({x, y, -5}));
+    const uint32_t behind = addObject(scene, addSquare(scene, 3), moved({0, 0, -6}));
+    const SceneFacts facts(scene);
+    EXPECT_EQ(int(CullProver(facts, usualView(), 5).prove(behind).result), int(ProofResult::kUndecided));
+    EXPECT_EQ(int(CullProver(facts, usualView()).prove(behind).result), int(ProofResult::kProved));
+}
+
+/// The witness decides of everything, and convicts by a proof what rays have missed.
+TEST(CullProofs, AreTheWitnessesThird) {
+    Scene scene = emptyScene();
+    addObject(scene, addSquare(scene, 3), moved({-3.0000001, 0, -5}));
+    addObject(scene, addSquare(scene, 3), moved({3.0000001, 0, -5}));  // a slit of 2e-7 is between them
+    const uint32_t box = addBox(scene, glm::vec3(0.3f));
+    addObject(scene, box, moved({0, 0, -8}));
+    addObject(scene, box, moved({1, 0, -8}));
+    addObject(scene, box, moved({-1, 0, -8}));
+    const std::vector<uint8_t> culled = {0, 0, 1, 1, 0};
+    WitnessSettings settings{.rays = 1000, .aimed_rays = 200, .supersampling = 1};
+    const FrameVerdict without = Witness(scene).judge(usualView(), culled, settings);
+    EXPECT_TRUE(without.false_culls.empty());
+    EXPECT_FALSE(without.proofs);
+    settings.prove = true;
+    const FrameVerdict verdict = Witness(scene).judge(usualView(), culled, settings);
+    ASSERT_EQ(verdict.false_culls.size(), 1u);
+    EXPECT_EQ(verdict.false_culls[0].object, 2u);
+    EXPECT_STREQ(verdict.false_culls[0].witness, "proof");
+    EXPECT_NEAR(verdict.false_culls[0].x, 160, 1e-3);
+    ASSERT_TRUE(verdict.proofs);
+    EXPECT_EQ(verdict.proofs->culled_hidden, 1u);
+    EXPECT_EQ(verdict.proofs->culled_undecided, 0u);
+    EXPECT_EQ(verdict.proofs->kept_hidden, 1u);
+    EXPECT_EQ(verdict.proofs->kept_undecided, 0u);
+    EXPECT_EQ(verdict.exactly_visible, 3u);
+}
+
+}  // namespace
+}  // namespace sightline
