@@ -37,6 +37,6 @@ case " $* " in *" view "*) programs+=(sightline-view) ;; esac
 prepare "${programs[@]}"
 if [ $# -gt 0 ]; then exec "$tool" "$@"; fi
 
-say "culling a flight through a city of 100,000 objects, and proving it with rays and an id-buffer"
+say "culling a flight through a city of 100,000 objects, and proving every cull"
 "$tool" cull city:1:100000 --frames 32 --verify --report "$root/out"
 say "the report: $root/out/index.html"

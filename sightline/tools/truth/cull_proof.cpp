@@ -19,8 +19,8 @@ namespace {
 
 /// Triangles that hid something just now, which are tried on the next piece before a search.
 constexpr size_t kRecent = 6;
-/// What one box may cost: it is a try.
-constexpr uint64_t kBoxWork = 300;
+/// What one box may cost: of a mesh, and of several objects. It is a try.
+constexpr uint64_t kBoxWork = 300, kGroupWork = 40;
 /// A mesh of so few triangles is not tried by boxes.
 constexpr size_t kFewTriangles = 8;
 /// So many places that are left end the proof of an object.
@@ -100,6 +100,7 @@ struct CullProver::Impl {
           pieces(planes.origin) {}
 
     CullProof prove(uint32_t which, const std::vector<uint32_t>* hiders_allowed);
+    std::vector<uint8_t> hiddenTogether();
 
 private:
     /// A triangle that hides, and the lines of its shadow in the part at hand.
@@ -113,8 +114,10 @@ private:
 
     ExactTriangle triangleOf(uint32_t of, uint32_t triangle) const;
     bool isDrawn(uint32_t of, uint32_t triangle, int facing) const;
+    void begin(uint32_t which, const std::vector<uint32_t>* hiders_allowed);
+    double roundingOf(uint32_t of) const;
     bool isOutside() const;
-    bool isBoxHidden(const Box3d& box);
+    bool isBoxHidden(const glm::dmat4& transform, const Box3d& box, uint64_t most);
     void lookAtTriangle(uint32_t triangle);
     void beginPart();
     bool clip(Piece& piece);
@@ -266,13 +269,18 @@ bool CullProver::Impl::cover(Piece whole, uint64_t end, Open&& open_at) {
     return all;
 }
 
+/// How far the box of an object in the world may be off, and what is computed of it here.
+double CullProver::Impl::roundingOf(uint32_t of) const {
+    const Box3d& box = facts.box(of);
+    const glm::dvec3 far = glm::abs(planes.origin.eye) + glm::max(glm::abs(box.min), glm::abs(box.max));
+    return exact.roundingOf(of) + 0x1p-48 * (far.x + far.y + far.z);
+}
+
 /// True if the object's box lies outside of the view: most objects do.
 bool CullProver::Impl::isOutside() const {
     const Box3d& box = facts.box(object);
     const glm::dvec3 middle = box.center() - planes.origin.eye;
-    // The box was rounded where the object stands, and `middle` here.
-    const glm::dvec3 far = glm::abs(planes.origin.eye) + glm::max(glm::abs(box.min), glm::abs(box.max));
-    const glm::dvec3 reach = 0.5 * box.size() + exact.roundingOf(object) + 0x1p-48 * (far.x + far.y + far.z);
+    const glm::dvec3 reach = 0.5 * box.size() + roundingOf(object);
     const Triple<Rounded> all{{middle.x, reach.x}, {middle.y, reach.y}, {middle.z, reach.z}};
     for (const auto* list : {&planes.sides, &planes.of_question})
         for (const ViewPlane& plane : *list)
@@ -280,8 +288,7 @@ bool CullProver::Impl::isOutside() const {
     return false;
 }
 
-bool CullProver::Impl::isBoxHidden(const Box3d& box) {
-    const glm::dmat4& transform = facts.scene().objects[object].transform;
+bool CullProver::Impl::isBoxHidden(const glm::dmat4& transform, const Box3d& box, uint64_t most) {
     ExactCorner corners[8];
     for (int i = 0; i < 8; ++i)
         corners[i] = ExactCorner(
@@ -310,7 +317,7 @@ bool CullProver::Impl::isBoxHidden(const Box3d& box) {
             beginPart();
             Piece whole = pieces.beginParallelogram(face);
             if (!clip(whole)) continue;
-            if (!cover(std::move(whole), std::min(most_work, proof.cuts + kBoxWork),
+            if (!cover(std::move(whole), std::min(most_work, proof.cuts + most),
                        [](const Piece&, const glm::dvec3&) { return false; }))
                 return false;
         }
@@ -338,20 +345,25 @@ void CullProver::Impl::lookAtTriangle(uint32_t triangle) {
     });
 }
 
-CullProof CullProver::Impl::prove(uint32_t which, const std::vector<uint32_t>* hiders_allowed) {
+void CullProver::Impl::begin(uint32_t which, const std::vector<uint32_t>* hiders_allowed) {
     object = which;
     allowed = hiders_allowed;
     proof = {};
     open = 0;
     hiders.clear();
+}
+
+CullProof CullProver::Impl::prove(uint32_t which, const std::vector<uint32_t>* hiders_allowed) {
+    begin(which, hiders_allowed);
     const auto isDone = [&] {
         return proof.cuts >= most_work || proof.result == ProofResult::kSeen || open >= kMostOpen;
     };
     if (!facts.box(object).empty() && !isOutside()) {
         const Mesh& mesh = facts.mesh(object);
+        const glm::dmat4& transform = facts.scene().objects[object].transform;
         const bool many = mesh.triangles() > kFewTriangles;
         facts.facts(object).triangles(mesh).walk(
-            [&](const Box3d& box) { return !isDone() && !(many && isBoxHidden(box)); },
+            [&](const Box3d& box) { return !isDone() && !(many && isBoxHidden(transform, box, kBoxWork)); },
             [&](uint32_t triangle) {
                 if (!isDone()) lookAtTriangle(triangle);
             });
@@ -361,11 +373,30 @@ CullProof CullProver::Impl::prove(uint32_t which, const std::vector<uint32_t>* h
     return std::move(proof);
 }
 
+std::vector<uint8_t> CullProver::Impl::hiddenTogether() {
+    const size_t count = facts.scene().objects.size();
+    std::vector<uint8_t> hidden(count, 1);
+    double rounding = 0;
+    for (uint32_t i = 0; i < count; ++i)
+        if (!facts.box(i).empty()) rounding = std::max(rounding, roundingOf(i));
+    const glm::dmat4 as_it_stands(1.0);
+    begin(0, nullptr);
+    facts.objects().walk(
+        [&](const Box3d& box) {
+            proof.cuts = 0;
+            return !isBoxHidden(as_it_stands, {box.min - rounding, box.max + rounding}, kGroupWork);
+        },
+        [&](uint32_t found) { hidden[found] = 0; });
+    return hidden;
+}
+
 CullProver::CullProver(const SceneFacts& facts, const View& view, uint64_t work)
     : impl_(std::make_unique<Impl>(facts, view, work)) {}
 CullProver::~CullProver() = default;
 
 CullProof CullProver::prove(uint32_t object) { return impl_->prove(object, nullptr); }
+
+std::vector<uint8_t> CullProver::hiddenTogether() { return impl_->hiddenTogether(); }
 
 CullProof CullProver::proveBy(uint32_t object, const std::vector<uint32_t>& hiders) {
     return impl_->prove(object, &hiders);

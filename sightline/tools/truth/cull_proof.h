@@ -47,6 +47,11 @@ public:
 
     CullProof prove(uint32_t object);
 
+    /// Which objects are hidden as many at a time: all in a box of the scene's tree. It says nothing of the others, and costs
+    /// less than to prove each.
+    /// @returns per object of the scene 1 if it is proved to be hidden
+    std::vector<uint8_t> hiddenTogether();
+
     /// The same with these objects alone as hiders: what a certificate says, checked by somebody who trusts nobody.
     /// @param hiders  rising
     CullProof proveBy(uint32_t object, const std::vector<uint32_t>& hiders);

@@ -144,9 +144,10 @@ struct Witness::Impl {
     void prove(Trial& trial, const View& view, std::span<const uint8_t> culled) const {
         CullProver prover(facts, view);
         ProofCounts counts;
+        const std::vector<uint8_t> together = prover.hiddenTogether();
         for (uint32_t object = 0; object < culled.size(); ++object) {
             if (trial.verdict.seen[object]) continue;
-            const CullProof proof = prover.prove(object);
+            const CullProof proof = together[object] ? CullProof() : prover.prove(object);
             if (proof.result == ProofResult::kSeen) trial.found(object, proof.x, proof.y);
             else if (proof.result == ProofResult::kProved)
                 ++(culled[object] ? counts.culled_hidden : counts.kept_hidden);

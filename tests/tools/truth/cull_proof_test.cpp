@@ -98,6 +98,60 @@ TEST(CullProofs, CloseSeamsThatAreExact) {
     }
 }
 
+/// Two walls that meet, lie apart, or overlap by what a double can just tell, whose last bits no sight line in double sees.
+TEST(CullProofs, TellASlitOfADoublesLastBit) {
+    const uint32_t kLeft = 0, kRight = 1;
+    for (uint64_t seed = 0; seed < 60; ++seed) {
+        Random random(seed);
+        Scene scene = emptyScene();
+        const uint32_t wall = addSquare(scene, 4);
+        const double angle = random.uniform(-0.3, 0.3), lean = random.uniform(-0.2, 0.2);
+        glm::dmat4 turned(1.0);
+        turned[0] = glm::dvec4(std::cos(angle), std::sin(angle), lean, 0);
+        turned[1] = glm::dvec4(-std::sin(angle), std::cos(angle), random.uniform(-0.2, 0.2), 0);
+        for (const double side : {-4.0, 4.0}) {  // of which no product is rounded
+            addObject(scene, wall, turned);
+            scene.objects.back().transform[3] = side * turned[0] + glm::dvec4(0, 0, 0, 1);
+        }
+        const uint32_t behind = addObject(scene, addBox(scene, glm::vec3(0.6f)), moved({0, 0, -4}));
+        View view = random.below(2) ? usualView() : parallelView();
+        view.view = lookAt(glm::dvec3(0, 0, 5) + randomVector(random, 0.2), {0, 0, 0}, {0, 1, 0});
+        EXPECT_EQ(prove(scene, view, behind).hiders, (Objects{kLeft, kRight})) << "seed " << seed;
+        double& right = scene.objects[kRight].transform[3].x;
+        const double met = right;
+        right = std::nextafter(met, 9.0);
+        EXPECT_EQ(int(prove(scene, view, behind).result), int(ProofResult::kOpen)) << "seed " << seed;
+        EXPECT_LT(prove(scene, view, behind).width, 1e-12);
+        right = std::nextafter(met, -9.0);
+        EXPECT_HIDDEN(scene, view, behind) << "seed " << seed;
+    }
+}
+
+/// However many tiles hide the rest: what shows through the place of one that is missing is seen.
+TEST(CullProofs, FindTheOneTileThatIsMissing) {
+    for (const int missing : {2 * 24 + 2, 2 * 24 + 21, 12 * 24 + 11, 21 * 24 + 2, 21 * 24 + 21, -1}) {
+        Scene scene = emptyScene();
+        const uint32_t tile = addSquare(scene, 0.125f);
+        for (int i = 0; i < 24 * 24; ++i)
+            if (i != missing) addObject(scene, tile, moved({0.25 * (i % 24) - 2.875, 0.25 * (i / 24) - 2.875, -5}));
+        std::vector<glm::vec3> positions;
+        std::vector<uint32_t> indices;
+        for (uint32_t i = 0; i < 16 * 16; ++i) {  // small squares, whose box is hidden but for one place
+            const glm::vec3 low(0.25f * float(i % 16) - 2, 0.25f * float(i / 16) - 2, -0.01f * float(i % 7));
+            const auto first = static_cast<uint32_t>(positions.size());
+            positions.insert(positions.end(), {low, low + glm::vec3(0.25f, 0, 0), low + glm::vec3(0.25f, 0.25f, 0), low + glm::vec3(0, 0.25f, 0)});
+            for (const uint32_t k : {0u, 1u, 2u, 0u, 2u, 3u}) indices.push_back(first + k);
+        }
+        glm::dmat4 large = moved({0, 0, -5.5});
+        large[0] *= 1.5;
+        large[1] *= 1.5;
+        const uint32_t behind = addObject(scene, addMesh(scene, positions, indices), large);
+        for (const View& view : {viewBy(perspective(1.2, 1, 0.1), 320, 320), viewBy(orthographic(7, 1, 0.1, 100), 320, 320)})
+            EXPECT_EQ(int(prove(scene, view, behind).result), int(missing < 0 ? ProofResult::kProved : ProofResult::kSeen))
+                << missing;
+    }
+}
+
 TEST(CullProofs, SeeThroughBackFacesAndWhatDoesNotHide) {
     const auto behind = [](uint32_t material, bool turned, bool mirrored, bool deforms) {
         Scene scene = emptyScene();
@@ -193,7 +247,7 @@ TEST(CullProofs, ByNamedHidersAlone) {
 
 /// Triangles of any size and place, in meshes of one and of many, seen in every way: all is decided, and rays agree.
 TEST(CullProofs, AgreeWithRays) {
-    uint64_t hidden = 0, seen = 0, by_rays = 0;
+    uint64_t hidden = 0, hidden_together = 0, seen = 0, by_rays = 0;
     for (uint64_t seed = 0; seed < 60; ++seed) {
         Random random(seed);
         Scene scene = emptyScene();
@@ -218,7 +272,7 @@ TEST(CullProofs, AgreeWithRays) {
         view.jitter = 0;
         const SceneFacts facts(scene);
         CullProver prover(facts, view);
-        const std::vector<uint8_t> all(scene.objects.size(), 1);
+        const std::vector<uint8_t> all(scene.objects.size(), 1), together = prover.hiddenTogether();
         const FrameVerdict verdict =
             Witness(scene).judge(view, all, {.rays = 40000, .aimed_rays = 20000, .supersampling = 2, .seed = seed});
         for (uint32_t object = 0; object < scene.objects.size(); ++object) {
@@ -227,6 +281,9 @@ TEST(CullProofs, AgreeWithRays) {
                 << "seed " << seed << " object " << object << ": width " << proof.width << " after " << proof.cuts;
             EXPECT_FALSE(proof.result == ProofResult::kProved && verdict.seen[object])
                 << "seed " << seed << " object " << object;
+            EXPECT_FALSE(together[object] && proof.result != ProofResult::kProved)
+                << "seed " << seed << " object " << object;
+            hidden_together += together[object];
             hidden += proof.result == ProofResult::kProved;
             seen += proof.result == ProofResult::kSeen;
             by_rays += verdict.seen[object];
@@ -235,6 +292,7 @@ TEST(CullProofs, AgreeWithRays) {
         }
     }
     EXPECT_GT(hidden, 500u);
+    EXPECT_GT(hidden_together, hidden / 8);
     EXPECT_GT(seen, 500u);
     EXPECT_GE(by_rays, seen * 95 / 100) << "of " << seen;
 }
