@@ -30,9 +30,9 @@ constexpr int kMostOpen = 64;
 struct ProofView {
     SightOrigin origin;
     glm::dvec2 half_size{0.0};  ///< of the viewport  [pixels]
-    std::vector<ViewPlane>
-        sides;                    ///< left, right, bottom, top, widened by the jitter; far: no sight line comes back in
-    std::vector<ViewPlane> cuts;  ///< near plane and sections: what hides is cut by them, too
+    /// Left, right, bottom and top, widened by the jitter; far: no sight line from the eye comes back through one.
+    std::vector<ViewPlane> sides;
+    std::vector<ViewPlane> cuts;         ///< near plane and sections: what hides is cut by them, too
     std::vector<ViewPlane> of_question;  ///< these, and the window's
 
     ProofView(const View& view, const SightLines& sight) : half_size(0.5 * view.width, 0.5 * view.height) {
@@ -57,6 +57,15 @@ struct ProofView {
         add(view.sections, cuts);
         of_question = cuts;
         add(view.window, of_question);
+    }
+
+    /// False if a plane overflows: nothing can be proved of such a view.
+    bool isFinite() const {
+        for (const auto* list : {&sides, &of_question})
+            for (const ViewPlane& plane : *list)
+                for (int i = 0; i < 4; ++i)
+                    if (!std::isfinite(plane[i])) return false;
+        return true;
     }
 
     /// The sight line to a point: from where it is drawn, to there.
@@ -122,7 +131,7 @@ private:
     void beginPart();
     bool clip(Piece& piece);
     template <class Open>
-    bool cover(Piece whole, uint64_t end, Open&& open);
+    bool cover(Piece whole, uint64_t end, Open&& open_at);
     bool take(Hider& hider, const Piece& piece);
     bool takeByRecent(const Piece& piece);
     bool takeBySearch(const Piece& piece, const glm::dvec3& at);
@@ -249,8 +258,8 @@ double CullProver::Impl::widthOf(const Piece& piece) const {
     return around > 0 ? 4 * std::abs(area) / around : 0;
 }
 
-/// Takes shadows from a part until nothing is left. Calls open(piece, place) where none hides; ends if that returns false, or
-/// when so many cuts have been made.
+/// Takes shadows from a part until nothing is left. Calls open_at(piece, place) where none hides; ends if that returns false,
+/// or when `end` cuts have been made for the object.
 /// @returns true if all was hidden
 template <class Open>
 bool CullProver::Impl::cover(Piece whole, uint64_t end, Open&& open_at) {
@@ -355,6 +364,10 @@ void CullProver::Impl::begin(uint32_t which, const std::vector<uint32_t>* hiders
 
 CullProof CullProver::Impl::prove(uint32_t which, const std::vector<uint32_t>* hiders_allowed) {
     begin(which, hiders_allowed);
+    if (!planes.isFinite()) {
+        proof.result = ProofResult::kUndecided;
+        return proof;
+    }
     const auto isDone = [&] {
         return proof.cuts >= most_work || proof.result == ProofResult::kSeen || open >= kMostOpen;
     };
@@ -375,6 +388,7 @@ CullProof CullProver::Impl::prove(uint32_t which, const std::vector<uint32_t>* h
 
 std::vector<uint8_t> CullProver::Impl::hiddenTogether() {
     const size_t count = facts.scene().objects.size();
+    if (!planes.isFinite()) return std::vector<uint8_t>(count, 0);
     std::vector<uint8_t> hidden(count, 1);
     double rounding = 0;
     for (uint32_t i = 0; i < count; ++i)

@@ -15,7 +15,7 @@ enum class ProofResult : uint8_t {
     kProved,     ///< no point of it is visible
     kSeen,       ///< a point of it is visible beyond rounding
     kOpen,       ///< what is left is narrower than what rounding can tell: CullProof::width
-    kUndecided,  ///< the proof would be more work than was allowed
+    kUndecided,  ///< the proof would be more work than was allowed, or a plane of the view is too large for a double
 };
 
 struct CullProof {

@@ -139,15 +139,18 @@ TEST(CullProofs, FindTheOneTileThatIsMissing) {
         for (uint32_t i = 0; i < 16 * 16; ++i) {  // small squares, whose box is hidden but for one place
             const glm::vec3 low(0.25f * float(i % 16) - 2, 0.25f * float(i / 16) - 2, -0.01f * float(i % 7));
             const auto first = static_cast<uint32_t>(positions.size());
-            positions.insert(positions.end(), {low, low + glm::vec3(0.25f, 0, 0), low + glm::vec3(0.25f, 0.25f, 0), low + glm::vec3(0, 0.25f, 0)});
+            positions.insert(positions.end(), {low, low + glm::vec3(0.25f, 0, 0), low + glm::vec3(0.25f, 0.25f, 0),
+                                               low + glm::vec3(0, 0.25f, 0)});
             for (const uint32_t k : {0u, 1u, 2u, 0u, 2u, 3u}) indices.push_back(first + k);
         }
         glm::dmat4 large = moved({0, 0, -5.5});
         large[0] *= 1.5;
         large[1] *= 1.5;
         const uint32_t behind = addObject(scene, addMesh(scene, positions, indices), large);
-        for (const View& view : {viewBy(perspective(1.2, 1, 0.1), 320, 320), viewBy(orthographic(7, 1, 0.1, 100), 320, 320)})
-            EXPECT_EQ(int(prove(scene, view, behind).result), int(missing < 0 ? ProofResult::kProved : ProofResult::kSeen))
+        for (const View& view :
+             {viewBy(perspective(1.2, 1, 0.1), 320, 320), viewBy(orthographic(7, 1, 0.1, 100), 320, 320)})
+            EXPECT_EQ(int(prove(scene, view, behind).result),
+                      int(missing < 0 ? ProofResult::kProved : ProofResult::kSeen))
                 << missing;
     }
 }
@@ -306,6 +309,19 @@ TEST(CullProofs, GiveUpWhereTheWorkIsSpent) {
     const SceneFacts facts(scene);
     EXPECT_EQ(int(CullProver(facts, usualView(), 5).prove(behind).result), int(ProofResult::kUndecided));
     EXPECT_EQ(int(CullProver(facts, usualView()).prove(behind).result), int(ProofResult::kProved));
+}
+
+TEST(CullProofs, SayNothingOfPlanesThatOverflow) {
+    Scene scene = emptyScene();
+    addObject(scene, addSquare(scene, 2), moved({0, 0, -5}));
+    const uint32_t behind = addObject(scene, addBox(scene, glm::vec3(0.3f)), moved({0, 0, -8}));
+    View view = usualView();
+    view.view = lookAt({0, 0, 1e-3}, {0, 0, -1}, {0, 1, 0});
+    view.sections.add({0, 0, 1e308, 1.79e308});
+    EXPECT_HIDDEN(scene, view, behind);
+    view.view = lookAt({0, 0, 1}, {0, 0, -1}, {0, 1, 0});
+    ASSERT_TRUE(isUsable(view));
+    EXPECT_EQ(int(prove(scene, view, behind).result), int(ProofResult::kUndecided));
 }
 
 /// The witness decides of everything, and convicts by a proof what rays have missed.
