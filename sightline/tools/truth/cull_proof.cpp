@@ -30,12 +30,15 @@ constexpr int kMostOpen = 64;
 struct ProofView {
     SightOrigin origin;
     glm::dvec2 half_size{0.0};  ///< of the viewport  [pixels]
+    double jitter = 0;          ///< [pixels]
+    bool usable = true;         ///< false: nothing can be proved of such a view
     /// Left, right, bottom and top, widened by the jitter; far: no sight line from the eye comes back through one.
     std::vector<ViewPlane> sides;
     std::vector<ViewPlane> cuts;         ///< near plane and sections: what hides is cut by them, too
     std::vector<ViewPlane> of_question;  ///< these, and the window's
 
-    ProofView(const View& view, const SightLines& sight) : half_size(0.5 * view.width, 0.5 * view.height) {
+    ProofView(const View& view, const SightLines& sight)
+        : half_size(0.5 * view.width, 0.5 * view.height), jitter(view.jitter) {
         const glm::dmat4 m = view.projection * glm::dmat4(glm::dmat3(view.view));
         const auto row = [&](int r) { return glm::dvec4(m[0][r], m[1][r], m[2][r], m[3][r]); };
         const glm::dvec4 x = row(0), y = row(1), z = row(2), w = row(3);
@@ -46,10 +49,8 @@ struct ProofView {
         }
         const glm::dvec4 wide = (1 + view.jitter / half_size.x) * w, high = (1 + view.jitter / half_size.y) * w;
         sides = {wide + x, wide - x, high + y, high - y};
-        // Where depth runs towards the eye, the far plane is what stands before it.
-        const bool outward = runsOutward(view);
-        sides.push_back(outward ? w - z : w + z);
-        cuts.push_back(outward ? w + z : w - z);
+        sides.push_back(w - z);
+        cuts.push_back(w + z);
         const auto add = [&](const ViewPlanes& planes, std::vector<ViewPlane>& to) {
             for (const glm::dvec4& plane : planes.all())
                 to.emplace_back(glm::dvec3(plane), plane.w + glm::dot(glm::dvec3(plane), origin.eye));
@@ -57,15 +58,7 @@ struct ProofView {
         add(view.sections, cuts);
         of_question = cuts;
         add(view.window, of_question);
-    }
-
-    /// False if a plane overflows: nothing can be proved of such a view.
-    bool isFinite() const {
-        for (const auto* list : {&sides, &of_question})
-            for (const ViewPlane& plane : *list)
-                for (int i = 0; i < 4; ++i)
-                    if (!std::isfinite(plane[i])) return false;
-        return true;
+        usable = runsOutward(view) && isFinite() && seesFromEye(sight.orthographic(), x, y, w);
     }
 
     /// The sight line to a point: from where it is drawn, to there.
@@ -83,18 +76,38 @@ struct ProofView {
         return ray;
     }
 
+    /// From the middle of the viewport, to the right and up.
     glm::dvec2 pixelOf(const glm::dvec3& point) const {
         const auto at = [&](const ViewPlane& plane) { return glm::dot(glm::dvec3(plane), point) + plane.w; };
         const double left = at(sides[0]), right = at(sides[1]), bottom = at(sides[2]), top = at(sides[3]);
-        return half_size * glm::dvec2((left - right) / (left + right), (bottom - top) / (bottom + top));
+        return (half_size + jitter) * glm::dvec2((left - right) / (left + right), (bottom - top) / (bottom + top));
+    }
+
+private:
+    bool isFinite() const {
+        std::vector<double> all = {origin.eye.x,       origin.eye.y,       origin.eye.z,
+                                   origin.direction.x, origin.direction.y, origin.direction.z};
+        for (const auto* list : {&sides, &of_question})
+            for (const ViewPlane& plane : *list) all.insert(all.end(), {plane.x, plane.y, plane.z, plane.w});
+        return std::all_of(all.begin(), all.end(), [](double value) { return std::isfinite(value); });
+    }
+
+    /// False if sight lines do not come from where the view says: a projection may move the eye.
+    bool seesFromEye(bool is_parallel, const glm::dvec4& x, const glm::dvec4& y, const glm::dvec4& w) const {
+        if (is_parallel) return origin.parallel();
+        for (const glm::dvec4& row : {x, y, w})
+            if (!(std::abs(row.w) <= 1e-9 * glm::length(glm::dvec3(row)))) return false;
+        return true;
     }
 };
 
 /// How large a triangle looks, or nearly: who hides most is asked first.
 double sizeInSight(const ExactTriangle& triangle, const SightOrigin& origin) {
     const glm::dvec3 a = triangle.corners[0].about(), b = triangle.corners[1].about(), c = triangle.corners[2].about();
-    if (origin.parallel()) return std::abs(glm::dot(glm::cross(b - a, c - a), origin.direction));
-    return std::abs(glm::dot(a, glm::cross(b, c))) / (glm::length(a) * glm::length(b) * glm::length(c));
+    const double size = origin.parallel()
+                            ? glm::dot(glm::cross(b - a, c - a), origin.direction)
+                            : glm::dot(a, glm::cross(b, c)) / (glm::length(a) * glm::length(b) * glm::length(c));
+    return std::isfinite(size) ? std::abs(size) : 0;
 }
 
 }  // namespace
@@ -121,6 +134,7 @@ private:
         uint64_t key() const { return uint64_t{object} << 32 | number; }
     };
 
+    bool isFinite(uint32_t of, uint32_t triangle) const;
     ExactTriangle triangleOf(uint32_t of, uint32_t triangle) const;
     bool isDrawn(uint32_t of, uint32_t triangle, int facing) const;
     void begin(uint32_t which, const std::vector<uint32_t>* hiders_allowed);
@@ -157,6 +171,16 @@ private:
     std::vector<std::list<Hider>::iterator> asked;
 };
 
+/// One that is not is not drawn.
+bool CullProver::Impl::isFinite(uint32_t of, uint32_t triangle) const {
+    const Mesh& mesh = facts.mesh(of);
+    for (size_t k = 0; k < 3; ++k) {
+        const glm::vec3& p = mesh.positions[mesh.indices[3 * size_t{triangle} + k]];
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return false;
+    }
+    return true;
+}
+
 ExactTriangle CullProver::Impl::triangleOf(uint32_t of, uint32_t triangle) const {
     const Mesh& mesh = facts.mesh(of);
     ExactTriangle result;
@@ -170,8 +194,7 @@ ExactTriangle CullProver::Impl::triangleOf(uint32_t of, uint32_t triangle) const
 
 bool CullProver::Impl::isDrawn(uint32_t of, uint32_t triangle, int facing) const {
     if (facing == 0) return false;
-    const bool mirrored = glm::determinant(glm::dmat3(facts.scene().objects[of].transform)) < 0;
-    return facts.facts(of).double_sided[triangle] || (facing > 0) != mirrored;
+    return facts.facts(of).double_sided[triangle] || (facing > 0) != mirrors(facts.scene().objects[of].transform);
 }
 
 // A part: a triangle, or a face of a box.
@@ -224,6 +247,7 @@ bool CullProver::Impl::takeBySearch(const Piece& piece, const glm::dvec3& at) {
     asked.clear();
     for (const ExactSight::Met& hit : met) {
         if (allowed && !std::binary_search(allowed->begin(), allowed->end(), hit.object)) continue;
+        if (!isFinite(hit.object, hit.triangle)) continue;
         const auto [place, is_new] = known.try_emplace(uint64_t{hit.object} << 32 | hit.triangle, hiders.end());
         if (is_new) {
             Hider& hider = hiders.emplace_back();
@@ -325,7 +349,8 @@ bool CullProver::Impl::isBoxHidden(const glm::dmat4& transform, const Box3d& box
             has_front = true;
             beginPart();
             Piece whole = pieces.beginParallelogram(face);
-            if (!clip(whole)) continue;
+            // Sight lines of a parallel view run along its sides but for rounding: there the whole face has to be hidden.
+            if (!planes.origin.parallel() && !clip(whole)) continue;
             if (!cover(std::move(whole), std::min(most_work, proof.cuts + most),
                        [](const Piece&, const glm::dvec3&) { return false; }))
                 return false;
@@ -334,6 +359,7 @@ bool CullProver::Impl::isBoxHidden(const glm::dmat4& transform, const Box3d& box
 }
 
 void CullProver::Impl::lookAtTriangle(uint32_t triangle) {
+    if (!isFinite(object, triangle)) return;
     const ExactTriangle face = triangleOf(object, triangle);
     if (!isDrawn(object, triangle, face.facing)) return;
     beginPart();
@@ -364,7 +390,9 @@ void CullProver::Impl::begin(uint32_t which, const std::vector<uint32_t>* hiders
 
 CullProof CullProver::Impl::prove(uint32_t which, const std::vector<uint32_t>* hiders_allowed) {
     begin(which, hiders_allowed);
-    if (!planes.isFinite()) {
+    const Mesh& mesh = facts.mesh(object);
+    const bool nowhere = facts.box(object).empty() && mesh.triangles() > 0;  // its place is not known
+    if (!planes.usable || nowhere) {
         proof.result = ProofResult::kUndecided;
         return proof;
     }
@@ -372,7 +400,6 @@ CullProof CullProver::Impl::prove(uint32_t which, const std::vector<uint32_t>* h
         return proof.cuts >= most_work || proof.result == ProofResult::kSeen || open >= kMostOpen;
     };
     if (!facts.box(object).empty() && !isOutside()) {
-        const Mesh& mesh = facts.mesh(object);
         const glm::dmat4& transform = facts.scene().objects[object].transform;
         const bool many = mesh.triangles() > kFewTriangles;
         facts.facts(object).triangles(mesh).walk(
@@ -388,11 +415,14 @@ CullProof CullProver::Impl::prove(uint32_t which, const std::vector<uint32_t>* h
 
 std::vector<uint8_t> CullProver::Impl::hiddenTogether() {
     const size_t count = facts.scene().objects.size();
-    if (!planes.isFinite()) return std::vector<uint8_t>(count, 0);
-    std::vector<uint8_t> hidden(count, 1);
+    std::vector<uint8_t> hidden(count, 0);
+    if (!planes.usable) return hidden;
     double rounding = 0;
-    for (uint32_t i = 0; i < count; ++i)
-        if (!facts.box(i).empty()) rounding = std::max(rounding, roundingOf(i));
+    for (uint32_t i = 0; i < count; ++i) {
+        if (facts.box(i).empty()) continue;
+        hidden[i] = 1;
+        rounding = std::max(rounding, roundingOf(i));
+    }
     const glm::dmat4 as_it_stands(1.0);
     begin(0, nullptr);
     facts.objects().walk(

@@ -12,10 +12,11 @@
 namespace sightline::tools {
 
 enum class ProofResult : uint8_t {
-    kProved,     ///< no point of it is visible
-    kSeen,       ///< a point of it is visible beyond rounding
-    kOpen,       ///< what is left is narrower than what rounding can tell: CullProof::width
-    kUndecided,  ///< the proof would be more work than was allowed, or a plane of the view is too large for a double
+    kProved,  ///< no point of it is visible
+    kSeen,    ///< a point of it is visible beyond rounding
+    kOpen,    ///< something is left that no triangle hides, but rounding might: CullProof::width
+    kUndecided,  ///< the proof would be more work than was allowed; the object lies nowhere (SceneFacts); or the view is one of
+    ///< which nothing is proved: reversed depth, an eye that the projection moves, planes too large for a double
 };
 
 struct CullProof {
@@ -32,7 +33,7 @@ struct CullProof {
 /// faces that its front shows hides all in it.
 ///
 /// All that is decided is decided by the sign of a number, which is exact: of the triangles' corners where the
-/// transforms put them, of the eye as a double, of the view's planes as doubles. Double arithmetic only guesses which
+/// transforms put them, of the eye as a double, of the view's planes as doubles relative to the eye. Double arithmetic only guesses which
 /// triangle to take next. Surfaces at equal depth are both visible. A triangle that the eye sees from its edge is not
 /// drawn. Deforming meshes are proved in their rest pose, and hide nothing.
 ///

@@ -66,6 +66,14 @@ public:
 
     int sign() const { return mpz_sgn(whole_); }
 
+    /// a / b, rounded.  @param b  not 0
+    friend double ratio(const Exact& a, const Exact& b) {
+        long a_power = 0, b_power = 0;
+        const double a_part = mpz_get_d_2exp(&a_power, a.whole_), b_part = mpz_get_d_2exp(&b_power, b.whole_);
+        const int64_t power = a.power_ + a_power - b.power_ - b_power;
+        return std::ldexp(a_part / b_part, static_cast<int>(std::clamp<int64_t>(power, -4000, 4000)));
+    }
+
     Exact operator-() const {
         Exact result = *this;
         mpz_neg(result.whole_, result.whole_);

@@ -80,6 +80,13 @@ void ExactTriangle::findFacing(const SightOrigin& origin) {
     facing = -exactSign([&](auto number) { return clockwise<decltype(number)>(*this, origin); });
 }
 
+bool mirrors(const glm::dmat4& transform) {
+    return exactSign([&](auto number) {
+               const auto column = [&](int i) { return tripleOf<decltype(number)>(glm::dvec3(transform[i])); };
+               return dot(cross(column(0), column(1)), column(2));
+           }) < 0;
+}
+
 int sideOf(const ViewPlane& plane, const ExactCorner& corner) {
     return exactSign([&](auto number) {
         using Number = decltype(number);
@@ -216,12 +223,16 @@ int ShadowPieces::sign(uint32_t line, uint32_t corner) const {
 }
 
 glm::dvec3 ShadowPieces::place(const Corner& corner) const {
-    double x = corner.rounded.x.value, y = corner.rounded.y.value, z = corner.rounded.z.value;
-    const double sum = x + y + z;
-    const glm::dvec3 at =
-        (x * frame_->corners[0].about() + y * frame_->corners[1].about() + z * frame_->corners[2].about()) / sum;
-    // Of lines that are next to parallel rounding may leave nothing.
-    return std::isfinite(at.x + at.y + at.z) ? at : frame_->corners[0].about();
+    const auto about = [&](double x, double y, double z) {
+        return x * frame_->corners[0].about() + y * frame_->corners[1].about() + z * frame_->corners[2].about();
+    };
+    const Triple<Rounded>& at = corner.rounded;
+    const Rounded sum = at.x + at.y + at.z;
+    if (std::max({at.x.error, at.y.error, at.z.error}) < 1e-12 * sum.value)
+        return about(at.x.value / sum.value, at.y.value / sum.value, at.z.value / sum.value);
+    const Triple<Exact>& exact = exactOf(corner);  // of lines that are next to parallel
+    const Exact exact_sum = exact.x + exact.y + exact.z;
+    return about(ratio(exact.x, exact_sum), ratio(exact.y, exact_sum), ratio(exact.z, exact_sum));
 }
 
 // Pieces.
@@ -316,8 +327,9 @@ bool ShadowPieces::subtract(const Piece& piece, std::span<const uint32_t> lines,
 bool ShadowPieces::clip(const ViewPlane& plane, Piece& piece) {
     const uint32_t line = addLine({Kind::kView, 0, nullptr, plane});
     findSigns(piece, line, signs_);
+    if (std::find(signs_.begin(), signs_.end(), -1) == signs_.end()) return true;  // what lies in the plane is inside
     if (std::find(signs_.begin(), signs_.end(), 1) == signs_.end()) return false;
-    if (std::find(signs_.begin(), signs_.end(), -1) != signs_.end()) piece = part(piece, line, signs_, 1);
+    piece = part(piece, line, signs_, 1);
     return true;
 }
 

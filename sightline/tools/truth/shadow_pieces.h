@@ -58,6 +58,10 @@ struct ExactTriangle {
     void findFacing(const SightOrigin& origin);
 };
 
+/// Whether a transform turns clockwise triangles into counter-clockwise ones.
+/// @param transform  finite
+bool mirrors(const glm::dmat4& transform);
+
 /// A plane of the view, relative to the eye: inside is >= 0.
 using ViewPlane = glm::dvec4;
 

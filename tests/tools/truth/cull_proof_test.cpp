@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sightline/base/random.h"
 #include "sightline/tools/truth/verify.h"
@@ -55,6 +56,9 @@ TEST(CullProofs, SayWhereAThingIsSeen) {
     const double scale = 120 / std::tan(0.5) / 3;
     EXPECT_NEAR(proof.x, 160 - scale, 12);
     EXPECT_NEAR(proof.y, 120 - 0.6 * scale, 12);
+    View shaken = usualView();
+    shaken.jitter = 100;  // changes what is asked, not where it is
+    EXPECT_NEAR(prove(scene, shaken, 0).x, proof.x, 12);
 }
 
 /// A wall of panels whose sides are met by corners of others, turned and stretched in every way: nothing shows between them.
@@ -206,6 +210,92 @@ TEST(CullProofs, CutWhatHidesByTheViewsPlanes) {
     view.window.add({0, -1, 0, 0});  // what is below
     EXPECT_HIDDEN(scene, view, 1);
     EXPECT_SEEN(scene, view, 0);
+}
+
+/// What lies in a plane of the view is inside of it, and a plane without a normal has everything inside.
+TEST(CullProofs, SeeWhatLiesInAPlaneOfTheView) {
+    Scene scene = emptyScene();
+    addObject(scene, addSquare(scene, 2), moved({0, 0, -5}));
+    for (const View& view : {usualView(), parallelView()}) {
+        for (const glm::dvec4& plane : {glm::dvec4(0, 0, -1, -5), glm::dvec4(0, 0, 1, 5), glm::dvec4(0.0)}) {
+            View cut = view;
+            cut.sections.add(plane);
+            EXPECT_SEEN(scene, cut, 0);
+            cut = view;
+            cut.window.add(plane);
+            EXPECT_SEEN(scene, cut, 0);
+        }
+        View nothing = view;
+        nothing.sections.add({0, 0, 0, -1});
+        EXPECT_HIDDEN(scene, nothing, 0);
+    }
+    View near = usualView();
+    near.projection = perspective(1.0, 4.0 / 3, 5.0);
+    EXPECT_SEEN(scene, near, 0);
+}
+
+/// What is not known is not proved.
+TEST(CullProofs, SayNothingOfWhatLiesNowhere) {
+    constexpr float kInfinite = std::numeric_limits<float>::infinity(), kNaN = std::numeric_limits<float>::quiet_NaN();
+    Scene scene = emptyScene();
+    glm::dmat4 huge(2e15);
+    huge[3] = {0, 0, -1e15, 1};
+    addObject(scene, addSquare(scene, 1), huge);
+    const std::vector<glm::vec3> corners = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}};
+    for (const float last : {kInfinite, kNaN}) {
+        std::vector<glm::vec3> positions = corners;
+        positions.push_back({last, 1, 0});
+        addObject(scene, addMesh(scene, positions, {0, 1, 2, 0, 2, 3}, 1), moved({0, 0, -4}));
+    }
+    const uint32_t empty = addObject(scene, addMesh(scene, {}, {}), moved({0, 0, -4}));
+    const uint32_t behind = addObject(scene, addBox(scene, glm::vec3(0.2f)), moved({0.3, -0.3, -6}));
+    const SceneFacts facts(scene);
+    CullProver prover(facts, usualView());
+    for (const uint32_t nowhere : {0u, 1u}) {
+        EXPECT_EQ(int(prover.prove(nowhere).result), int(ProofResult::kUndecided)) << nowhere;
+        EXPECT_FALSE(prover.hiddenTogether()[nowhere]);
+    }
+    EXPECT_EQ(int(prover.prove(2).result), int(ProofResult::kSeen)) << "of two triangles one has a place";
+    EXPECT_EQ(int(prover.prove(empty).result), int(ProofResult::kProved));
+    EXPECT_EQ(prover.prove(behind).hiders, Objects{2}) << "and that one hides";
+}
+
+/// Depth that runs towards the eye, and a projection that moves the eye: the culling knows these otherwise, or not at all.
+TEST(CullProofs, SayNothingOfViewsThatStartElsewhere) {
+    Scene scene = emptyScene();
+    addObject(scene, addSquare(scene, 0.5f), moved({0, 0, -2}));
+    const uint32_t behind = addObject(scene, addBox(scene, glm::vec3(0.2f)), moved({0, 0, -4}));
+    View view = usualView();
+    EXPECT_HIDDEN(scene, view, behind);
+    view.projection = view.projection * moved({-3, 0, 0});
+    EXPECT_EQ(int(prove(scene, view, behind).result), int(ProofResult::kUndecided));
+    for (View reversed : {usualView(), parallelView()}) {
+        for (int column = 0; column < 4; ++column) reversed.projection[column][2] *= -1;
+        if (!isUsable(reversed)) continue;
+        EXPECT_EQ(int(prove(scene, reversed, behind).result), int(ProofResult::kUndecided));
+    }
+    View far = usualView();
+    far.view[3] = glm::dvec4(glm::dvec3(1.7e308), 1);
+    far.view[0] = glm::dvec4(0.6, 0, 0.8, 0);
+    far.view[2] = glm::dvec4(-0.8, 0, 0.6, 0);
+    if (isUsable(far)) EXPECT_NE(int(prove(scene, far, behind).result), int(ProofResult::kSeen));
+}
+
+/// A slit that a strip covers wholly, between lines that a double takes for one: nothing else of the wall is asked instead.
+TEST(CullProofs, LookIntoASlitWhereItIs) {
+    Scene scene = emptyScene();
+    addObject(scene, addMesh(scene, {{-300, -300, 0}, {300, -300, 0}, {0, 300, 0}}, {0, 1, 2}), moved({0, 0, -9}));
+    addObject(scene, addMesh(scene, {{0, -20, 0}, {0, 20, 0}, {-30, 0, 0}}, {0, 1, 2}, 1), moved({0, 0, -5}));
+    glm::dmat4 tilted = moved({-1e-20, 0, -5});
+    tilted[1][0] = 1e-20;
+    addObject(scene, addMesh(scene, {{0, -20, 0}, {30, 0, 0}, {0, 20, 0}}, {0, 1, 2}, 1), tilted);
+    const uint32_t strip =
+        addMesh(scene, {{-0.2f, 1.2f, 0}, {0.2f, 1.2f, 0}, {0.2f, 6, 0}, {-0.2f, 6, 0}}, {0, 1, 2, 0, 2, 3}, 1);
+    const CullProof open = prove(scene, usualView(), 0);
+    EXPECT_NE(int(open.result), int(ProofResult::kProved));
+    EXPECT_TRUE(open.x > 159 && open.x < 161 && open.y > -1 && open.y < 241) << open.x << ", " << open.y;
+    addObject(scene, strip, moved({0, 0, -7}));
+    EXPECT_NE(int(prove(scene, usualView(), 0).result), int(ProofResult::kSeen));
 }
 
 TEST(CullProofs, EqualDepthIsVisible) {

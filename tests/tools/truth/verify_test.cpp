@@ -358,14 +358,18 @@ TEST(Witness, TheSameFromManyThreads) {
     const Witness witness(scene);
     WitnessSettings settings = idBufferOnly();
     settings.rays = 20000;
-    const FrameVerdict expected = witness.judge(usualView(), culled, settings);
-    EXPECT_FALSE(expected.false_culls.empty());
+    settings.prove = true;
     std::vector<FrameVerdict> verdicts(4);
-    std::vector<std::thread> threads;
+    std::vector<std::thread> threads;  // first, for what they share is made when it is first asked for
     for (FrameVerdict& verdict : verdicts)
         threads.emplace_back([&] { verdict = witness.judge(usualView(), culled, settings); });
     for (std::thread& thread : threads) thread.join();
+    const FrameVerdict expected = witness.judge(usualView(), culled, settings);
+    EXPECT_FALSE(expected.false_culls.empty());
     for (const FrameVerdict& verdict : verdicts) {
+        ASSERT_TRUE(verdict.proofs && expected.proofs);
+        EXPECT_EQ(verdict.proofs->culled_hidden, expected.proofs->culled_hidden);
+        EXPECT_EQ(verdict.proofs->kept_hidden, expected.proofs->kept_hidden);
         EXPECT_EQ(verdict.seen, expected.seen);
         EXPECT_EQ(verdict.rays, expected.rays);
         EXPECT_EQ(verdict.unconfirmed, expected.unconfirmed);
