@@ -21,9 +21,9 @@ struct PlacedBvh {
     static constexpr uint32_t kOrderPage = 1024;
 
     glm::dvec3 origin{0.0};             ///< an item's box is inside origin + its slot
-    Paged<BvhNode, 32> nodes;           ///< the root is nodes[0]; empty if there never was an item
+    Paged<BvhNode, 8> nodes;            ///< the root is nodes[0]; empty if there never was an item
     Paged<uint32_t, kOrderPage> order;  ///< place to item; kNone: the place is empty
-    Paged<uint32_t, 1024> slot;         ///< per item: node's index * 8 + slot; kNone: it is not here
+    Paged<uint32_t, 256> slot;          ///< per item: node's index * 8 + slot; kNone: it is not here
 
     explicit PlacedBvh(Memory* memory = defaultMemory()) : nodes(memory), order(memory), slot(memory) {}
 
@@ -74,7 +74,9 @@ public:
     /// @pre it is here
     uint32_t remove(uint32_t item);
 
-    bool contains(uint32_t item) const { return item < now_.slot.size() && now_.slot[item] != kNone; }
+    /// A node's number * 8 + the slot that the item is in, or kNone.
+    uint32_t slotOf(uint32_t item) const { return item < now_.slot.size() ? now_.slot[item] : kNone; }
+    bool contains(uint32_t item) const { return slotOf(item) != kNone; }
     uint32_t size() const { return living_; }
     /// Builds subtrees anew whose bounds have grown far larger than they were when they were built, small subtrees
     /// first.

@@ -16,6 +16,9 @@ void setBit(Array<uint64_t>& bits, uint32_t i) {
 
 bool hasBit(const Array<uint64_t>& bits, uint32_t i) { return i / 64 < bits.size() && (bits[i / 64] >> i % 64 & 1); }
 
+/// Records are fetched so many ahead of their turn.
+constexpr uint32_t kAhead = 8;
+
 /// A commit moves at most this many objects to new places for each object that was changed.
 constexpr size_t kMendedToChanged = 2;
 
@@ -159,8 +162,10 @@ void WorldState::putIn(uint32_t row) {
 /// Writes down what stands in a range of the hierarchy's places.
 void WorldState::place(uint32_t first, uint32_t end) {
     cells_.notePlaces(first, end);
+    const auto& order = bvh_.now().order;
     for (uint32_t at = first; at < end; ++at) {
-        const uint32_t row = bvh_.now().order[at];
+        if (at + kAhead < end && order[at + kAhead] != PlacedBvh::kNone) objects_.prefetch(order[at + kAhead]);
+        const uint32_t row = order[at];
         placed_.set(at, row == PlacedBvh::kNone ? PlacedObject() : placedObject(objects_[row]));
         if (at < limits_.objects.size()) limits_.objects.set(at, limitsAt(row));
     }
@@ -173,7 +178,7 @@ PlacedLimits::One WorldState::limitsAt(uint32_t row) const {
 /// Brings all else up to date that goes by places, after some were given anew.
 void WorldState::noteLimits() {
     if (limited_ == 0) return limits_.clear();
-    const Paged<uint32_t, 1024>& order = bvh_.now().order;
+    const auto& order = bvh_.now().order;
     for (uint32_t at = limits_.objects.size(); at < order.size(); ++at) limits_.objects.push_back(limitsAt(order[at]));
     noteLimitsBelow(bvh_.now(), limits_);
 }
@@ -198,12 +203,23 @@ void WorldState::build() {
     noteLimits();
 }
 
+/// Puts what has moved into the order of the hierarchy: neighbours share nodes, which are then at hand.
+void WorldState::sortMoved() {
+    places_.clear();
+    for (const uint32_t row : moved_) places_.push_back(uint64_t{bvh_.slotOf(row)} << 32 | row);
+    std::sort(places_.begin(), places_.end());
+    for (size_t i = 0; i < moved_.size(); ++i) moved_[i] = static_cast<uint32_t>(places_[i]);
+}
+
 /// Brings the hierarchy up to date, or builds it anew where that is better.
 void WorldState::update() {
     boxes_.clear();
     rows_.clear();
     for (const uint32_t row : removed_) takeOut(row);
-    for (const uint32_t row : moved_) {
+    sortMoved();
+    for (size_t i = 0; i < moved_.size(); ++i) {
+        if (i + kAhead < moved_.size()) objects_.prefetch(moved_[i + kAhead]);
+        const uint32_t row = moved_[i];
         if (!lives(row)) continue;
         const Box3d box = bvh_.contains(row) ? worldBounds(objects_[row]) : Box3d();
         if (box.finite() && bvh_.move(row, box)) continue;

@@ -42,6 +42,7 @@ private:
     bool lives(uint32_t row) const { return living_[row / 64] >> row % 64 & 1; }
     void compact();
     void build();
+    void sortMoved();
     void update();
     void takeOut(uint32_t row);
     void putIn(uint32_t row);
@@ -71,6 +72,7 @@ private:
     WorldCells cells_{memory};
     Array<Box3d> boxes_{memory};  ///< scratch: what comes into the hierarchy
     Array<uint32_t> rows_{memory};
+    Array<uint64_t> places_{memory};
     std::shared_ptr<const SnapshotState> last_;
 };
 

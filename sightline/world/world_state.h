@@ -40,7 +40,7 @@ struct ObjectRecord {
 };
 
 /// Objects by row; rows are given in the order of World::add. Snapshots share its pages.
-using ObjectTable = Paged<ObjectRecord, 32>;
+using ObjectTable = Paged<ObjectRecord, 4>;
 
 /// What an ObjectId's index stands for.
 struct IdSlot {
@@ -48,7 +48,7 @@ struct IdSlot {
     uint32_t row = kNowhere;
     uint32_t generation = 0;  ///< of the object that has the index now, or had it last
 };
-using IdTable = Paged<IdSlot, 512>;  // by ObjectId::index - 1
+using IdTable = Paged<IdSlot, 256>;  // by ObjectId::index - 1
 
 /// What a traversal reads of an object that it keeps, in the hierarchy's order: neighbours in space are neighbours
 /// here.
@@ -66,7 +66,7 @@ inline PlacedObject placedObject(const ObjectRecord& object) {
             object.shape,
             object.hides_in_lods ? LodsId() : object.lods};
 }
-using PlacedObjectTable = Paged<PlacedObject, 128>;
+using PlacedObjectTable = Paged<PlacedObject, 64>;
 
 /// An occluder, its simpler forms, and its parts for occluder volumes.
 struct HeldOccluder : Occluder {
