@@ -15,7 +15,7 @@ using namespace studies;
 using namespace tools;
 namespace {
 
-constexpr size_t kEyes = 256;
+constexpr size_t kEyesAsked = 256;
 constexpr EyeLevel kLevels[] = {EyeLevel::kRow, EyeLevel::kVolume, EyeLevel::kChain, EyeLevel::kSightLine};
 
 struct Asked {
@@ -50,7 +50,7 @@ std::vector<Placed> placeObjects(const EyeWorld& world) {
 
 void measure(const EyeWorld& world, int repeat, Table& table) {
     std::vector<Asked> asked;
-    for (const View& view : eyesIn(world, 1, kEyes)) asked.push_back({view, world.rowsOf(view)});
+    for (const View& view : eyesIn(world, 1, kEyesAsked)) asked.push_back({view, world.rowsOf(view)});
     if (asked.empty()) return;
     const double eyes = static_cast<double>(asked.size());
     EyeCells cells[4];

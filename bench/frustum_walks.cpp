@@ -17,7 +17,7 @@ RefinedVolume plainVolume(const View& view) {
 }
 
 /// Everything from outside.
-View viewOfAll(const std::vector<Box3d>& boxes) {
+View viewOfBoxes(const std::vector<Box3d>& boxes) {
     Box3d all;
     for (const Box3d& box : boxes) all.grow(box);
     const double size = glm::length(all.size());
@@ -40,7 +40,7 @@ void addHierarchyRows(const FrustumWorld& world, Table& table) {
     const auto walk = [&](const RefinedVolume& volume, const HierarchyCulling& how) {
         return culler.cull(volume, tree.now(), how, kept);
     };
-    for (const View& view : {world.view, viewOfAll(world.boxes)}) {
+    for (const View& view : {world.view, viewOfBoxes(world.boxes)}) {
         const Frustum frustum = makeFrustum(view);
         const RefinedVolume volume = plainVolume(view);
         const std::vector<double> times =

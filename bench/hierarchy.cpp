@@ -19,7 +19,7 @@ using namespace studies;
 using namespace tools;
 namespace {
 
-constexpr int kFrames = 10;
+constexpr int kFramesOfMoves = 10;
 
 Frustum frustumFrom(double z_far) { return makeFrustum(viewFrom(z_far)); }
 
@@ -30,7 +30,7 @@ void measureFrusta(Table& table, int repeat) {
     Swarm swarm(1000000, 1);
     const std::string where = "1,000,000 boxes, every tenth has moved";
     WorldBvh tree = treeOver(swarm.boxes);
-    for (int frame = 0; frame < kFrames; ++frame) {
+    for (int frame = 0; frame < kFramesOfMoves; ++frame) {
         swarm.step();
         for (uint32_t i = 0; i < swarm.movers(); ++i) {
             const uint32_t item = swarm.mover(i);

@@ -15,7 +15,7 @@ using namespace tools;
 namespace {
 
 constexpr uint32_t kViews = 16;
-constexpr int kFrames = 21;
+constexpr int kSceneFrames = 21;
 
 Box3d boxOf(const Scene& scene, const SceneObject& object, const glm::dvec3& by) {
     const Box3d box = transformBox(scene.meshes[object.mesh].bounds, object.transform);
@@ -103,7 +103,7 @@ void addSceneTree(Table& table, const std::string& where, const Scene& scene, in
     const Part part = partOf(scene, std::max<size_t>(scene.objects.size() / 10, 1));
     if (part.name == SceneNode::kNone) return;
     std::vector<double> by_node, one_by_one;
-    for (int frame = 0; frame < kFrames; ++frame) {
+    for (int frame = 0; frame < kSceneFrames; ++frame) {
         const glm::dvec3 by(0.1 * frame, 0.0, 0.05 * frame);
         by_node.push_back(millisecondsOf([&] {
             glm::dmat4 local(1.0);

@@ -9,7 +9,7 @@
 namespace sightline::bench {
 namespace {
 
-constexpr int kFrames = 20;
+constexpr int kWorldFrames = 20;
 
 ObjectDef objectOf(const Box3d& box) {
     ObjectDef def;
@@ -68,7 +68,7 @@ void addWorld(Table& table, const std::string& world, uint32_t count, int repeat
     const double first = millisecondsOf([&] { living.commit(); });
     const auto frames = [&](const std::string& what, const std::function<void()>& change) {
         std::vector<double> times;
-        for (int frame = 0; frame < kFrames; ++frame) {
+        for (int frame = 0; frame < kWorldFrames; ++frame) {
             times.push_back(millisecondsOf([&] {
                 change();
                 living.commit();

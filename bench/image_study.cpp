@@ -14,8 +14,8 @@ namespace sightline::bench {
 using namespace images;
 namespace {
 
-constexpr uint32_t kWidth = 640, kHeight = 360, kSub = 4;  // pixels, and samples across a pixel
-constexpr double kTexelsAPixel = 2, kMostTexels = 1500;    // where the eye is nearest
+constexpr uint32_t kImageWidth = 640, kImageHeight = 360, kSub = 4;  // pixels, and samples across a pixel
+constexpr double kTexelsAPixel = 2, kMostTexels = 1500;              // where the eye is nearest
 constexpr size_t kEyes = 4;
 
 /// Sees the whole of a scene, so that a list's items are all of them.
@@ -33,8 +33,8 @@ View viewOfAll(const Scene& scene) {
 /// The camera of an eye: 90 degrees across, level, towards the doorway's middle.
 View cameraOf(const StudiedDoorway& doorway, const glm::dvec3& eye) {
     View view;
-    view.width = kSub * kWidth;
-    view.height = kSub * kHeight;
+    view.width = kSub * kImageWidth;
+    view.height = kSub * kImageHeight;
     glm::dvec3 target = doorway.frame.centre();
     target += glm::dot(eye - target, doorway.frame.up) * doorway.frame.up;
     view.view = lookAt(eye, target, doorway.frame.up);
@@ -64,18 +64,18 @@ glm::u8vec3 pixelOf(std::span<const glm::u8vec3> samples, uint32_t row, uint32_t
     glm::uvec3 sum(kSub * kSub / 2);
     for (uint32_t y = 0; y < kSub; ++y)
         for (uint32_t x = 0; x < kSub; ++x)
-            sum += glm::uvec3(samples[size_t{row * kSub + y} * kWidth * kSub + column * kSub + x]);
+            sum += glm::uvec3(samples[size_t{row * kSub + y} * kImageWidth * kSub + column * kSub + x]);
     return glm::u8vec3(sum / (kSub * kSub));
 }
 
 /// Compares the pixels that look through the doorway, in part or wholly.
 PictureError compare(std::span<const glm::u8vec3> a, std::span<const glm::u8vec3> b,
                      const std::vector<uint32_t>& through) {
-    std::vector<uint8_t> done(size_t{kWidth} * kHeight, 0);
+    std::vector<uint8_t> done(size_t{kImageWidth} * kImageHeight, 0);
     PictureError error;
     for (const uint32_t sample : through) {
-        const uint32_t row = sample / (kWidth * kSub) / kSub, column = sample % (kWidth * kSub) / kSub;
-        uint8_t& is_done = done[size_t{row} * kWidth + column];
+        const uint32_t row = sample / (kImageWidth * kSub) / kSub, column = sample % (kImageWidth * kSub) / kSub;
+        uint8_t& is_done = done[size_t{row} * kImageWidth + column];
         if (is_done) continue;
         is_done = 1;
         error.add(pixelOf(a, row, column), pixelOf(b, row, column));

@@ -23,7 +23,7 @@ using namespace studies;
 using namespace tools;
 namespace {
 
-constexpr uint64_t kSeed = 6;
+constexpr uint64_t kBuildingSeed = 6;
 constexpr uint32_t kFloors = 2;
 constexpr size_t kEyes = 48;
 
@@ -154,7 +154,7 @@ private:
 
 Table benchIndoor(const Options& options) {
     Table table{"indoor", {}};
-    const EyeWorld world = buildingWorld(kSeed, kFloors);
+    const EyeWorld world = buildingWorld(kBuildingSeed, kFloors);
     Indoor indoor(world);
     if (!indoor.isAttached()) {
         table.faults.push_back("indoor: the building's cells were not attached");

@@ -115,7 +115,7 @@ void measureOptimum(Table& table) {
 // The walk.
 
 constexpr uint32_t kStatues = 900;
-constexpr int kFrames = 180;
+constexpr int kWalkFrames = 180;
 
 /// Statues in clumps: from some places many are near, from others few.
 Scene clumps() {
@@ -139,7 +139,8 @@ Scene clumps() {
 
 /// Looks inward from a ring around the clumps, and jumps to the other side twice.
 View viewOfFrame(int frame, uint32_t size) {
-    const double turn = 0.012 * frame + (frame >= kFrames / 3 ? 2.0 : 0.0) + (frame >= 2 * kFrames / 3 ? 1.3 : 0.0);
+    const double turn =
+        0.012 * frame + (frame >= kWalkFrames / 3 ? 2.0 : 0.0) + (frame >= 2 * kWalkFrames / 3 ? 1.3 : 0.0);
     View view;
     view.width = 16 * size;
     view.height = 9 * size;
@@ -251,7 +252,7 @@ public:
         ReactiveKnob levels({.target = budget, .least = 0.25, .most = 64});
         ReactiveKnob detail({.target = budget, .least = 1, .most = 400});
         ReactiveKnob resolution({.target = budget, .least = 1, .most = 16});
-        for (int frame = 0; frame < kFrames; ++frame) {
+        for (int frame = 0; frame < kWalkFrames; ++frame) {
             QuerySettings settings;
             settings.lod_fade = 0;
             if (mode == Mode::kStatic) settings.lod_error = 1;
@@ -275,7 +276,7 @@ public:
             if (modelled > 0) correction.observe(drawing.milliseconds, modelled);
             if (mode == Mode::kPredictive) out.modelled = std::max(out.modelled, modelled / settings.budget);
             out.times.push_back(drawing.milliseconds / budget);
-            out.drawn += drawing.triangles / kFrames;
+            out.drawn += drawing.triangles / kWalkFrames;
         }
         return out;
     }

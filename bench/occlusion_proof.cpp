@@ -15,7 +15,7 @@
 namespace sightline::bench {
 namespace {
 
-constexpr uint32_t kSizes[][2] = {{1280, 720}, {1920, 1080}};
+constexpr uint32_t kImageSizes[][2] = {{1280, 720}, {1920, 1080}};
 
 /// As FNV-1a, over words.
 constexpr uint64_t kHashStart = 0xcbf29ce484222325ull;
@@ -177,7 +177,7 @@ void addProofs(const Options& options, Table& table) {
     std::vector<std::array<uint32_t, 2>> sizes;
     if (asked.width > 0) sizes.push_back({asked.width, asked.height});
     else
-        for (const auto& size : kSizes) sizes.push_back({size[0], size[1]});
+        for (const auto& size : kImageSizes) sizes.push_back({size[0], size[1]});
     ProofSettings settings;
     if (asked.cameras > 0) settings.most_cameras = asked.cameras;
     settings.pictures.jitters = asked.jitters;

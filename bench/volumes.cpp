@@ -16,8 +16,8 @@ namespace sightline::bench {
 using namespace tools;
 namespace {
 
-constexpr uint64_t kSeed = 1;
-constexpr uint32_t kFrames = 16;
+constexpr uint64_t kSceneSeed = 1;
+constexpr uint32_t kSceneViews = 16;
 /// The stage alone and before the tiles, and then with more and fewer volumes.
 void measureScene(const Scene& scene, const CameraPath& path, const std::string& where, int repeat, Table& table) {
     LoadedWorld loaded = loadWorld(scene, {}, loadSettings(true, 0));
@@ -60,8 +60,8 @@ CameraPath pathAbove(const Scene& scene) {
         all.grow(transformBox(scene.meshes[object.mesh].bounds, object.transform));
     const double radius = 0.25 * std::max(all.size().x, all.size().z);
     CameraPath path;
-    for (uint32_t i = 0; i < kFrames; ++i) {
-        const double angle = 6.283185307179586 * i / kFrames;
+    for (uint32_t i = 0; i < kSceneViews; ++i) {
+        const double angle = 6.283185307179586 * i / kSceneViews;
         CameraFrame frame;
         frame.eye = all.center() + glm::dvec3(radius * std::cos(angle), 0, radius * std::sin(angle));
         frame.eye.y = all.max.y + 0.1 * radius;
@@ -78,16 +78,17 @@ Table benchVolumes(const Options& options) {
     Table table{"volumes", {}};
     const int repeat = options.repeat ? options.repeat : 9;
     if (options.scene) {
-        measureScene(*options.scene, seededCameras(*options.scene, kFrames, kSeed), options.scene->name, repeat, table);
+        measureScene(*options.scene, seededCameras(*options.scene, kSceneViews, kSceneSeed), options.scene->name,
+                     repeat, table);
         return table;
     }
-    const Scene city = makeCity(kSeed, 10000);
-    measureScene(city, cityStreetPath(kSeed, kFrames), "city:1:10000, street", repeat, table);
+    const Scene city = makeCity(kSceneSeed, 10000);
+    measureScene(city, cityStreetPath(kSceneSeed, kSceneViews), "city:1:10000, street", repeat, table);
     measureScene(city, pathAbove(city), "city:1:10000, above", repeat, table);
-    const Scene building = makeBuilding(kSeed, 4);
-    measureScene(building, seededCameras(building, kFrames, kSeed), "building:1:4", repeat, table);
-    const Scene terrain = makeTerrain(kSeed, 512);
-    measureScene(terrain, seededCameras(terrain, kFrames, kSeed), "terrain:1:512", repeat, table);
+    const Scene building = makeBuilding(kSceneSeed, 4);
+    measureScene(building, seededCameras(building, kSceneViews, kSceneSeed), "building:1:4", repeat, table);
+    const Scene terrain = makeTerrain(kSceneSeed, 512);
+    measureScene(terrain, seededCameras(terrain, kSceneViews, kSceneSeed), "terrain:1:512", repeat, table);
     return table;
 }
 
