@@ -66,7 +66,6 @@ public:
         const uint32_t kept = std::min(size, size_);
         const size_t pages = (size_t{size} + kPage - 1) / kPage;
         for (; pages_.size() > pages; pages_.pop_back()) pool_->giveBack(pages_.back());
-        pages_.reserve(pages);
         while (pages_.size() < pages) addPage();
         size_ = size;
         for (uint32_t i = kept; i < size; ++i) change(i) = T();

@@ -90,7 +90,7 @@ public:
     bool isWorn(uint32_t coming = 0) const;
 
     const PlacedBvh& now() const { return now_; }
-    /// As it is now. O(nodes / 32 + items / 1024).
+    /// As it is now. O(nodes / 8 + items / 256).
     PlacedBvh share();
 
 private:
