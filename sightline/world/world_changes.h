@@ -72,7 +72,7 @@ private:
     WorldCells cells_{memory};
     Array<Box3d> boxes_{memory};  ///< scratch: what comes into the hierarchy
     Array<uint32_t> rows_{memory};
-    Array<uint64_t> places_{memory};
+    Array<uint64_t> places_{memory};  ///< scratch of sortMoved()
     std::shared_ptr<const SnapshotState> last_;
 };
 
