@@ -107,8 +107,9 @@ typedef struct slQueryStats {
     bool second_look_spent; /**< objects were not asked: second_look_polygons */
 } slQueryStats;
 
-/** The scratch of one thread, to be kept from frame to frame. It allocates only when world or viewport have grown. It keeps the
- * memory of the snapshot that it was asked last until it is asked again, or destroyed. */
+/** The scratch of one thread, to be kept from frame to frame. It allocates only when world or viewport have grown, or
+ * when it remembers more certificates than ever before. It keeps the memory of the snapshot that it was asked last until it is
+ * asked again, or destroyed. */
 typedef struct slQuery slQuery;
 
 /** @param hooks  null: none */

@@ -69,10 +69,11 @@ void expectShadows(const MadeWorld& made, const Rays& rays, const View& view, co
     const bool sun = light.kind == LightKind::kDirectional;
     for (int ray = 0; ray < 500; ++ray) {
         const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
-        const glm::dvec4 a = back * glm::dvec4(x, y, -1, 1), b = back * glm::dvec4(x, y, 0.9, 1);
-        const glm::dvec3 from = glm::dvec3(a) / a.w, along = glm::normalize(glm::dvec3(b) / b.w - from);
+        const glm::dvec4 a = back * glm::dvec4(x, y, -1, 1), b = back * glm::dvec4(x, y, 0.999, 1);
+        const glm::dvec3 from = glm::dvec3(a) / a.w, through = glm::dvec3(b) / b.w - from;
+        const glm::dvec3 along = glm::normalize(through);
         const double t = rays.first(from, along, 1e-9);
-        if (!(t < 1e6)) continue;
+        if (!(t < glm::length(through))) continue;  // what lies beyond the far plane is not shown
         const glm::dvec3 point = from + t * along;
         const glm::dvec3 to = sun ? -glm::normalize(light.direction) : light.position - point;
         const double far = sun ? 1e9 : glm::length(to);
@@ -126,7 +127,7 @@ bool casts(const CasterSet& set, ObjectId id) {
 void judge(LightKind kind, bool occlusion, double least_dropped) {
     Random random(17 + static_cast<uint64_t>(kind));
     Judged judged;
-    for (uint64_t seed = 1; seed <= 6; ++seed) {
+    for (uint64_t seed = 1; seed <= casesToMake(6, 400); ++seed) {
         GroundedWorld made(seed);
         const Rays rays(made);
         const Snapshot now = made.world.commit();

@@ -244,7 +244,7 @@ TEST(CellStages, AllocateNothingOnceWarm) {
             query.visible(now, views[frame], {.windows = static_cast<PortalWindows>(frame % 3)});
         }
     };
-    ask();
+    for (int pass = 0; pass < 4; ++pass) ask();  // each finds a few certificates more, by what is remembered
     const uint64_t warm = memory.allocations;
     ask();
     EXPECT_EQ(memory.allocations, warm);
