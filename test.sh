@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Sets up, builds build/release and passes all tests; --full adds the format, clang, the fuzzers and the sanitizers.
+# Sets up, builds build/release and passes all tests; --full adds the format, the fuzzers, the sanitizers, ARM, Windows and the packages.
 # SPDX-License-Identifier: MIT
 set -euo pipefail
 
@@ -25,9 +25,6 @@ if [ -n "$full" ]; then
     step "format"
     tools/format --check
 
-    step "clang without warnings"
-    build clang
-
     step "fuzzers, half a minute each"
     build fuzz
     tests/fuzz/run 30
@@ -44,6 +41,9 @@ build release
 ctest --preset release --output-log build/release/test.log
 
 if [ -n "$full" ]; then
+    step "64-bit ARM and Windows, by emulators"
+    tools/try_foreign || [ $? -eq 77 ]
+
     step "packages, in a bare Debian"
     tools/try_packages || [ $? -eq 77 ]
 fi

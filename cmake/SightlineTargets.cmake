@@ -26,7 +26,7 @@ function(sightline_shared name output archive)
   if(SIGHTLINE_SANITIZE)
     target_link_options(sightline_${name} PUBLIC -fsanitize=${SIGHTLINE_SANITIZE})
   endif()
-  if(NOT WIN32)
+  if(NOT MSVC)
     target_link_options(sightline_${name} PRIVATE
       -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/${output}.map -Wl,--gc-sections)
   endif()

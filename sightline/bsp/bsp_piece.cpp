@@ -5,15 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/math/exact_product.h"
+
 namespace sightline {
 namespace {
-
-/// a * b - c * d, right to within two units in the last place even where the products cancel (William Kahan).
-double differenceOfProducts(double a, double b, double c, double d) {
-    const double cd = c * d;
-    const double error = std::fma(-c, d, cd);
-    return std::fma(a, b, -cd) + error;
-}
 
 glm::dvec3 accurateCross(const glm::dvec3& a, const glm::dvec3& b) {
     return {differenceOfProducts(a.y, b.z, a.z, b.y), differenceOfProducts(a.z, b.x, a.x, b.z),

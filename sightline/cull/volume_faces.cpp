@@ -7,6 +7,8 @@
 #include <span>
 #include <tuple>
 
+#include "sightline/math/exact_product.h"
+
 namespace sightline {
 namespace {
 
@@ -228,12 +230,6 @@ void Finder::join() {
             if (a != b && tryJoin(a, b)) changed = true;
         }
     }
-}
-
-/// Whether two products are equal without rounding. std::fma is exact on every machine.
-bool equalProducts(double a, double b, double c, double d) {
-    const double p = a * b, q = c * d;
-    return p == q && std::fma(a, b, -p) == std::fma(c, d, -q);
 }
 
 /// Whether b lies exactly on the segment from a to c: then the outline is the same without it.

@@ -4,7 +4,7 @@
 // Jonathan Shewchuk. Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates. 1997.
 #pragma once
 
-#include <cmath>
+#include "sightline/math/exact_product.h"
 
 namespace sightline {
 
@@ -30,15 +30,13 @@ struct Expansion {
     }
 
     void addProduct(double a, double b) {
-        const double product = a * b;
-        add(std::fma(a, b, -product));
-        add(product);
+        add(productError(a, b));
+        add(a * b);
     }
 
     void addProduct(double a, double b, double c) {
-        const double product = a * b;
-        addProduct(std::fma(a, b, -product), c);
-        addProduct(product, c);
+        addProduct(productError(a, b), c);
+        addProduct(a * b, c);
     }
 
     /// Of the sum; 0 if there is none.

@@ -13,7 +13,7 @@ using Plane = glm::dvec4;
 
 void addProductOf4(Expansion& sum, double a, double b, double c, double d) {
     if (a == 0 || b == 0 || c == 0 || d == 0) return;
-    const double product = a * b, error = std::fma(a, b, -product);
+    const double product = a * b, error = productError(a, b);
     sum.addProduct(product, c, d);
     if (error != 0) sum.addProduct(error, c, d);
 }

@@ -21,7 +21,7 @@ inline bool writeBytes(const std::filesystem::path& file, std::string_view bytes
     std::filesystem::create_directories(file.parent_path());
     std::ofstream out(file, std::ios::binary);
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush();
-    if (!out) std::fprintf(stderr, "%s: cannot be written\n", file.c_str());
+    if (!out) std::fprintf(stderr, "%s: cannot be written\n", file.string().c_str());
     return bool(out);
 }
 

@@ -24,10 +24,28 @@
 namespace {
 std::atomic<uint64_t> global_allocations{0};
 
+/// From the C library; null if there is none.
+void* allocateAligned(size_t size, size_t alignment) {
+#ifdef _WIN32
+    return _aligned_malloc(size, alignment);
+#else
+    void* place = nullptr;
+    return posix_memalign(&place, std::max(alignment, sizeof(void*)), size) == 0 ? place : nullptr;
+#endif
+}
+
+void freeAligned(void* place) {
+#ifdef _WIN32
+    _aligned_free(place);
+#else
+    std::free(place);
+#endif
+}
+
 void* allocateGlobally(size_t size, size_t alignment) {
     ++global_allocations;
-    void* place = nullptr;
-    if (posix_memalign(&place, std::max(alignment, sizeof(void*)), size) != 0) throw std::bad_alloc();
+    void* const place = allocateAligned(size, alignment);
+    if (!place) throw std::bad_alloc();
     return place;
 }
 }  // namespace
@@ -37,22 +55,22 @@ void* operator new(size_t size) { return allocateGlobally(size, alignof(std::max
 void* operator new(size_t size, std::align_val_t align) { return allocateGlobally(size, static_cast<size_t>(align)); }
 void* operator new(size_t size, const std::nothrow_t&) noexcept {
     ++global_allocations;
-    return std::malloc(size);
+    return allocateAligned(size, alignof(std::max_align_t));
 }
 // Hardly optimised, GCC does not see that all of these take from malloc.
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 #endif
-void operator delete(void* place) noexcept { std::free(place); }
-void operator delete(void* place, const std::nothrow_t&) noexcept { std::free(place); }
-void operator delete(void* place, size_t) noexcept { std::free(place); }
-void operator delete(void* place, std::align_val_t) noexcept { std::free(place); }
-void operator delete(void* place, size_t, std::align_val_t) noexcept { std::free(place); }
+void operator delete(void* place) noexcept { freeAligned(place); }
+void operator delete(void* place, const std::nothrow_t&) noexcept { freeAligned(place); }
+void operator delete(void* place, size_t) noexcept { freeAligned(place); }
+void operator delete(void* place, std::align_val_t) noexcept { freeAligned(place); }
+void operator delete(void* place, size_t, std::align_val_t) noexcept { freeAligned(place); }
 
 namespace sightline::test {
 namespace {
 
-/// Counts what is in use; takes from malloc.
+/// Counts what is in use; takes from the C library.
 class CountingMemory : public Memory {
 public:
     uint64_t allocations = 0, bytes = 0;
@@ -61,12 +79,11 @@ private:
     void* do_allocate(size_t size, size_t alignment) override {
         ++allocations;
         bytes += size;
-        void* place = nullptr;
-        return posix_memalign(&place, std::max(alignment, sizeof(void*)), size) == 0 ? place : nullptr;
+        return allocateAligned(size, alignment);
     }
     void do_deallocate(void* place, size_t size, size_t) override {
         bytes -= size;
-        std::free(place);
+        freeAligned(place);
     }
     bool do_is_equal(const Memory& other) const noexcept override { return this == &other; }
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sightline/cull/occluder_volumes.h"
+#include "sightline/math/exact_product.h"
 
 namespace sightline {
 namespace {
@@ -14,12 +15,6 @@ bool addExactly(double a, double b, double& sum) {
     sum = a + b;
     const double of_b = sum - a;
     return a == sum - of_b && b == of_b && std::isfinite(sum);
-}
-
-/// Whether two products are equal without rounding. std::fma is exact on every machine.
-bool equalProducts(double a, double b, double c, double d) {
-    const double p = a * b, q = c * d;
-    return p == q && std::fma(a, b, -p) == std::fma(c, d, -q);
 }
 
 /// Carries corners through a transform without rounding; false where that cannot be done.
