@@ -25,6 +25,9 @@ if [ -n "$full" ]; then
     step "format"
     tools/format --check
 
+    step "clang without warnings"
+    build clang
+
     step "fuzzers, half a minute each"
     build fuzz
     tests/fuzz/run 30
