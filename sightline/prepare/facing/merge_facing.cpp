@@ -240,7 +240,7 @@ private:
             uint64_t key = 0;
             for (int axis = 0; axis < 3; ++axis) {
                 const double at = (center[axis] - eyes_.min[axis]) / size[axis];
-                const auto step = static_cast<uint64_t>(std::clamp(at, 0.0, 1.0) * 0xfffff);
+                const auto step = static_cast<uint64_t>((at > 0 ? std::min(at, 1.0) : 0.0) * 0xfffff);  // 0 for a NaN
                 for (int bit = 0; bit < 19; ++bit) key |= (step >> bit & 1) << (3 * bit + axis);
             }
             places.push_back({face << 58 | key, i});
