@@ -188,6 +188,8 @@ bool PortalGraph::cellsOfRegions(std::span<const glm::dvec3> points, double radi
                     point + radius * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
         points = wide.all();
     }
+    // What reaches out of all cells is in a wall perhaps, however little: from there the backs of its faces hide nothing.
+    const double rounding = 0x1p-40 * reach_;
     bool within_one = false;
     visitRegions(grown(boxOf(points), tolerance_), [&](uint32_t i) {
         const CellRegion& region = regions_[i];
@@ -196,8 +198,8 @@ bool PortalGraph::cellsOfRegions(std::span<const glm::dvec3> points, double radi
         bool whole = true;
         for (uint32_t p = region.first_plane; p < region.first_plane + region.plane_count; ++p) {
             const Heights heights = heightsOf(left, planes_[p]);
+            whole &= heights.least >= -rounding;
             if (heights.least >= -tolerance_) continue;
-            whole = false;
             if (!(heights.most >= -tolerance_)) return;
             if (!cutBody(left, planes_[p], -tolerance_, part)) break;
             body = part;
@@ -207,7 +209,7 @@ bool PortalGraph::cellsOfRegions(std::span<const glm::dvec3> points, double radi
         cells.push_back(i);
     });
     constexpr size_t kMostRegions = 16;
-    if (within_one || (cells.size() <= kMostRegions && isCovered(points, cells, tolerance_))) return true;
+    if (within_one || (cells.size() <= kMostRegions && isCovered(points, cells, rounding))) return true;
     if (outside_ == kNoCell) return false;
     cells.push_back(outside_);
     return true;
