@@ -189,7 +189,7 @@ bool PortalGraph::cellsOfRegions(std::span<const glm::dvec3> points, double radi
         points = wide.all();
     }
     // What reaches out of all cells is in a wall perhaps, however little: from there the backs of its faces hide nothing.
-    const double rounding = 0x1p-40 * reach_;
+    const double rounding = std::min(tolerance_, 0x1p-40 * reach_);
     bool within_one = false;
     visitRegions(grown(boxOf(points), tolerance_), [&](uint32_t i) {
         const CellRegion& region = regions_[i];
