@@ -60,10 +60,11 @@ public:
     /// The cells that a convex body meets, or comes as close to as the space's tolerance: points and a radius around
     /// their hull.
     /// @param cells  receives them, each once, rising
-    /// @returns false if a part of the body may be in no cell: then it is not known what is seen from there
+    /// @returns false if a part of the body may be in no cell, for it comes as close to where none is: then it is not known
+    ///          what is seen from there
     bool cellsAround(std::span<const glm::dvec3> points, double radius, Array<uint32_t>& cells) const;
     /// The same for a box, to find the cells that an object stands in. A box that reaches out of all cells gets the
-    /// cells that it reaches into.
+    /// cells that it reaches into, and the outside if there is one.
     /// @returns false if it is in no cell at all
     bool cellsOf(const Box3d& box, Array<uint32_t>& cells) const;
 
@@ -98,7 +99,7 @@ private:
     void visitRegions(const Box3d& box, Visit visit) const;
     bool cellsOfTree(std::span<const glm::dvec3> points, double radius, Array<uint32_t>& cells) const;
     bool cellsOfRegions(std::span<const glm::dvec3> points, double radius, Array<uint32_t>& cells) const;
-    bool isCovered(std::span<const glm::dvec3> points, std::span<const uint32_t> regions, double slack) const;
+    bool isCovered(std::span<const glm::dvec3> points, std::span<const uint32_t> regions) const;
 
     uint32_t cells_ = 0, portals_ = 0, outside_ = kNoCell;
     double tolerance_ = 0, reach_ = 0;

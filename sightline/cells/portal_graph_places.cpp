@@ -9,6 +9,8 @@
 namespace sightline {
 namespace {
 
+constexpr size_t kMostRegions = 16;  // that together may hold a body
+
 using Node = PortalGraph::Node;
 
 struct Heights {
@@ -62,31 +64,28 @@ bool isWithin(const Box3d& inner, const Box3d& outer) {
 /// Pushes a body down the tree; each leaf gets what planes leave of it.
 class TreeDescent {
 public:
-    /// @param slack  what is within it of a leaf is in the leaf; how deep the body may be in solid leaves
-    TreeDescent(std::span<const Node> nodes, std::span<const glm::dvec3> body, double radius, double slack,
-                Array<uint32_t>& cells)
-        : nodes_(nodes), body_(body), radius_(radius), slack_(slack), cells_(cells) {}
+    /// @param slack  what is within it of a leaf is in the leaf, be it a cell or solid
+    TreeDescent(std::span<const Node> nodes, double radius, double slack, Array<uint32_t>& cells)
+        : nodes_(nodes), reach_(radius + slack), cells_(cells) {}
 
     /// @returns false if the body reaches into a solid leaf, or it is cut too often to tell
-    bool down(uint32_t child, uint32_t place, std::span<const glm::dvec3> points, int depth) {
+    bool down(uint32_t child, std::span<const glm::dvec3> points, int depth) {
         PointBody rest, part;
-        const double reach = radius_ + slack_;
         while ((child & Node::kLeaf) == 0) {
             const Node& node = nodes_[child];
             const Heights heights = heightsOf(points, node.plane);
-            const bool behind = heights.least <= reach, front = heights.most >= -reach;
+            const bool behind = heights.least <= reach_, front = heights.most >= -reach_;
             if (behind && front) {
-                if (depth == kMostCuts || !cutBody(points, -node.plane, -reach, part)) return false;
-                if (!down(node.child[0], child << 1, part.all(), depth + 1)) return false;
-                if (!cutBody(points, node.plane, -reach, part)) return false;
+                if (depth == kMostCuts || !cutBody(points, -node.plane, -reach_, part)) return false;
+                if (!down(node.child[0], part.all(), depth + 1)) return false;
+                if (!cutBody(points, node.plane, -reach_, part)) return false;
                 rest = part;
                 points = rest.all();
             }
             if (!behind && !front) return false;  // not a number
-            place = child << 1 | (front ? 1 : 0);
             child = node.child[front ? 1 : 0];
         }
-        if (child == Node::kSolid) return !isDeepIn(place);
+        if (child == Node::kSolid) return false;
         cells_.push_back(child & ~Node::kLeaf);
         return true;
     }
@@ -94,26 +93,8 @@ public:
 private:
     static constexpr int kMostCuts = 24;
 
-    /// Whether a part of the body is deeper in a leaf than the slack.
-    bool isDeepIn(uint32_t place) const {
-        PointBody body, part;
-        std::span<const glm::dvec3> points = body_;
-        for (uint32_t node = place >> 1, side = place & 1; node != PortalGraph::kNoCell;) {
-            const glm::dvec4& plane = nodes_[node].plane;
-            if (!cutBody(points, side == 1 ? plane : -plane, slack_ - radius_, part)) return true;
-            if (part.count == 0) return false;
-            body = part;
-            points = body.all();
-            const uint32_t parent = nodes_[node].parent;
-            if (parent != PortalGraph::kNoCell) side = nodes_[parent].child[1] == node ? 1 : 0;
-            node = parent;
-        }
-        return true;
-    }
-
     std::span<const Node> nodes_;
-    std::span<const glm::dvec3> body_;
-    double radius_, slack_;
+    double reach_;
     Array<uint32_t>& cells_;
 };
 
@@ -157,19 +138,19 @@ bool PortalGraph::cellsAround(std::span<const glm::dvec3> points, double radius,
 bool PortalGraph::cellsOfTree(std::span<const glm::dvec3> points, double radius, Array<uint32_t>& cells) const {
     if (!bounds_.empty() && !isWithin(grown(boxOf(points), radius), grown(bounds_, tolerance_))) return false;
     if (root_ == Node::kSolid) return false;
-    return TreeDescent(nodes_, points, radius, tolerance_, cells).down(root_, kNoCell, points, 0);
+    return TreeDescent(nodes_, radius, tolerance_, cells).down(root_, points, 0);
 }
 
-bool PortalGraph::isCovered(std::span<const glm::dvec3> points, std::span<const uint32_t> regions, double slack) const {
+bool PortalGraph::isCovered(std::span<const glm::dvec3> points, std::span<const uint32_t> regions) const {
     if (points.empty()) return true;
     if (regions.empty()) return false;
+    const double rounding = std::min(tolerance_, 0x1p-40 * reach_);  // of planes that two regions share
     const CellRegion& region = regions_[regions[0]];
     PointBody rest, part;
     for (uint32_t i = region.first_plane; i < region.first_plane + region.plane_count; ++i) {
-        if (heightsOf(points, planes_[i]).least >= -slack) continue;
-        if (!cutBody(points, -planes_[i], slack, part) || !isCovered(part.all(), regions.subspan(1), slack))
-            return false;
-        if (!cutBody(points, planes_[i], -slack, part)) return false;
+        if (heightsOf(points, planes_[i]).least >= -rounding) continue;
+        if (!cutBody(points, -planes_[i], rounding, part) || !isCovered(part.all(), regions.subspan(1))) return false;
+        if (!cutBody(points, planes_[i], -rounding, part)) return false;
         rest = part;
         points = rest.all();
         if (points.empty()) return true;
@@ -178,38 +159,34 @@ bool PortalGraph::isCovered(std::span<const glm::dvec3> points, std::span<const 
 }
 
 bool PortalGraph::cellsOfRegions(std::span<const glm::dvec3> points, double radius, Array<uint32_t>& cells) const {
-    // Around each point the cube that holds the ball.
+    // Around each point the cube that holds the ball. A wall may stand in a cell as far as the tolerance, and behind it
+    // the backs of its faces hide nothing: so what comes as close to the end of all cells is in a wall, perhaps.
+    const double reach = radius + tolerance_;
     PointBody wide;
-    if (radius > 0) {
-        if (8 * points.size() > PointBody::kMost) return false;
-        for (const glm::dvec3& point : points)
-            for (int corner = 0; corner < 8; ++corner)
-                wide.points[wide.count++] =
-                    point + radius * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-        points = wide.all();
-    }
-    // What reaches out of all cells is in a wall perhaps, however little: from there the backs of its faces hide nothing.
-    const double rounding = std::min(tolerance_, 0x1p-40 * reach_);
+    if (8 * points.size() > PointBody::kMost) return false;
+    for (const glm::dvec3& point : points)
+        for (int corner = 0; corner < 8; ++corner)
+            wide.points[wide.count++] =
+                point + reach * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
     bool within_one = false;
-    visitRegions(grown(boxOf(points), tolerance_), [&](uint32_t i) {
+    visitRegions(boxOf(wide.all()), [&](uint32_t i) {
         const CellRegion& region = regions_[i];
         PointBody body, part;
         std::span<const glm::dvec3> left = points;
         bool whole = true;
         for (uint32_t p = region.first_plane; p < region.first_plane + region.plane_count; ++p) {
             const Heights heights = heightsOf(left, planes_[p]);
-            whole &= heights.least >= -rounding;
-            if (heights.least >= -tolerance_) continue;
-            if (!(heights.most >= -tolerance_)) return;
-            if (!cutBody(left, planes_[p], -tolerance_, part)) break;
+            whole &= heights.least >= reach;
+            if (heights.least >= -reach) continue;
+            if (!(heights.most >= -reach)) return;
+            if (!cutBody(left, planes_[p], -reach, part)) break;
             body = part;
             left = body.all();
         }
         within_one |= whole;
         cells.push_back(i);
     });
-    constexpr size_t kMostRegions = 16;
-    if (within_one || (cells.size() <= kMostRegions && isCovered(points, cells, rounding))) return true;
+    if (within_one || (cells.size() <= kMostRegions && isCovered(wide.all(), cells))) return true;
     if (outside_ == kNoCell) return false;
     cells.push_back(outside_);
     return true;
@@ -249,9 +226,9 @@ bool PortalGraph::cellsOf(const Box3d& box, Array<uint32_t>& cells) const {
         if (outside_ != kNoCell) {
             glm::dvec3 corners[8];
             for (int corner = 0; corner < 8; ++corner)
-                corners[corner] = {corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                                   corner & 4 ? box.max.z : box.min.z};
-            if (cells.size() > 16 || !isCovered(corners, cells, tolerance_)) cells.push_back(outside_);
+                corners[corner] = {corner & 1 ? wide.max.x : wide.min.x, corner & 2 ? wide.max.y : wide.min.y,
+                                   corner & 4 ? wide.max.z : wide.min.z};
+            if (cells.size() > kMostRegions || !isCovered(corners, cells)) cells.push_back(outside_);
         }
     }
     sortOnce(cells);

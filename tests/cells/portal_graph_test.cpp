@@ -144,6 +144,48 @@ TEST(PortalGraph, TakesWhatTouchesAsIn) {
     EXPECT_FALSE(graph.cellsOf({}, cells));
 }
 
+// A wall may stand in a cell as far as the tolerance: an eye between the cell's end and the wall would see through its back.
+TEST(PortalGraph, DoubtsWhatComesAsCloseToAWallAsTheTolerance) {
+    constexpr double kTolerance = 1e-3;
+    CellSpace rooms = gridSpace(1, {.rooms = {2, 2, 1}}), closed = rooms, halves;
+    closed.outside = closed.graph.cells++;
+    closed.regions.push_back({});
+    halves.tree.nodes.push_back({{1, 0, 0, 0}, {LeafTreeNode::kLeaf, LeafTreeNode::kLeaf | 1}});
+    halves.tree.nodes.push_back({{0, 1, 0, -1}, {LeafTreeNode::kLeaf | 1, LeafTreeNode::kLeaf | 2}});
+    halves.tree.nodes[0].child[1] = 1;
+    halves.tree.contents = {LeafContents::kSolid, LeafContents::kEmpty, LeafContents::kEmpty};
+    halves.tree.bounds = {{-1, -1, -1}, {2, 2, 2}};
+    halves.graph.cells = 2;
+    halves.graph.cell_of_leaf = {CellGraph::kNoCell, 0, 1};
+    for (CellSpace* space : {&rooms, &closed, &halves}) {
+        space->tolerance = kTolerance;
+        const PortalGraph graph(*space);
+        Random random(3);
+        Array<uint32_t> cells;
+        for (int i = 0; i < 300; ++i) {
+            // A triangle that reaches from one cell into the next, and comes so near to the wall at x = 0.
+            const double away = kTolerance * random.uniform(-2, 4), radius = i % 3 == 0 ? 0.01 : 0;
+            glm::dvec3 points[3];
+            for (glm::dvec3& point : points)
+                for (int axis = 0; axis < 3; ++axis) point[axis] = random.uniform(0.2, axis == 1 ? 1.8 : 0.8);
+            points[0].x = radius + away;
+            if (std::abs(away - kTolerance) < 1e-6) continue;
+            const bool known = graph.cellsAround(points, radius, cells);
+            if (space == &closed) {
+                EXPECT_TRUE(known);
+                EXPECT_EQ(has(cells, closed.outside), away < kTolerance) << away;
+            } else {
+                EXPECT_EQ(known, away > kTolerance) << away;
+            }
+            if (space != &closed || radius > 0) continue;
+            Box3d box;
+            for (const glm::dvec3& point : points) box.grow(point);
+            EXPECT_TRUE(graph.cellsOf(box, cells));
+            EXPECT_EQ(has(cells, closed.outside), away < kTolerance) << away;
+        }
+    }
+}
+
 TEST(PortalGraph, LaysPortalsSideBySide) {
     const CellSpace space = gridSpace(2, {.rooms = {3, 3, 2}});
     const PortalGraph graph(space);

@@ -70,15 +70,23 @@ private:
     bool any_ = false;
 };
 
+/// Whether a portal comes within `room` of a point: the outline goes round it, or passes by. Lines through edges would say
+/// less: an edge may be as short as rounding, and point anywhere.
 bool holds(const CellGraph& graph, const CellPortal& portal, const glm::dvec3& point, double room) {
     const auto outline = graph.outline(portal);
     const glm::dvec3 normal(portal.plane);
-    if (std::abs(glm::dot(normal, point) + portal.plane.w) > room) return false;
+    const double height = glm::dot(normal, point) + portal.plane.w;
+    if (std::abs(height) > room) return false;
+    const glm::dvec3 foot = point - height * normal;
+    double turn = 0;
     for (size_t i = 0; i < outline.size(); ++i) {
-        const glm::dvec3 edge = outline[(i + 1) % outline.size()] - outline[i];
-        if (glm::dot(glm::cross(normal, edge), point - outline[i]) < -room * glm::length(edge)) return false;
+        const glm::dvec3 from = outline[i] - foot, to = outline[(i + 1) % outline.size()] - foot, edge = to - from;
+        const double squared = glm::dot(edge, edge);
+        const double nearest = squared > 0 ? std::clamp(-glm::dot(from, edge) / squared, 0.0, 1.0) : 0;
+        if (glm::length(from + nearest * edge) <= room) return true;
+        turn += std::atan2(glm::dot(normal, glm::cross(from, to)), glm::dot(from, to));
     }
-    return true;
+    return std::abs(turn) > 3;
 }
 
 /// A portal, widened as a walk widens it, leads on there.
