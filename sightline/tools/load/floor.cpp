@@ -111,8 +111,8 @@ private:
         Random random(mixSeed(0, 0x636f6c73));
         const double top = bounds_.max.y + 0.01 * bounds_.size().y + 1, skip = 1e-6 * (bounds_.size().y + 1);
         for (int i = 0; i < kColumns; ++i) {
-            const glm::dvec3 from(random.uniform(bounds_.min.x, bounds_.max.x), top,
-                                  random.uniform(bounds_.min.z, bounds_.max.z));
+            const double z = random.uniform(bounds_.min.z, bounds_.max.z);
+            const glm::dvec3 from(random.uniform(bounds_.min.x, bounds_.max.x), top, z);
             double t = 0;
             const size_t before = starts.size();
             for (int level = 0; level < kLevels; ++level) {

@@ -35,7 +35,8 @@ Framing framingOf(const Scene& scene) {
 /// Between two faces of the box, where both are seen.
 double seededSide(uint64_t seed) {
     Random random(mixSeed(seed, 0x73696465));
-    return kPi / 2 * static_cast<double>(random.below(4)) + random.uniform(0.15, 0.35) * kPi;
+    const auto quarter = static_cast<double>(random.below(4));
+    return kPi / 2 * quarter + random.uniform(0.15, 0.35) * kPi;
 }
 
 }  // namespace

@@ -159,7 +159,8 @@ private:
         double most = 0;
         glm::dvec3 best = here;
         for (int i = 0; i < kDirections; ++i) {
-            const glm::dvec3 drawn(random_.uniform(-1, 1), random_.uniform(-0.2, 0.2), random_.uniform(-1, 1));
+            const double z = random_.uniform(-1, 1), y = random_.uniform(-0.2, 0.2), x = random_.uniform(-1, 1);
+            const glm::dvec3 drawn(x, y, z);
             const double length = glm::length(drawn);
             if (!(length > 0.1 && length <= 1)) continue;
             const glm::dvec3 direction = drawn / length;
