@@ -273,6 +273,11 @@ Explanation Query::explain(const Snapshot& now, const View& view, ObjectId id, c
     return why;
 }
 
+bool Query::certificateOf(ObjectId id, Array<Visible>& hiders) const {
+    hiders.clear();
+    return impl_->left.certificateOf(id, hiders);
+}
+
 Query::DepthImage Query::depthImage(bool resolve_seams) {
     Impl& impl = *impl_;
     detail::Answer& eye = impl.left;

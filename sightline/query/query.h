@@ -137,6 +137,12 @@ public:
     /// answer, make an Explainer: it does the shared work once.
     Explanation explain(const Snapshot& now, const View& view, ObjectId id, const QuerySettings& settings = {}) const;
 
+    /// Whether the last answer culled an object by a certificate (QuerySettings::proofs), and whom that names: they and
+    /// the object itself hide all of it that lies in the view, and nobody else is needed. After visibleStereo() it is
+    /// the left eye's. O(what certificates culled).
+    /// @param hiders  receives them, each once; none: no front of the object is seen from there, wherever others are
+    bool certificateOf(ObjectId id, Array<Visible>& hiders) const;
+
     /// The occlusion buffer after the last answer, for pictures: nearness per buffer pixel, row 0 at the bottom, 0
     /// where nothing is known to cover the whole pixel. Occluders that came after the last object are not in it. If the
     /// answer was given by certificates (QuerySettings::proofs), there is none: 0 by 0 pixels.

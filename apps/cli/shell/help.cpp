@@ -83,6 +83,8 @@ constexpr Example kExamples[] = {
      "of the software GL; cull --calibration reads the costs"},
     {"advise", "advise model.glb", "what to turn on, bake, split or merge, tried on its own frames"},
     {"replay", "replay slow.rec --image slow.png", "what `cull --record-occlusion slow.rec` wrote, once more"},
+    {"check", "check run.json house.glb",
+     "each certificate of `cull --remember --certificates --json run.json`, exactly"},
     {"report", "report --compare before after -o difference", "two runs side by side, as a page"},
     {"report", "report --compare a.json b.json --fail-if-slower 1.05", "exit code 1 if b is slower by 5 %"},
     {"config", "config --no-config >sightline.toml", "a file to begin with"},

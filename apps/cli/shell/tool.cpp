@@ -260,8 +260,8 @@ void beginVerb(CLI::App& tool, const SessionOptions& session) {
 }
 
 void addVerbs(CLI::App& tool, std::span<const OtherVerb> others, SessionOptions& session, int& exit_code) {
-    for (const auto add : {addCull, addVerify, addRender, addExplain, addSight, addReplay, addVis, addBake, addExport,
-                           addCalibrate, addProfile, addAdvise, addReport, addInfo})
+    for (const auto add : {addCull, addVerify, addRender, addExplain, addSight, addReplay, addCheck, addVis, addBake,
+                           addExport, addCalibrate, addProfile, addAdvise, addReport, addInfo})
         add(tool, exit_code);
     for (const OtherVerb& other : others) {
         if (other.add) other.add(tool, exit_code);

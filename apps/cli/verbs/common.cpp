@@ -30,7 +30,6 @@ namespace {
 
 constexpr uint32_t kLargestSide = 16384;  // [pixels]
 constexpr uint32_t kMostFrames = 1000000;
-constexpr uint32_t kMostThreads = 1024;
 constexpr std::pair<const char*, PathKind> kPathKinds[] = {{"tour", PathKind::kTour},
                                                            {"walk", PathKind::kWalk},
                                                            {"orbit", PathKind::kOrbit},

@@ -21,6 +21,8 @@ class App;
 namespace sightline::cli {
 using namespace tools;
 
+constexpr uint32_t kMostThreads = 1024;
+
 /// The scene, its cameras, the size, threads and JSON: what every verb has that looks at a scene.
 /// @param shared  what the threads share: "the frames"
 void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& shared);

@@ -275,6 +275,15 @@ Status writeCullOutputs(const Scene& scene, const Snapshot& now, const CullRun& 
 Status checkOcclusion(const CLI::App& verb, const CullOptions& options) {
     if (verb.count("--frame") > 0 && options.recording.empty())
         return usageError("--frame goes with --record-occlusion");
+    if (options.certificates) {
+        if (options.settings.stateless)
+            return usageError("--certificates: only a query that remembers has some; see --remember");
+        if (options.json.empty() && options.report.empty())
+            return usageError("--certificates: they are written with --json or --report");
+        if (options.stereo > 0) return usageError("--certificates: not of two eyes");
+        if (options.settings.stages & stageBit(Stage::kLod))
+            return usageError("--certificates: not of levels of detail, which the check does not draw");
+    }
     if (options.settings.stages & stageBit(Stage::kOcclusion)) return success();
     if (!options.recording.empty()) return usageError("--record-occlusion needs the occlusion stage");
     if (!options.depth_images.empty()) return usageError("--depth-images needs the occlusion stage");
@@ -332,6 +341,9 @@ void addCull(CLI::App& tool, int& exit_code) {
     verb->add_option("--record-occlusion", options->recording,
                      "write what one frame asks of its occlusion buffer, for `sightline replay`")
         ->type_name("FILE");
+    verb->add_flag(
+        "--certificates", options->certificates,
+        "write with the numbers whom each cull by a certificate names, for `sightline check`; needs --remember");
     verb->add_option("--frame", options->frame, "of the path, from 0: the one that is recorded")
         ->type_name("K")
         ->capture_default_str();

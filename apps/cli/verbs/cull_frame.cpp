@@ -3,6 +3,7 @@
 #include "apps/cli/verbs/cull_frame.h"
 
 #include <algorithm>
+#include <map>
 
 #include "sightline/world/world_state.h"
 
@@ -89,6 +90,27 @@ void cullFrame(const Snapshot& now, const CullRun& run, const CameraFrame* befor
         reasons.resize(now.objectCount());
         query.reasons(reasons, eye);
     }
+}
+
+std::vector<CertificateRow> certificatesOf(const Query& query, const std::vector<ObjectId>& ids,
+                                           const std::vector<uint8_t>& reasons) {
+    std::map<std::vector<uint32_t>, std::vector<uint32_t>> hidden_by;
+    std::vector<uint32_t> place_of;  // by ObjectId::index
+    for (uint32_t i = 0; i < ids.size(); ++i) {
+        if (ids[i].index >= place_of.size()) place_of.resize(ids[i].index + size_t{1});
+        place_of[ids[i].index] = i;
+    }
+    Array<Visible> named;
+    for (uint32_t object = 0; object < ids.size(); ++object) {
+        if (reasons[object] == 0 || !query.certificateOf(ids[object], named)) continue;
+        std::vector<uint32_t> hiders;
+        for (const Visible& hider : named) hiders.push_back(place_of[hider.id.index]);
+        std::sort(hiders.begin(), hiders.end());
+        hidden_by[std::move(hiders)].push_back(object);
+    }
+    std::vector<CertificateRow> rows;
+    for (auto& [hiders, hidden] : hidden_by) rows.push_back({hiders, std::move(hidden)});
+    return rows;
 }
 
 std::vector<uint8_t> reasonsOfFrustum(const Snapshot& now, const CullRun& run, const CameraFrame& camera,

@@ -27,6 +27,11 @@ View viewOf(const CameraFrame& camera, const Run& run) {
 ///                the same for any number of threads; null: there is none
 void cullFrame(const Snapshot& now, const CullRun& run, const CameraFrame* before, Query& query, FrameResult& frame);
 
+/// The certificates by which the last answer culled, those that name the same objects as one.
+/// @param reasons  of that answer
+std::vector<CertificateRow> certificatesOf(const Query& query, const std::vector<ObjectId>& ids,
+                                           const std::vector<uint8_t>& reasons);
+
 /// Per object 0 if the stage of the frustum alone would keep it in a frame.
 std::vector<uint8_t> reasonsOfFrustum(const Snapshot& now, const CullRun& run, const CameraFrame& camera, Query& query);
 

@@ -22,6 +22,7 @@
 #include "apps/cli/verbs/setting_options.h"
 #include "apps/cli/verbs/verbs.h"
 #include "apps/cli/verbs/visibility_choice.h"
+#include "sightline/bake/objects/scene_hash.h"
 #include "sightline/base/thread_pool.h"
 #include "sightline/query/explain/credits.h"
 #include "sightline/lod/lod_choice.h"
@@ -206,6 +207,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.stereo = options.stereo;
     run.repeat = options.repeat;
     run.frames.resize(path.frames.size());
+    if (options.certificates) run.scene_hash = fmt::format("{:016x}", bake::hashOf(scene));
 
     LoadedWorld loaded = [&] {
         Progress progress("preparing", "meshes", scene.meshes.size());
@@ -239,6 +241,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
             frame.camera = path.frames[i];
             cullFrame(now, run, i > 0 ? &path.frames[i - 1] : nullptr, answerer->query, frame);
             countByKey(scene, key_order, run.settings.stages, frame);
+            if (options.certificates) frame.certificates = certificatesOf(answerer->query, loaded.ids, frame.reasons);
             frame.end_microseconds = since();
             FrameResult alone;
             alone.reasons = reasonsOfFrustum(now, run, frame.camera, answerer->of_frustum);

@@ -19,6 +19,7 @@ void addSight(CLI::App& tool, int& exit_code);
 void addVis(CLI::App& tool, int& exit_code);
 void addBake(CLI::App& tool, int& exit_code);
 void addExport(CLI::App& tool, int& exit_code);
+void addCheck(CLI::App& tool, int& exit_code);
 void addReplay(CLI::App& tool, int& exit_code);
 void addCalibrate(CLI::App& tool, int& exit_code);
 void addProfile(CLI::App& tool, int& exit_code);

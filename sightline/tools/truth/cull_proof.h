@@ -54,6 +54,7 @@ public:
     std::vector<uint8_t> hiddenTogether();
 
     /// The same with these objects alone as hiders: what a certificate says, checked by somebody who trusts nobody.
+    /// kSeen is what the whole scene leaves; what only these leave is kOpen.
     /// @param hiders  rising
     CullProof proveBy(uint32_t object, const std::vector<uint32_t>& hiders);
 

@@ -87,6 +87,11 @@ Json frameJson(const FrameResult& frame, const CullRun& run, const Scene* scene)
         if (rare || work) out[row.name] = frame.stats.*row.member;
     }
     for (const CounterFlagRow& row : kQueryFlags) out[row.name] = frame.stats.*row.member;
+    if (scene && !run.scene_hash.empty()) {
+        out["certificates"] = Json::array();
+        for (const CertificateRow& row : frame.certificates)
+            out["certificates"].push_back({{"hiders", row.hiders}, {"hidden", row.hidden}});
+    }
     out["query_microseconds"] = frame.query_microseconds;
     out["thread"] = frame.thread;
     out["begin_microseconds"] = frame.begin_microseconds;
@@ -123,6 +128,7 @@ Json headJson(const CullRun& run, const Scene* scene) {
     head["schema"] = "sightline.cull/1";
     head["scene"] = {
         {"file", run.scene}, {"objects", run.objects}, {"instances", run.instances}, {"triangles", run.triangles}};
+    if (!run.scene_hash.empty()) head["scene"]["hash"] = run.scene_hash;
     if (scene && scene->files.size() > 1) {
         Json files = Json::array();
         for (const SceneFile& file : scene->files)

@@ -97,6 +97,12 @@ struct LeftToDraw {
     uint64_t triangles = 0;
 };
 
+/// Culls of a frame that rest on the same certificate. Indices into Scene::objects, ascending.
+struct CertificateRow {
+    std::vector<uint32_t> hiders;  ///< that are named
+    std::vector<uint32_t> hidden;  ///< culled: each by these and its own triangles
+};
+
 struct FrameResult {
     CameraFrame camera;
     std::vector<uint64_t> visible;  ///< keys, ascending, each once
@@ -113,9 +119,10 @@ struct FrameResult {
     QueryStats stats;                         ///< of both eyes together, where there are two
     double query_microseconds = 0;            ///< median over the repeats
     std::vector<OccluderCredit> credits;      ///< of all that were rasterized, by object; empty unless asked for
-    uint32_t thread = 0;                      ///< that answered, from 0
-    double begin_microseconds = 0;            ///< when it began with this frame, since the run began
-    double end_microseconds = 0;              ///< when it had done with it
+    std::vector<CertificateRow> certificates;  ///< of the answer; empty unless asked for
+    uint32_t thread = 0;                       ///< that answered, from 0
+    double begin_microseconds = 0;             ///< when it began with this frame, since the run began
+    double end_microseconds = 0;               ///< when it had done with it
     std::optional<VerificationRow> verification;
     std::optional<uint64_t> changed_pixels;  ///< that show another object for what is not conservative
     std::vector<std::string> notes;          ///< for a reader: why this frame is the slowest or the loosest of its run
@@ -124,6 +131,7 @@ struct FrameResult {
 struct CullRun {
     std::string scene;       ///< as it was named by the user
     std::string command;     ///< that repeats this run
+    std::string scene_hash;  ///< hashOf() in 16 digits, where certificates are noted; else empty
     uint64_t objects = 0;    ///< distinct keys
     uint64_t instances = 0;  ///< drawn objects; more than `objects` where several share a key
     uint64_t triangles = 0;  ///< drawn if nothing were culled

@@ -102,6 +102,18 @@ std::vector<uint64_t> keysOf(const At& list) {
     return keys;
 }
 
+/// Places of objects in the scene.
+std::vector<uint32_t> placesOf(const At& list, const CullRun& run) {
+    std::vector<uint32_t> places;
+    for (size_t i = 0; i < list.size(); ++i) {
+        const At entry = list.element(i);
+        if (run.instances == 0) entry.fail("the scene has no objects");
+        places.push_back(static_cast<uint32_t>(entry.whole(0, std::min<uint64_t>(run.instances - 1, UINT32_MAX - 1))));
+        if (i > 0 && places[i] <= places[i - 1]) entry.fail("objects do not ascend");
+    }
+    return places;
+}
+
 CameraFrame cameraOf(const At& at) {
     CameraFrame camera;
     at.member("eye").numbers(&camera.eye.x, 3);
@@ -237,6 +249,11 @@ void readFrame(const At& at, CullRun& run, uint32_t& stages, FrameResult& frame,
         frame.frustum_alone = {alone->member("objects").whole(0, run.objects), alone->member("triangles").whole()};
     if (const auto clusters = at.maybe("clusters")) frame.clusters = clustersOf(*clusters);
     if (const auto cells = at.maybe("cells")) frame.cells = cellsOf(*cells);
+    if (const auto certificates = at.maybe("certificates"))
+        for (size_t i = 0; i < certificates->size(); ++i) {
+            const At row = certificates->element(i);
+            frame.certificates.push_back({placesOf(row.member("hiders"), run), placesOf(row.member("hidden"), run)});
+        }
     frame.query_microseconds = at.member("query_microseconds").positive();
     const auto count = [&](const char* name, uint64_t& out) {
         if (const auto value = at.maybe(name)) out = value->whole();
@@ -297,6 +314,7 @@ RunFile readHead(const At& head) {
     run.triangles = scene.member("triangles").whole();
     run.instances = run.objects;
     if (const auto instances = scene.maybe("instances")) run.instances = instances->whole();
+    if (const auto hash = scene.maybe("hash")) run.scene_hash = hash->text();
     run.width = static_cast<uint32_t>(head.member("width").whole(1, kMostSide));
     run.height = static_cast<uint32_t>(head.member("height").whole(1, kMostSide));
     if (const auto jitter = head.maybe("jitter")) run.jitter = jitter->positive();

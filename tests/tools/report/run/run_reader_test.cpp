@@ -32,6 +32,8 @@ TEST(RunReader, ReadsBackWhatWasWritten) {
     run.frames[1].stats.nodes_visited = 77;
     run.frames[1].thread = 3;
     run.frames[1].frustum_alone = {2, 6};
+    run.scene_hash = "00c0ffee00c0ffee";
+    run.frames[1].certificates = {{{}, {1}}, {{0}, {1}}};
     run.frames[2].verification->kept_unseen = {0};
     run.frames[2].verification->rows.push_back({1, 3, 1.5, 2.5, "rays"});
     run.frames[2].verification->false_culls = 1;
@@ -54,6 +56,13 @@ TEST(RunReader, ReadsBackWhatWasWritten) {
             EXPECT_EQ(read->run.frames[i].stages[stage].culled, run.frames[i].stages[stage].culled);
         EXPECT_EQ(read->run.frames[i].query_microseconds, run.frames[i].query_microseconds);
         EXPECT_EQ(read->run.frames[i].verification->exactly_visible, 2u);
+    }
+    EXPECT_EQ(read->run.scene_hash, run.scene_hash);
+    EXPECT_TRUE(read->run.frames[0].certificates.empty());
+    ASSERT_EQ(read->run.frames[1].certificates.size(), 2u);
+    for (size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(read->run.frames[1].certificates[i].hiders, run.frames[1].certificates[i].hiders);
+        EXPECT_EQ(read->run.frames[1].certificates[i].hidden, run.frames[1].certificates[i].hidden);
     }
     EXPECT_FALSE(read->run.frames[0].frustum_alone);
     ASSERT_TRUE(read->run.frames[1].frustum_alone);
@@ -145,6 +154,16 @@ TEST(RunReader, NamesThePlaceOfAFault) {
               "run.json: frames[1].query_microseconds: too large");
     EXPECT_EQ(faultOf([](json& run) { run["frames"][0]["visible"] = {uint64_t{1} << 63}; }),
               "run.json: frames[0].visible[0]: not between 0 and 9223372036854775807");
+    const auto certificate = [](const json& hiders, const json& hidden) {
+        return faultOf([&](json& run) {
+            run["frames"][1]["certificates"] = {{{"hiders", hiders}, {"hidden", hidden}}};
+        });
+    };
+    EXPECT_EQ(certificate({0, 1}, {1}), "");
+    EXPECT_EQ(certificate({1, 1}, {1}), "run.json: frames[1].certificates[0].hiders[1]: objects do not ascend");
+    EXPECT_NE(certificate({0}, {1000}).find("frames[1].certificates[0].hidden[0]: not between 0 and "),
+              std::string::npos);
+    EXPECT_EQ(certificate(nullptr, {1}), "run.json: frames[1].certificates[0].hiders: not an array");
     EXPECT_EQ(parseRun(R"({"a": 1e999})", "run.json").error().message,
               "run.json: not JSON: number overflow parsing '1e999'");
     EXPECT_EQ(parseRun("glTF", "model.glb").error().message,

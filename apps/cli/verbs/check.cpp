@@ -1,0 +1,220 @@
+// The verb `check`: the certificates of a run, held to exact arithmetic by somebody who has not culled.
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/cli/shell/apart.h"
+#include "apps/cli/shell/progress.h"
+#include "apps/cli/shell/session.h"
+#include "apps/cli/verbs/common.h"
+#include "apps/cli/verbs/cull_frame.h"
+#include "apps/cli/verbs/cull_path.h"
+#include "apps/cli/verbs/verbs.h"
+#include "sightline/bake/objects/scene_hash.h"
+#include "sightline/tools/report/output_file.h"
+#include "sightline/tools/report/run/run_reader.h"
+#include "sightline/tools/scene/one_line.h"
+#include "sightline/tools/truth/cull_proof.h"
+
+namespace sightline::cli {
+using namespace tools;
+namespace {
+
+constexpr size_t kMostLines = 20;  // a run
+
+struct CheckOptions {
+    std::string file, json;
+    SceneChoice scene;
+    uint32_t threads = 0;
+};
+
+/// A cull that its certificate does not prove.
+struct Unshown {
+    uint32_t frame = 0, object = 0;
+    double x = 0, y = 0;   ///< where a sight line passes all whom the certificate names  [pixels]
+    bool visible = false;  ///< no other hides it there
+};
+
+struct CheckedFrame {
+    uint64_t certificates = 0, named = 0, proved = 0, undecided = 0;
+    std::vector<Unshown> unshown;
+    bool done = false;
+};
+
+CheckedFrame checkFrameOf(const SceneFacts& facts, const CullRun& run, uint32_t number) {
+    CheckedFrame out;
+    const FrameResult& frame = run.frames[number];
+    CullProver prover(facts, viewOf(frame.camera, run));
+    for (const CertificateRow& row : frame.certificates) {
+        ++out.certificates;
+        out.named += row.hiders.size();
+        for (const uint32_t object : row.hidden) {
+            std::vector<uint32_t> hiders = row.hiders;
+            const auto at = std::lower_bound(hiders.begin(), hiders.end(), object);
+            if (at == hiders.end() || *at != object)
+                hiders.insert(at, object);  // of its own triangles some hide others
+            const CullProof proof = prover.proveBy(object, hiders);
+            if (proof.result == ProofResult::kProved) {
+                ++out.proved;
+                continue;
+            }
+            const bool visible = proof.result == ProofResult::kSeen;
+            const bool by_others =
+                proof.result == ProofResult::kOpen && prover.prove(object).result == ProofResult::kProved;
+            if (visible || by_others) out.unshown.push_back({number, object, proof.x, proof.y, visible});
+            else ++out.undecided;
+        }
+    }
+    out.done = true;
+    return out;
+}
+
+struct Sums {
+    uint64_t frames = 0, certificates = 0, named = 0, proved = 0, undecided = 0;
+    std::vector<Unshown> unshown;
+};
+
+Sums sumsOf(const std::vector<CheckedFrame>& frames) {
+    Sums sums;
+    for (const CheckedFrame& frame : frames) {
+        if (!frame.done) continue;
+        ++sums.frames;
+        sums.certificates += frame.certificates;
+        sums.named += frame.named;
+        sums.proved += frame.proved;
+        sums.undecided += frame.undecided;
+        sums.unshown.insert(sums.unshown.end(), frame.unshown.begin(), frame.unshown.end());
+    }
+    return sums;
+}
+
+std::string textOf(const Sums& sums, const CheckOptions& options, const CullRun& run) {
+    const auto frames_with = std::count_if(run.frames.begin(), run.frames.end(),
+                                           [](const FrameResult& frame) { return !frame.certificates.empty(); });
+    std::string text = fmt::format("{}: {} frames, {} of them with certificates\n", oneLine(options.file),
+                                   run.frames.size(), frames_with);
+    text += fmt::format("certificates {:>10}  naming {:.1f} objects each\n", grouped(sums.certificates),
+                        sums.certificates > 0 ? double(sums.named) / double(sums.certificates) : 0.0);
+    text += fmt::format("proved       {:>10}  culls: whom their certificates name suffice, exactly\n",
+                        grouped(sums.proved));
+    text += fmt::format("not shown    {:>10}  culls: whom their certificates name leave something\n",
+                        grouped(sums.unshown.size()));
+    if (sums.undecided > 0)
+        text += fmt::format("undecided    {:>10}  too much work, or left open by a double's last bit\n",
+                            grouped(sums.undecided));
+    return text;
+}
+
+std::string jsonOf(const Sums& sums, const CheckOptions& options, const CullRun& run, const Scene& scene) {
+    nlohmann::ordered_json json;
+    json["schema"] = "sightline.check/1";
+    json["file"] = options.file;
+    json["scene"] = options.scene.title();
+    json["frames"] = sums.frames;
+    json["of"] = run.frames.size();
+    json["certificates"] = sums.certificates;
+    json["proved"] = sums.proved;
+    json["undecided"] = sums.undecided;
+    json["not_shown"] = nlohmann::ordered_json::array();
+    for (const Unshown& cull : sums.unshown)
+        json["not_shown"].push_back({{"frame", cull.frame},
+                                     {"object", cull.object},
+                                     {"path", objectPath(scene, scene.objects[cull.object])},
+                                     {"pixel", {cull.x, cull.y}},
+                                     {"visible", cull.visible}});
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+void tellUnshown(const Sums& sums, const Scene& scene) {
+    for (size_t i = 0; i < std::min(sums.unshown.size(), kMostLines); ++i) {
+        const Unshown& cull = sums.unshown[i];
+        const std::string line = fmt::format(
+            "frame {}: object {} \"{}\" is not hidden at pixel ({:.3f}, {:.3f}) by whom its certificate names{}\n",
+            cull.frame, cull.object, oneLine(objectPath(scene, scene.objects[cull.object]), 200), cull.x, cull.y,
+            cull.visible ? ", but visible there" : ", but by others");
+        (void)std::fwrite(line.data(), 1, line.size(), stderr);
+    }
+    if (sums.unshown.size() > kMostLines) {
+        const std::string line = fmt::format("and {} more\n", sums.unshown.size() - kMostLines);
+        (void)std::fwrite(line.data(), 1, line.size(), stderr);
+    }
+}
+
+/// The whole verb. Returns the exit code.
+Result<int> runCheck(CheckOptions& options) {
+    ApartFiles files;
+    files.read("FILE", options.file);
+    for (const std::string& name : options.scene.names) files.read("SCENE", name);
+    files.write("--json", options.json);
+    if (!files.status()) return files.status().error();
+    const Result<RunFile> read = readRun(options.file);
+    if (!read) return read.error();
+    const CullRun& run = read->run;
+    if (run.scene_hash.empty())
+        return Error{Error::Kind::kInput,
+                     read->file +
+                         ": holds no certificates: `sightline cull SCENE --remember --certificates --json FILE`"
+                         " writes them"};
+    const Result<Scene> scene = loadScene(options.scene);
+    if (!scene) return scene.error();
+    if (run.scene_hash != fmt::format("{:016x}", bake::hashOf(*scene)) || run.instances != scene->objects.size())
+        return Error{Error::Kind::kInput, fmt::format("{}: scene.hash: of another scene than {}", read->file,
+                                                      oneLine(options.scene.title()))};
+    if (!options.json.empty() && options.json != "-")
+        if (Status writable = canWriteFile(options.json); !writable) return writable.error();
+    for (size_t i = 0; i < run.frames.size(); ++i)
+        if (!isUsable(viewOf(run.frames[i].camera, run)))
+            return Error{Error::Kind::kInput, fmt::format("{}: frames[{}].camera: no view", read->file, i)};
+
+    stopGently();
+    const SceneFacts facts(*scene);
+    std::vector<CheckedFrame> checked(run.frames.size());
+    {
+        Progress progress("checking", "frames", run.frames.size());
+        const uint32_t threads =
+            options.threads > 0 ? options.threads : std::max(std::thread::hardware_concurrency(), 1u);
+        forEach(run.frames.size(), threads, [&](size_t i) {
+            if (interrupted()) return;
+            checked[i] = checkFrameOf(facts, run, static_cast<uint32_t>(i));
+            progress.step();
+        });
+    }
+    const Sums sums = sumsOf(checked);
+    const bool whole = sums.frames == run.frames.size();
+    if (sums.frames == 0 && !whole) return reportInterruption("no frame", false);
+    tell(options.json == "-" ? stderr : stdout, textOf(sums, options, run));
+    tellUnshown(sums, *scene);
+    if (!options.json.empty())
+        if (Status written = writeText(options.json, jsonOf(sums, options, run, *scene)); !written)
+            return written.error();
+    if (!sums.unshown.empty()) return kAnswerIsNo;
+    return whole ? kDone : reportInterruption(fmt::format("{} of {} frames", sums.frames, run.frames.size()), true);
+}
+
+}  // namespace
+
+void addCheck(CLI::App& tool, int& exit_code) {
+    CLI::App* verb = tool.add_subcommand("check", "the certificates of a run, each held to exact arithmetic");
+    const auto options = std::make_shared<CheckOptions>();
+    verb->add_option("FILE", options->file, "of cull --remember --certificates --json, or the report's directory")
+        ->required();
+    addSceneChoice(*verb, options->scene);
+    verb->add_option("--threads", options->threads, "share the frames among so many (default: all cores)")
+        ->check(CLI::Range(1u, kMostThreads))
+        ->type_name("N");
+    verb->add_option("--json", options->json, "write the result as JSON (-: standard output)")->type_name("FILE");
+    verb->callback([options, &exit_code] {
+        const Result<int> done = runCheck(*options);
+        exit_code = done ? *done : report(done.error());
+    });
+}
+
+}  // namespace sightline::cli
