@@ -13,10 +13,10 @@
 namespace sightline::test {
 namespace {
 
-constexpr uint32_t kWidth = 48;
+constexpr uint32_t kSide = 48;
 
 /// A view of a doorway whose samples are as far from each other along rows as along columns.
-View squareView(const glm::dvec3& eye) { return *portalView(madeDoorway(), eye, kWidth, 2 * kWidth); }
+View squareView(const glm::dvec3& eye) { return *portalView(madeDoorway(), eye, kSide, 2 * kSide); }
 
 TEST(WarpMap, CarriesSamplesToWhereTheirPointsProject) {
     Random random(8);
@@ -72,9 +72,9 @@ TEST(WarpOrder, GoesTowardsTheNewEyeOrAwayFromIt) {
     // Straight on, the epipole is the middle: the sheets meet there.
     const WarpOrder forward = warpOrder(from, squareView({0.5, 1, 1}));
     EXPECT_EQ(forward.columns.front(), 0u);
-    EXPECT_EQ(forward.columns.back(), kWidth / 2);
+    EXPECT_EQ(forward.columns.back(), kSide / 2);
     const WarpOrder backward = warpOrder(from, squareView({0.5, 1, 3}));
-    EXPECT_EQ(backward.columns.front(), kWidth / 2);
+    EXPECT_EQ(backward.columns.front(), kSide / 2);
     EXPECT_EQ(backward.columns.back(), 0u);
     for (std::vector<uint32_t> all : {forward.rows, backward.rows, forward.columns}) {
         std::sort(all.begin(), all.end());
@@ -149,11 +149,11 @@ TEST(Warp, InOrderShowsWhatAZBufferShowsForAnyStep) {
     DepthImage image = noise(from, random, 8);
     WarpedImage by_depth(to), wrong(to);
     warp(image, to, by_depth, {.hidden_by = HiddenBy::kZBuffer});
-    for (uint32_t i = kWidth; i-- > 0;) {
+    for (uint32_t i = kSide; i-- > 0;) {
         // One column after the other; the others turn their backs.
         DepthImage column = image;
         for (size_t at = 0; at < column.samples.size(); ++at)
-            if (at % kWidth != i) column.samples[at].from_behind = 1;
+            if (at % kSide != i) column.samples[at].from_behind = 1;
         warp(column, to, wrong);
     }
     for (size_t at = 0; at < wrong.nearness.size(); ++at)

@@ -38,7 +38,7 @@ struct BarWorld : MadeWorld {
     }
 };
 
-View randomView(Random& random, int kind) {
+View strangeView(Random& random, int kind) {
     View view = test::randomView(random, {kind % 2 ? 100.0 : 50.0, 320, 180}, {12, 4, 12});
     if (kind % 3 == 2) view.projection = orthographic(12, 16.0 / 9.0, 0.1, 100);
     return view;
@@ -62,7 +62,7 @@ TEST(SecondLook, OnlyCullsMoreAndKeepsWhatIsSeen) {
         Random random(seed);
         for (int frame = 0; frame < 6; ++frame) {
             const std::string what = "seed " + std::to_string(seed) + " frame " + std::to_string(frame);
-            View view = randomView(random, frame);
+            View view = strangeView(random, frame);
             QuerySettings settings;
             QueryStats stats;
             const std::vector<uint64_t> both = sortedKeys(now, view, settings, &stats);
@@ -133,7 +133,7 @@ TEST(SecondLook, IsTheSameOnEveryInstructionSet) {
         std::vector<uint64_t> keys;
         Random random(7);
         for (int frame = 0; frame < 6; ++frame)
-            for (const uint64_t key : sortedKeys(now, randomView(random, frame))) keys.push_back(key);
+            for (const uint64_t key : sortedKeys(now, strangeView(random, frame))) keys.push_back(key);
         all.push_back(keys);
     });
     for (const auto& keys : all) EXPECT_EQ(keys, all[0]);
@@ -143,7 +143,7 @@ TEST(SecondLook, ASpentBudgetKeepsMoreAndSaysSo) {
     BarWorld made(5);
     const Snapshot now = made.world.commit();
     Random random(5);
-    View view = randomView(random, 0);
+    View view = strangeView(random, 0);
     QuerySettings settings;
     QueryStats stats;
     const std::vector<uint64_t> all = sortedKeys(now, view, settings, &stats);
@@ -161,7 +161,7 @@ TEST(SecondLook, WithoutTheFrustumStageKeepsWhatIsOutside) {
     const Snapshot now = made.world.commit();
     Random random(6);
     for (int frame = 0; frame < 6; ++frame) {
-        View view = randomView(random, frame);
+        View view = strangeView(random, frame);
         QuerySettings settings;
         const std::vector<uint64_t> both = sortedKeys(now, view, settings);
         settings.stages = stageBit(Stage::kOcclusion);
@@ -177,7 +177,7 @@ TEST(SecondLook, IsExplainedRightly) {
         const Snapshot now = made.world.commit();
         Random random(seed);
         for (int frame = 0; frame < 3; ++frame) {
-            Laws laws(now, randomView(random, frame), {},
+            Laws laws(now, strangeView(random, frame), {},
                       "seed " + std::to_string(seed) + " frame " + std::to_string(frame));
             laws.expectTrueOfSome(random, 12);
             sum.add(laws.count);

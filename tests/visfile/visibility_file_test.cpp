@@ -12,7 +12,7 @@
 namespace sightline::test {
 namespace {
 
-constexpr VisibilityForm kForms[] = {VisibilityForm::kInPlace, VisibilityForm::kPacked};
+constexpr VisibilityForm kFileForms[] = {VisibilityForm::kInPlace, VisibilityForm::kPacked};
 
 void expectSame(const VisibilityFile& file, const MadeFile& made) {
     ASSERT_EQ(file.rows().cells(), made.visible.rows());
@@ -31,7 +31,7 @@ bool opensAndAnswers(const Array<char>& bytes) {
 TEST(VisibilityFile, AnswersAsWhatItWasWrittenFrom) {
     for (const size_t cells : {1, 8, 70, 300}) {
         const MadeFile made(cells, cells);
-        for (const VisibilityForm form : kForms) {
+        for (const VisibilityForm form : kFileForms) {
             const Array<char> bytes = made.bytes(form);
             EXPECT_EQ(made.bytes(form), bytes);
             const Result<VisibilityFile> file = VisibilityFile::open(bytes, "f");
@@ -40,8 +40,8 @@ TEST(VisibilityFile, AnswersAsWhatItWasWrittenFrom) {
             EXPECT_EQ(file->mapName(), "e1m5.bsp");
             EXPECT_EQ(file->mapHash(), 77u);
         }
-        EXPECT_EQ(VisibilityFile::open(made.bytes(kForms[0]), "f")->residentBytes(),
-                  VisibilityFile::open(made.bytes(kForms[1]), "f")->residentBytes());
+        EXPECT_EQ(VisibilityFile::open(made.bytes(kFileForms[0]), "f")->residentBytes(),
+                  VisibilityFile::open(made.bytes(kFileForms[1]), "f")->residentBytes());
     }
 }
 
@@ -49,7 +49,7 @@ TEST(VisibilityFile, PacksToTheSameBytesFromEitherForm) {
     for (const size_t cells : {1, 70, 300}) {
         const MadeFile made(cells, cells);
         const Array<char> packed = made.bytes(VisibilityForm::kPacked);
-        for (const VisibilityForm form : kForms) {
+        for (const VisibilityForm form : kFileForms) {
             const Array<char> bytes = made.bytes(form);
             EXPECT_EQ(packedFile(*VisibilityFile::open(bytes, "f")), packed);
         }
@@ -58,7 +58,7 @@ TEST(VisibilityFile, PacksToTheSameBytesFromEitherForm) {
 
 TEST(VisibilityFile, AnswersWhereverItIsMoved) {
     const MadeFile made(1);
-    for (const VisibilityForm form : kForms) {
+    for (const VisibilityForm form : kFileForms) {
         const Array<char> bytes = made.bytes(form);
         Result<VisibilityFile> opened = VisibilityFile::open(bytes, "f");
         ASSERT_TRUE(opened.ok());
@@ -71,7 +71,7 @@ TEST(VisibilityFile, AnswersWhereverItIsMoved) {
 
 TEST(VisibilityFile, OfNothingIsOne) {
     const BitMatrix none;
-    for (const VisibilityForm form : kForms) {
+    for (const VisibilityForm form : kFileForms) {
         const Array<char> bytes = *visibilityFile({none, {}, ""}, form);
         const Result<VisibilityFile> file = VisibilityFile::open(bytes, "f");
         ASSERT_TRUE(file.ok()) << file.error().message;
@@ -83,12 +83,12 @@ TEST(VisibilityFile, OfNothingIsOne) {
 TEST(VisibilityFile, IsNotWrittenOfWhatItCannotHold) {
     const BitMatrix five = onlyThemselves(5);
     const std::vector<uint32_t> leaves = {4, 5};
-    EXPECT_EQ(visibilityFile({five, leaves, ""}, kForms[0]).error().message, "a leaf of a cell that there is not");
-    EXPECT_EQ(visibilityFile({BitMatrix(5, 5), {}, ""}, kForms[0]).error().kind, Error::Kind::kUsage);
+    EXPECT_EQ(visibilityFile({five, leaves, ""}, kFileForms[0]).error().message, "a leaf of a cell that there is not");
+    EXPECT_EQ(visibilityFile({BitMatrix(5, 5), {}, ""}, kFileForms[0]).error().kind, Error::Kind::kUsage);
 }
 
 TEST(VisibilityFile, RefusesEveryChangedByte) {
-    for (const VisibilityForm form : kForms) {
+    for (const VisibilityForm form : kFileForms) {
         const Array<char> good = MadeFile(2).bytes(form);
         for (size_t i = 0; i < good.size(); ++i) {
             Array<char> bytes = good;
@@ -102,7 +102,7 @@ TEST(VisibilityFile, RefusesEveryChangedByte) {
 
 TEST(VisibilityFile, ThatWasSealedAgainHasAnswersOrIsRefused) {
     Random random(9);
-    for (const VisibilityForm form : kForms) {
+    for (const VisibilityForm form : kFileForms) {
         const Array<char> good = MadeFile(3, 24).bytes(form);
         int opened = 0;
         for (int i = 0; i < 50000; ++i) {

@@ -56,12 +56,12 @@ Solid randomPolygon(Random& random, int round) {
     return solid;
 }
 
-struct Tried {
+struct OccludeesTried {
     uint64_t hits = 0, pixels = 0, spare = 0, clipped = 0;
 };
 
 /// Paints one polygon and holds it to rays.
-void expectRaysInside(uint64_t seed, int round, Tried& tried) {
+void expectRaysInside(uint64_t seed, int round, OccludeesTried& tried) {
     Random random(seed * 1000 + static_cast<uint64_t>(round));
     View view = smallView();
     if (round % 4 == 3) view.projection = orthographic(6, 1.5, 0.1, 100);
@@ -98,7 +98,7 @@ void expectRaysInside(uint64_t seed, int round, Tried& tried) {
 }
 
 TEST(Occludee, NamesEveryPixelThatARayMeetsItIn) {
-    Tried tried;
+    OccludeesTried tried;
     for (uint64_t seed = 1; seed <= 4; ++seed)
         for (int round = 0; round < 60; ++round) {
             expectRaysInside(seed, round, tried);

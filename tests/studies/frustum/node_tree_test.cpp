@@ -17,8 +17,8 @@ namespace sightline::test {
 using namespace studies;
 namespace {
 
-constexpr double kWorld = 100.0;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
+constexpr double kTreeWorld = 100.0;
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
 
 /// Turned, moved, scaled, now and then mirrored or flattened.
 glm::dmat4 randomTransform(Random& random, double way) {
@@ -78,7 +78,7 @@ void expectTight(const Scene& scene, const std::vector<Box3f>& truth, const std:
     const NodeTreeBounds& tree = scene.tree.now();
     ASSERT_EQ(tree.order.size(), truth.size());
     ASSERT_EQ(tree.branches.empty(), truth.empty());
-    const Box3f endless{glm::vec3(-kInf), glm::vec3(kInf)};
+    const Box3f endless{glm::vec3(-kInfinity), glm::vec3(kInfinity)};
     float reach = 0;
     std::vector<int> met(truth.size(), 0);
     for (uint32_t item = 0; item < truth.size(); ++item) {
@@ -126,7 +126,7 @@ void expectSound(const Scene& scene, Random& random, const std::string& what) {
     const std::vector<Box3f> truth = scene.boxes();
     expectTight(scene, truth, what);
     if (testing::Test::HasFatalFailure()) return;
-    const Frustum frustum = makeFrustum(randomView(random, kWorld, scene.tree.now().origin));
+    const Frustum frustum = makeFrustum(randomView(random, kTreeWorld, scene.tree.now().origin));
     forEachTarget([&](const std::string& target) { expectEqualsFlat(scene, truth, frustum, what + " " + target); });
 }
 
@@ -140,7 +140,7 @@ Scene randomScene(Random& random, uint32_t count, const glm::dvec3& origin = glm
         if (kind == 2 && i > 0) parent = static_cast<uint32_t>(random.below(1 + i / 100));  // wide
         if (random.below(50) == 0) parent = SceneTreeNode::kNone;
         const bool top = parent == SceneTreeNode::kNone;
-        glm::dmat4 local = randomTransform(random, top ? kWorld : kind == 1 ? 2.0 : 20.0);
+        glm::dmat4 local = randomTransform(random, top ? kTreeWorld : kind == 1 ? 2.0 : 20.0);
         if (top) local[3] += glm::dvec4(origin, 0.0);
         scene.add(parent, local);
         if (random.below(3) == 0) scene.hang(i, random);
@@ -171,14 +171,14 @@ TEST(NodeTree, FollowsWhatIsPlacedAnew) {
                 const uint32_t node = static_cast<uint32_t>(random.below(scene.nodes.size()));
                 const uint64_t kind = random.below(40);
                 glm::dmat4 local = randomTransform(random, 20.0);
-                if (kind == 0) local[3].x = kNan;
-                if (kind == 1) local[1].y = kInf;
+                if (kind == 0) local[3].x = kNotANumber;
+                if (kind == 1) local[1].y = kInfinity;
                 if (kind == 2) local[3].z = 1e19;
                 if (kind < 36) scene.setTransform(node, local);
                 if (kind < 32 || scene.items.empty()) continue;
                 const uint32_t item = static_cast<uint32_t>(random.below(scene.items.size()));
                 Box3d box = randomBox(random, randomPoint(random, 3.0), 10.0);
-                if (kind == 39) box = random.below(2) ? Box3d() : Box3d{glm::dvec3(kNan), glm::dvec3(1.0)};
+                if (kind == 39) box = random.below(2) ? Box3d() : Box3d{glm::dvec3(kNotANumber), glm::dvec3(1.0)};
                 scene.items[item].box = box;
                 scene.tree.setBox(item, box);
             }
@@ -291,7 +291,7 @@ TEST(NodeTree, WhatHasNoEndIsAlwaysKept) {
     };
     EXPECT_TRUE(kept().empty());
     glm::dmat4 bad(1.0);
-    bad[3].y = kNan;
+    bad[3].y = kNotANumber;
     scene.setTransform(7, bad);
     scene.tree.update();
     EXPECT_EQ(kept(), std::vector<uint32_t>{6});

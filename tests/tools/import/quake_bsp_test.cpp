@@ -22,7 +22,7 @@ namespace {
 
 using namespace test;
 
-Result<QuakeMapFile> parse(const std::string& bytes) { return parseQuakeBsp(bytesOf(bytes), "test.bsp"); }
+Result<QuakeMapFile> parseBsp(const std::string& bytes) { return parseQuakeBsp(bytesOf(bytes), "test.bsp"); }
 
 /// Twice the area of an outline, as a vector towards its front.
 glm::dvec3 areaOf(std::span<const glm::vec3> outline) {
@@ -36,7 +36,7 @@ TEST(QuakeBsp, SixFormatsSayTheSame) {
     const MadeMap made;
     for (const QuakeFormat format : kQuakeFormats) {
         const std::string name = quakeFormatName(format);
-        const Result<QuakeMapFile> map = parse(mapBytes(format, made));
+        const Result<QuakeMapFile> map = parseBsp(mapBytes(format, made));
         ASSERT_TRUE(map.ok()) << name << ": " << map.error().message;
         EXPECT_EQ(map->format, format);
         EXPECT_EQ(mapFault(*map), "") << name;
@@ -81,7 +81,7 @@ TEST(QuakeBsp, BlueShiftHasTwoLumpsTheOtherWay) {
     const std::string bytes = mapBytes(QuakeFormat::kHalfLife, {});
     std::string shifted = bytes;
     shifted.replace(4, 8, bytes, 12, 8).replace(12, 8, bytes, 4, 8);
-    const Result<QuakeMapFile> map = parse(shifted), plain = parse(bytes);
+    const Result<QuakeMapFile> map = parseBsp(shifted), plain = parseBsp(bytes);
     ASSERT_TRUE(map.ok()) << map.error().message;
     EXPECT_EQ(map->entities, plain->entities);
     EXPECT_EQ(map->tree.nodes.size(), plain->tree.nodes.size());
@@ -97,7 +97,7 @@ TEST(QuakeBsp, EachCutOfItIsRefused) {
             if (const MadeLump lump = lumpOf(whole, i); lump.size > 0)
                 end = std::max<size_t>(end, lump.offset + lump.size);
         for (size_t size = 0; size < end; ++size) {
-            const Result<QuakeMapFile> map = parse(whole.substr(0, size));
+            const Result<QuakeMapFile> map = parseBsp(whole.substr(0, size));
             ASSERT_FALSE(map.ok()) << quakeFormatName(format) << " " << size;
             EXPECT_EQ(lineFault(map.error(), "test.bsp"), "");
         }
@@ -108,7 +108,7 @@ TEST(QuakeBsp, EachCutOfItIsRefused) {
 TEST(QuakeBsp, SaysInOneLineWhatDoesNotHold) {
     const std::string whole = mapBytes(QuakeFormat::kQuake, {});
     const auto expectLine = [&](const std::string& bytes, const std::string& line) {
-        const Result<QuakeMapFile> map = parse(bytes);
+        const Result<QuakeMapFile> map = parseBsp(bytes);
         ASSERT_FALSE(map.ok()) << line;
         EXPECT_EQ(map.error().message, "test.bsp: " + line);
     };
@@ -162,7 +162,7 @@ TEST(QuakeBsp, TheFacesOfALieTakeNoMemory) {
     };
     grow(13, std::string("\x01\0\0\0", 4), 65535);
     grow(7, std::string("\0\0\0\0\0\0\0\0\xff\xff\0\0\0\0\0\0\0\0\0\0", 20), 200);
-    const Result<QuakeMapFile> map = parse(bytes);
+    const Result<QuakeMapFile> map = parseBsp(bytes);
     ASSERT_FALSE(map.ok());
     EXPECT_EQ(map.error().message, "test.bsp: faces[2]: it shares its edges with other faces");
 }
@@ -179,7 +179,7 @@ TEST(QuakeBsp, TreesDeeperThanPromisedAreRefused) {
         }
         std::string deep = patched(bytes, 4 + 8 * 5, static_cast<uint32_t>(bytes.size())) + nodes;
         deep = patched(deep, 8 + 8 * 5, static_cast<uint32_t>(nodes.size()));
-        EXPECT_EQ(parse(deep).ok(), depth == QuakeMapFile::kDeepest);
+        EXPECT_EQ(parseBsp(deep).ok(), depth == QuakeMapFile::kDeepest);
     }
 }
 

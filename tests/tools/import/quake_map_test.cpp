@@ -19,7 +19,7 @@ namespace sightline {
 using namespace tools;
 namespace {
 
-Result<QuakeMap> parse(const std::string& text) { return parseQuakeMap(test::bytesOf(text), "test.map"); }
+Result<QuakeMap> parseText(const std::string& text) { return parseQuakeMap(test::bytesOf(text), "test.map"); }
 
 /// The world with one brush of these sides.
 std::string world(const std::string& sides) { return "{\n\"classname\" \"worldspawn\"\n{\n" + sides + "}\n}\n"; }
@@ -35,7 +35,7 @@ QuakeMapSide sideOf(const QuakeMap& map) {
 
 TEST(QuakeMap, ReadsEntitiesAndBrushes) {
     const Result<QuakeMap> map =
-        parse("// a comment\n" +
+        parseText("// a comment\n" +
               world(kPoints + "brick 1 2 45 1 -1 // behind\n" + "( 1 2 3 ) ( -4.5 5e1 +6 ) ( 7 8 9 ) sky 0 0 0 1 1\n") +
               "{ \"classname\" \"light\" \"origin\" \"1 2 3\" \"light\" \"200\" \"light\" \"300\" }");
     ASSERT_TRUE(map.ok()) << map.error().message;
@@ -63,16 +63,16 @@ TEST(QuakeMap, ReadsTheDialectsOfASide) {
              kPoints + "name 0 0 0 1 1", kPoints + "name " + axes,
              "(0 0 0)(0 64 0)(64 0 0) name [1 0 0 0][0 -1 0 0]0 1 1", kPoints + "\"name\" 0 0 0 1 1",
              kPoints + "name 0 0 0 1 1 0 0 0", "brushDef { " + kPoints + "( ( 1 0 0 ) ( 0 1 0 ) ) name 0 0 0 }"}) {
-        const Result<QuakeMap> map = parse(world(side + "\n"));
+        const Result<QuakeMap> map = parseText(world(side + "\n"));
         ASSERT_TRUE(map.ok()) << map.error().message;
         EXPECT_EQ(map->textures.at(sideOf(*map).texture), "name") << side;
         EXPECT_EQ(sideOf(*map).points[1], glm::dvec3(0, 0, -64)) << side;
     }
-    Result<QuakeMap> map = parse(world(kPoints + "e1u1/wall 0 0 0 1 1 134217728 -1 300\n"));
+    Result<QuakeMap> map = parseText(world(kPoints + "e1u1/wall 0 0 0 1 1 134217728 -1 300\n"));
     ASSERT_TRUE(map.ok()) << map.error().message;
     EXPECT_EQ(sideOf(*map).contents, 134217728u);
     EXPECT_EQ(sideOf(*map).surface, 0xffffffffu);
-    map = parse(world(kPoints + "base/x " + axes + " 1 2 3\n"));
+    map = parseText(world(kPoints + "base/x " + axes + " 1 2 3\n"));
     ASSERT_TRUE(map.ok()) << map.error().message;
     EXPECT_EQ(sideOf(*map).contents, 1u);
     EXPECT_EQ(sideOf(*map).surface, 2u);
@@ -80,7 +80,7 @@ TEST(QuakeMap, ReadsTheDialectsOfASide) {
 
 TEST(QuakeMap, TakesSignsInNames) {
     for (const char* name : {"{grate", "*water[2]", "+0a(b)", "a}b", "#c", "64", "a//b"}) {
-        const Result<QuakeMap> map = parse(world(kPoints + name + std::string(" 0 0 0 1 1\n")));
+        const Result<QuakeMap> map = parseText(world(kPoints + name + std::string(" 0 0 0 1 1\n")));
         ASSERT_TRUE(map.ok()) << map.error().message;
         EXPECT_EQ(map->textures.at(sideOf(*map).texture), name);
     }
@@ -88,7 +88,7 @@ TEST(QuakeMap, TakesSignsInNames) {
 
 TEST(QuakeMap, LeavesPatchesOut) {
     const std::string patch = "{\npatchDef2\n{\nbase/curve\n( 3 3 0 0 0 )\n(\n( ( 0 0 0 0 0 ) )\n)\n}\n}\n";
-    const Result<QuakeMap> map = parse("{\n" + patch + patch + "{\n" + kPoints + "a 0 0 0 1 1\n}\n}\n");
+    const Result<QuakeMap> map = parseText("{\n" + patch + patch + "{\n" + kPoints + "a 0 0 0 1 1\n}\n}\n");
     ASSERT_TRUE(map.ok()) << map.error().message;
     EXPECT_EQ(map->patches, 2u);
     EXPECT_EQ(map->brushes.size(), 1u);
@@ -97,7 +97,7 @@ TEST(QuakeMap, LeavesPatchesOut) {
 
 TEST(QuakeMap, TakesQuotesWithinTexts) {
     const Result<QuakeMap> map =
-        parse("{ \"a\" \"say \\\"go\\\" now\"\n\"path\" \"c:\\maps\\\"\n\"empty\" \"\" \"url\" \"http://x\" }");
+        parseText("{ \"a\" \"say \\\"go\\\" now\"\n\"path\" \"c:\\maps\\\"\n\"empty\" \"\" \"url\" \"http://x\" }");
     ASSERT_TRUE(map.ok()) << map.error().message;
     EXPECT_EQ(map->valueOf(map->entities[0], "a"), "say \\\"go\\\" now");
     EXPECT_EQ(map->valueOf(map->entities[0], "path"), "c:\\maps\\");
@@ -129,7 +129,7 @@ TEST(QuakeMap, RefusesWithTheLine) {
         {"{ { patchDef2 { ", "test.map: line 1: the file ends where '}' was expected"},
     };
     for (const auto& [text, message] : cases) {
-        const Result<QuakeMap> map = parse(text);
+        const Result<QuakeMap> map = parseText(text);
         if (message.empty()) {
             EXPECT_TRUE(map.ok()) << text << "\n" << map.error().message;
             continue;
@@ -140,10 +140,10 @@ TEST(QuakeMap, RefusesWithTheLine) {
     }
     std::string sides;
     for (int i = 0; i <= 4096; ++i) sides += kPoints + "a 0 0 0 1 1\n";
-    EXPECT_EQ(parse(world(sides)).error().message, "test.map: line 4100: a brush of more than 4096 sides");
-    EXPECT_FALSE(parse("{ \"a\" \"" + std::string(70000, 'x') + "\" }").ok());
-    EXPECT_FALSE(parse(world(kPoints + std::string(70000, 'x') + " 0 0 0 1 1")).ok());
-    EXPECT_FALSE(parse(std::string(1000000, '{')).ok());
+    EXPECT_EQ(parseText(world(sides)).error().message, "test.map: line 4100: a brush of more than 4096 sides");
+    EXPECT_FALSE(parseText("{ \"a\" \"" + std::string(70000, 'x') + "\" }").ok());
+    EXPECT_FALSE(parseText(world(kPoints + std::string(70000, 'x') + " 0 0 0 1 1")).ok());
+    EXPECT_FALSE(parseText(std::string(1000000, '{')).ok());
 }
 
 TEST(QuakeMap, ReadsVectors) {
@@ -156,7 +156,7 @@ TEST(QuakeMapMutation, CorpusOfTheFuzzerIsSound) {
     size_t good = 0;
     test::forCorpus("map", 4, [&](const std::string& name, const std::string& bytes) {
         EXPECT_EQ(test::sourceFault(bytes), "") << name;
-        good += parse(bytes).ok();
+        good += parseText(bytes).ok();
     });
     EXPECT_GE(good, 3u);
 }
@@ -168,7 +168,7 @@ TEST(QuakeMapMutation, SpoiledMapsAreSoundOrRefused) {
             Random random(mixSeed(seed, bytes.size()));
             const std::string spoiled = test::mutated(bytes, random);
             ASSERT_EQ(test::sourceFault(spoiled), "") << name << ", seed " << seed;
-            (parse(spoiled).ok() ? read : refused)++;
+            (parseText(spoiled).ok() ? read : refused)++;
         }
     });
     EXPECT_GT(read, 500u);
@@ -181,7 +181,7 @@ TEST(QuakeMapFiles, AreReadWhole) {
     for (const std::filesystem::path& file : files) {
         const Result<std::string> text = readTextFile(file.string());
         ASSERT_TRUE(text.ok());
-        const Result<QuakeMap> map = parse(*text);
+        const Result<QuakeMap> map = parseText(*text);
         ASSERT_TRUE(map.ok()) << file << map.error().message;
         // Each side is a line that begins with a parenthesis; each entity has a class.
         size_t lines = 0;

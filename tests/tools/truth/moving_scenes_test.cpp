@@ -37,13 +37,13 @@ Scene slabs(Random& random) {
     return scene;
 }
 
-struct Totals {
+struct MovingTotals {
     uint64_t answers = 0, undrawn = 0, culled = 0, by_certificates = 0, proved = 0;
 };
 
 /// Walks through the scene, with a leap now and then, and moves what it meets on the way.
 /// @param movers  so many of the first objects, which hide, may move
-void walkAndProve(Scene scene, uint32_t movers, uint64_t seed, int frames, Totals& totals) {
+void walkAndProve(Scene scene, uint32_t movers, uint64_t seed, int frames, MovingTotals& totals) {
     Random random(seed);
     LoadedWorld loaded = loadWorld(scene);
     Query query;
@@ -97,7 +97,7 @@ void walkAndProve(Scene scene, uint32_t movers, uint64_t seed, int frames, Total
 }
 
 TEST(MovingScenes, CullNothingThatIsNotProved) {
-    Totals slabbed, built;
+    MovingTotals slabbed, built;
     for (uint64_t seed = 1; seed <= 4; ++seed) {
         Random random(seed);
         walkAndProve(slabs(random), 40, seed, 200, slabbed);
@@ -105,7 +105,7 @@ TEST(MovingScenes, CullNothingThatIsNotProved) {
     walkAndProve(makeBuilding(1, 1), 200, 7, 60, built);
     EXPECT_GT(slabbed.by_certificates, 1000u);
     EXPECT_GT(slabbed.undrawn, slabbed.answers / 10);
-    for (const Totals* totals : {&slabbed, &built}) {
+    for (const MovingTotals* totals : {&slabbed, &built}) {
         EXPECT_EQ(totals->proved, totals->culled);
         EXPECT_GT(totals->culled, 10000u);
     }

@@ -16,7 +16,7 @@ namespace sightline {
 using namespace studies;
 namespace {
 
-glm::dvec4 randomPoint(Random& random) {
+glm::dvec4 randomCorner(Random& random) {
     return {random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-1, 5)};
 }
 
@@ -43,8 +43,8 @@ double area(const ClipPolygon& polygon) {
 TEST(Clip, ConservesArea) {
     Random random(11);
     for (int i = 0; i < 20000; ++i) {
-        const ClipPolygon whole = triangle(randomPoint(random), randomPoint(random), randomPoint(random));
-        const glm::dvec4 plane = randomPoint(random);
+        const ClipPolygon whole = triangle(randomCorner(random), randomCorner(random), randomCorner(random));
+        const glm::dvec4 plane = randomCorner(random);
         ClipPolygon inside, outside;
         clipToPlane(whole, plane, inside);
         clipToPlane(whole, -plane, outside);
@@ -57,13 +57,13 @@ TEST(Clip, SharedEdgesGetEqualBits) {
     Random random(12);
     int crossings = 0;
     for (int i = 0; i < 20000; ++i) {
-        const glm::dvec4 a = randomPoint(random), b = randomPoint(random);
-        const glm::dvec4 plane(0, 0, 1, 1), second = randomPoint(random);
+        const glm::dvec4 a = randomCorner(random), b = randomCorner(random);
+        const glm::dvec4 plane(0, 0, 1, 1), second = randomCorner(random);
         // The same edge, forward in one triangle and backward in the other.
         ClipPolygon one, two, rest;
-        clipToPlane(triangle(a, b, randomPoint(random)), plane, rest);
+        clipToPlane(triangle(a, b, randomCorner(random)), plane, rest);
         clipToPlane(rest, second, one);
-        clipToPlane(triangle(b, a, randomPoint(random)), plane, rest);
+        clipToPlane(triangle(b, a, randomCorner(random)), plane, rest);
         clipToPlane(rest, second, two);
         const bool crossed = (a.z + a.w >= 0) != (b.z + b.w >= 0);
         if (!crossed) continue;
@@ -103,7 +103,7 @@ TEST(Clip, KeepsWhatTouches) {
 /// A convex polygon around the origin of a random plane of clip space, with w > 0.
 std::vector<glm::dvec4> randomConvex(Random& random, int corners) {
     const glm::dvec4 center(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(3, 5));
-    const glm::dvec4 u = 0.3 * randomPoint(random), v = 0.3 * randomPoint(random);
+    const glm::dvec4 u = 0.3 * randomCorner(random), v = 0.3 * randomCorner(random);
     std::vector<glm::dvec4> points;
     for (int i = 0; i < corners; ++i) {
         const double angle = (i + random.uniform(0.1, 0.9)) * 6.283185307179586 / corners;
@@ -132,7 +132,7 @@ TEST(Clip, ConservesTheAreaOfConvexPolygons) {
     int cut = 0;
     for (int i = 0; i < 20000; ++i) {
         const std::vector<glm::dvec4> whole = randomConvex(random, 3 + int(random.below(30)));
-        const glm::dvec4 plane = randomPoint(random) * glm::dvec4(1, 1, 1, 0.3);
+        const glm::dvec4 plane = randomCorner(random) * glm::dvec4(1, 1, 1, 0.3);
         const std::vector<glm::dvec4> inside = clipped(whole, plane), outside = clipped(whole, -plane);
         EXPECT_NEAR(area(inside) + area(outside), area(whole), 1e-9 * std::abs(area(whole))) << "case " << i;
         EXPECT_LE(inside.size(), whole.size() + 1) << "case " << i;
@@ -145,7 +145,7 @@ TEST(Clip, AgainChangesNothingButRounding) {
     Random random(14);
     for (int i = 0; i < 20000; ++i) {
         const std::vector<glm::dvec4> whole = randomConvex(random, 3 + int(random.below(8)));
-        const glm::dvec4 plane = randomPoint(random) * glm::dvec4(1, 1, 1, 0.3);
+        const glm::dvec4 plane = randomCorner(random) * glm::dvec4(1, 1, 1, 0.3);
         const std::vector<glm::dvec4> once = clipped(whole, plane), twice = clipped(once, plane);
         EXPECT_NEAR(area(once), area(twice), 1e-13 * (1 + std::abs(area(whole)))) << "case " << i;
         // A crossing lies on the plane up to the rounding of its terms.
@@ -160,7 +160,7 @@ TEST(Clip, KeepsInsideVerticesBitByBitAndInOrder) {
     Random random(15);
     for (int i = 0; i < 20000; ++i) {
         const std::vector<glm::dvec4> whole = randomConvex(random, 3 + int(random.below(8)));
-        const glm::dvec4 plane = randomPoint(random) * glm::dvec4(1, 1, 1, 0.3);
+        const glm::dvec4 plane = randomCorner(random) * glm::dvec4(1, 1, 1, 0.3);
         const std::vector<glm::dvec4> kept = clipped(whole, plane);
         auto at = kept.begin();
         for (const glm::dvec4& v : whole) {

@@ -19,7 +19,7 @@ namespace {
 __extension__ typedef __int128 Wide;
 
 /// Where a facing's size, relative to the cube of the farthest corner's distance, is below this, rounding may decide.
-constexpr double kBand = 0x1p-46;
+constexpr double kFacingBand = 0x1p-46;
 
 int signOf(double value) { return (value > 0) - (value < 0); }
 
@@ -97,7 +97,7 @@ Signs perspectiveSigns(const glm::dvec3 (&v)[3], const glm::dvec3& eye, const Vi
     const glm::dvec3 a = v[0] - eye, b = v[1] - eye, c = v[2] - eye;
     const double size = std::pow(std::max({glm::length(a), glm::length(b), glm::length(c)}), 3);
     signs.exact = -tripleProductSign(a, b, c);
-    signs.in_band = std::abs(glm::dot(glm::cross(a, b), c)) <= kBand * size;
+    signs.in_band = std::abs(glm::dot(glm::cross(a, b), c)) <= kFacingBand * size;
     signs.eye = signOf(eyeFacing(v[0], v[1], v[2], eye));
     const glm::dmat4 to_clip = view.projection * view.view;
     glm::dvec4 clip[3];
@@ -160,7 +160,7 @@ TEST(Facing, ThreeTestsAgreeWithTheExactSignInParallelViews) {
         const double size = glm::length(ab) * glm::length(ac) * glm::length(forward);
         // The corners' places round, too, by how far they are from the origin.
         const double places = 64 * (glm::length(ab) + glm::length(ac)) * glm::length(forward);
-        if (std::abs(glm::dot(glm::cross(ab, ac), forward)) <= kBand * (size + places)) {
+        if (std::abs(glm::dot(glm::cross(ab, ac), forward)) <= kFacingBand * (size + places)) {
             ++in_band;
             continue;
         }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr uint32_t kWidth = 160, kHeight = 120;
 /// Samples nearer to an outline than this may belong to either side.
-constexpr double kBand = 1e-6;
+constexpr double kImageBand = 1e-6;
 
 double distanceToOutline(const glm::dvec2& p, std::span<const glm::dvec2> outline) {
     double nearest = std::numeric_limits<double>::infinity();
@@ -47,7 +47,7 @@ void addDifference(const Layer& one, const Layer& other, std::span<const glm::dv
             sum.depth = std::max(sum.depth, std::abs(one[at] - other[at]) / (std::abs(one[at]) + 1e-3));
         if (in_one == in_other) continue;
         const glm::dvec2 place(double(at % kWidth) + 0.5, double(at / kWidth) + 0.5);
-        ++(distanceToOutline(place, outline) <= kBand ? sum.in_band : sum.wrong);
+        ++(distanceToOutline(place, outline) <= kImageBand ? sum.in_band : sum.wrong);
     }
 }
 
@@ -104,7 +104,7 @@ TEST(Homogeneous, CoversWhatClippingLeaves) {
     std::printf(
         "%zu samples, %zu triangles clipped: without clipping %zu samples differ within %g of an edge, with six "
         "planes %zu\n",
-        size_t(clipless.samples), size_t(clipped), size_t(clipless.in_band), kBand, size_t(frustum.in_band));
+        size_t(clipless.samples), size_t(clipped), size_t(clipless.in_band), kImageBand, size_t(frustum.in_band));
     EXPECT_GT(clipped, 100u);
     EXPECT_LE(clipless.in_band, clipless.samples / 100000);
     EXPECT_LE(frustum.in_band, frustum.samples / 100000);

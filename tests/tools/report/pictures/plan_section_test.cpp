@@ -16,7 +16,7 @@ double lengthOf(const std::vector<PlanLine>& lines) {
     return sum;
 }
 
-PlanArea square(double side) {
+PlanArea squareCut(double side) {
     PlanArea area;
     area.width = area.height = side;
     return area;
@@ -38,7 +38,7 @@ struct Wall {
 
 TEST(PlanSection, CutsWallsAtAHeight) {
     const Wall wall;
-    const std::vector<PlanLine> lines = wallsAt(wall.scene, wall.bounds, square(10), 1.7);
+    const std::vector<PlanLine> lines = wallsAt(wall.scene, wall.bounds, squareCut(10), 1.7);
     EXPECT_EQ(lines.size(), 8u);  // two triangles a side
     EXPECT_NEAR(lengthOf(lines), 9, 1e-9);
     for (const PlanLine& line : lines)
@@ -47,15 +47,15 @@ TEST(PlanSection, CutsWallsAtAHeight) {
             EXPECT_GE(end.x, 2 - 1e-9);
             EXPECT_LE(end.x, 6 + 1e-9);
         }
-    EXPECT_TRUE(wallsAt(wall.scene, wall.bounds, square(10), 3.5).empty());
-    EXPECT_TRUE(wallsAt(wall.scene, wall.bounds, square(1), 1.7).empty()) << "beside the plan";
+    EXPECT_TRUE(wallsAt(wall.scene, wall.bounds, squareCut(10), 3.5).empty());
+    EXPECT_TRUE(wallsAt(wall.scene, wall.bounds, squareCut(1), 1.7).empty()) << "beside the plan";
 }
 
 TEST(PlanSection, LiesOverThePlan) {
     Image<glm::u8vec4> image(100, 100, glm::u8vec4(0));
     const glm::u8vec4 ink(1, 2, 3, 255);
     const Wall wall;
-    drawOnPlan(image, square(10), wallsAt(wall.scene, wall.bounds, square(10), 1.7), ink, 0);
+    drawOnPlan(image, squareCut(10), wallsAt(wall.scene, wall.bounds, squareCut(10), 1.7), ink, 0);
     EXPECT_EQ(image.at(40, 10), ink);
     EXPECT_EQ(image.at(20, 12), ink);
     EXPECT_EQ(image.at(40, 12).w, 0) << "within the wall";
@@ -73,8 +73,8 @@ TEST(PlanSection, ShowsPortalsAndTheBordersOfCells) {
     hatch.polygon = {{2, 3, 2}, {3, 3, 2}, {3, 3, 3}};
     scene.portals = {door, hatch};
     const PlanCells cells = planCells(scene);
-    EXPECT_NEAR(lengthOf(cellsAt(cells, square(10), 1.7)), 12, 1e-9);
-    EXPECT_TRUE(cellsAt(cells, square(10), 3.7).empty()) << "above its ceiling";
+    EXPECT_NEAR(lengthOf(cellsAt(cells, squareCut(10), 1.7)), 12, 1e-9);
+    EXPECT_TRUE(cellsAt(cells, squareCut(10), 3.7).empty()) << "above its ceiling";
     const std::vector<PlanLine> portals = portalsAt(cells, 1.7);
     ASSERT_EQ(portals.size(), 1u);
     EXPECT_NEAR(lengthOf(portals), 1, 1e-12);
@@ -93,7 +93,7 @@ TEST(PlanSection, TakesTheCellsOfAVisibilityFile) {
     ASSERT_TRUE(space.graph.addPortal(0, 1, outline));
     const PlanCells cells = planCells(space);
     EXPECT_EQ(cells.regions.size(), 1u) << "the outside has no borders";
-    EXPECT_NEAR(lengthOf(cellsAt(cells, square(10), 1)), 16, 1e-9);
+    EXPECT_NEAR(lengthOf(cellsAt(cells, squareCut(10), 1)), 16, 1e-9);
     EXPECT_NEAR(lengthOf(portalsAt(cells, 1)), 1, 1e-12);
 }
 

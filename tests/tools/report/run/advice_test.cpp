@@ -24,7 +24,7 @@ Advice advice(Advice::Kind kind, const std::string& what, bool done, double save
     return out;
 }
 
-AdviceRun madeRun() {
+AdviceRun madeAdvice() {
     AdviceRun run;
     run.scene = "s.glb";
     run.width = 320;
@@ -54,7 +54,7 @@ TEST(Advice, MattersByItsSpreadAndByTheFrame) {
 }
 
 TEST(Advice, SaysWhatToDo) {
-    const std::string text = adviceText(madeRun());
+    const std::string text = adviceText(madeAdvice());
     const char* const lines[] = {"measured: 4 frames at 320x180",
                                  "limited by fill",
                                  "keep occlusion: without it a frame takes 15 ms more, 2.5 times as long",
@@ -74,7 +74,7 @@ TEST(Advice, SaysWhatToDo) {
 }
 
 TEST(Advice, TenLinesAreEnough) {
-    AdviceRun run = madeRun();
+    AdviceRun run = madeAdvice();
     for (int i = 0; i < 20; ++i)
         run.advice.push_back(advice(Advice::Kind::kStage, "stage " + std::to_string(i), i % 2 == 0, i - 10.5));
     const std::string text = adviceText(run);
@@ -84,7 +84,7 @@ TEST(Advice, TenLinesAreEnough) {
 }
 
 TEST(Advice, JsonHasTheSchema) {
-    const json out = json::parse(adviceJson(madeRun()));
+    const json out = json::parse(adviceJson(madeAdvice()));
     EXPECT_EQ(out["schema"], "sightline.advise/1");
     ASSERT_EQ(out["advice"].size(), 6u);
     EXPECT_EQ(out["advice"][0]["advice"], "keep occlusion");

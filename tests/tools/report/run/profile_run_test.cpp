@@ -32,7 +32,7 @@ AblationRow row(AblationRow::Change change, Stage stage, double triangles, doubl
     return out;
 }
 
-ProfileRun madeRun() {
+ProfileRun madeProfile() {
     ProfileRun run;
     run.scene = "a \"scene\".glb";
     run.renderer = "reference";
@@ -57,7 +57,7 @@ ProfileRun madeRun() {
 }
 
 TEST(ProfileRun, SaysWhatStagesAreGoodFor) {
-    const std::vector<StageBenefit> benefits = benefitsOf(madeRun().ablation);
+    const std::vector<StageBenefit> benefits = benefitsOf(madeProfile().ablation);
     ASSERT_EQ(benefits.size(), 3u);
     EXPECT_EQ(benefits[0].stage, Stage::kFrustum);
     EXPECT_TRUE(benefits[0].in_use);
@@ -74,9 +74,9 @@ TEST(ProfileRun, SaysWhatStagesAreGoodFor) {
 }
 
 TEST(ProfileRun, NothingKeptIsNoDivisionByZero) {
-    std::vector<AblationRow> rows = madeRun().ablation;
+    std::vector<AblationRow> rows = madeProfile().ablation;
     rows[0].triangles = rows[0].fragments = rows[0].bytes = 0;
-    ProfileRun run = madeRun();
+    ProfileRun run = madeProfile();
     run.ablation = rows;
     const json out = json::parse(profileJson(run));
     EXPECT_TRUE(out["ablation"][1]["benefits"]["geometry"].is_null());
@@ -85,7 +85,7 @@ TEST(ProfileRun, NothingKeptIsNoDivisionByZero) {
 }
 
 TEST(ProfileRun, JsonHasTheSchema) {
-    const ProfileRun run = madeRun();
+    const ProfileRun run = madeProfile();
     const json out = json::parse(profileJson(run));
     EXPECT_EQ(out["schema"], "sightline.profile/1");
     EXPECT_EQ(out["scene"]["file"], run.scene);
@@ -112,7 +112,7 @@ TEST(ProfileRun, JsonHasTheSchema) {
 }
 
 TEST(ProfileRun, CountersThatADriverHasNotAreNull) {
-    ProfileRun run = madeRun();
+    ProfileRun run = madeProfile();
     run.driver_counts = DriverCounts{0.9, 5000.0, std::nullopt, std::nullopt, 1234};
     const json out = json::parse(profileJson(run));
     EXPECT_EQ(out["driver_counts"]["vertices"], 5000);
@@ -120,7 +120,7 @@ TEST(ProfileRun, CountersThatADriverHasNotAreNull) {
 }
 
 TEST(ProfileRun, ItsCostsAreACalibration) {
-    const Result<FacingCosts> read = parseCalibration(profileJson(madeRun()), "p.json");
+    const Result<FacingCosts> read = parseCalibration(profileJson(madeProfile()), "p.json");
     ASSERT_TRUE(read.ok()) << read.error().message;
     EXPECT_EQ(read->test, 1.25);
     EXPECT_EQ(read->dropped, 10);
@@ -128,7 +128,7 @@ TEST(ProfileRun, ItsCostsAreACalibration) {
 }
 
 TEST(ProfileRun, TextSaysItInPlainWords) {
-    const std::string text = profileText(madeRun());
+    const std::string text = profileText(madeProfile());
     for (const char* words :
          {"100 objects", "mixed: fill 60 %, cpu 40 %", "confidence", "the stages work one after the other",
           "an object 900", "a covered pixel 2", "without occlusion", "with volumes", "no stage", "if it were on"})
