@@ -18,7 +18,8 @@ using namespace studies;
 namespace {
 
 constexpr double kTreeWorld = 100.0;
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN(),
+                 kInfinity = std::numeric_limits<double>::infinity();
 
 /// Turned, moved, scaled, now and then mirrored or flattened.
 glm::dmat4 randomTransform(Random& random, double way) {

@@ -34,10 +34,10 @@ QuakeMapSide sideOf(const QuakeMap& map) {
 }
 
 TEST(QuakeMap, ReadsEntitiesAndBrushes) {
-    const Result<QuakeMap> map =
-        parseText("// a comment\n" +
-              world(kPoints + "brick 1 2 45 1 -1 // behind\n" + "( 1 2 3 ) ( -4.5 5e1 +6 ) ( 7 8 9 ) sky 0 0 0 1 1\n") +
-              "{ \"classname\" \"light\" \"origin\" \"1 2 3\" \"light\" \"200\" \"light\" \"300\" }");
+    const Result<QuakeMap> map = parseText(
+        "// a comment\n" +
+        world(kPoints + "brick 1 2 45 1 -1 // behind\n" + "( 1 2 3 ) ( -4.5 5e1 +6 ) ( 7 8 9 ) sky 0 0 0 1 1\n") +
+        "{ \"classname\" \"light\" \"origin\" \"1 2 3\" \"light\" \"200\" \"light\" \"300\" }");
     ASSERT_TRUE(map.ok()) << map.error().message;
     ASSERT_EQ(map->entities.size(), 2u);
     EXPECT_EQ(map->valueOf(map->entities[0], "classname"), "worldspawn");
