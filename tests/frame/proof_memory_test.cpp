@@ -293,6 +293,11 @@ TEST(Proofs, AreToldOfByExplanations) {
             const std::vector<uint8_t> kept = keptOf(set, rooms.ids.size()), reasons = reasonsOf(query, now);
             for (size_t object = 0; object < rooms.ids.size(); object += 7) {
                 const Explanation why = query.explain(now, view, rooms.ids[object]);
+                Array<Visible> hiders;
+                hiders.emplace_back();  // what was in it goes
+                const bool has_certificate = query.certificateOf(rooms.ids[object], hiders);
+                EXPECT_EQ(hiders.size(), why.certificate.size()) << object;
+                EXPECT_FALSE(kept[object] && has_certificate) << object;
                 if (kept[object] || reasons[object] != 1 + static_cast<int>(Stage::kOcclusion)) {
                     EXPECT_TRUE(why.certificate.empty()) << object;
                     // What is kept for want of a certificate may be hidden all the same.
@@ -302,7 +307,10 @@ TEST(Proofs, AreToldOfByExplanations) {
                 // One that is beside the image may be in a node that is hidden.
                 EXPECT_TRUE(why.verdict == Verdict::kOccluded || why.verdict == Verdict::kOutsideFrustum) << object;
                 EXPECT_FALSE(why.certificate.empty()) << object;
+                EXPECT_TRUE(has_certificate) << object;
                 for (const Visible& hider : why.certificate) {
+                    EXPECT_TRUE(std::any_of(hiders.begin(), hiders.end(),
+                                            [&](const Visible& named) { return named.id == hider.id; }));
                     EXPECT_TRUE(rooms.hides[hider.key]);
                     ++told;
                 }
