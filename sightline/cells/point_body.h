@@ -21,7 +21,8 @@ struct PointBody {
     std::span<const glm::dvec3> all() const { return {points, count}; }
 };
 
-/// Points of a plane, of which the corners of their hull are kept when they grow many.
+/// Points of a plane, of which the corners of their hull are kept when they grow many. As outlineHull(), but it takes no
+/// memory: a query cuts bodies in each frame.
 ///
 /// A. M. Andrew. Another Efficient Algorithm for Convex Hulls in Two Dimensions. 1979.
 class PlanePoints {

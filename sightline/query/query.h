@@ -140,7 +140,7 @@ public:
     /// Whether the last answer culled an object by a certificate (QuerySettings::proofs), and whom that names: they and
     /// the object itself hide all of it that lies in the view, and nobody else is needed. After visibleStereo() it is
     /// the left eye's. O(what certificates culled).
-    /// @param hiders  receives them, each once; none: no front of the object is seen from there, wherever others are
+    /// @param hiders  receives them, each once; none: it lies outside of the view, or no front of it is seen from there
     bool certificateOf(ObjectId id, Array<Visible>& hiders) const;
 
     /// The occlusion buffer after the last answer, for pictures: nearness per buffer pixel, row 0 at the bottom, 0

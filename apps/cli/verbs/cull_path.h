@@ -13,13 +13,13 @@
 namespace sightline::cli {
 using namespace tools;
 
+/// Gives the scene levels of detail, if the run asks for some: before any path is culled.
+void prepareLods(Scene& scene, const RunOptions& options);
+
 /// The visible set of each frame, with times and counts; one Query a thread. The same for any number of threads,
 /// but for the times. Interrupted, it hands out no more frames and finishes those begun, so that the run holds the first
 /// frames of the path; CullRun::interrupted says so, and there may be none.
 /// @param world  takes the world that was asked, for those who have more to ask of it; null: it is dropped
-/// Gives the scene levels of detail, if the run asks for some: before any path is culled.
-void prepareLods(Scene& scene, const RunOptions& options);
-
 CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options,
                  std::optional<LoadedWorld>* world = nullptr);
 

@@ -91,27 +91,24 @@ struct At {
 /// Keys from here on are none of ours: a comparison marks what only B has by the highest bit.
 constexpr uint64_t kMostKey = (1ull << 63) - 1;
 
-std::vector<uint64_t> keysOf(const At& list) {
-    std::vector<uint64_t> keys;
-    keys.reserve(list.size());
+std::vector<uint64_t> ascending(const At& list, uint64_t most, const char* what) {
+    std::vector<uint64_t> out;
+    out.reserve(list.size());
     for (size_t i = 0; i < list.size(); ++i) {
         const At entry = list.element(i);
-        keys.push_back(entry.whole(0, kMostKey));
-        if (i > 0 && keys[i] <= keys[i - 1]) entry.fail("keys do not ascend");
+        out.push_back(entry.whole(0, most));
+        if (i > 0 && out[i] <= out[i - 1]) entry.fail(std::string(what) + " do not ascend");
     }
-    return keys;
+    return out;
 }
+
+std::vector<uint64_t> keysOf(const At& list) { return ascending(list, kMostKey, "keys"); }
 
 /// Places of objects in the scene.
 std::vector<uint32_t> placesOf(const At& list, const CullRun& run) {
-    std::vector<uint32_t> places;
-    for (size_t i = 0; i < list.size(); ++i) {
-        const At entry = list.element(i);
-        if (run.instances == 0) entry.fail("the scene has no objects");
-        places.push_back(static_cast<uint32_t>(entry.whole(0, std::min<uint64_t>(run.instances - 1, UINT32_MAX - 1))));
-        if (i > 0 && places[i] <= places[i - 1]) entry.fail("objects do not ascend");
-    }
-    return places;
+    if (run.instances == 0 && list.size() > 0) list.fail("the scene has no objects");
+    const auto places = ascending(list, std::min<uint64_t>(run.instances - 1, UINT32_MAX - 1), "objects");
+    return {places.begin(), places.end()};
 }
 
 CameraFrame cameraOf(const At& at) {
