@@ -137,6 +137,12 @@ SL_API slStatus slQueryKeys(const slQuery* query, uint64_t* keys_out, size_t cap
 SL_API slStatus slQueryStereo(slQuery* query, const slSnapshot* snapshot, const slView* left, const slView* right,
                               const slQuerySettings* settings, slVisibleSet* set_out, const uint8_t** eyes_out);
 
+/** Names objects that somebody else takes to be hidden: a GPU's occlusion queries, an id-buffer of an earlier frame. Nothing of it is
+ * believed: answers cull those of them for which they find a certificate. Proposals stand until the next call. Ids that are
+ * stale are passed over.
+ * @param ids  may be null if count is 0 */
+SL_API slStatus slQueryPropose(slQuery* query, const slObjectId* ids, size_t count);
+
 /** What came into the answer and what left it, since the answer before. */
 typedef struct slChanges {
     const slVisible *appeared, *disappeared; /**< the query's, until it is asked again */

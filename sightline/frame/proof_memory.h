@@ -68,10 +68,12 @@ public:
           faces_(memory),
           places_(memory),
           hidden(memory),
-          culled(memory) {}
+          culled(memory),
+          proposed_(memory) {}
 
     /// Takes up a view, and decides how it is answered.
-    void begin(const Frame& frame);
+    /// @param proposed  objects that somebody else takes to be hidden; others are passed over
+    void begin(const Frame& frame, std::span<const ObjectId> proposed = {});
     Way way() const { return way_; }
     /// No certificate is sought any more for something in this view, which is kept. If that happens too often, it is
     /// answered by drawing.
@@ -98,13 +100,19 @@ public:
     /// first.
     void propose(const Frame& frame, Pending::Kind kind, uint32_t index, std::span<const HidingPart> parts,
                  bool closely = false);
+    /// What is proposed and has a certificate, or may be worth the search for one. Where it was sought in vain, nobody
+    /// seeks again for some answers.
+    bool isProposed(const Pending& entry) const;
+    /// Looks for a certificate of what is proposed, within a budget.
+    bool seekProposed(const Frame& frame, const Pending& entry);
     /// Looks for a certificate: by the parts that hid something just now, then by rays.
     /// @param closely  polygon by polygon, too: of what is surely hidden, or was hidden just now
     bool seek(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, bool closely);
-    /// Looks for certificates for all that is `hidden`, within a budget, and decides how the next view is answered.
-    void seekAll(const Frame& frame, size_t visible);
+    /// Looks for certificates for all that is `hidden`, within a budget, and decides how the next view is answered. After
+    /// a cut nobody looks: what is found helps if views follow one another.
+    void seekAll(const Frame& frame, const QueryStats& stats, size_t visible);
     /// A view was answered: compares the work of both ways, and decides how the next one is.
-    void noteAnswered(const QueryStats& stats);
+    void noteAnswered(const QueryStats& stats, size_t visible);
 
     /// The parts whose shadows hid a node or an object by the last certificate that held or was found; good until the
     /// next call.
@@ -121,11 +129,16 @@ private:
     static constexpr uint32_t kNone = ~0u;
     static constexpr uint32_t kPlaces = 256;  ///< objects whose place in the view is remembered
     static constexpr uint32_t kLast = 4;
-    static constexpr uint32_t kMostPolygons = 48;   ///< of an object that is one body
-    static constexpr uint32_t kMostClusters = 128;  ///< of an object; one of more is one body, by its box
-    static constexpr uint32_t kFailed = 1u << 31;   ///< with the answer in which nothing was found
-    static constexpr uint32_t kClosely = 1u << 30;  ///< with kFailed: polygon by polygon
+    static constexpr uint32_t kMostPolygons = 48;     ///< of an object that is one body
+    static constexpr uint32_t kMostClusters = 128;    ///< of an object; one of more is one body, by its box
+    static constexpr uint32_t kRestOfProposals = 16;  ///< answers until what was sought in vain is sought again
+    static constexpr uint32_t kFailed = 1u << 31;     ///< with the answer in which nothing was found
+    static constexpr uint32_t kClosely = 1u << 30;    ///< with kFailed: polygon by polygon
 
+    struct Proposal {
+        uint32_t answer = 0;  ///< the last for which the object was proposed
+        uint32_t again = 0;   ///< from which on a certificate is sought again; 0: always
+    };
     struct Hider {
         HidingPart part;
         uint32_t answer = 0;  ///< for which `shadow` was made
@@ -167,6 +180,7 @@ private:
         return kind == Pending::Kind::kNode ? of_node_ : of_place_;
     }
     void forget(Pending::Kind kind, uint32_t index);
+    void note(const Frame& frame, std::span<const ObjectId> proposed);
     void makeRoom(const Frame& frame, Pending::Kind kind, uint32_t index);
     Array<uint32_t>& seen(Pending::Kind kind) { return kind == Pending::Kind::kNode ? seen_node_ : seen_place_; }
     bool isStillSeen(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box);
@@ -234,10 +248,14 @@ private:
     double expected_work_ = 0;                ///< of an answer that rests on what has been found so far
     bool next_by_proofs_ = false;
     uint32_t layers_ = 0, stages_ = 0;
+    uint32_t proposals_tried_ = 0;  ///< in this answer
 
 public:
     Array<Hidden> hidden;
     Array<Culled> culled;
+
+private:
+    Array<Proposal> proposed_;  ///< by place; empty: nothing was ever proposed
 };
 
 }  // namespace sightline::detail

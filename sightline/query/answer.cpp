@@ -18,13 +18,13 @@ Answer::Answer(Memory* memory)
 }
 
 void Answer::begin(const Snapshot& now, const View& view, const QuerySettings& settings,
-                   std::span<const uint32_t> shown) {
+                   std::span<const uint32_t> shown, std::span<const ObjectId> proposed) {
     const Stopwatch watch;
     frame_.begin(now, view, settings, shown);
     chooseStages(frame_, memory_of_stages_, settings.time_stages ? choose_nanoseconds_ : nullptr);
     count_ = now ? partCount(frame_) : 1;
     while (parts_.size() < count_) parts_.push_back(makeOwned<TraversalState>(memory_, memory_));
-    parts_[0]->proofs.begin(frame_);
+    parts_[0]->proofs.begin(frame_, proposed);
     merged_.clear();
     memory_of_stages_.lods.clear();
     memory_of_stages_.clusters.clear();
@@ -42,14 +42,15 @@ void Answer::run(uint32_t part) {
     traverse(frame_, state, image, frame_.settings.time_stages);
     if (by_proofs && proofs.way() != ProofMemory::Way::kProofs) {
         state.turns.begin(frame_, false);
+        proofs.culled.clear();
         traverse(frame_, state, image, frame_.settings.time_stages);
     }
-    if (proofs.way() == ProofMemory::Way::kTilesAndSeek) proofs.seekAll(frame_, state.visible.size());
+    if (proofs.way() == ProofMemory::Way::kTilesAndSeek) proofs.seekAll(frame_, state.stats, state.visible.size());
     state.stats.proofs_sought = proofs.sought;
     state.stats.proofs_found = proofs.found;
     state.stats.proof_rays = proofs.rays;
     state.stats.proof_cuts = proofs.cuts();
-    proofs.noteAnswered(state.stats);
+    proofs.noteAnswered(state.stats, state.visible.size());
     state.stats.nanoseconds = watch.nanoseconds();
 }
 
@@ -196,7 +197,7 @@ bool Answer::wasUnasked(ObjectId id) const {
 
 bool Answer::certificateOf(ObjectId id, Array<Visible>& out) const {
     const ProofMemory& proofs = parts_[0]->proofs;
-    if (!frame_.world || proofs.way() != ProofMemory::Way::kProofs) return false;
+    if (!frame_.world) return false;
     const uint32_t place = frame_.world->placeOf(id);
     const auto named = [&](ObjectId hider) {
         const uint32_t at = frame_.world->placeOf(hider);

@@ -21,9 +21,10 @@ public:
     explicit Answer(Memory* memory);
 
     /// Takes up a view. Then run(part) once for each part, by any threads, and finish().
-    /// @param shown  SizeLimits::shown; until all is run
+    /// @param shown     SizeLimits::shown; until all is run
+    /// @param proposed  as Query::propose()
     void begin(const Snapshot& now, const View& view, const QuerySettings& settings,
-               std::span<const uint32_t> shown = {});
+               std::span<const uint32_t> shown = {}, std::span<const ObjectId> proposed = {});
     uint32_t parts() const { return count_; }
     /// Lets go of the snapshot that was asked last.
     void forget() {

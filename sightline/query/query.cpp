@@ -34,6 +34,7 @@ struct Query::Impl {
     mutable Array<uint8_t> other{memory};  ///< the right eye's reasons, while both are put together
     Array<Visible> before{memory};         ///< the answer before the last
     detail::LastShown shown{memory};       ///< of that answer, while one is made that depends on it
+    Array<ObjectId> proposed{memory};      ///< by propose()
     Array<ImageRect> scissors{memory};
     Array<SeenWindow> windows{memory};
     Array<float> depth_image{memory};
@@ -64,7 +65,8 @@ void Query::Impl::ask(std::span<detail::Answer* const> eyes_asked, const Snapsho
     uint32_t parts = 0;
     for (size_t eye = 0; eye < eyes_asked.size(); ++eye) {
         const bool remembers = detail::remembersShown(*views[eye], settings);
-        eyes_asked[eye]->begin(now, *views[eye], settings, remembers ? remembered : std::span<const uint32_t>());
+        eyes_asked[eye]->begin(now, *views[eye], settings, remembers ? remembered : std::span<const uint32_t>(),
+                               proposed);
         parts += eyes_asked[eye]->parts();
     }
     runJobs(jobs, parts, [&](uint32_t part) {
@@ -80,6 +82,8 @@ void Query::Impl::ask(std::span<detail::Answer* const> eyes_asked, const Snapsho
     for (detail::Answer* eye : eyes_asked)
         eye->timed(static_cast<uint64_t>(share * static_cast<double>(eye->stats.nanoseconds)));
 }
+
+void Query::propose(std::span<const ObjectId> hidden) { impl_->proposed.assign(hidden.begin(), hidden.end()); }
 
 VisibleSet Query::visible(const Snapshot& now, const View& view, const QuerySettings& settings) {
     Impl& impl = *impl_;

@@ -112,6 +112,15 @@ public:
     StereoSet visibleStereo(const Snapshot& now, const View& left, const View& right,
                             const QuerySettings& settings = {});
 
+    /// Names objects that somebody else takes to be hidden: a GPU's occlusion queries or pyramid, an id-buffer of an
+    /// earlier frame. Nothing of it is believed. Answers look for a certificate of each, polygon by polygon, whether they
+    /// draw or not, and cull those that have one: so what samples say becomes what is proved. What is seen is kept,
+    /// whatever is proposed, and costs a search in vain, at most 32 an answer, each again after 16 answers.
+    ///
+    /// Proposals stand until the next call. They do nothing where answers rest on no certificates: without
+    /// QuerySettings::proofs, with ::stateless or ::bins, with Stage::kClusters, in parallel views.
+    void propose(std::span<const ObjectId> hidden);
+
     /// What the last answer changed against the one before. All objects of the first answer have appeared. Snapshot and
     /// view may have changed in between: objects are known by their ids, and an object that was removed from its world
     /// disappears. O(objects in both answers).

@@ -217,7 +217,9 @@ private:
             noteCulled(entry.below, answer.stage);
             noteHidden(entry);
             state_.turns.note(entry, false);
-            return observer_.culledInTurn(entry, answer.stage, answer.look);
+            observer_.culledInTurn(entry, answer.stage, answer.look);
+            if (answer.drawn) offerOccluder(entry, state_.second.size());
+            return;
         }
         if (!answer.settled && answer.look != Look::kTriangles) state_.turns.note(entry, true);
         if (entry.kind == Pending::Kind::kNode)
@@ -232,13 +234,15 @@ private:
             state_.kept.push_back({entry.index, entry.rect.nearness});
         const bool again = look == Look::kTriangles;
         if (!again) observer_.kept(entry, look);
-        // Where nothing else is left to ask it hides nothing.
-        const bool others = waiting_ > 0 || state_.second.size() > (again ? 1u : 0u);
-        if (drawn_ && others && !(entry.testable && isSmall(frame_.screen, entry.rect))) offerOccluder(entry.index);
+        offerOccluder(entry, state_.second.size() - (again ? 1 : 0));
     }
 
     /// Queues the clusters of an object's occluder, or draws it at once if there is one only.
-    void offerOccluder(uint32_t place) {
+    /// @param others  objects that will be looked at again: where nothing else is left to ask, it hides nothing
+    void offerOccluder(const Pending& entry, size_t others) {
+        if (!drawn_ || (waiting_ == 0 && others == 0)) return;
+        if (entry.testable && isSmall(frame_.screen, entry.rect)) return;
+        const uint32_t place = entry.index;
         const OfferedOccluder offered = occluderOf(frame_, place);
         if (!offered.occluder) return;
         const Occluder& occluder = *offered.occluder;

@@ -15,6 +15,7 @@ namespace sightline::detail {
 struct TurnAnswer {
     bool culled = false;
     bool settled = false;             ///< kept, and not to be asked by further stages
+    bool drawn = false;               ///< culled, and drawn all the same
     Stage stage = Stage::kOcclusion;  ///< that culled it
     Look look = Look::kBox;           ///< that decided
 };
@@ -51,6 +52,7 @@ uint32_t cullFar(const Frame& frame, TraversalState& state, Group& group, uint32
 uint32_t cullSmall(const Frame& frame, TraversalState& state, Group& group, uint32_t live);
 void chooseVolumes(Frame& frame, StageMemory& memory);
 uint32_t cullInVolumes(const Frame& frame, TraversalState& state, Group& group, uint32_t live);
+TurnAnswer cullProposed(const Frame& frame, TraversalState& state, const Pending& entry);
 TurnAnswer keepUnasked(const Frame& frame, TraversalState& state, const Pending& entry);
 TurnAnswer cullProved(const Frame& frame, TraversalState& state, const Pending& entry);
 TurnAnswer cullHidden(const Frame& frame, TraversalState& state, const Pending& entry);
@@ -67,6 +69,7 @@ inline constexpr PipelineStep kPipeline[] = {
     {.stage = Stage::kDistance, .by_box = cullFar},
     {.stage = Stage::kContribution, .by_box = cullSmall},
     {.stage = Stage::kVolumes, .choose = chooseVolumes, .by_box = cullInVolumes},
+    {.stage = Stage::kOcclusion, .in_turn = cullProposed},
     {.stage = Stage::kOcclusion, .in_turn = keepUnasked},
     {.stage = Stage::kOcclusion, .in = PipelineStep::In::kProved, .in_turn = cullProved},
     {.stage = Stage::kOcclusion, .in = PipelineStep::In::kDrawn, .in_turn = cullHidden},

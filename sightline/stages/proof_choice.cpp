@@ -16,13 +16,14 @@ constexpr double kMostExpected = 0.7;                    // the same, of what is
 constexpr double kWorkOfProof = 1, kWorkOfHider = 0.75;  // about, of a certificate in an answer
 constexpr uint32_t kFewAnswers = 4;                      // that are given before the work is compared
 constexpr uint64_t kMostCuts = 600;                      // polygons cut for one view that is drawn
-constexpr uint32_t kMostDrawn = 16;  // views, one after the other, for which certificates are sought
-constexpr double kMostLoose = 0.12;  // of what is visible: that certificates may keep although it is hidden
+constexpr uint32_t kMostDrawn = 16;     // views, one after the other, for which certificates are sought
+constexpr double kMostLoose = 0.12;     // of what is visible: that certificates may keep although it is hidden
+constexpr double kLeastUnasked = 0.25;  // of what is visible, where a view follows another
 constexpr size_t kMostHiders = 1u << 16;
 
 }  // namespace
 
-void ProofMemory::begin(const Frame& frame) {
+void ProofMemory::begin(const Frame& frame, std::span<const ObjectId> proposed) {
     if (++answer_ == 0) {  // numbers of answers begin anew
         clear();
         places_.clear();
@@ -31,6 +32,7 @@ void ProofMemory::begin(const Frame& frame) {
     shadows_.clear();
     hidden.clear();
     culled.clear();
+    proposals_tried_ = 0;
     cuts_before_ = rest_.cuts();
     sought = found = passed_over_ = 0;
     rays = polygons = 0;
@@ -47,6 +49,7 @@ void ProofMemory::begin(const Frame& frame) {
     if (!possible_) return;
     if (hiders_.size() > kMostHiders) clear();
     if (places_.empty()) places_.resize(kPlaces);
+    note(frame, proposed);
     if (frame.view.layers != layers_ || frame.stages != stages_) next_by_proofs_ = false;
     layers_ = frame.view.layers;
     stages_ = frame.stages;
@@ -101,7 +104,9 @@ uint32_t ProofMemory::seekBelow(const Frame& frame, Pending::Kind kind, uint32_t
     return left;
 }
 
-void ProofMemory::seekAll(const Frame& frame, size_t visible) {
+void ProofMemory::seekAll(const Frame& frame, const QueryStats& stats, size_t visible) {
+    const double unasked = static_cast<double>(stats.unasked);
+    if (frame.settings.unasked_answers > 0 && unasked < kLeastUnasked * static_cast<double>(visible)) return;
     uint64_t loose = 0;
     spent_ = false;
     expected_work_ = 0;
@@ -120,20 +125,20 @@ void ProofMemory::rest() {
     rest_until_ = answer_ + rest_for_;
 }
 
-void ProofMemory::noteAnswered(const QueryStats& stats) {
+void ProofMemory::noteAnswered(const QueryStats& stats, size_t visible) {
     const auto n = [](uint64_t count) { return static_cast<double>(count); };
     // What each unit took on several scenes, about. Time itself must not decide: answers would differ.
     if (way_ != Way::kProofs) {
         const double work =
             0.18 * n(stats.occluder_triangles) + 0.4 * n(stats.second_look_polygons) + 6 * n(stats.nodes_visited);
         drawn_work_ += (work - drawn_work_) / (drawn_work_ > 0 ? 4 : 1);
-        drawn_visible_ = stats.visible;
+        drawn_visible_ = visible;
         return;
     }
     const double work = 0.55 * n(stats.proof_cuts) + 0.03 * n(polygons) + 6 * n(stats.proof_rays) + n(stats.proved) +
                         3 * n(stats.nodes_visited);
     // More is kept: it is seen, or not proved to be hidden. Drawing tells.
-    if (n(stats.visible) > (1 + kMostLoose) * n(drawn_visible_) + 3) next_by_proofs_ = false;
+    if (n(visible) > (1 + kMostLoose) * n(drawn_visible_) + 3) next_by_proofs_ = false;
     proof_work_ += (work - proof_work_) / (answers_ > 0 ? 8 : 1);
     if (++answers_ == kShortRest) rest_for_ = 0;
     // The first of them have much to find.

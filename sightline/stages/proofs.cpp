@@ -14,6 +14,7 @@ void ProofMemory::clear() {
     of_place_.clear();
     seen_node_.clear();
     seen_place_.clear();
+    proposed_.clear();
     certificates_.clear();
     free_.clear();
     hiders_.clear();
@@ -158,6 +159,58 @@ bool ProofMemory::holds(const Frame& frame, Pending::Kind kind, uint32_t index, 
     return false;
 }
 
+void ProofMemory::note(const Frame& frame, std::span<const ObjectId> proposed) {
+    for (const ObjectId id : proposed) {
+        const uint32_t place = frame.world->placeOf(id);
+        if (place == PlacedBvh::kNone) continue;
+        if (place >= proposed_.size()) proposed_.resize(frame.world->placed.size());
+        Proposal& one = proposed_[place];
+        if (one.answer + 1 != answer_) one.again = 0;
+        one.answer = answer_;
+    }
+}
+
+bool ProofMemory::isProposed(const Pending& entry) const {
+    if (entry.kind != Pending::Kind::kObject || entry.index >= proposed_.size()) return false;
+    if (proposed_[entry.index].answer != answer_) return false;
+    if (hasCertificate(entry.kind, entry.index)) return true;
+    const uint32_t again = proposed_[entry.index].again;
+    return proposals_tried_ < kMostSought && (again == 0 || static_cast<int32_t>(answer_ - again) >= 0);
+}
+
+bool ProofMemory::seekProposed(const Frame& frame, const Pending& entry) {
+    if (proposals_tried_ >= kMostSought) return false;
+    ++proposals_tried_;
+    if (seek(frame, entry.kind, entry.index, entry.box, true)) return true;
+    proposed_[entry.index].again = answer_ + kRestOfProposals;
+    return false;
+}
+
+namespace {
+
+/// Culls what was just proved to be hidden.
+TurnAnswer cull(ProofMemory& proofs, const Pending& entry) {
+    const Certificate certificate = proofs.certificateOf(entry.kind, entry.index);
+    proofs.culled.push_back({entry.below, certificate});
+    // Where nobody had to hide it, it lies beside the image, or faces away.
+    return {.culled = true, .stage = certificate.count > 0 ? Stage::kOcclusion : Stage::kFrustum};
+}
+
+}  // namespace
+
+/// It is drawn all the same, if anything is: so who believes in a proposal changes nothing but the object itself.
+TurnAnswer cullProposed(const Frame& frame, TraversalState& state, const Pending& entry) {
+    ProofMemory& proofs = state.proofs;
+    if (!proofs.isProposed(entry)) return {};
+    const bool held = proofs.holds(frame, entry.kind, entry.index, entry.box);
+    state.stats.proved += held;
+    // Nobody but drawing knows more of it.
+    if (!held && !proofs.seekProposed(frame, entry)) return {.settled = proofs.way() == ProofMemory::Way::kProofs};
+    TurnAnswer answer = cull(proofs, entry);
+    answer.drawn = true;
+    return answer;
+}
+
 TurnAnswer cullProved(const Frame& frame, TraversalState& state, const Pending& entry) {
     ProofMemory& proofs = state.proofs;
     const bool before = proofs.hasCertificate(entry.kind, entry.index);
@@ -168,10 +221,7 @@ TurnAnswer cullProved(const Frame& frame, TraversalState& state, const Pending& 
         return {.settled = true};
     }
     if (!proved && !proofs.seek(frame, entry.kind, entry.index, entry.box, before)) return {};
-    const Certificate certificate = proofs.certificateOf(entry.kind, entry.index);
-    proofs.culled.push_back({entry.below, certificate});
-    // Where nobody had to hide it, it lies beside the image, or faces away.
-    return {.culled = true, .stage = certificate.count > 0 ? Stage::kOcclusion : Stage::kFrustum};
+    return cull(proofs, entry);
 }
 
 }  // namespace sightline::detail

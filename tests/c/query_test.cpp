@@ -50,6 +50,26 @@ TEST(CQuery, AnswersAsTheLibraryDoes) {
     }
 }
 
+TEST(CQuery, TakesProposals) {
+    MadeWorld made(11, 300);
+    const CWorld world(made);
+    const CQuery c(world);
+    const Snapshot now = made.world.commit();
+    Query query;
+    Random random(11);
+    uint64_t sought = 0;
+    for (int frame = 0; frame < 12; ++frame) {
+        const View view = randomView(random);
+        const VisibleSet set = query.visible(now, view);
+        EXPECT_EQ(keysOf(c.ask(viewOf(view))), keysOf(set)) << frame;
+        sought += set.stats.proofs_sought;
+        ASSERT_EQ(slQueryPropose(c.query, world.ids.data(), world.ids.size()), SL_OK);
+        query.propose(made.ids);
+    }
+    EXPECT_GT(sought, 0u);
+    EXPECT_EQ(slQueryPropose(c.query, nullptr, 0), SL_OK);
+}
+
 TEST(CQuery, TakesSettings) {
     const MadeWorld made(7, 300);
     const CWorld world(made);

@@ -204,6 +204,7 @@ TEST(CWorld, NullPointersAreAnsweredEverywhere) {
         slQueryVisibleKeys(query.query, now, &view, nullptr, nullptr, 3, &count),
         slQueryKeys(query.query, nullptr, 3, &count),
         slQueryStereo(query.query, now, &view, nullptr, nullptr, &set, nullptr),
+        slQueryPropose(query.query, nullptr, 1),
         slQueryChanges(query.query, nullptr),
         slQueryGetStats(query.query, nullptr),
         slQueryReasons(query.query, nullptr, 3, &count),

@@ -153,6 +153,19 @@ TEST_F(MemoryOptions, AQueryThatRemembersIsJudgedInOrder) {
     expectError("cull city:1:10 --frames 2 --remember --repeat 3", 2, "--repeat");
 }
 
+TEST_F(MemoryOptions, WhatAnImageDoesNotShowIsProposedAndProved) {
+    const std::string walk = "building:1:1 --path walk --frames 60 --seed 3 --remember ";
+    const json plain = cull(walk), proposed = cull(walk + "--propose --verify --rays 2000");
+    EXPECT_EQ(proposed["verification"]["false_culls"], 0);
+    size_t kept = 0, left = 0;
+    for (size_t i = 0; i < 60; ++i) {
+        kept += plain["frames"][i]["visible"].size();
+        left += proposed["frames"][i]["visible"].size();
+    }
+    EXPECT_LT(left, kept);
+    EXPECT_EQ(proposed["frames"][0]["visible"], plain["frames"][0]["visible"]) << "nothing was proposed yet";
+}
+
 TEST_F(LodOptions, LevelsSaveTrianglesAndTellThePixelsThatTheyChange) {
     const std::string arguments = "terrain:1:64 --path scatter --frames 3 --seed 1";
     const json plain = cull(arguments), run = cull(arguments + " --lod-error 2 --verify --rays 5000");

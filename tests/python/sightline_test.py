@@ -103,6 +103,18 @@ class Answers(unittest.TestCase):
         self.assertIn("culled by occlusion: it lies behind object", str(why))
         self.assertIn("kept: ", str(query.explain(made.now, VIEW, made.ids[0])))
 
+    def test_proposals_are_proved_or_kept(self):
+        made = Made()
+        query = sightline.Query()
+        seen = query.visible(made.now, VIEW).keys.copy()
+        query.propose(made.ids)
+        proposed = query.visible(made.now, VIEW).keys
+        self.assertTrue(numpy.isin(proposed, seen).all())
+        self.assertIn(1000, proposed)
+        query.propose(made.ids[:0])
+        with self.assertRaises(TypeError):
+            query.propose([1, 2])
+
     def test_settings_and_conventions(self):
         made = Made()
         query = sightline.Query()

@@ -9,6 +9,10 @@
 #include <numeric>
 #include <thread>
 
+#include "sightline/query/explain/credits.h"
+#include "sightline/query/explain/explain.h"
+#include "sightline/query/shadow_query.h"
+#include "sightline/query/sight_query.h"
 #include "tests/support/made_world.h"
 #include "tests/support/targets.h"
 
@@ -195,6 +199,56 @@ TEST(Query, SnapshotsAreAskedWhileTheWorldGoesOn) {
     }
     for (std::thread& reader : readers) reader.join();
     EXPECT_EQ(found, expected);
+}
+
+/// What is moved goes on where it was.
+TEST(Query, AndItsKinMoveWithAllTheyRemember) {
+    MadeWorld made(5, 300);
+    World world = std::move(made.world);
+    const Snapshot now = world.commit();
+    Random random(5);
+    Query still, from, to;
+    ShadowQuery shadow, other_shadow;
+    SightQuery sight, other_sight;
+    for (int frame = 0; frame < 12; ++frame) {
+        const View view = randomView(random);
+        const std::vector<uint64_t> keys = keysOf(still.visible(now, view));
+        Query made_of(std::move(from));
+        EXPECT_EQ(keysOf(made_of.visible(now, view)), keys) << frame;
+        to = std::move(made_of);
+        EXPECT_EQ(to.changes().appeared.size(), still.changes().appeared.size()) << frame;
+        from = std::move(to);
+
+        const Light sun{.direction = {0.3, -1, 0.2}};
+        const VisibleSet seen = still.visible(now, view, {.stateless = true});
+        const std::vector<Visible> receivers(seen.objects.begin(), seen.objects.end());
+        const size_t casters = shadow.casters(now, view, receivers, sun).casters.size();
+        ShadowQuery shadow_of(std::move(shadow));
+        EXPECT_EQ(shadow_of.casters(now, view, receivers, sun).casters.size(), casters);
+        other_shadow = std::move(shadow_of);
+        shadow = std::move(other_shadow);
+
+        const glm::dvec3 a = randomVector(random, 8.0), b = randomVector(random, 8.0);
+        const bool blocked = sight.look(now, a, b).blocked;
+        SightQuery sight_of(std::move(sight));
+        EXPECT_EQ(sight_of.look(now, a, b).blocked, blocked);
+        other_sight = std::move(sight_of);
+        sight = std::move(other_sight);
+
+        Explainer explainer(now, view);
+        const Verdict verdict = explainer.explain(made.ids[7]).verdict;
+        Explainer explainer_of(std::move(explainer)), other_explainer(now, view);
+        EXPECT_EQ(explainer_of.explain(made.ids[7]).verdict, verdict);
+        other_explainer = std::move(explainer_of);
+        EXPECT_EQ(other_explainer.explain(made.ids[7]).verdict, verdict);
+
+        CreditBook book(now), other_book(now);
+        const size_t credits = book.credits(view).size();
+        CreditBook book_of(std::move(book));
+        EXPECT_EQ(book_of.credits(view).size(), credits);
+        other_book = std::move(book_of);
+        EXPECT_EQ(other_book.credits(view).size(), credits);
+    }
 }
 
 TEST(Query, IsTheSameOnEveryInstructionSetAndThread) {

@@ -178,6 +178,11 @@ void addQueryOptions(CLI::App& verb, RunOptions& options) {
             "frames in order, by one query that remembers what hid and what was visible, as a game asks; "
             "else each frame stands by itself")
         ->group("Culling");
+    verb.add_flag(
+            "--propose", options.propose,
+            "tell the query what an id-buffer of the frame before, one sample a pixel, does not show, as a renderer "
+            "that asks its GPU can; it culls what it can prove of that; needs --remember")
+        ->group("Culling");
     verb.add_option("--query-threads", options.query_threads, "share the bins of each query among so many threads")
         ->check(CLI::Range(1u, kMostThreads))
         ->type_name("N")
@@ -219,6 +224,9 @@ Status finish(const CLI::App& verb, RunOptions& options) {
             return usageError("--remember: each frame is asked once; --repeat would ask it again");
         options.repeat = 1;
     }
+    if (options.propose && settings.stateless)
+        return usageError("--propose: only a query that remembers takes proposals; see --remember");
+    if (options.propose && options.stereo > 0) return usageError("--propose: not for two eyes");
     if (options.query_threads > 1 && settings.bins == 1 && options.stereo == 0)
         return usageError("--query-threads: one bin has nothing to share; see --bins");
     const Result<uint32_t> use = readStages("--use", options.use), skip = readStages("--skip", options.skip);

@@ -19,6 +19,7 @@
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/cull_frame.h"
+#include "apps/cli/verbs/proposer.h"
 #include "apps/cli/verbs/setting_options.h"
 #include "apps/cli/verbs/verbs.h"
 #include "apps/cli/verbs/visibility_choice.h"
@@ -47,7 +48,8 @@ struct Answerer {
     ThreadPool pool;  ///< that shares each query
     Query query{defaultMemory(), pool.workers() > 1 ? &pool : nullptr};
     Query of_frustum;  ///< for what that stage alone would leave: it remembers nothing of `query`'s frames
-    std::optional<CreditBook> book;  ///< if credits were asked for
+    std::optional<CreditBook> book;    ///< if credits were asked for
+    std::optional<Proposer> proposer;  ///< if it is to propose
 };
 
 void creditFrame(const CullRun& run, CreditBook& book, FrameResult& frame) {
@@ -148,6 +150,7 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
                clusterOptionsOf(run.cluster_test);
     if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
     if (!run.settings.stateless) command += " --remember";
+    if (options.propose) command += " --propose";
     if (options.no_proofs) command += " --no-proofs";
     QuerySettings asked;
     asked.max_distance = run.settings.max_distance;
@@ -233,6 +236,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     const size_t done = shareOut(path.frames.size(), threads, interrupted, [&](uint32_t thread) {
         const auto answerer = std::make_shared<Answerer>(options.query_threads);
         if (options.credits) answerer->book.emplace(now, weights);
+        if (options.propose) answerer->proposer.emplace(scene, loaded.ids);
         return [&, thread, answerer](size_t i) {
             FrameResult& frame = run.frames[i];
             frame = FrameResult();
@@ -243,6 +247,8 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
             countByKey(scene, key_order, run.settings.stages, frame);
             if (options.certificates) frame.certificates = certificatesOf(answerer->query, loaded.ids, frame.reasons);
             frame.end_microseconds = since();
+            if (answerer->proposer)
+                answerer->proposer->propose(viewOf(frame.camera, run), frame.reasons, answerer->query);
             FrameResult alone;
             alone.reasons = reasonsOfFrustum(now, run, frame.camera, answerer->of_frustum);
             countByKey(scene, key_order, stageBit(Stage::kFrustum), alone);

@@ -42,6 +42,7 @@ struct RunOptions {
     bool no_proofs = false;     ///< rays and samples alone judge
     std::string json;           ///< file, `-`, or empty
     std::string report;         ///< directory, or empty
+    bool propose = false;       ///< tell the query what an image does not show: Proposer
     bool certificates = false;  ///< fill FrameResult::certificates
     bool credits = false;       ///< fill FrameResult::credits: costs some tens of queries a frame
 };

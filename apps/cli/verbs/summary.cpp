@@ -346,6 +346,7 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     if (options.jitter != View().jitter) command += fmt::format(" --jitter {}", options.jitter);
     if (options.stereo > 0) command += fmt::format(" --stereo {}", options.stereo);
     if (!options.settings.stateless) command += " --remember";
+    if (options.propose) command += " --propose";
     if (verify) command += fmt::format(" --verify --rays {}{}", options.rays, options.no_proofs ? " --no-proofs" : "");
     return command;
 }

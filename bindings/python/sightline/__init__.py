@@ -351,6 +351,12 @@ class Query:
         _check(_lib.slQueryGetStats(self._handle, stats))
         return Visible(self, answer, stats)
 
+    def propose(self, ids):
+        """Objects, by their ids of World.add(), that somebody else takes to be hidden, as a simulator's depth camera does. Nothing of it is
+        believed: answers cull those that they can prove to be hidden. They stand until the next call."""
+        ids = _ids(ids)
+        _check(_lib.slQueryPropose(self._handle, _at(ids, "slObjectId*"), len(ids)))
+
     def reasons(self):
         """For each object of the last answer's snapshot, as they were added: 0 visible, 1 + index into STAGES of what culled it,
         255 outside of the view's layers."""

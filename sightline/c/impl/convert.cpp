@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstring>
-#include <tuple>
 
 #include "sightline/geom/clip_space.h"
 #include "sightline/math/box.h"
@@ -69,37 +68,7 @@ slStatus toSettings(const slQuerySettings* from, const slLog& log, const char* c
     if (!from) return SL_OK;
     if (from->cookie != kSettingsCookie)
         return fail(log, SL_NO_DEFAULTS, call, "the settings did not begin as slDefaultQuerySettings()");
-    static_assert(std::tuple_size_v<decltype(kQuerySettings)> == 31, "slQuerySettings lacks a setting");
-    to.stages = from->stages;
-    to.portal_depth = from->portal_depth;
-    to.portal_work = from->portal_work;
-    to.max_distance = from->max_distance;
-    to.max_distance_fov = from->max_distance_fov;
-    to.contribution = from->contribution;
-    to.hysteresis = from->hysteresis;
-    to.occluder_volumes = from->occluder_volumes;
-    to.occluder_triangles = from->occluder_triangles;
-    to.occlusion_size = from->occlusion_size;
-    to.masked = from->masked;
-    to.occluder_error = from->occluder_error;
-    to.close_gaps = from->close_gaps;
-    to.faces = from->faces;
-    to.second_look = from->second_look;
-    to.second_look_polygons = from->second_look_polygons;
-    to.cluster_gap = from->cluster_gap;
-    to.lod_error = from->lod_error;
-    to.lod_fade = from->lod_fade;
-    to.budget = from->budget;
-    to.hard_budget = from->hard_budget;
-    to.cost_object = from->cost_object;
-    to.cost_triangle = from->cost_triangle;
-    to.cost_vertex = from->cost_vertex;
-    to.cost_pixel = from->cost_pixel;
-    to.bins = from->bins;
-    to.unasked_answers = from->unasked_answers;
-    to.proofs = from->proofs;
-    to.stateless = from->stateless;
-    to.time_stages = from->time_stages;
+    copySettings(*from, to);
     to.windows = static_cast<PortalWindows>(numberOf(from->windows));
     const char* wrong = nullptr;
     forEachSetting([&](const auto& row) {

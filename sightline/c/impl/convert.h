@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -13,6 +14,7 @@
 #include "sightline/c/query.h"
 #include "sightline/geom/image_rect.h"
 #include "sightline/geom/mesh_view.h"
+#include "sightline/geom/query_settings.h"
 #include "sightline/geom/view.h"
 #include "sightline/math/box.h"
 #include "sightline/world/world_object.h"
@@ -42,6 +44,42 @@ uint32_t numberOf(const Enumeration& field) {
     static_assert(sizeof field == sizeof number);
     std::memcpy(&number, &field, sizeof number);
     return number;
+}
+
+/// Copies the settings from one structure to the other, either way: all but the windows, whose types differ.
+template <class From, class To>
+void copySettings(const From& from, To& to) {
+    static_assert(std::tuple_size_v<decltype(kQuerySettings)> == 31, "slQuerySettings lacks a setting");
+    to.stages = from.stages;
+    to.portal_depth = from.portal_depth;
+    to.portal_work = from.portal_work;
+    to.max_distance = from.max_distance;
+    to.max_distance_fov = from.max_distance_fov;
+    to.contribution = from.contribution;
+    to.hysteresis = from.hysteresis;
+    to.occluder_volumes = from.occluder_volumes;
+    to.occluder_triangles = from.occluder_triangles;
+    to.occlusion_size = from.occlusion_size;
+    to.masked = from.masked;
+    to.occluder_error = from.occluder_error;
+    to.close_gaps = from.close_gaps;
+    to.faces = from.faces;
+    to.second_look = from.second_look;
+    to.second_look_polygons = from.second_look_polygons;
+    to.cluster_gap = from.cluster_gap;
+    to.lod_error = from.lod_error;
+    to.lod_fade = from.lod_fade;
+    to.budget = from.budget;
+    to.hard_budget = from.hard_budget;
+    to.cost_object = from.cost_object;
+    to.cost_triangle = from.cost_triangle;
+    to.cost_vertex = from.cost_vertex;
+    to.cost_pixel = from.cost_pixel;
+    to.bins = from.bins;
+    to.unasked_answers = from.unasked_answers;
+    to.proofs = from.proofs;
+    to.stateless = from.stateless;
+    to.time_stages = from.time_stages;
 }
 
 /// The library's arrays as the caller reads them: the same numbers in the same places.

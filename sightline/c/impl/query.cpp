@@ -15,37 +15,8 @@ using c::fail;
 slQuerySettings slDefaultQuerySettings(void) {
     const QuerySettings from;
     slQuerySettings to{};
-    to.stages = from.stages;
+    c::copySettings(from, to);
     to.windows = static_cast<slPortalWindows>(from.windows);
-    to.portal_depth = from.portal_depth;
-    to.portal_work = from.portal_work;
-    to.max_distance = from.max_distance;
-    to.max_distance_fov = from.max_distance_fov;
-    to.contribution = from.contribution;
-    to.hysteresis = from.hysteresis;
-    to.occluder_volumes = from.occluder_volumes;
-    to.occluder_triangles = from.occluder_triangles;
-    to.occlusion_size = from.occlusion_size;
-    to.masked = from.masked;
-    to.occluder_error = from.occluder_error;
-    to.close_gaps = from.close_gaps;
-    to.faces = from.faces;
-    to.second_look = from.second_look;
-    to.second_look_polygons = from.second_look_polygons;
-    to.cluster_gap = from.cluster_gap;
-    to.lod_error = from.lod_error;
-    to.lod_fade = from.lod_fade;
-    to.budget = from.budget;
-    to.hard_budget = from.hard_budget;
-    to.cost_object = from.cost_object;
-    to.cost_triangle = from.cost_triangle;
-    to.cost_vertex = from.cost_vertex;
-    to.cost_pixel = from.cost_pixel;
-    to.bins = from.bins;
-    to.unasked_answers = from.unasked_answers;
-    to.proofs = from.proofs;
-    to.stateless = from.stateless;
-    to.time_stages = from.time_stages;
     to.cookie = c::kSettingsCookie;
     return to;
 }
@@ -166,6 +137,14 @@ slStatus slQueryStereo(slQuery* query, const slSnapshot* snapshot, const slView*
     noteProblem(*query, __func__);
     *set_out = lastOf(*query);
     *eyes_out = set.eyes.data();
+    return SL_OK;
+}
+
+slStatus slQueryPropose(slQuery* query, const slObjectId* ids, size_t count) {
+    if (!query || (!ids && count > 0)) return failNull(query, __func__);
+    static_assert(sizeof(slObjectId) == sizeof(ObjectId) &&
+                  offsetof(slObjectId, generation) == offsetof(ObjectId, generation));
+    query->query.propose({reinterpret_cast<const ObjectId*>(ids), count});
     return SL_OK;
 }
 

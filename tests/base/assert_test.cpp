@@ -1,0 +1,38 @@
+// A broken invariant stops the program, after an engine's hook has heard of it.
+// SPDX-License-Identifier: MIT
+#include "sightline/base/assert.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+namespace sightline {
+namespace {
+
+#if GTEST_HAS_DEATH_TEST
+TEST(AssertDeathTest, StopsTheProgramOnceTheHookHasHeard) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const int two = 2;
+    SIGHTLINE_ASSERT(two == 2);
+    EXPECT_DEATH(SIGHTLINE_ASSERT(two == 3), "assert_test.cpp:[0-9]+: assertion failed: two == 3");
+    const auto hook = [](const char* expression, const char*, int line) {
+        std::fprintf(stderr, "heard of %s in line %d\n", expression, line);
+    };
+    EXPECT_DEATH(
+        {
+            setAssertHook(hook);
+            SIGHTLINE_ASSERT(two == 4);
+        },
+        "heard of two == 4 in line [0-9]+");
+    EXPECT_DEATH(
+        {
+            setAssertHook(hook);
+            setAssertHook(nullptr);
+            SIGHTLINE_ASSERT(two == 5);
+        },
+        "assertion failed: two == 5");
+}
+#endif
+
+}  // namespace
+}  // namespace sightline
