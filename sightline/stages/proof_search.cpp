@@ -152,23 +152,25 @@ bool ProofMemory::takeHit(const Frame& frame, double enters, Certificate& certif
     return most > kLeastTaken && take(frame, best, certificate);
 }
 
-/// Closes a slit between two faces that meet.
+/// Closes a slit between two faces that meet, or a corner of it: where it meets others, or crosses one behind it.
 bool ProofMemory::takeSeam(const Frame& frame, Certificate& certificate) {
-    glm::dvec3 beside[2];
-    if (!rest_.besideSlit(beside)) return false;
-    Hit first[2][2];
-    uint32_t counts[2];
-    for (int i = 0; i < 2; ++i) {
-        shoot(frame, beside[i], rest_.farthest());
-        counts[i] = std::min(hit_count_, 2u);
-        std::copy(hits_, hits_ + counts[i], first[i]);
-    }
-    for (uint32_t i = 0; i < counts[0]; ++i)
-        for (uint32_t k = 0; k < counts[1]; ++k) {
-            const Hit &a = first[0][i], &b = first[1][k];
-            if (a.place == b.place && a.part == b.part) continue;
-            if (take(frame, {idAt(frame, a.place), a.part, idAt(frame, b.place), b.part}, certificate)) return true;
+    for (const bool around : {false, true}) {
+        glm::dvec3 beside[8];
+        const uint32_t rays_beside = rest_.besideSlit(around, beside);
+        HidingPart found[16];
+        uint32_t count = 0;
+        for (uint32_t ray = 0; ray < rays_beside; ++ray) {
+            shoot(frame, beside[ray], rest_.farthest());
+            for (uint32_t i = 0; i < std::min(hit_count_, 2u); ++i) {
+                const HidingPart part{idAt(frame, hits_[i].place), hits_[i].part, {}};
+                if (std::find(found, found + count, part) == found + count) found[count++] = part;
+            }
         }
+        for (uint32_t i = 0; i < count; ++i)
+            for (uint32_t k = i + 1; k < count; ++k)
+                if (take(frame, {found[i].object, found[i].part, found[k].object, found[k].part}, certificate))
+                    return true;
+    }
     return false;
 }
 

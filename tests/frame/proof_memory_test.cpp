@@ -223,6 +223,46 @@ TEST(Proofs, OfLargeMeshesHoldAllOfTheirClusters) {
     EXPECT_GT(found, 1000u);
 }
 
+/// Two walls, each of two faces that meet, one behind the other: where their slits cross, neither is a slit any more.
+TEST(Proofs, CloseSlitsThatCross) {
+    uint64_t hidden = 0, found = 0;
+    for (uint64_t seed = 1; seed <= 400; ++seed) {
+        Random random(seed);
+        MadeWorld made;
+        for (int i = 0; i < 9; ++i) made.other.positions.push_back({0.5f * (i % 3), 0.5f * (i / 3), 0});
+        for (const uint32_t a : {0u, 3u, 4u}) made.other.fan({a, a + 1, a + 4, a + 3});  // no wall at the lower right
+        made.other_double_sided.assign(made.other.indices.size() / 3, 0);
+        const OccluderId wall = made.world.addOccluder(prepareOccluder(made.other.view()));
+        // The slit of the first goes up from its middle, that of the second, a quarter turn, to the left.
+        const double x = random.uniform(-0.25, -0.125),
+                     y = random.uniform(0.125, 0.25);  // where they cross, at distance one
+        glm::dmat4 first(1.0), second(1.0);
+        first[0][0] = first[1][1] = 8;
+        first[3] = {4 * x - 4, -4.5, -4, 1};
+        second[0] = {0, 12, 0, 0};
+        second[1] = {-12, 0, 0, 0};
+        second[3] = {6.5, 6 * y - 6, -6, 1};
+        made.add(first, true, 1, wall);
+        made.add(second, true, 1, wall);
+        const glm::dvec3 p(12 * x - random.uniform(0.5, 1), 12 * y - random.uniform(0.5, 1), -12.5);
+        made.add(p, p + glm::dvec3(random.uniform(1, 2), random.uniform(1, 2), 0.5));
+        const View view = viewFrom({0, 0, 0}, {0, 0, -1}, {95, 400, 400, 0.05});
+        if (made.seen(view, 3)[2]) continue;
+        ++hidden;
+        const Snapshot now = made.world.commit();
+        const detail::SnapshotState& state = now.state();
+        detail::Frame of;
+        of.begin(now, view, {});
+        ProofMemory memory(defaultMemory());
+        memory.begin(of);
+        const uint32_t place = state.placeOf(made.ids[2]), slot = state.bvh.slot[state.bvh.order[place]];
+        const Box3f box = boxOf(eyeBoxes(state.bvh.nodes[slot / 8], state.bvh.origin - of.frustum.eye), int(slot % 8));
+        found += memory.seek(of, Pending::Kind::kObject, place, box, true);
+    }
+    EXPECT_EQ(hidden, 400u);
+    EXPECT_EQ(found, hidden);
+}
+
 TEST(Proofs, AreTheSameAgainAndWithEveryInstructionSet) {
     std::vector<std::vector<uint64_t>> first;
     forEachTarget([&](const std::string& target) {

@@ -319,8 +319,9 @@ glm::dvec3 Uncovered::direction() const {
     return frame_.back * glm::dvec3(middle, 1.0);
 }
 
-bool Uncovered::besideSlit(glm::dvec3 (&directions)[2]) const {
+uint32_t Uncovered::besideSlit(bool around, glm::dvec3 (&directions)[8]) const {
     constexpr double kNarrow = 1e-3, kWidest = 1e-4;  // of its length; of the image's half width
+    constexpr double kSmall = 1e-3;                   // the same
     const Piece& piece = largest();
     glm::dvec2 along(0.0), middle(0.0);
     for (uint32_t i = 0; i < piece.count; ++i) {
@@ -329,11 +330,16 @@ bool Uncovered::besideSlit(glm::dvec3 (&directions)[2]) const {
         middle += piece.corner[i] / static_cast<double>(piece.count);
     }
     const double length = glm::length(along), width = piece.area() / length;
-    if (!(width < kNarrow * length) || !(width < kWidest)) return false;
-    const glm::dvec2 across = glm::dvec2(-along.y, along.x) / length * (4 * width + 1e-8);
-    for (int i = 0; i < 2; ++i)
-        directions[i] = frame_.back * glm::dvec3(i == 0 ? middle + across : middle - across, 1.0);
-    return true;
+    if (around ? !(length < kSmall) : !(width < kNarrow * length && width < kWidest)) return 0;
+    const glm::dvec2 across = glm::dvec2(-along.y, along.x) / length;
+    const uint32_t count = around ? 8 : 2;
+    const double away = (around ? 2 * length : 4 * width) + 1e-8;
+    for (uint32_t i = 0; i < count; ++i) {
+        const double angle = 2 * 3.141592653589793 * i / count;
+        const glm::dvec2 way = std::cos(angle) * across + std::sin(angle) * glm::dvec2(across.y, -across.x);
+        directions[i] = frame_.back * glm::dvec3(middle + away * way, 1.0);
+    }
+    return count;
 }
 
 }  // namespace sightline

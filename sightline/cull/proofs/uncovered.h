@@ -72,9 +72,10 @@ public:
     bool nothing() const { return piece_count_ == 0; }
     /// Into the middle of the largest piece: dot(frame.w, direction) = 1.
     glm::dvec3 direction() const;
-    /// Beside both long sides of the largest piece, where that is narrow.
-    /// @returns false if it is not
-    bool besideSlit(glm::dvec3 (&directions)[2]) const;
+    /// Beside the largest piece: on both sides of it, if it is a slit.
+    /// @param around  all around it, if it is small, as where slits meet, or one crosses another behind it
+    /// @returns how many directions; 0: it is not so
+    uint32_t besideSlit(bool around, glm::dvec3 (&directions)[8]) const;
     /// The greatest dot(frame.w, q) of the body.
     double farthest() const { return farthest_; }
 
