@@ -103,8 +103,8 @@ public:
     /// What is proposed and has a certificate, or may be worth the search for one. Where it was sought in vain, nobody
     /// seeks again for some answers.
     bool isProposed(const Pending& entry) const;
-    /// Looks for a certificate of what is proposed, within a budget.
-    bool seekProposed(const Frame& frame, const Pending& entry);
+    /// Whether what is proposed has a certificate that holds, or one is found, within a budget.
+    bool proveProposed(const Frame& frame, const Pending& entry);
     /// Looks for a certificate: by the parts that hid something just now, then by rays.
     /// @param closely  polygon by polygon, too: of what is surely hidden, or was hidden just now
     bool seek(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, bool closely);
@@ -119,7 +119,8 @@ public:
     Certificate certificateOf(Pending::Kind kind, uint32_t index) const;
     HidingPart hider(uint32_t number) const { return hiders_[number].part; }
 
-    uint32_t sought = 0;  ///< for this view
+    uint32_t proposalsTried() const { return proposals_tried_; }
+    uint32_t sought = 0;  ///< for this view; without proposals
     uint32_t found = 0;
     uint64_t rays = 0;
     uint64_t cuts() const { return rest_.cuts() - cuts_before_; }
@@ -129,15 +130,17 @@ private:
     static constexpr uint32_t kNone = ~0u;
     static constexpr uint32_t kPlaces = 256;  ///< objects whose place in the view is remembered
     static constexpr uint32_t kLast = 4;
-    static constexpr uint32_t kMostPolygons = 48;     ///< of an object that is one body
-    static constexpr uint32_t kMostClusters = 128;    ///< of an object; one of more is one body, by its box
-    static constexpr uint32_t kRestOfProposals = 16;  ///< answers until what was sought in vain is sought again
-    static constexpr uint32_t kFailed = 1u << 31;     ///< with the answer in which nothing was found
-    static constexpr uint32_t kClosely = 1u << 30;    ///< with kFailed: polygon by polygon
+    static constexpr uint32_t kMostPolygons = 48;   ///< of an object that is one body
+    static constexpr uint32_t kMostClusters = 128;  ///< of an object; one of more is one body, by its box
+    /// Answers until what was sought in vain is sought again: twice as many each time.
+    static constexpr uint32_t kShortestRest = 16, kLongestRest = 256;
+    static constexpr uint32_t kFailed = 1u << 31;   ///< with the answer in which nothing was found
+    static constexpr uint32_t kClosely = 1u << 30;  ///< with kFailed: polygon by polygon
 
     struct Proposal {
         uint32_t answer = 0;  ///< the last for which the object was proposed
         uint32_t again = 0;   ///< from which on a certificate is sought again; 0: always
+        uint32_t rest = 0;    ///< how long nobody sought, the last time
     };
     struct Hider {
         HidingPart part;
@@ -248,7 +251,8 @@ private:
     double expected_work_ = 0;                ///< of an answer that rests on what has been found so far
     bool next_by_proofs_ = false;
     uint32_t layers_ = 0, stages_ = 0;
-    uint32_t proposals_tried_ = 0;  ///< in this answer
+    uint32_t proposals_tried_ = 0;                            ///< in this answer
+    uint64_t rays_of_proposals_ = 0, cuts_of_proposals_ = 0;  ///< of all of them: whichever way is taken
 
 public:
     Array<Hidden> hidden;

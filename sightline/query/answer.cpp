@@ -46,7 +46,7 @@ void Answer::run(uint32_t part) {
         traverse(frame_, state, image, frame_.settings.time_stages);
     }
     if (proofs.way() == ProofMemory::Way::kTilesAndSeek) proofs.seekAll(frame_, state.stats, state.visible.size());
-    state.stats.proofs_sought = proofs.sought;
+    state.stats.proofs_sought = proofs.sought + proofs.proposalsTried();
     state.stats.proofs_found = proofs.found;
     state.stats.proof_rays = proofs.rays;
     state.stats.proof_cuts = proofs.cuts();

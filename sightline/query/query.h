@@ -115,7 +115,8 @@ public:
     /// Names objects that somebody else takes to be hidden: a GPU's occlusion queries or pyramid, an id-buffer of an
     /// earlier frame. Nothing of it is believed. Answers look for a certificate of each, polygon by polygon, whether they
     /// draw or not, and cull those that have one: so what samples say becomes what is proved. What is seen is kept,
-    /// whatever is proposed, and costs a search in vain, at most 32 an answer, each again after 16 answers.
+    /// whatever is proposed, and costs a search in vain: at most 32 an answer, each again after 16 answers, then 32, up to
+    /// 256.
     ///
     /// Proposals stand until the next call. They do nothing where answers rest on no certificates: without
     /// QuerySettings::proofs, with ::stateless or ::bins, with Stage::kClusters, in parallel views.

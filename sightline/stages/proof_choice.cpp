@@ -33,6 +33,7 @@ void ProofMemory::begin(const Frame& frame, std::span<const ObjectId> proposed) 
     hidden.clear();
     culled.clear();
     proposals_tried_ = 0;
+    rays_of_proposals_ = cuts_of_proposals_ = 0;
     cuts_before_ = rest_.cuts();
     sought = found = passed_over_ = 0;
     rays = polygons = 0;
@@ -71,7 +72,7 @@ bool ProofMemory::hasFailed(Pending::Kind kind, uint32_t index) const {
 /// Looks for certificates for a node or an object that is hidden, or else for what is below it.
 /// @returns how many objects are left without
 uint32_t ProofMemory::seekBelow(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box) {
-    if (cuts() >= kMostCuts) {
+    if (cuts() - cuts_of_proposals_ >= kMostCuts) {
         spent_ = true;
         return 0;
     }
@@ -135,8 +136,8 @@ void ProofMemory::noteAnswered(const QueryStats& stats, size_t visible) {
         drawn_visible_ = visible;
         return;
     }
-    const double work = 0.55 * n(stats.proof_cuts) + 0.03 * n(polygons) + 6 * n(stats.proof_rays) + n(stats.proved) +
-                        3 * n(stats.nodes_visited);
+    const double work = 0.55 * n(stats.proof_cuts - cuts_of_proposals_) + 0.03 * n(polygons) +
+                        6 * n(stats.proof_rays - rays_of_proposals_) + n(stats.proved) + 3 * n(stats.nodes_visited);
     // More is kept: it is seen, or not proved to be hidden. Drawing tells.
     if (n(visible) > (1 + kMostLoose) * n(drawn_visible_) + 3) next_by_proofs_ = false;
     proof_work_ += (work - proof_work_) / (answers_ > 0 ? 8 : 1);

@@ -165,7 +165,7 @@ void ProofMemory::note(const Frame& frame, std::span<const ObjectId> proposed) {
         if (place == PlacedBvh::kNone) continue;
         if (place >= proposed_.size()) proposed_.resize(frame.world->placed.size());
         Proposal& one = proposed_[place];
-        if (one.answer + 1 != answer_) one.again = 0;
+        if (one.answer + 1 != answer_) one = {};
         one.answer = answer_;
     }
 }
@@ -178,12 +178,21 @@ bool ProofMemory::isProposed(const Pending& entry) const {
     return proposals_tried_ < kMostSought && (again == 0 || static_cast<int32_t>(answer_ - again) >= 0);
 }
 
-bool ProofMemory::seekProposed(const Frame& frame, const Pending& entry) {
-    if (proposals_tried_ >= kMostSought) return false;
-    ++proposals_tried_;
-    if (seek(frame, entry.kind, entry.index, entry.box, true)) return true;
-    proposed_[entry.index].again = answer_ + kRestOfProposals;
-    return false;
+/// Whether a proposed object has a certificate, or one is found.
+bool ProofMemory::proveProposed(const Frame& frame, const Pending& entry) {
+    const uint64_t rays_before = rays, cuts_before = cuts();
+    bool proved = holds(frame, entry.kind, entry.index, entry.box);
+    if (!proved && proposals_tried_ < kMostSought) {
+        ++proposals_tried_;
+        proved = seek(frame, entry.kind, entry.index, entry.box, true);
+        --sought;  // these have a budget of their own
+        Proposal& one = proposed_[entry.index];
+        one.rest = proved ? 0 : std::clamp(2 * one.rest, kShortestRest, kLongestRest);
+        one.again = answer_ + one.rest;
+    }
+    rays_of_proposals_ += rays - rays_before;
+    cuts_of_proposals_ += cuts() - cuts_before;
+    return proved;
 }
 
 namespace {
@@ -202,10 +211,9 @@ TurnAnswer cull(ProofMemory& proofs, const Pending& entry) {
 TurnAnswer cullProposed(const Frame& frame, TraversalState& state, const Pending& entry) {
     ProofMemory& proofs = state.proofs;
     if (!proofs.isProposed(entry)) return {};
-    const bool held = proofs.holds(frame, entry.kind, entry.index, entry.box);
-    state.stats.proved += held;
-    // Nobody but drawing knows more of it.
-    if (!held && !proofs.seekProposed(frame, entry)) return {.settled = proofs.way() == ProofMemory::Way::kProofs};
+    // If not, nobody but drawing knows more of it.
+    if (!proofs.proveProposed(frame, entry)) return {.settled = proofs.way() == ProofMemory::Way::kProofs};
+    ++state.stats.proved;
     TurnAnswer answer = cull(proofs, entry);
     answer.drawn = true;
     return answer;
