@@ -77,7 +77,7 @@ struct VisibleChanges {
 struct Explanation;
 
 /// The scratch that queries need. Each thread has its own query. It allocates only when the world or the viewport has
-/// grown, or when it remembers more certificates than ever before.
+/// grown, or when it remembers more certificates, or more is proposed to it, than ever before.
 ///
 /// Several threads can share the work of one query. They offer themselves through a job hook, and QuerySettings::bins
 /// says into how many strips the image is cut: each strip of each eye is a task. The answer is the same for any number

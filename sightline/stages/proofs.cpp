@@ -165,7 +165,7 @@ void ProofMemory::note(const Frame& frame, std::span<const ObjectId> proposed) {
         if (place == PlacedBvh::kNone) continue;
         if (place >= proposed_.size()) proposed_.resize(frame.world->placed.size());
         Proposal& one = proposed_[place];
-        if (one.answer + 1 != answer_) one = {};
+        if (one.answer != answer_ && one.answer + 1 != answer_) one = {};
         one.answer = answer_;
     }
 }

@@ -331,14 +331,14 @@ uint32_t Uncovered::besideSlit(bool around, glm::dvec3 (&directions)[8]) const {
     }
     const double length = glm::length(along), width = piece.area() / length;
     if (around ? !(length < kSmall) : !(width < kNarrow * length && width < kWidest)) return 0;
-    const glm::dvec2 across = glm::dvec2(-along.y, along.x) / length;
-    const uint32_t count = around ? 8 : 2;
+    constexpr double kSlant = 0.7071067811865476;  // no cosine: C libraries differ in its last bit
+    constexpr double kUp[8] = {1, -1, 0, 0, kSlant, kSlant, -kSlant, -kSlant};
+    constexpr double kRight[8] = {0, 0, 1, -1, kSlant, -kSlant, kSlant, -kSlant};
     const double away = (around ? 2 * length : 4 * width) + 1e-8;
-    for (uint32_t i = 0; i < count; ++i) {
-        const double angle = 2 * 3.141592653589793 * i / count;
-        const glm::dvec2 way = std::cos(angle) * across + std::sin(angle) * glm::dvec2(across.y, -across.x);
-        directions[i] = frame_.back * glm::dvec3(middle + away * way, 1.0);
-    }
+    const glm::dvec2 right = away / length * along, up(-right.y, right.x);
+    const uint32_t count = around ? 8 : 2;
+    for (uint32_t i = 0; i < count; ++i)
+        directions[i] = frame_.back * glm::dvec3(middle + kUp[i] * up + kRight[i] * right, 1.0);
     return count;
 }
 
