@@ -108,7 +108,7 @@ typedef struct slQueryStats {
 } slQueryStats;
 
 /** The scratch of one thread, to be kept from frame to frame. It allocates only when world or viewport have grown, or
- * when it remembers more certificates than ever before. It keeps the memory of the snapshot that it was asked last until it is
+ * when it remembers more certificates, or more is proposed to it, than ever before. It keeps the memory of the snapshot that it was asked last until it is
  * asked again, or destroyed. */
 typedef struct slQuery slQuery;
 
