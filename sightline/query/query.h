@@ -118,7 +118,8 @@ public:
     /// whatever is proposed, and costs a search in vain: at most 32 an answer, each again after 16 answers, then 32, up to
     /// 256.
     ///
-    /// Proposals stand until the next call. They do nothing where answers rest on no certificates: without
+    /// Proposals stand until the next call; each costs a lookup in each answer. Ids that are stale, or of no object of the
+    /// snapshot, are passed over. They do nothing where answers rest on no certificates: without
     /// QuerySettings::proofs, with ::stateless or ::bins, with Stage::kClusters, in parallel views.
     void propose(std::span<const ObjectId> hidden);
 

@@ -207,7 +207,7 @@ TurnAnswer cull(ProofMemory& proofs, const Pending& entry) {
 
 }  // namespace
 
-/// It is drawn all the same, if anything is: so who believes in a proposal changes nothing but the object itself.
+/// It is drawn all the same, if anything is: so a proposal changes nothing of this answer but the object itself.
 TurnAnswer cullProposed(const Frame& frame, TraversalState& state, const Pending& entry) {
     ProofMemory& proofs = state.proofs;
     if (!proofs.isProposed(entry)) return {};

@@ -300,6 +300,7 @@ class Visible:
         self.lods = None if answer.lods == _ffi.NULL else _view_of(answer.lods, answer.count, _LOD, query)
         self.problem = None if answer.problem == _ffi.NULL else _ffi.string(answer.problem).decode()
         self.stages = {name: (s.tested, s.culled) for name, s in zip(STAGES, stats.stages)}  #: (tested, culled) of each
+        self.proved = stats.proved  #: nodes and objects culled by certificates
         self.microseconds = stats.nanoseconds / 1000
 
     @property
