@@ -105,14 +105,18 @@ class Answers(unittest.TestCase):
 
     def test_proposals_are_proved_or_kept(self):
         made = Made()
-        plain, query = sightline.Query(), sightline.Query()
-        seen = plain.visible(made.now, VIEW)
-        self.assertEqual(seen.proved, 0)  # a first answer draws
-        query.propose(made.ids)
-        proposed = query.visible(made.now, VIEW)
-        self.assertGreater(proposed.proved, 0)
-        self.assertTrue(numpy.isin(proposed.keys, seen.keys).all())
-        self.assertIn(1000, proposed.keys)
+        proved = 0
+        for x in range(-8, 9, 2):
+            view = sightline.View.look_at((x, 0, 10), (x, 0, 0), fov_y=1.2)
+            plain, query = sightline.Query(), sightline.Query()
+            seen = plain.visible(made.now, view)
+            self.assertEqual(seen.proved, 0)  # a first answer draws
+            query.propose(made.ids)
+            proposed = query.visible(made.now, view)
+            proved += proposed.proved
+            self.assertTrue(numpy.isin(proposed.keys, seen.keys).all())
+            self.assertIn(1000, proposed.keys)
+        self.assertGreater(proved, 0)
         query.propose(made.ids[:0])
         with self.assertRaises(TypeError):
             query.propose([1, 2])
