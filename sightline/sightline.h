@@ -38,6 +38,7 @@
 // Understanding an answer.
 #include "sightline/query/explain/credits.h"             // which occluder hides how much
 #include "sightline/query/explain/explain.h"             // why one object is, or is not, in an answer
+#include "sightline/query/explain/shadows.h"             // whose shadows hide an object
 #include "sightline/query/record/occlusion_recording.h"  // a frame's occlusion calls, in a file
 #include "sightline/query/record/occlusion_replay.h"     // the same done again, and timed
 

@@ -118,6 +118,22 @@ public:
     /// next call.
     Certificate certificateOf(Pending::Kind kind, uint32_t index) const;
     HidingPart hider(uint32_t number) const { return hiders_[number].part; }
+    /// Calls visit(object, part) for each part that a certificate names, and the object that it is of; of a seam both.
+    template <class Visitor>
+    void forEachNamed(const Frame& frame, const Certificate& certificate, Visitor visit) const {
+        const auto name = [&](ObjectId object, uint32_t part) {
+            const uint32_t at = frame.world->placeOf(object);
+            if (at != PlacedBvh::kNone && part != HidingPart::kNone) visit(frame.world->placed[at].visible, part);
+        };
+        for (const uint32_t number : certificate.all()) {
+            const HidingPart& part = hiders_[number].part;
+            name(part.object, part.part);
+            name(part.other, part.other_part);
+        }
+    }
+    /// Where a part stands, as the eye of the view at hand sees it: corners relative to the eye.
+    /// @returns false if it hides nothing in this view
+    bool outlineOf(const Frame& frame, ObjectId object, uint32_t part, VolumeOutline& outline) const;
 
     uint32_t proposalsTried() const { return proposals_tried_; }
     uint32_t sought = 0;  ///< for this view; without proposals
@@ -198,6 +214,7 @@ private:
     bool takeHit(const Frame& frame, double enters, Certificate& certificate);
     bool takeSeam(const Frame& frame, Certificate& certificate);
     const Place& placeAt(const Frame& frame, uint32_t place);
+    void lookAt(const Frame& frame, uint32_t place, Place& out) const;
     const Occluder* shapeAt(const Frame& frame, uint32_t place) const;
     uint32_t clustersOf(const Frame& frame, Pending::Kind kind, uint32_t index) const;
     template <class Try>

@@ -8,6 +8,7 @@
 #include "sightline/base/assert.h"
 #include "sightline/buffer/depth_image.h"
 #include "sightline/frame/stopwatch.h"
+#include "sightline/query/explain/shadows.h"
 #include "sightline/query/traversal.h"
 
 namespace sightline::detail {
@@ -195,25 +196,29 @@ bool Answer::wasUnasked(ObjectId id) const {
     return false;
 }
 
-bool Answer::certificateOf(ObjectId id, Array<Visible>& out) const {
-    const ProofMemory& proofs = parts_[0]->proofs;
-    if (!frame_.world) return false;
+/// The certificate that culled an object in this answer; null: none did.
+const Certificate* Answer::certificateFor(ObjectId id) const {
+    if (!frame_.world) return nullptr;
     const uint32_t place = frame_.world->placeOf(id);
-    const auto named = [&](ObjectId hider) {
-        const uint32_t at = frame_.world->placeOf(hider);
-        const auto is = [&](const Visible& v) { return v.id == hider; };
-        if (at != PlacedBvh::kNone && std::none_of(out.begin(), out.end(), is))
-            out.push_back(frame_.world->placed[at].visible);
-    };
-    for (const ProofMemory::Culled& culled : proofs.culled) {
-        if (!culled.places.holds(place)) continue;
-        for (const uint32_t number : culled.certificate.all()) {
-            named(proofs.hider(number).object);
-            if (proofs.hider(number).other_part != HidingPart::kNone) named(proofs.hider(number).other);
-        }
-        return true;
-    }
-    return false;
+    for (const ProofMemory::Culled& culled : parts_[0]->proofs.culled)
+        if (culled.places.holds(place)) return &culled.certificate;
+    return nullptr;
+}
+
+bool Answer::certificateOf(ObjectId id, Array<Visible>& out) const {
+    const Certificate* const certificate = certificateFor(id);
+    if (!certificate) return false;
+    parts_[0]->proofs.forEachNamed(frame_, *certificate, [&](const Visible& hider, uint32_t) {
+        const auto is = [&](const Visible& v) { return v.id == hider.id; };
+        if (std::none_of(out.begin(), out.end(), is)) out.push_back(hider);
+    });
+    return true;
+}
+
+bool Answer::certificateOf(ObjectId id, Array<HiderOutline>& outlines, Array<glm::dvec3>& corners) const {
+    const Certificate* const certificate = certificateFor(id);
+    if (certificate) addOutlines(parts_[0]->proofs, frame_, *certificate, outlines, corners);
+    return certificate != nullptr;
 }
 
 void Answer::depthImage(Seams seams, std::span<float> nearness, std::span<uint8_t> covered) {

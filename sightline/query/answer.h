@@ -11,6 +11,7 @@
 
 #include "sightline/frame/frame.h"
 #include "sightline/frame/traversal_state.h"
+#include "sightline/query/explain/hider.h"
 #include "sightline/stages/pipeline.h"
 
 namespace sightline::detail {
@@ -59,12 +60,14 @@ public:
     void depthImage(Seams seams, std::span<float> nearness, std::span<uint8_t> covered);
     /// Whether a certificate culled an object in this answer, and the objects that it names.
     bool certificateOf(ObjectId id, Array<Visible>& out) const;
+    bool certificateOf(ObjectId id, Array<HiderOutline>& outlines, Array<glm::dvec3>& corners) const;
     /// Whether an object of the answer was kept without a question by a part that kept it.
     bool wasUnasked(ObjectId id) const;
     uint32_t width() const { return parts_[0]->tiles.width; }
     uint32_t height() const { return parts_[0]->tiles.height; }
 
 private:
+    const Certificate* certificateFor(ObjectId id) const;
     bool countOnce(uint32_t place);
     void mergeVisible();
     void addStages();

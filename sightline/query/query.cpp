@@ -282,6 +282,12 @@ bool Query::certificateOf(ObjectId id, Array<Visible>& hiders) const {
     return impl_->left.certificateOf(id, hiders);
 }
 
+bool Query::certificateOf(ObjectId id, Array<HiderOutline>& outlines, Array<glm::dvec3>& corners) const {
+    outlines.clear();
+    corners.clear();
+    return impl_->left.certificateOf(id, outlines, corners);
+}
+
 Query::DepthImage Query::depthImage(bool resolve_seams) {
     Impl& impl = *impl_;
     detail::Answer& eye = impl.left;

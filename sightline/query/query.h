@@ -15,6 +15,7 @@
 #include "sightline/geom/image_rect.h"
 #include "sightline/geom/lod.h"
 #include "sightline/geom/view.h"
+#include "sightline/query/explain/hider.h"
 #include "sightline/world/world.h"
 
 namespace sightline {
@@ -153,6 +154,12 @@ public:
     /// the left eye's. O(what certificates culled).
     /// @param hiders  receives them, each once; none: it lies outside of the view, or no front of it is seen from there
     bool certificateOf(ObjectId id, Array<Visible>& hiders) const;
+    /// The same part by part, for pictures. What lies behind an outline, seen from the eye, and behind the part itself, is
+    /// in its shadow: all of the object that lies in the view, and shows its front, is in these shadows together. Where a
+    /// slit between two faces is closed, because their sides lie on one line, both are there.
+    /// @param outlines  receives the parts that hide something in this view
+    /// @param corners   and their corners  [world units]
+    bool certificateOf(ObjectId id, Array<HiderOutline>& outlines, Array<glm::dvec3>& corners) const;
 
     /// The occlusion buffer after the last answer, for pictures: nearness per buffer pixel, row 0 at the bottom, 0
     /// where nothing is known to cover the whole pixel. Occluders that came after the last object are not in it. If the

@@ -93,25 +93,37 @@ uint32_t ProofMemory::numberOf(const HidingPart& part) {
 }
 
 /// The object at a place, if it surely hides in this view where it is drawn, as VolumeChooser has it.
-const ProofMemory::Place& ProofMemory::placeAt(const Frame& frame, uint32_t place) {
-    Place& out = places_[place % kPlaces];
-    if (out.answer == answer_ && out.place == place) return out;
+void ProofMemory::lookAt(const Frame& frame, uint32_t place, Place& out) const {
     out.answer = answer_;
     out.place = place;
     out.hides = false;
     const SnapshotState& state = *frame.world;
     const PlacedObject& placed = state.placed[place];
-    if (placed.occluder.index == 0 || !frame.isInLayers(place) || !frame.isCandidate(place)) return out;
-    if (frame.mayBeCoarse(place) || frame.sizes.drops(place)) return out;
+    if (placed.occluder.index == 0 || !frame.isInLayers(place) || !frame.isCandidate(place)) return;
+    if (frame.mayBeCoarse(place) || frame.sizes.drops(place)) return;
     const HeldOccluder& occluder = *state.occluders[placed.occluder.index];
-    if (occluder.parts.parts.empty()) return out;
+    if (occluder.parts.parts.empty()) return;
     const ObjectRecord& record = state.objectAt(place);
-    if (!isWhole(frame.limits, occluder, record.transform)) return out;
-    if (!reachesWindow(frame.limits, record.bounds, record.transform)) return out;
+    if (!isWhole(frame.limits, occluder, record.transform)) return;
+    if (!reachesWindow(frame.limits, record.bounds, record.transform)) return;
     out.at = placeParts(view_, occluder.parts, occluder.bounds, record.transform);
     out.hides = out.at.usable;
     out.occluder = &occluder;
+}
+
+const ProofMemory::Place& ProofMemory::placeAt(const Frame& frame, uint32_t place) {
+    Place& out = places_[place % kPlaces];
+    if (out.answer != answer_ || out.place != place) lookAt(frame, place, out);
     return out;
+}
+
+bool ProofMemory::outlineOf(const Frame& frame, ObjectId object, uint32_t part, VolumeOutline& outline) const {
+    const uint32_t at = frame.world->placeOf(object);
+    if (at == PlacedBvh::kNone) return false;
+    Place place;
+    lookAt(frame, at, place);
+    OccluderVolume volume;
+    return place.hides && part < place.at.parts->partCount() && makeVolume(view_, place.at, part, volume, outline);
 }
 
 bool ProofMemory::makeVolumeOf(const Frame& frame, const HidingPart& part, OccluderVolume& volume) {

@@ -180,6 +180,52 @@ TEST_F(ExplainVerb, DrawsTheFrame) {
     expectError("explain made:walls --object 1 -o /nowhere/why.png", 4, "/nowhere/why.png");
 }
 
+TEST_F(ExplainVerb, DrawsTheShadowsOfWhoHides) {
+    const Outcome outcome = succeed(
+        "explain made:walls --object 'blue wall' --size 320x180 --rays 1000 --outside side.png --json why.json");
+    EXPECT_EQ(read(path("side.png")).substr(1, 3), "PNG");
+    const json shadows = json::parse(read(path("why.json")))["answers"][0]["shadows"];
+    ASSERT_EQ(shadows.size(), 1u);
+    EXPECT_GT(shadows[0]["key"], 1) << "a wall before it";
+    EXPECT_EQ(shadows[0]["outline"].size(), 4u);
+    const Outcome kept = succeed("explain made:walls --object 7 --rays 1000 --outside none.png");
+    EXPECT_NE(kept.err.find("none.png: not written: nothing hides the object"), std::string::npos) << kept.err;
+    EXPECT_FALSE(std::filesystem::exists(path("none.png")));
+    expectError("explain made:walls --object 1 --frame all --outside a.png", 2, "--outside");
+    expectError("explain made:walls --object 1 -o a.png --outside a.png", 2, "--outside");
+    expectError("explain made:walls --object 1 --outside /nowhere/why.png", 4, "/nowhere/why.png");
+}
+
+// What a query that remembers answers, and by which certificates.
+TEST_F(ExplainVerb, SaysWhatARememberingQuerySays) {
+    const std::string walk = "building:1:1 --path walk --frames 40 --remember ";
+    const json run_json = answer("cull " + walk);
+    const json& frames = run_json["frames"];
+    size_t certificates = 0, kept_all_the_same = 0;
+    for (int key = 5; key < 220; key += 40) {
+        const json answers = answersOf(walk + "--frame all --object " + std::to_string(key));
+        ASSERT_EQ(answers.size(), frames.size());
+        for (size_t i = 0; i < answers.size(); ++i) {
+            const json& visible = frames[i]["visible"];
+            const bool kept = std::find(visible.begin(), visible.end(), json(key)) != visible.end();
+            EXPECT_EQ(answers[i]["verdict"] == "visible" || answers[i].contains("kept_all_the_same"), kept)
+                << "object " << key << " frame " << i;
+            certificates += answers[i].contains("certificate");
+            kept_all_the_same += answers[i].contains("kept_all_the_same");
+            if (!answers[i].contains("certificate") || certificates % 16 != 1) continue;
+            const std::string words =
+                "explain " + walk + "--rays 1000 --object " + std::to_string(key) + " --frame " + std::to_string(i);
+            const Outcome told = succeed(words);
+            expectNarrow(told.out);
+            EXPECT_NE(told.out.find("certificate"), std::string::npos) << told.out;
+            EXPECT_GE(answer(words)["answers"][0]["shadows"].size(), 1u) << words;
+        }
+    }
+    EXPECT_GT(certificates, 10u);
+    RecordProperty("kept_all_the_same", static_cast<int>(kept_all_the_same));
+    expectError("explain " + walk + "--object 5 --stereo 0.06", 2, "--remember: not for two eyes");
+}
+
 TEST_F(ExplainVerb, RefusesWhatItCannotAnswer) {
     expectError("explain made:walls --object wall", 2, "8 objects are called so: 0 'red wall', 1 'blue wall'");
     expectError("explain made:walls --object door", 2, "--object door");

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "sightline/query/explain/explain.h"
+#include "sightline/query/explain/shadows.h"
 #include "tests/support/made_world.h"
 #include "tests/support/targets.h"
 
@@ -358,6 +359,97 @@ TEST(Proofs, AreToldOfByExplanations) {
         }
     }
     EXPECT_GT(told, 100u);
+}
+
+/// Whether a ray from an eye passes through a convex outline.
+bool passes(const glm::dvec3& eye, const glm::dvec3& ray, const HiderOutline& outline,
+            const Array<glm::dvec3>& corners) {
+    int sides[2] = {};
+    for (uint32_t i = 0; i < outline.count; ++i) {
+        const glm::dvec3 a = corners[outline.first + i] - eye;
+        const glm::dvec3 b = corners[outline.first + (i + 1) % outline.count] - eye;
+        const glm::dvec3 plane = glm::cross(a, b);
+        const double side = glm::dot(plane, ray), touches = 1e-7 * glm::length(plane) * glm::length(ray);
+        if (std::abs(side) > touches) ++sides[side > 0];
+    }
+    return outline.count >= 3 && (sides[0] == 0 || sides[1] == 0);
+}
+
+/// Rays from an eye to points on the front of a box that lie in the view: each passes through one of the outlines.
+/// @returns how many rays
+uint64_t expectShadowed(const MadeWorld& made, size_t object, const View& view, Random& random,
+                        const Array<HiderOutline>& outlines, const Array<glm::dvec3>& corners) {
+    const glm::dmat4 clip = view.projection * view.view;
+    const glm::dvec3 eye = eyePosition(view);
+    uint64_t rays = 0;
+    for (int i = 0; i < 12; ++i) {
+        const int axis = i % 3, side = i / 3 % 2;
+        glm::dvec3 q{random.uniform(0, 1), random.uniform(0, 1), 0};
+        std::swap(q[axis], q[2]);
+        q[axis] = side;
+        const glm::dvec3 p(made.transforms[object] * glm::dvec4(q, 1));
+        if ((p[axis] > eye[axis]) == (side == 1)) continue;
+        const glm::dvec4 image = clip * glm::dvec4(p, 1);
+        if (!(image.z > -image.w) || std::abs(image.x) > image.w || std::abs(image.y) > image.w) continue;
+        ++rays;
+        const auto hides = [&](const HiderOutline& outline) { return passes(eye, p - eye, outline, corners); };
+        EXPECT_TRUE(std::any_of(outlines.begin(), outlines.end(), hides)) << "object " << object;
+    }
+    return rays;
+}
+
+TEST(Proofs, ShowTheOutlinesThatHide) {
+    uint64_t rays = 0, rays_sought = 0, several = 0, found = 0, hidden = 0;
+    for (uint64_t seed = 1; seed <= 4; ++seed) {
+        Rooms rooms(seed);
+        Random random(seed);
+        Steps steps(random);
+        Query query;
+        const Snapshot now = rooms.world.commit();
+        for (int frame = 0; frame < 40; ++frame) {
+            const View view = steps.next();
+            const std::vector<uint8_t> kept = keptOf(query.visible(now, view), rooms.ids.size());
+            const std::vector<uint8_t> seen = frame % 10 == 0 ? rooms.seen(view, 2) : std::vector<uint8_t>();
+            SCOPED_TRACE("seed " + std::to_string(seed) + " frame " + std::to_string(frame));
+            Array<HiderOutline> outlines;
+            Array<glm::dvec3> corners;
+            Array<Visible> hiders;
+            for (size_t object = 0; object < rooms.ids.size(); object += 3) {
+                const bool has_certificate = query.certificateOf(rooms.ids[object], hiders);
+                ASSERT_EQ(query.certificateOf(rooms.ids[object], outlines, corners), has_certificate);
+                several += outlines.size() > 1;
+                for (const HiderOutline& outline : outlines) {
+                    EXPECT_TRUE(std::any_of(hiders.begin(), hiders.end(),
+                                            [&](const Visible& v) { return v.id == outline.object.id; }));
+                    ASSERT_LE(outline.first + outline.count, corners.size());
+                }
+                if (has_certificate && !rooms.is_other[object])
+                    rays += expectShadowed(rooms, object, view, random, outlines, corners);
+                if (seen.empty()) continue;
+                // For one object alone, whatever the query found.
+                const bool shadowed = findShadows(now, view, rooms.ids[object], {}, outlines, corners);
+                EXPECT_FALSE(shadowed && seen[object]) << "object " << object;
+                found += shadowed && !kept[object];
+                hidden += !kept[object];
+                if (shadowed && !rooms.is_other[object])
+                    rays_sought += expectShadowed(rooms, object, view, random, outlines, corners);
+            }
+        }
+        Array<HiderOutline> outlines(1);
+        Array<glm::dvec3> corners(1);
+        const View view = steps.next();
+        EXPECT_FALSE(findShadows(now, view, ObjectId(), {}, outlines, corners));
+        EXPECT_TRUE(outlines.empty() && corners.empty());
+        EXPECT_FALSE(findShadows(Snapshot(), view, rooms.ids[0], {}, outlines, corners));
+        View broken = view;
+        broken.view[0][0] = std::nan("");
+        EXPECT_FALSE(findShadows(now, broken, rooms.ids[0], {}, outlines, corners));
+    }
+    EXPECT_GT(rays, 10'000u);
+    EXPECT_GT(rays_sought, 4'000u);
+    EXPECT_GT(several, 1000u);
+    EXPECT_GT(20 * found, 19 * hidden);
+    RecordProperty("found", std::to_string(found) + " of " + std::to_string(hidden));
 }
 
 /// What an image with one sample a pixel does not show is proposed, and in some frames everything is, and what is no object.

@@ -170,14 +170,18 @@ void addStereoOption(CLI::App& verb, RunOptions& options) {
         ->group("Culling");
 }
 
-void addQueryOptions(CLI::App& verb, RunOptions& options) {
-    addStereoOption(verb, options);
-    addSettingOptions(verb, options.settings, {"bins", "hysteresis"});
+void addRememberOption(CLI::App& verb, RunOptions& options) {
     verb.add_flag_callback(
             "--remember", [&options] { options.settings.stateless = false; },
             "frames in order, by one query that remembers what hid and what was visible, as a game asks; "
             "else each frame stands by itself")
         ->group("Culling");
+}
+
+void addQueryOptions(CLI::App& verb, RunOptions& options) {
+    addStereoOption(verb, options);
+    addSettingOptions(verb, options.settings, {"bins", "hysteresis"});
+    addRememberOption(verb, options);
     verb.add_flag(
             "--propose", options.propose,
             "tell the query what an id-buffer of the frame before, one sample a pixel, does not show, as a renderer "

@@ -30,6 +30,7 @@ void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& sh
 void addSceneOptions(CLI::App& verb, RunOptions& options);
 /// --stereo.
 void addStereoOption(CLI::App& verb, RunOptions& options);
+void addRememberOption(CLI::App& verb, RunOptions& options);
 /// And what cull and verify may ask a query for besides: two eyes, strips of the image, a memory.
 void addQueryOptions(CLI::App& verb, RunOptions& options);
 /// Checks what single options cannot: sizes, stage names. Errors are kUsage.

@@ -1,8 +1,11 @@
 // The verb `explain`: why an object is, or is not, in the visible set; and what a whole path tells of a scene.
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <set>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -15,9 +18,11 @@
 #include "apps/cli/verbs/explain_object.h"
 #include "apps/cli/verbs/verbs.h"
 #include "apps/cli/verbs/visibility_choice.h"
+#include "sightline/query/explain/shadows.h"
 #include "sightline/query/query.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/pictures/explain_picture.h"
+#include "sightline/tools/report/pictures/shadow_picture.h"
 #include "sightline/tools/report/run/explain_text.h"
 #include "sightline/tools/scene/one_line.h"
 
@@ -49,8 +54,10 @@ Status readQuestion(const CLI::App& verb, ExplainOptions& options) {
     const bool object = verb.count("--object") > 0;
     if (object && options.has_pixel) return usageError("--at excludes --object");
     if (options.all_frames && options.has_pixel) return usageError("--at needs one --frame");
-    if (!options.picture.empty() && (options.all_frames || (!object && !options.has_pixel)))
-        return usageError("-o needs an --object or a pixel, and one --frame");
+    for (const auto& [option, file] : {std::pair("-o", &options.picture), std::pair("--outside", &options.outside)})
+        if (!file->empty() && (options.all_frames || (!object && !options.has_pixel)))
+            return usageError(fmt::format("{} needs an --object or a pixel, and one --frame", option));
+    if (!options.settings.stateless && options.stereo > 0) return usageError("--remember: not for two eyes");
     if (!object && !options.has_pixel && verb.count("--frame") > 0)
         return usageError("--frame needs an --object or a pixel");
     return success();
@@ -63,10 +70,14 @@ Status checkExplainOutputs(const ExplainOptions& options) {
     files.read("--visibility", options.visibility.file);
     files.write("--json", options.json);
     files.write("-o", options.picture);
+    files.write("--outside", options.outside);
     if (!files.status()) return files.status();
     if (!options.json.empty() && options.json != "-")
         if (Status writable = canWriteFile(options.json); !writable) return writable;
-    return options.picture.empty() ? success() : canWriteFile(options.picture);
+    for (const std::string& picture : {options.picture, options.outside})
+        if (!picture.empty())
+            if (Status writable = canWriteFile(picture); !writable) return writable;
+    return success();
 }
 
 Status writeJson(const ExplainOptions& options, const Scene& scene, const Json& body) {
@@ -84,20 +95,41 @@ Status writeJson(const ExplainOptions& options, const Scene& scene, const Json& 
 
 std::FILE* readerOf(const ExplainOptions& options) { return options.json == "-" ? stderr : stdout; }
 
-Status writePicture(const ExplainOptions& options, const AskedScene& asked, const View& view,
-                    const ObjectAnswer& answer) {
-    if (options.picture.empty()) return success();
+/// Adds an object to those that are drawn in colour.
+void addOnce(std::vector<uint32_t>& objects, uint32_t object) {
+    if (std::find(objects.begin(), objects.end(), object) == objects.end()) objects.push_back(object);
+}
+
+Status writePictures(const ExplainOptions& options, const AskedScene& asked, const View& view,
+                     const ObjectAnswer& answer) {
     std::vector<uint32_t> occluders;
-    for (const Hider& hider : answer.why.occlusion.hiders) occluders.push_back(AskedScene::objectOf(hider.id));
+    std::vector<std::vector<glm::dvec3>> outlines;
+    for (const Hider& hider : answer.why.occlusion.hiders) addOnce(occluders, AskedScene::objectOf(hider.id));
+    for (const ShadowCaster& caster : answer.shadows) {
+        addOnce(occluders, caster.object);
+        outlines.push_back(caster.outline);
+    }
     Emphasis emphasis;
     emphasis.object = answer.object;
     emphasis.occluders = occluders;
+    emphasis.outlines = outlines;
     if (answer.why.verdict == Verdict::kVisible && answer.why.visible.because == KeptBecause::kOpenPixel) {
         emphasis.has_pixel = true;
         emphasis.x = answer.why.visible.x;
         emphasis.y = answer.why.visible.y;
     }
-    return writeFileAside(options.picture, encodePng(explainPicture(asked.scene, view, emphasis)));
+    if (!options.picture.empty())
+        if (Status done = writeFileAside(options.picture, encodePng(explainPicture(asked.scene, view, emphasis)));
+            !done)
+            return done;
+    if (options.outside.empty()) return success();
+    if (outlines.empty()) {
+        note(fmt::format("{}: not written: {}", options.outside,
+                         answer.why.verdict == Verdict::kOccluded ? "no shadows were found that hide it"
+                                                                  : "nothing hides the object"));
+        return success();
+    }
+    return writeFileAside(options.outside, encodePng(shadowPicture(PictureMaker(asked.scene), view, emphasis)));
 }
 
 /// Whether witnesses have a say: not of what lies outside, nor of what was left out although it may be seen.
@@ -106,21 +138,73 @@ bool saysMore(Verdict verdict) {
            verdict != Verdict::kOutsideFrustum && verdict != Verdict::kTooFar && verdict != Verdict::kTooSmall;
 }
 
+/// A query that remembers is asked the frames in order; else each stands by itself.
+class FrameAsker {
+public:
+    FrameAsker(const ExplainOptions& options, const AskedScene& asked) : options_(options), asked_(asked) {}
+
+    /// Takes up a frame, after those before it.
+    void ask(const CameraFrame& camera) {
+        const View view = viewOf(camera, options_);
+        explainer_.reset();
+        if (options_.settings.stateless) return;
+        kept_.clear();
+        for (const Visible& v : query_.visible(asked_.now, view, options_.settings).objects)
+            kept_.insert(AskedScene::objectOf(v.id));
+    }
+    /// @param closely  with what would be without its occluders, and with its shadows
+    ObjectAnswer answer(uint32_t frame, uint32_t object, const EyeView& eye, bool closely) {
+        const ObjectId id = asked_.loaded.ids[object];
+        ObjectAnswer answer;
+        answer.frame = frame;
+        answer.object = object;
+        answer.eye = eye.eye;
+        if (!options_.settings.stateless) {
+            answer.why = query_.explain(asked_.now, eye.view, id, options_.settings);
+            answer.kept = kept_.count(object) > 0 && answer.why.verdict != Verdict::kVisible;
+        } else {
+            if (!explainer_ || explained_ != eye.eye) explainer_.emplace(asked_.now, eye.view, options_.settings);
+            explained_ = eye.eye;
+            answer.why = explainer_->explain(id, {true, closely});
+        }
+        if (closely && answer.why.verdict == Verdict::kOccluded) addShadows(eye.view, id, answer);
+        return answer;
+    }
+
+private:
+    void addShadows(const View& view, ObjectId id, ObjectAnswer& answer) const {
+        Array<HiderOutline> outlines;
+        Array<glm::dvec3> corners;
+        if (!query_.certificateOf(id, outlines, corners))
+            findShadows(asked_.now, view, id, options_.settings, outlines, corners);
+        for (const HiderOutline& outline : outlines) {
+            const auto first = corners.begin() + outline.first;
+            answer.shadows.push_back({AskedScene::objectOf(outline.object.id), {first, first + outline.count}});
+        }
+    }
+
+    const ExplainOptions& options_;
+    const AskedScene& asked_;
+    Query query_;
+    std::set<uint32_t> kept_;  ///< of the frame
+    std::optional<Explainer> explainer_;
+    uint8_t explained_ = 0;  ///< whose eye's
+};
+
 /// The object, or those that share its key, in one frame.
-Status explainInFrame(const ExplainOptions& options, const AskedScene& asked, const CameraFrame& camera,
-                      const std::vector<uint32_t>& objects, Json& body) {
+Status explainInFrame(const ExplainOptions& options, const AskedScene& asked, FrameAsker& asker,
+                      const CameraFrame& camera, const std::vector<uint32_t>& objects, Json& body) {
     constexpr size_t kMost = 5;  // of those that share a key
     for (const EyeView& eye : eyesOfFrame(camera, options)) {
-        Explainer explainer(asked.now, eye.view, options.settings);
         for (size_t i = 0; i < std::min(objects.size(), kMost); ++i) {
             const uint32_t object = objects[i];
-            ObjectAnswer answer{options.first_frame, object, explainer.explain(asked.loaded.ids[object]), {}, eye.eye};
+            ObjectAnswer answer = asker.answer(options.first_frame, object, eye, true);
             if (isUsable(eye.view) && saysMore(answer.why.verdict))
                 answer.sighting = lookFor(asked.scene, eye.view, object, namedHiders(answer.why), options);
             fmt::print(readerOf(options), "{}", answerText(asked, answer));
             body["answers"].push_back(answerJson(asked, answer));
             if (i == 0 && eye.eye != kRightEye)
-                if (Status drawn = writePicture(options, asked, eye.view, answer); !drawn) return drawn;
+                if (Status drawn = writePictures(options, asked, eye.view, answer); !drawn) return drawn;
         }
     }
     if (objects.size() > kMost)
@@ -137,12 +221,12 @@ int explainInAll(const ExplainOptions& options, const AskedScene& asked, const C
     fmt::print(readerOf(options), "{}\n", titleOf(asked.scene, object));
     if (objects.size() > 1) fmt::print(readerOf(options), "the first of {} objects with this key\n", objects.size());
     stopGently();
+    FrameAsker asker(options, asked);
     uint32_t done = 0;
     for (; done < path.frames.size() && !interrupted(); ++done) {
+        asker.ask(path.frames[done]);
         for (const EyeView& eye : eyesOfFrame(path.frames[done], options)) {
-            Explainer explainer(asked.now, eye.view, options.settings);
-            const ObjectAnswer answer{
-                done, object, explainer.explain(asked.loaded.ids[object], {true, false}), {}, eye.eye};
+            const ObjectAnswer answer = asker.answer(done, object, eye, false);
             fmt::print(readerOf(options), "{}", answerLine(asked, answer));
             body["answers"].push_back(answerJson(asked, answer));
         }
@@ -152,7 +236,8 @@ int explainInAll(const ExplainOptions& options, const AskedScene& asked, const C
 }
 
 /// What lies at a pixel, front to back, and why the first of it is kept.
-Status explainPixel(const ExplainOptions& options, const AskedScene& asked, const CameraFrame& camera, Json& body) {
+Status explainPixel(const ExplainOptions& options, const AskedScene& asked, FrameAsker& asker,
+                    const CameraFrame& camera, Json& body) {
     constexpr size_t kMost = 16;
     const View view = viewOf(camera, options);
     const std::vector<Layer> layers = layersAt(asked.scene, view, options.x, options.y, kMost);
@@ -165,17 +250,15 @@ Status explainPixel(const ExplainOptions& options, const AskedScene& asked, cons
     }
     if (layers.front().shines_through)
         fmt::print(out, "pixel ({}, {}): what is in front shines through\n", options.x, options.y);
-    if (Status done = explainInFrame(options, asked, camera, {layers.front().object}, body); !done) return done;
-    Explainer explainer(asked.now, view, options.settings);
+    if (Status done = explainInFrame(options, asked, asker, camera, {layers.front().object}, body); !done) return done;
     if (layers.size() > 1) fmt::print(out, "behind it, at pixel ({}, {}):\n", options.x, options.y);
     for (size_t i = 1; i < layers.size(); ++i) {
         const uint32_t object = layers[i].object;
-        const ObjectAnswer answer{
-            options.first_frame, object, explainer.explain(asked.loaded.ids[object], {true, false}), {}, 0};
-        const std::string line =
-            fmt::format("{:>10.4g} units  {:<10} {}{}", layers[i].depth,
-                        answer.why.verdict == Verdict::kVisible ? "kept" : verdictName(answer.why.verdict),
-                        layers[i].shines_through ? "see-through: " : "", titleOf(asked.scene, object));
+        const ObjectAnswer answer = asker.answer(options.first_frame, object, {view, 0}, false);
+        const std::string line = fmt::format(
+            "{:>10.4g} units  {:<10} {}{}", layers[i].depth,
+            answer.kept || answer.why.verdict == Verdict::kVisible ? "kept" : verdictName(answer.why.verdict),
+            layers[i].shines_through ? "see-through: " : "", titleOf(asked.scene, object));
         fmt::print(out, "{}\n", shortened(line, 100));
         body["answers"].push_back(answerJson(asked, answer));
     }
@@ -204,8 +287,11 @@ Status explainObjects(const ExplainOptions& options, const Scene& scene, const C
         const View view = viewOf(camera, options);
         fmt::print(readerOf(options), "{}", frameLine(scene, options, path.frames.size(), view));
         body["camera"] = cameraJson(scene, options, view);
-        Status done = options.has_pixel ? explainPixel(options, asked, camera, body)
-                                        : explainInFrame(options, asked, camera, *objects, body);
+        FrameAsker asker(options, asked);
+        const uint32_t first = options.settings.stateless ? options.first_frame : 0;
+        for (uint32_t i = first; i <= options.first_frame; ++i) asker.ask(path.frames[i]);
+        Status done = options.has_pixel ? explainPixel(options, asked, asker, camera, body)
+                                        : explainInFrame(options, asked, asker, camera, *objects, body);
         if (!done) return done;
     }
     return writeJson(options, scene, body);
@@ -236,6 +322,7 @@ void addExplain(CLI::App& tool, int& exit_code) {
     options->repeat = 1;
     addSceneOptions(*verb, *options);
     addStereoOption(*verb, *options);
+    addRememberOption(*verb, *options);
     verb->add_option("--object", options->object,
                      "its key, its name or path, or a part that only it has; without: what the whole path tells")
         ->type_name("K");
@@ -244,6 +331,9 @@ void addExplain(CLI::App& tool, int& exit_code) {
         ->capture_default_str();
     verb->add_option("--at", options->at, "the object at this pixel, and what lies behind it")->type_name("X,Y");
     verb->add_option("-o,--output", options->picture, "draw the frame: the object's box, its occluders, the rest pale")
+        ->type_name("FILE.png");
+    verb->add_option("--outside", options->outside,
+                     "draw from the side how the object lies in the shadows of those that hide it")
         ->type_name("FILE.png");
     verb->add_option("--top", options->top, "how many rows the lists of the whole path have")
         ->check(CLI::Range(1u, 1000000u))

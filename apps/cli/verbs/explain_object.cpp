@@ -126,6 +126,16 @@ Json hidersJson(const AskedScene& asked, const Array<Hider>& hiders) {
     return list;
 }
 
+Json shadowsJson(const AskedScene& asked, const std::vector<ShadowCaster>& shadows) {
+    Json list = Json::array();
+    for (const ShadowCaster& caster : shadows) {
+        list.push_back(objectJson(asked.scene, caster.object));
+        for (const glm::dvec3& corner : caster.outline)
+            list.back()["outline"].push_back({corner.x, corner.y, corner.z});
+    }
+    return list;
+}
+
 /// What of an object was asked when its fate was decided.
 const char* askedName(bool by_faces, bool by_triangles) {
     return by_triangles ? "triangles" : by_faces ? "faces" : "rectangle";
@@ -409,8 +419,13 @@ std::string answerText(const AskedScene& asked, const ObjectAnswer& answer) {
     const auto name = [&](ObjectId id) { return asked.nameOf(id); };
     const std::string sighting = answer.sighting ? sightingText(answer) : std::string();
     const bool kept = answer.why.verdict == Verdict::kVisible;
-    std::string text = eyeText(answer) + explanationText(answer.why, titleOf(asked.scene, answer.object), name,
-                                                         kept ? sighting : std::string());
+    const char* const first =
+        !answer.kept         ? ""
+        : answer.why.unasked ? "kept without a question, because it was visible a few answers before; asked, it is "
+                             : "kept for want of a certificate; by drawing it is ";
+    std::string text =
+        eyeText(answer) + first +
+        explanationText(answer.why, titleOf(asked.scene, answer.object), name, kept ? sighting : std::string());
     if (!kept && !sighting.empty()) text += " " + sighting;
     if (isByCells(answer.why)) text += cellsText(asked, answer.why.cells);
     return wrapped(text, kColumns, "  ") + "\n";
@@ -427,7 +442,11 @@ std::string answerLine(const AskedScene& asked, const ObjectAnswer& answer) {
             std::string call = asked.nameOf(id);
             return call.size() > most && call.front() == '\'' ? "'" + oneLine(call.substr(1), most - 1) : call;
         };
-        line = fmt::format("frame {:>4}  {}{:<10} {}", answer.frame, eyeText(answer), stage.empty() ? "kept" : stage,
+        line = fmt::format("frame {:>4}  {}{:<10} {}{}", answer.frame, eyeText(answer),
+                           stage.empty() || answer.kept ? "kept" : stage,
+                           !answer.kept         ? ""
+                           : answer.why.unasked ? "unasked; it lies "
+                                                : "no certificate; it lies ",
                            explanationClause(answer.why, name, occluders));
     }
     return shortened(line, kColumns) + "\n";
@@ -460,6 +479,14 @@ Json answerJson(const AskedScene& asked, const ObjectAnswer& answer) {
                            {"outside", why.clusters.outside},     {"hidden", why.clusters.hidden},
                            {"triangles", why.clusters.triangles}, {"drawn", why.clusters.drawn}};
     if (why.verdict == Verdict::kVisible) out["kept"] = keptJson(asked, why.visible);
+    if (answer.kept) out["kept_all_the_same"] = true;
+    if (why.unasked) out["unasked"] = true;
+    if (!why.certificate.empty()) {
+        out["certificate"] = Json::array();
+        for (const Visible& hider : why.certificate)
+            out["certificate"].push_back(objectJson(asked.scene, AskedScene::objectOf(hider.id)));
+    }
+    if (!answer.shadows.empty()) out["shadows"] = shadowsJson(asked, answer.shadows);
     if (answer.sighting) {
         const Sighting& sighting = *answer.sighting;
         out["witness"] = {{"seen", sighting.seen}, {"rays", sighting.rays}};

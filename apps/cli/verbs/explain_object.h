@@ -45,7 +45,7 @@ std::string callOf(const Scene& scene, uint32_t object);
 
 /// What `explain` is asked.
 struct ExplainOptions : RunOptions {
-    std::string object, frame = "0", at, picture;
+    std::string object, frame = "0", at, picture, outside;
     bool all_frames = false;  ///< from `frame`
     uint32_t first_frame = 0;
     bool has_pixel = false;  ///< from `at`
@@ -64,13 +64,21 @@ struct Sighting {
     bool by_named = false;         ///< even if the hiders that the explanation names, and it itself, hid alone
 };
 
+/// A part of an object that hides another by its shadow.
+struct ShadowCaster {
+    uint32_t object = 0;              ///< index into Scene::objects
+    std::vector<glm::dvec3> outline;  ///< as the eye sees it
+};
+
 /// One object in one frame.
 struct ObjectAnswer {
     uint32_t frame = 0;
     uint32_t object = 0;  ///< index into Scene::objects
     Explanation why;
     std::optional<Sighting> sighting;
-    uint8_t eye = 0;  ///< of two, kLeftEye or kRightEye; 0: there is one
+    uint8_t eye = 0;    ///< of two, kLeftEye or kRightEye; 0: there is one
+    bool kept = false;  ///< by a query that remembers, unasked or for want of a certificate: `why` culls it
+    std::vector<ShadowCaster> shadows;  ///< of what is occluded, if they were sought and found: they hide all of it
 };
 
 /// The scene as a world that can be asked.

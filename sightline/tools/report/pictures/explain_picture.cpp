@@ -16,7 +16,7 @@ namespace sightline::tools {
 using namespace studies;
 namespace {
 
-constexpr glm::dvec3 kObject(30, 100, 220), kOccluder(232, 119, 20), kOutline(196, 18, 110);
+constexpr glm::dvec3 kObject(30, 100, 220), kOccluder(232, 119, 20), kOutline(196, 18, 110), kShadow(176, 74, 0);
 constexpr double kPale = 0.72;  // of white, in what is not meant
 constexpr double kTint = 0.55;  // of the colour, in what is
 
@@ -25,7 +25,7 @@ Rgb mix(const Rgb& from, const glm::dvec3& to, double part) {
 }
 
 /// Draws over the picture what lies on a line between two places, three pixels wide.
-void drawLine(Image<Rgb>& image, const glm::dvec2& from, const glm::dvec2& to) {
+void drawLine(Image<Rgb>& image, const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& ink = kOutline) {
     const glm::dvec2 step = to - from;
     const double length = std::max(std::abs(step.x), std::abs(step.y));
     const auto steps = static_cast<int64_t>(std::ceil(length)) + 1;
@@ -35,13 +35,13 @@ void drawLine(Image<Rgb>& image, const glm::dvec2& from, const glm::dvec2& to) {
             for (int dx = -1; dx <= 1; ++dx) {
                 const double x = std::floor(at.x) + dx, y = std::floor(at.y) + dy;
                 if (x < 0 || y < 0 || x >= image.width || y >= image.height) continue;
-                image.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y)) = Rgb(kOutline);
+                image.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y)) = Rgb(ink);
             }
     }
 }
 
 /// A line in clip space, cut at the near plane and at the picture's borders; false if nothing of it is in the picture.
-bool drawEdge(Image<Rgb>& image, const glm::dvec4& a, const glm::dvec4& b) {
+bool drawEdge(Image<Rgb>& image, const glm::dvec4& a, const glm::dvec4& b, const glm::dvec3& ink = kOutline) {
     const std::optional<glm::dvec2> part = partInView(a, b);
     if (!part) return false;
     const auto place = [&](double t) {
@@ -50,7 +50,7 @@ bool drawEdge(Image<Rgb>& image, const glm::dvec4& a, const glm::dvec4& b) {
     };
     const glm::dvec2 from = place(part->x), to = place(part->y);
     if (!(std::isfinite(from.x) && std::isfinite(from.y) && std::isfinite(to.x) && std::isfinite(to.y))) return false;
-    drawLine(image, from, to);
+    drawLine(image, from, to, ink);
     return true;
 }
 
@@ -90,6 +90,13 @@ void drawBox(Image<Rgb>& image, const View& view, const Box3d& box, const glm::d
     drawArrow(image, glm::dvec2(to_eye * glm::dvec4(box.center(), 1)));
 }
 
+void drawOutline(Image<Rgb>& image, const View& view, std::span<const glm::dvec3> corners) {
+    const auto place = [&](size_t i) {
+        return view.projection * (view.view * glm::dvec4(corners[i % corners.size()], 1));
+    };
+    for (size_t i = 0; i < corners.size(); ++i) drawEdge(image, place(i), place(i + 1), kShadow);
+}
+
 void drawRing(Image<Rgb>& image, const glm::dvec2& centre) {
     constexpr int kSides = 24;
     const double radius = std::max(6.0, image.height / 60.0);
@@ -119,6 +126,7 @@ Image<Rgb> explainPicture(const Scene& scene, const View& view, const Emphasis& 
             const auto tint = surface == HiddenImage::kNone ? tints.end() : tints.find(list.list().idOf(surface));
             pixel = tint == tints.end() ? mix(pixel, glm::dvec3(255), kPale) : mix(pixel, tint->second, kTint);
         }
+    for (const std::vector<glm::dvec3>& outline : emphasis.outlines) drawOutline(image, view, outline);
     const SceneObject& object = scene.objects[emphasis.object];
     drawBox(image, view, scene.meshes[object.mesh].bounds, object.transform);
     if (emphasis.has_pixel) drawRing(image, {emphasis.x, emphasis.y});

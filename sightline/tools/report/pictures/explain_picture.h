@@ -4,6 +4,9 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
 
 #include "sightline/geom/view.h"
 #include "sightline/tools/report/pictures/png.h"
@@ -16,7 +19,8 @@ struct Emphasis {
     uint32_t object = 0;                  ///< in blue where it is seen; its box in outline, through everything;
                                           ///< or an arrow at the border towards a box beyond it
     std::span<const uint32_t> occluders;  ///< in orange
-    bool has_pixel = false;               ///< a place to mark with a ring  [viewport pixels from the left and the top]
+    std::span<const std::vector<glm::dvec3>> outlines;  ///< of parts whose shadows hide the object, through everything
+    bool has_pixel = false;  ///< a place to mark with a ring  [viewport pixels from the left and the top]
     double x = 0, y = 0;
 };
 

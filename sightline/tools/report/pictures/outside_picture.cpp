@@ -16,7 +16,7 @@
 namespace sightline::tools {
 namespace {
 
-constexpr Rgb kPathColour(196, 18, 110), kHaloColour(255, 255, 255), kFrustumColour(20, 24, 31);
+constexpr Rgb kPathColour(196, 18, 110), kHaloColour(255, 255, 255);
 constexpr double kOutsideAngle = 45;  // of the picture's narrower side  [degrees]
 constexpr double kElevation = 40;     // of the eye behind the eye, above what it looks at  [degrees]
 constexpr size_t kMostWires = 400;    // triangles: an object of more is drawn as its box
@@ -71,8 +71,7 @@ double roofOver(const PictureMaker& maker, std::span<const uint8_t> reasons, con
 /// A camera behind an eye, and what it leaves out.
 struct Standpoint {
     View view;
-    glm::dvec3 forward{0.0};  ///< where the eye looks
-    double reach = 1;         ///< how far the picture shows what the eye sees  [world units]
+    double reach = 1;  ///< how far the picture shows what the eye sees  [world units]
     double top = std::numeric_limits<double>::infinity();  ///< above it all is cut away
 };
 
@@ -80,7 +79,7 @@ Standpoint standpointBehind(const PictureMaker& maker, const View& view, std::sp
     Standpoint out;
     const glm::dvec3 eye = eyePosition(view);
     const glm::dmat3 axes = glm::transpose(glm::dmat3(view.view));
-    out.forward = -axes[2];
+    const glm::dvec3 forward = -axes[2];
     // The half of what is visible that is nearer is the picture's subject; the rest lies towards the horizon.
     std::vector<double> distances;
     for (size_t i = 0; i < reasons.size(); ++i)
@@ -91,13 +90,13 @@ Standpoint standpointBehind(const PictureMaker& maker, const View& view, std::sp
     const double roof = roofOver(maker, reasons, eye, 0.25 * out.reach);
     out.top = eye.y + 0.98 * roof;
 
-    glm::dvec3 level(out.forward.x, 0, out.forward.z);
+    glm::dvec3 level(forward.x, 0, forward.z);
     if (glm::length(level) < 0.1) level = glm::dvec3(axes[1].x, 0, axes[1].z);
     level = glm::length(level) > 0 ? glm::normalize(level) : glm::dvec3(0, 0, -1);
     const double up = glm::radians(kElevation), half = glm::radians(0.5 * kOutsideAngle);
     const double aspect = double(view.width) / view.height;
     CameraFrame camera;
-    camera.target = eye + 0.6 * out.reach * out.forward;
+    camera.target = eye + 0.6 * out.reach * forward;
     camera.eye =
         camera.target + 0.9 * out.reach / std::sin(half) * (-std::cos(up) * level + std::sin(up) * glm::dvec3(0, 1, 0));
     camera.fov_y_degrees = glm::degrees(2 * std::atan(std::tan(half) / std::min(aspect, 1.0)));
@@ -107,20 +106,9 @@ Standpoint standpointBehind(const PictureMaker& maker, const View& view, std::sp
     return out;
 }
 
-void drawBoxWires(WorldLines& lines, const Box3d& box, const glm::dmat4& transform, const LineStyle& style) {
-    glm::dvec3 corners[8];
-    for (int i = 0; i < 8; ++i)
-        corners[i] = glm::dvec3(transform * glm::dvec4(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
-                                                       i & 4 ? box.max.z : box.min.z, 1));
-    for (int i = 0; i < 8; ++i)
-        for (const int axis : {1, 2, 4})
-            if (!(i & axis)) lines.line(corners[i], corners[i | axis], style);
-}
-
 /// The edges of an object's triangles; of a small or an intricate one those of its box.
 void drawWires(WorldLines& lines, const Mesh& mesh, const glm::dmat4& transform, bool small, const LineStyle& style) {
-    if (small || mesh.deforms || mesh.triangles() > kMostWires)
-        return drawBoxWires(lines, mesh.bounds, transform, style);
+    if (small || mesh.deforms || mesh.triangles() > kMostWires) return drawBox(lines, mesh.bounds, transform, style);
     std::vector<glm::dvec3> points;
     for (const glm::vec3& p : mesh.positions) points.emplace_back(transform * glm::dvec4(p, 1));
     for (size_t i = 0; i < mesh.indices.size(); ++i)
@@ -144,35 +132,6 @@ void drawCulled(WorldLines& lines, const PictureMaker& maker, const Standpoint& 
         drawWires(lines, maker.scene().meshes[object.mesh], object.transform, size * pixels < kSmall * distance,
                   {colour, 0.5, 0.8, 0});
     }
-}
-
-void drawFrustumLines(WorldLines& lines, const View& view, const Standpoint& from) {
-    const glm::dmat4 back = glm::inverse(view.projection * view.view);
-    glm::dvec3 begin[4], end[4];
-    for (int i = 0; i < 4; ++i) {
-        const glm::dvec2 corner((i == 1 || i == 2) ? 1 : -1, i >= 2 ? 1 : -1);
-        const auto at = [&](double z) { return back * glm::dvec4(corner, z, 1); };
-        const auto point = [](const glm::dvec4& p) { return glm::dvec3(p) / p.w; };
-        begin[i] = point(at(-1));
-        const glm::dvec3 way = point(at(0.5)) - begin[i];
-        double length = from.reach / glm::dot(way, from.forward);  // in lengths of `way`
-        if (const glm::dvec4 far = at(1); std::abs(far.w) > 0) {
-            const double depth = glm::dot(point(far) - begin[i], from.forward);
-            if (depth > 0 && depth < from.reach) length *= depth / from.reach;
-        }
-        end[i] = begin[i] + length * way;
-    }
-    const LineStyle halo{kHaloColour, 3.5, 0.85, 0}, ink{kFrustumColour, 1.5, 1, 0.45};
-    for (const LineStyle& style : {halo, ink})
-        for (int i = 0; i < 4; ++i) {
-            lines.line(begin[i], end[i], style);
-            lines.line(begin[i], begin[(i + 1) % 4], style);
-            lines.line(end[i], end[(i + 1) % 4], style);
-        }
-    const glm::dvec3 eye =
-        isOrthographic(view) ? 0.25 * (begin[0] + begin[1] + begin[2] + begin[3]) : eyePosition(view);
-    lines.dot(eye, {kHaloColour, 12, 1, 1});
-    lines.dot(eye, {kFrustumColour, 9, 1, 1});
 }
 
 }  // namespace
@@ -214,7 +173,7 @@ Image<Rgb> outsidePicture(const PictureMaker& maker, const View& view, std::span
     const PictureMaker::Look look = maker.look(from.view, kept);
     WorldLines lines(from.view, look.width, look.height, look.nearness);
     drawCulled(lines, maker, from, reasons);
-    drawFrustumLines(lines, view, from);
+    drawFrustum(lines, view, from.reach);
     return lines.over(look.shaded);
 }
 

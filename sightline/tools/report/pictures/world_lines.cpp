@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/gtc/matrix_access.hpp>
+
 namespace sightline::tools {
 
 std::optional<glm::dvec2> partInView(const glm::dvec4& a, const glm::dvec4& b) {
@@ -89,6 +91,47 @@ Image<Rgb> WorldLines::over(const Image<Rgb>& picture) const {
             if (drawn) out.at(x, y) = Rgb(sum / double(kPerPixel * kPerPixel) + 0.5);
         }
     return out;
+}
+
+void drawBox(WorldLines& lines, const Box3d& box, const glm::dmat4& transform, const LineStyle& style) {
+    glm::dvec3 corners[8];
+    for (int i = 0; i < 8; ++i)
+        corners[i] = glm::dvec3(transform * glm::dvec4(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
+                                                       i & 4 ? box.max.z : box.min.z, 1));
+    for (int i = 0; i < 8; ++i)
+        for (const int axis : {1, 2, 4})
+            if (!(i & axis)) lines.line(corners[i], corners[i | axis], style);
+}
+
+void drawFrustum(WorldLines& lines, const View& view, double reach) {
+    constexpr Rgb kHalo(255, 255, 255), kInk(20, 24, 31);
+    const glm::dvec3 forward = -glm::dvec3(glm::row(view.view, 2));
+    const glm::dmat4 back = glm::inverse(view.projection * view.view);
+    glm::dvec3 begin[4], end[4];
+    for (int i = 0; i < 4; ++i) {
+        const glm::dvec2 corner((i == 1 || i == 2) ? 1 : -1, i >= 2 ? 1 : -1);
+        const auto at = [&](double z) { return back * glm::dvec4(corner, z, 1); };
+        const auto point = [](const glm::dvec4& p) { return glm::dvec3(p) / p.w; };
+        begin[i] = point(at(-1));
+        const glm::dvec3 way = point(at(0.5)) - begin[i];
+        double length = reach / glm::dot(way, forward);  // in lengths of `way`
+        if (const glm::dvec4 far = at(1); std::abs(far.w) > 0) {
+            const double depth = glm::dot(point(far) - begin[i], forward);
+            if (depth > 0 && depth < reach) length *= depth / reach;
+        }
+        end[i] = begin[i] + length * way;
+    }
+    const LineStyle halo{kHalo, 3.5, 0.85, 0}, ink{kInk, 1.5, 1, 0.45};
+    for (const LineStyle& style : {halo, ink})
+        for (int i = 0; i < 4; ++i) {
+            lines.line(begin[i], end[i], style);
+            lines.line(begin[i], begin[(i + 1) % 4], style);
+            lines.line(end[i], end[(i + 1) % 4], style);
+        }
+    const glm::dvec3 eye =
+        isOrthographic(view) ? 0.25 * (begin[0] + begin[1] + begin[2] + begin[3]) : eyePosition(view);
+    lines.dot(eye, {kHalo, 12, 1, 1});
+    lines.dot(eye, {kInk, 9, 1, 1});
 }
 
 }  // namespace sightline::tools

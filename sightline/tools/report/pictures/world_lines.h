@@ -9,6 +9,7 @@
 #include <glm/glm.hpp>
 
 #include "sightline/geom/view.h"
+#include "sightline/math/box.h"
 #include "sightline/tools/report/pictures/png.h"
 
 namespace sightline::tools {
@@ -53,5 +54,11 @@ private:
     std::span<const double> nearness_;
     Image<glm::u8vec4> layer_;  // rows from below
 };
+
+/// The twelve edges of a box.
+void drawBox(WorldLines& lines, const Box3d& box, const glm::dmat4& transform, const LineStyle& style);
+/// The edges of what an image holds, from its near plane on, and a dot where the eye is.
+/// @param reach  how deep, if the far plane is not nearer  [world units]
+void drawFrustum(WorldLines& lines, const View& view, double reach);
 
 }  // namespace sightline::tools

@@ -28,19 +28,20 @@ std::string percent(double share) {
     return fmt::format("{:.0f} %", 100 * share);
 }
 
-/// "'Wall' (71 %), 'Door' (20 %) and 3 others (9 %)".
+/// "'Wall' (71 %), 'Door' (20 %) and 3 others (9 %)"; without shares where they are not known.
 /// @param most  names; of more than one, another rather than "1 other"
 std::string listOf(const Array<Hider>& hiders, const NameOfObject& name, size_t most = 6) {
     const size_t shown = hiders.size() > most + (most > 1) ? most : hiders.size();
     std::vector<std::string> parts;
+    const auto ofAll = [&](double share) {
+        return hiders.size() > 1 && hiders[0].share > 0 ? fmt::format(" ({})", percent(share)) : std::string();
+    };
     double rest = 1;
     for (size_t i = 0; i < shown; ++i) {
-        const std::string share = hiders.size() > 1 ? fmt::format(" ({})", percent(hiders[i].share)) : "";
-        parts.push_back(name(hiders[i].id) + share);
+        parts.push_back(name(hiders[i].id) + ofAll(hiders[i].share));
         rest -= hiders[i].share;
     }
-    if (shown < hiders.size())
-        parts.push_back(fmt::format("{} ({})", counted(hiders.size() - shown, "other"), percent(std::max(rest, 0.0))));
+    if (shown < hiders.size()) parts.push_back(counted(hiders.size() - shown, "other") + ofAll(std::max(rest, 0.0)));
     std::string text;
     for (size_t i = 0; i < parts.size(); ++i) text += (i == 0 ? "" : i + 1 < parts.size() ? ", " : " and ") + parts[i];
     return text;
@@ -132,8 +133,26 @@ std::string askedText(const OcclusionReason& reason) {
     return "";
 }
 
+/// Whether drawing would keep it.
+bool isByCertificateAlone(const Explanation& why) {
+    const Array<Hider>& hiders = why.occlusion.hiders;
+    return why.verdict == Verdict::kOccluded && !why.certificate.empty() && !hiders.empty() && hiders[0].share == 0;
+}
+
+std::string certificateText(const Explanation& why, const NameOfObject& name) {
+    if (why.certificate.empty() || isByCertificateAlone(why)) return "";
+    Array<Hider> named;
+    for (const Visible& hider : why.certificate) named.push_back({hider.id, hider.key, 0});
+    return " A certificate culled it, which names " + listOf(named, name) + ".";
+}
+
 std::string occlusionText(const Explanation& why, const std::string& subject, const NameOfObject& name) {
     const OcclusionReason& reason = why.occlusion;
+    if (isByCertificateAlone(why))
+        return fmt::format(
+                   "culled by occlusion: {} lies in the shadow of {}: a certificate proves it. Drawing would keep it.",
+                   subject, listOf(reason.hiders, name)) +
+               rectangleText(why);
     if (reason.hiders.empty()) return fmt::format("culled by occlusion: {}.", subject) + rectangleText(why);
     const std::string hiders = listOf(reason.hiders, name);
     std::string text;
@@ -150,8 +169,8 @@ std::string occlusionText(const Explanation& why, const std::string& subject, co
             fmt::format("culled by occlusion: {} lies behind {}, and is hidden only with the rest of the world there",
                         subject, hiders);
     text += withoutText(reason, name) + ".";
-    if (reason.outside_too && reason.stage == Stage::kOcclusion) return text;
-    return text + askedText(reason) + togetherText(why) + rectangleText(why);
+    if (reason.outside_too && reason.stage == Stage::kOcclusion) return text + certificateText(why, name);
+    return text + askedText(reason) + togetherText(why) + rectangleText(why) + certificateText(why, name);
 }
 
 std::string farText(const SizeReason& reason) {
@@ -256,7 +275,8 @@ std::string explanationText(const Explanation& why, const std::string& subject, 
     std::string reason = keptText(why, name);
     if (!seen.empty()) reason[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(reason[0])));
     return fmt::format("kept: {}{} {}.", subject, seen.empty() ? ":" : " " + seen, reason) + rectangleText(why) +
-           lodText(why.lod) + drawnText(why.clusters);
+           lodText(why.lod) + drawnText(why.clusters) +
+           (why.unasked ? " It was kept without a question, because it was visible a few answers before." : "");
 }
 
 std::string explanationClause(const Explanation& why, const NameOfObject& name, size_t most) {
@@ -269,7 +289,9 @@ std::string explanationClause(const Explanation& why, const NameOfObject& name, 
             return planeText(why.frustum);
         case Verdict::kOccluded:
             return "behind " + listOf(why.occlusion.hiders, name, most) +
-                   (why.occlusion.by_triangles ? ", by its triangles" : "");
+                   (!why.certificate.empty()     ? ", by a certificate"
+                    : why.occlusion.by_triangles ? ", by its triangles"
+                                                 : "");
         case Verdict::kTooFar:
             return farText(why.size);
         case Verdict::kTooSmall:

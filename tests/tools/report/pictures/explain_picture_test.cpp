@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sightline/tools/report/pictures/shadow_picture.h"
 #include "sightline/tools/scene/solids.h"
 
 namespace sightline {
@@ -63,6 +64,55 @@ TEST(ExplainPicture, OutlinesTheBoxOrPointsToIt) {
     // Straight behind there is no side: any will do. Around the eye there is nothing to point to.
     EXPECT_GT(pictureFrom({0, 0, 10}, {0, 0, 20}).pixels, 20);
     EXPECT_EQ(pictureFrom({0, 0, 0}, {0, 0, -1}, 1e5).pixels, 0);
+}
+
+/// How many pixels are nearer to the colour of shadows than to grey.
+int shadowPixels(const Image<Rgb>& image) {
+    int count = 0;
+    for (uint32_t y = 0; y < image.height; ++y)
+        for (uint32_t x = 0; x < image.width; ++x) {
+            const Rgb pixel = image.at(x, y);
+            count += pixel.r > pixel.b + 100;
+        }
+    return count;
+}
+
+TEST(ExplainPicture, ShowsOutlinesAndTheirShadows) {
+    Scene scene;
+    scene.materials.resize(1);
+    city::MeshBuilder mesh;
+    city::addBox(mesh, 0, glm::dvec3(-1), glm::dvec3(1));
+    scene.meshes.push_back(mesh.finish("box"));
+    for (const double z : {0.0, -6.0}) {  // the nearer one hides the other
+        scene.objects.emplace_back();
+        scene.objects.back().transform[3] = glm::dvec4(0, 0, z, 1);
+    }
+    View view;
+    view.view = lookAt({0, 0, 10}, {0, 0, 0}, {0, 1, 0});
+    view.projection = perspective(1.0, 1.5, 0.1);
+    view.width = 300;
+    view.height = 200;
+    const std::vector<std::vector<glm::dvec3>> outlines = {{{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}};
+    const std::vector<uint32_t> occluders = {0};
+    Emphasis emphasis;
+    emphasis.object = 1;
+    emphasis.occluders = occluders;
+    const Image<Rgb> plain = explainPicture(scene, view, emphasis);
+    emphasis.outlines = outlines;
+    const Image<Rgb> marked = explainPicture(scene, view, emphasis);
+    // The near face is 2 units wide, 9 away, where the image is 9.83 high: 41 pixels on each side, three wide.
+    int changed = 0;
+    for (size_t i = 0; i < plain.pixels.size(); ++i) changed += plain.pixels[i] != marked.pixels[i];
+    EXPECT_GT(changed, 300);
+    EXPECT_LT(changed, 600);
+    const PictureMaker maker(scene);
+    const Image<Rgb> side = shadowPicture(maker, view, emphasis);
+    EXPECT_EQ(side.width, 300u);
+    EXPECT_GT(marksOf(side).pixels, 100) << "the object's box";
+    EXPECT_GT(shadowPixels(side), 300);
+    // The object lies in the shadow: between its lines, on the side away from the eye.
+    emphasis.outlines = {};
+    EXPECT_LT(shadowPixels(shadowPicture(maker, view, emphasis)), shadowPixels(side) / 4);
 }
 
 }  // namespace

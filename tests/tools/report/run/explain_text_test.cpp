@@ -55,6 +55,24 @@ TEST(ExplainText, NamesTheOccludersAndWhatWouldBeWithoutThem) {
         "lies beyond the right plane by 3.25 units, out of view; without that one the frustum would cull it.");
 }
 
+TEST(ExplainText, NamesWhomACertificateNames) {
+    Explanation why = occluded();
+    why.certificate.push_back({12, {3, 1}});
+    why.certificate.push_back({13, {4, 1}});
+    EXPECT_EQ(
+        explanationText(why, "object 7", nameOf),
+        "culled by occlusion: object 7 lies behind 'B' (71 %) and 'C' (29 %); without these two it would be kept. "
+        "A certificate culled it, which names 'D' and 'E'.");
+    EXPECT_EQ(explanationClause(why, nameOf), "behind 'B' (71 %) and 'C' (29 %), by a certificate");
+    // Drawing would keep it: there are no shares.
+    why.occlusion.hiders.clear();
+    for (const Visible& hider : why.certificate) why.occlusion.hiders.push_back({hider.id, hider.key, 0});
+    EXPECT_EQ(explanationText(why, "object 7", nameOf),
+              "culled by occlusion: object 7 lies in the shadow of 'D' and 'E': a certificate proves it. Drawing would "
+              "keep it.");
+    EXPECT_EQ(explanationClause(why, nameOf, 1), "behind 'D' and 1 other, by a certificate");
+}
+
 TEST(ExplainText, SaysWhatOfAnObjectWasAsked) {
     Explanation why = occluded();
     why.occlusion.by_faces = true;

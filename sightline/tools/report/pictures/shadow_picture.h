@@ -1,0 +1,18 @@
+// Why an object is hidden, from the side: the eye, the parts of others that hide it, and their shadows.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "sightline/geom/view.h"
+#include "sightline/tools/report/pictures/explain_picture.h"
+#include "sightline/tools/report/pictures/picture.h"
+#include "sightline/tools/report/pictures/png.h"
+
+namespace sightline::tools {
+
+/// The object, its occluders and nothing else, from the side and above, with the frustum. Each outline is drawn with the
+/// rays from the eye through its corners, and behind it its shadow, which ends a little behind the object.
+/// @param view      a perspective one; its width and height are the picture's
+/// @param emphasis  of an object with a finite box
+Image<Rgb> shadowPicture(const PictureMaker& maker, const View& view, const Emphasis& emphasis);
+
+}  // namespace sightline::tools
