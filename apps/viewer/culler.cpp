@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "sightline/query/explain/explain.h"
+#include "sightline/query/explain/shadows.h"
 #include "sightline/tools/report/run/explain_text.h"
 #include "sightline/tools/scene/one_line.h"
 #include "sightline/world/world_state.h"
@@ -105,6 +106,14 @@ ObjectWhy Culler::why(uint32_t object) const {
     why.kept = found.verdict == Verdict::kVisible;
     why.text = explanationText(found, nameOf(object), [&](ObjectId id) { return nameOf(objectOf(id)); });
     for (const Hider& hider : found.occlusion.hiders) why.hiders.push_back(objectOf(hider.id));
+    if (found.verdict != Verdict::kOccluded) return why;
+    Array<HiderOutline> outlines;
+    Array<glm::dvec3> corners;
+    findShadows(now_, view_, world_.ids[object], settings, outlines, corners);
+    for (const HiderOutline& outline : outlines) {
+        const auto first = corners.begin() + outline.first;
+        why.outlines.emplace_back(first, first + outline.count);
+    }
     return why;
 }
 

@@ -24,6 +24,8 @@ struct ViewerDoor {
 struct ObjectWhy {
     std::string text;              ///< a paragraph
     std::vector<uint32_t> hiders;  ///< objects that hide it, those with the largest share first
+    /// If it is hidden and they are found: parts of objects, as the eye sees them, whose shadows hold all of it.
+    std::vector<std::vector<glm::dvec3>> outlines;
     bool kept = false;
 };
 

@@ -264,6 +264,7 @@ void Panels::chosen() {
         if (press("look at it (Z)")) wishes_.look_at_chosen = true;
         ImGui::SameLine();
         check("isolate (I)", state_.isolate);
+        if (!state_.outlines.empty()) check("the shadows that hide it", state_.shadows);
         if (!state_.hiders.empty()) ImGui::TextUnformatted("hidden by, in orange:");
         for (size_t i = 0; i < std::min<size_t>(state_.hiders.size(), 12); ++i) {
             ImGui::PushID(static_cast<int>(i));  // several may have one name

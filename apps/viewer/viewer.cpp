@@ -10,6 +10,7 @@
 #include "sightline/cells/portal_graph.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/pictures/scene_look.h"
+#include "sightline/tools/report/pictures/shadow_picture.h"
 #include "sightline/tree/descend.h"
 #include "sightline/world/world_state.h"
 
@@ -346,14 +347,34 @@ void Viewer::drawLines(const GlView& view) {
                     culling.eye(),
                     {i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z},
                     0.7f * kChosen);
+        if (state.shadows && !state.why_is_old) drawShadows(box);
     }
     lines_->draw(view, 0.25f);
+}
+
+/// The parts that hide the chosen object; from outside of the frozen camera also their shadows, to behind the object.
+void Viewer::drawShadows(const Box3d& box) {
+    const glm::dvec3 eye = culling.eye();
+    double far = 0;
+    for (int i = 0; i < 8; ++i) far = std::max(far, 1.1 * glm::length(box.corner(i) - eye));
+    for (const std::vector<glm::dvec3>& outline : state.outlines) {
+        lines_->outline(outline, kHider);
+        if (!state.frozen) continue;
+        std::vector<glm::dvec3> ends;
+        for (const glm::dvec3& corner : outline) {
+            ends.push_back(shadowEnd(eye, corner, far));
+            lines_->line(eye, corner, 0.5f * kHider);
+            lines_->line(corner, ends.back(), 0.8f * kHider);
+        }
+        lines_->outline(ends, 0.8f * kHider);
+    }
 }
 
 void Viewer::choose(std::optional<uint32_t> object) {
     state.chosen = object;
     state.why.clear();
     state.hiders.clear();
+    state.outlines.clear();
     if (!object) state.isolate = false;
     else explainChosen();
 }
@@ -363,6 +384,7 @@ void Viewer::explainChosen() {
     state.why = std::move(why.text);
     state.why_is_old = false;
     state.hiders = std::move(why.hiders);
+    state.outlines = std::move(why.outlines);
 }
 
 /// Chooses what is at a pixel.

@@ -69,6 +69,7 @@ private:
     void drawObjects();
     void drawCulled(const GlView& view);
     void drawLines(const GlView& view);
+    void drawShadows(const Box3d& box);
     Status pick(const View& view, float x, float y);
     void choose(std::optional<uint32_t> object);
     void explainChosen();

@@ -40,13 +40,15 @@ struct ViewerState {
     float section_at = 0.5f;  ///< between the ends of the scene  [0 to 1]
     bool section_keeps_upper = false;
     bool recording = false, playing = false;
-    float speed = 1;                 ///< of flight, times what suits the scene
-    std::optional<uint32_t> chosen;  ///< object
-    std::string why;                 ///< of it
-    bool why_is_old = false;         ///< of an earlier view
-    std::vector<uint32_t> hiders;    ///< of it
-    std::string said;                ///< the last message
-    bool wants_picture = false;      ///< of the next frame, into a file of the user's
+    float speed = 1;                                ///< of flight, times what suits the scene
+    std::optional<uint32_t> chosen;                 ///< object
+    std::string why;                                ///< of it
+    bool why_is_old = false;                        ///< of an earlier view
+    std::vector<uint32_t> hiders;                   ///< of it
+    bool shadows = true;                            ///< of the parts that hide it
+    std::vector<std::vector<glm::dvec3>> outlines;  ///< these parts
+    std::string said;                               ///< the last message
+    bool wants_picture = false;                     ///< of the next frame, into a file of the user's
     bool wants_to_close = false;
 };
 

@@ -94,7 +94,8 @@ TEST_F(ExplainVerb, SaysWhatCullSays) {
     const Outcome culled = run("cull city:1:400 --frames 2 --json -");
     const json visible = json::parse(culled.out)["frames"][1]["visible"];
     for (int key = 0; key < 400; key += 23) {
-        const json answer = answersOf("city:1:400 --frames 2 --frame 1 --rays 1000 --object " + std::to_string(key))[0];
+        const json answer =
+            answersOf("city:1:400 --frames 2 --frame 1 --rays 1000 --no-proofs --object " + std::to_string(key))[0];
         const bool kept = std::find(visible.begin(), visible.end(), json(key)) != visible.end();
         EXPECT_EQ(answer["verdict"] == "visible", kept) << key;
     }
@@ -113,7 +114,7 @@ TEST_F(ExplainVerb, AnswersForEachOfTwoEyes) {
     const Outcome culled = run("cull city:1:400 --frames 2 --stereo 8 --json -");
     const json frame = json::parse(culled.out)["frames"][1];
     for (size_t i = 0; i < frame["visible"].size(); i += 7) {
-        const json answers = answersOf("city:1:400 --frames 2 --frame 1 --rays 1000 --stereo 8 --object " +
+        const json answers = answersOf("city:1:400 --frames 2 --frame 1 --rays 1000 --no-proofs --stereo 8 --object " +
                                        std::to_string(frame["visible"][i].get<int>()));
         const int eyes = frame["eyes"][i];
         EXPECT_EQ(answers[0]["verdict"] == "visible", (eyes & 1) != 0) << frame["visible"][i];

@@ -13,9 +13,14 @@ function(step what)
 endfunction()
 
 step("install" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} --config ${CONFIG})
+# Every header takes minutes: with sanitizers, as ./test.sh --full has them.
+set(every_header OFF)
+if(SANITIZE)
+  set(every_header ON)
+endif()
 step("configure" ${CMAKE_COMMAND} -S ${project} -B ${WORK}/build -G Ninja -D CMAKE_PREFIX_PATH=${prefix}
   -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}
-  -D CMAKE_BUILD_TYPE=${CONFIG} -D CONSUMER_TOOLS=${TOOLS}
+  -D CMAKE_BUILD_TYPE=${CONFIG} -D CONSUMER_TOOLS=${TOOLS} -D CONSUMER_EVERY_HEADER=${every_header}
   -D CONSUMER_EXAMPLES=${EXAMPLES})
 step("build" ${CMAKE_COMMAND} --build ${WORK}/build)
 foreach(program consumer first_query portals_and_doors shadow_casters occlusion_buffer hello occluder_buffer hello_static)

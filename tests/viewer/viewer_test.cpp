@@ -223,6 +223,21 @@ TEST_F(ViewerTest, EveryModeCanBeSeen) {
         state.chosen = viewer->culler().visible().front();
         state.isolate = true;
     });
+    const std::span<const uint8_t> reasons = viewer->culler().reasons();
+    for (uint32_t object = 0; object < reasons.size() && state.outlines.empty(); ++object)
+        if (reasons[object] == 1 + static_cast<int>(Stage::kOcclusion)) {
+            state.chosen = object;
+            viewer.frames(2);
+        }
+    EXPECT_FALSE(state.outlines.empty()) << "something hidden is in shadows";
+    const Image<Rgb> with_shadows = viewer.picture();
+    state.shadows = false;
+    EXPECT_GT(differing(with_shadows, viewer.picture()), 20u);
+    state.shadows = true;
+    state.chosen.reset();
+    state.outlines.clear();
+    state.hiders.clear();
+    state.why.clear();
     shows("panels", [&] { state.panels = true; });
     shows("buffer", [&] { state.panels = state.buffer = true; });
     EXPECT_EQ(differing(plain, viewer.picture()), 0u) << "all that was changed is as it was";

@@ -14,11 +14,6 @@ namespace {
 constexpr Rgb kShadow(176, 74, 0), kObject(196, 18, 110);
 constexpr double kAround = 115, kAbove = 35;  // from behind the eye; above the horizon  [degrees]
 
-glm::dvec3 shadowEnd(const glm::dvec3& eye, const glm::dvec3& corner, double far) {
-    const double distance = glm::length(corner - eye);
-    return distance > 0 ? eye + (std::max(far, distance) / distance) * (corner - eye) : corner;
-}
-
 /// How many boxes a line of sight passes through.
 size_t boxesBetween(const glm::dvec3& from, const glm::dvec3& to, std::span<const Box3d> boxes) {
     size_t count = 0;
@@ -75,6 +70,11 @@ void drawShadow(WorldLines& lines, const glm::dvec3& eye, const std::vector<glm:
 }
 
 }  // namespace
+
+glm::dvec3 shadowEnd(const glm::dvec3& eye, const glm::dvec3& corner, double far) {
+    const double distance = glm::length(corner - eye);
+    return distance > 0 ? eye + (std::max(far, distance) / distance) * (corner - eye) : corner;
+}
 
 Image<Rgb> shadowPicture(const PictureMaker& maker, const View& view, const Emphasis& emphasis) {
     const Scene& scene = maker.scene();

@@ -9,6 +9,10 @@
 
 namespace sightline::tools {
 
+/// Where the shadow of a corner ends: on the ray from the eye, so far from it, or in the corner.
+/// @param far  [world units]
+glm::dvec3 shadowEnd(const glm::dvec3& eye, const glm::dvec3& corner, double far);
+
 /// The object, its occluders and nothing else, from the side and above, with the frustum. Each outline is drawn with the
 /// rays from the eye through its corners, and behind it its shadow, which ends a little behind the object.
 /// @param view      a perspective one; its width and height are the picture's
