@@ -352,21 +352,18 @@ void Viewer::drawLines(const GlView& view) {
     lines_->draw(view, 0.25f);
 }
 
-/// The parts that hide the chosen object; from outside of the frozen camera also their shadows, to behind the object.
+/// The parts that hide the chosen object; from outside of the frozen camera also their shadows.
 void Viewer::drawShadows(const Box3d& box) {
     const glm::dvec3 eye = culling.eye();
-    double far = 0;
-    for (int i = 0; i < 8; ++i) far = std::max(far, 1.1 * glm::length(box.corner(i) - eye));
     for (const std::vector<glm::dvec3>& outline : state.outlines) {
         lines_->outline(outline, kHider);
         if (!state.frozen) continue;
-        std::vector<glm::dvec3> ends;
-        for (const glm::dvec3& corner : outline) {
-            ends.push_back(shadowEnd(eye, corner, far));
-            lines_->line(eye, corner, 0.5f * kHider);
-            lines_->line(corner, ends.back(), 0.8f * kHider);
-        }
+        const std::vector<glm::dvec3> ends = shadowEnd(eye, outline, shadowReach(eye, box, outline));
         lines_->outline(ends, 0.8f * kHider);
+        for (size_t i = 0; i < outline.size(); ++i) {
+            lines_->line(eye, outline[i], 0.5f * kHider);
+            lines_->line(outline[i], ends[i * ends.size() / outline.size()], 0.8f * kHider);
+        }
     }
 }
 

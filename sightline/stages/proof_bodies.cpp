@@ -120,7 +120,7 @@ bool ProofMemory::hiddenBy(const Frame& frame, const Certificate& certificate, c
         return false;
     }
     for (uint32_t i = 0; i < certificate.count && !rest_.nothing(); ++i)
-        if (const Shadow* shadow = shadowOf(frame, certificate.hiders[i])) rest_.remove(*shadow);
+        if (const Shadow* shadow = shadowOf(frame, certificate.hiders[i])) rest_.take(*shadow);
     return rest_.nothing();
 }
 

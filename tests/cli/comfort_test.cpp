@@ -67,6 +67,12 @@ TEST_F(Comfort, SlipsAreToldWhatIsNearest) {
     EXPECT_EQ(run("xyzzy").err.find("did you mean"), std::string::npos);
 }
 
+TEST_F(Comfort, AnOptionWhoseValueMayBeLeftOutNeedsNone) {
+    succeed("cull made:walls --close-gaps");
+    succeed("cull made:walls --close-gaps --size 320x180");
+    expectError("cull made:walls --json ''", 2, "--json: its value is empty");
+}
+
 TEST_F(Comfort, OptionsOfOtherVerbsAreToldWhose) {
     expectError("cull city:1:10 --object 3", 2, "--object; it belongs to explain (see");
     expectError("info city:1:10 --report out", 2, "--report; it belongs to cull, render, ");

@@ -190,11 +190,13 @@ TEST_F(ExplainVerb, DrawsTheShadowsOfWhoHides) {
     EXPECT_GT(shadows[0]["key"], 1) << "a wall before it";
     EXPECT_EQ(shadows[0]["outline"].size(), 4u);
     const Outcome kept = succeed("explain made:walls --object 7 --rays 1000 --outside none.png");
-    EXPECT_NE(kept.err.find("none.png: not written: nothing hides the object"), std::string::npos) << kept.err;
+    EXPECT_NE(kept.out.find("none.png: not written: occlusion did not cull the object"), std::string::npos) << kept.out;
     EXPECT_FALSE(std::filesystem::exists(path("none.png")));
     expectError("explain made:walls --object 1 --frame all --outside a.png", 2, "--outside");
     expectError("explain made:walls --object 1 -o a.png --outside a.png", 2, "--outside");
     expectError("explain made:walls --object 1 --outside /nowhere/why.png", 4, "/nowhere/why.png");
+    expectError("explain made:walls --object 1 --outside -", 2, "--outside -: a picture needs a file");
+    expectError("explain made:walls --remember", 2, "--remember needs an --object or a pixel");
 }
 
 // What a query that remembers answers, and by which certificates.
@@ -243,6 +245,21 @@ TEST_F(ExplainVerb, RefusesWhatItCannotAnswer) {
     expectError("explain made:walls -o a.png", 2, "-o");
     expectError("explain made:walls --object 1 --frame all -o a.png", 2, "-o");
     expectError("explain made:walls --top 0", 2, "--top");
+}
+
+// What was left out as asked may be seen: that is no false cull.
+TEST_F(ExplainVerb, CallsNothingFalseThatWasLeftOutAsAsked) {
+    const Outcome late = succeed(
+        "explain building:1:1 --path walk --frames 1 --budget 0.01 --hard-budget --cost-object 1000 "
+        "--rays 1000 --object 771");
+    EXPECT_NE(late.out.find("culled by lod: the budget has no time"), std::string::npos) << late.out;
+    EXPECT_EQ(late.out.find("false cull"), std::string::npos) << late.out;
+    succeed("bake building:1:1 -o house.vis");
+    const Outcome deep = succeed(
+        "explain building:1:1 --path walk --frames 1 --visibility house.vis --portal-depth 1 "
+        "--rays 20000 --object 386");
+    EXPECT_NE(deep.out.find("culled by portals"), std::string::npos) << deep.out;
+    EXPECT_EQ(deep.out.find("false cull"), std::string::npos) << deep.out;
 }
 
 TEST_F(ExplainVerb, NamesDoubts) {

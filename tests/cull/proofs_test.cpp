@@ -97,8 +97,10 @@ void hold(Random& random, const std::vector<Hider>& hiders, const View& view, co
     VolumeOutline outline;
     for (size_t i = 0; i < hiders.size() && !rest.nothing(); ++i)
         for (uint32_t part = 0; part < hiders[i].parts.partCount() && !rest.nothing(); ++part)
-            if (makeVolume(volumes, places[i], part, shadow.volume, outline) && makeShadow(frame, shadow))
-                rest.remove(shadow);
+            if (makeVolume(volumes, places[i], part, shadow.volume, outline) && makeShadow(frame, shadow)) {
+                if (part % 2) rest.remove(shadow);
+                else rest.take(shadow);
+            }
     for (size_t i = 0; i < hiders.size() && !rest.nothing(); ++i)
         for (size_t k = 0; k < hiders.size() && !rest.nothing(); ++k)
             for (uint32_t f = 0; f < hiders[i].parts.faces.size(); ++f)

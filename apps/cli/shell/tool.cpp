@@ -231,7 +231,7 @@ Status checkValues(const CLI::App& verb) {
             return Error{Error::Kind::kUsage, fmt::format("--{}: {}", option->get_single_name(), what)};
         };
         for (const std::string& value : option->results()) {
-            if (value.empty()) return wrong("its value is empty");
+            if (value.empty() && option->get_items_expected_min() > 0) return wrong("its value is empty");
             if ((kind == "N" || kind == "S" || kind == "UINT") && value[0] == '-') return wrong(value + " is below 0");
             if (kind != "FILE.png") continue;
             const std::string suffix = std::filesystem::path(value).extension().string();

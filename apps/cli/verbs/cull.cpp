@@ -167,6 +167,7 @@ Status checkCullApart(const CullOptions& options) {
     for (const std::string& name : options.scene.names) files.read("SCENE", name);
     files.read("--cameras", options.choice.file);
     files.read("--visibility", options.visibility.file);
+    files.read("--calibration", options.calibration);
     files.write("--json", options.json);
     files.write("--trace", options.trace);
     files.write("--record-occlusion", options.recording);

@@ -55,9 +55,12 @@ Status readQuestion(const CLI::App& verb, ExplainOptions& options) {
     if (object && options.has_pixel) return usageError("--at excludes --object");
     if (options.all_frames && options.has_pixel) return usageError("--at needs one --frame");
     for (const auto& [option, file] : {std::pair("-o", &options.picture), std::pair("--outside", &options.outside)})
-        if (!file->empty() && (options.all_frames || (!object && !options.has_pixel)))
+        if (*file == "-") return usageError(fmt::format("{} -: a picture needs a file", option));
+        else if (!file->empty() && (options.all_frames || (!object && !options.has_pixel)))
             return usageError(fmt::format("{} needs an --object or a pixel, and one --frame", option));
     if (!options.settings.stateless && options.stereo > 0) return usageError("--remember: not for two eyes");
+    if (!options.settings.stateless && !object && !options.has_pixel)
+        return usageError("--remember needs an --object or a pixel");
     if (!object && !options.has_pixel && verb.count("--frame") > 0)
         return usageError("--frame needs an --object or a pixel");
     return success();
@@ -68,6 +71,7 @@ Status checkExplainOutputs(const ExplainOptions& options) {
     for (const std::string& name : options.scene.names) files.read("SCENE", name);
     files.read("--cameras", options.choice.file);
     files.read("--visibility", options.visibility.file);
+    files.read("--calibration", options.calibration);
     files.write("--json", options.json);
     files.write("-o", options.picture);
     files.write("--outside", options.outside);
@@ -124,16 +128,18 @@ Status writePictures(const ExplainOptions& options, const AskedScene& asked, con
             return done;
     if (options.outside.empty()) return success();
     if (outlines.empty()) {
-        note(fmt::format("{}: not written: {}", options.outside,
-                         answer.why.verdict == Verdict::kOccluded ? "no shadows were found that hide it"
-                                                                  : "nothing hides the object"));
+        fmt::print(readerOf(options), "{}: not written: {}\n", options.outside,
+                   answer.why.verdict != Verdict::kOccluded ? "occlusion did not cull the object"
+                   : isOrthographic(view)                   ? "shadows are not sought in parallel views"
+                                                            : "no shadows were found that hide all of it");
         return success();
     }
     return writeFileAside(options.outside, encodePng(shadowPicture(PictureMaker(asked.scene), view, emphasis)));
 }
 
 /// Whether witnesses have a say: not of what lies outside, nor of what was left out although it may be seen.
-bool saysMore(Verdict verdict) {
+bool saysMore(Verdict verdict, const QuerySettings& settings) {
+    if (verdict == Verdict::kNoTime || (verdict == Verdict::kNoWindow && settings.portal_depth > 0)) return false;
     return verdict != Verdict::kNoSuchObject && verdict != Verdict::kOutsideLayers &&
            verdict != Verdict::kOutsideFrustum && verdict != Verdict::kTooFar && verdict != Verdict::kTooSmall;
 }
@@ -167,7 +173,8 @@ public:
             explained_ = eye.eye;
             answer.why = explainer_->explain(id, {true, closely});
         }
-        if (closely && answer.why.verdict == Verdict::kOccluded) addShadows(eye.view, id, answer);
+        if (closely && (answer.why.verdict == Verdict::kOccluded || !answer.why.certificate.empty()))
+            addShadows(eye.view, id, answer);
         return answer;
     }
 
@@ -199,7 +206,7 @@ Status explainInFrame(const ExplainOptions& options, const AskedScene& asked, Fr
         for (size_t i = 0; i < std::min(objects.size(), kMost); ++i) {
             const uint32_t object = objects[i];
             ObjectAnswer answer = asker.answer(options.first_frame, object, eye, true);
-            if (isUsable(eye.view) && saysMore(answer.why.verdict))
+            if (isUsable(eye.view) && saysMore(answer.why.verdict, options.settings))
                 answer.sighting = lookFor(asked.scene, eye.view, object, namedHiders(answer.why), options);
             fmt::print(readerOf(options), "{}", answerText(asked, answer));
             body["answers"].push_back(answerJson(asked, answer));
@@ -218,7 +225,7 @@ Status explainInFrame(const ExplainOptions& options, const AskedScene& asked, Fr
 int explainInAll(const ExplainOptions& options, const AskedScene& asked, const CameraPath& path,
                  const std::vector<uint32_t>& objects, Json& body) {
     const uint32_t object = objects.front();
-    fmt::print(readerOf(options), "{}\n", titleOf(asked.scene, object));
+    fmt::print(readerOf(options), "{}\n", shortened(titleOf(asked.scene, object), 100));
     if (objects.size() > 1) fmt::print(readerOf(options), "the first of {} objects with this key\n", objects.size());
     stopGently();
     FrameAsker asker(options, asked);
@@ -245,7 +252,7 @@ Status explainPixel(const ExplainOptions& options, const AskedScene& asked, Fram
     body["pixel"] = {options.x, options.y};
     if (layers.empty()) {
         fmt::print(out, "pixel ({}, {}): nothing{}\n", options.x, options.y,
-                   options.picture.empty() ? "" : ", so that no picture is written");
+                   options.picture.empty() && options.outside.empty() ? "" : ", so that no picture is written");
         return success();
     }
     if (layers.front().shines_through)

@@ -193,7 +193,8 @@ std::string sightingText(const ObjectAnswer& answer) {
                                                                : "id-buffer",
                                  sighting.x, sighting.y)
                    : fmt::format("None of {} rays meets it, and no sample of an id-buffer{}.", grouped(sighting.rays),
-                                 sighting.by_named        ? ", and by exact arithmetic these alone hide all of it"
+                                 sighting.by_named
+                                     ? ", and by exact arithmetic what it lies behind is enough to hide all of it"
                                  : sighting.proved_hidden ? ", and by exact arithmetic no point of it is visible"
                                                           : "");
     if (sighting.seen)
@@ -415,20 +416,23 @@ Json cameraJson(const Scene& scene, const ExplainOptions& options, const View& v
             {"along", {along.x, along.y, along.z}}};
 }
 
-std::string answerText(const AskedScene& asked, const ObjectAnswer& answer) {
+std::string answerSentences(const AskedScene& asked, const ObjectAnswer& answer) {
     const auto name = [&](ObjectId id) { return asked.nameOf(id); };
     const std::string sighting = answer.sighting ? sightingText(answer) : std::string();
     const bool kept = answer.why.verdict == Verdict::kVisible;
-    const char* const first =
-        !answer.kept         ? ""
-        : answer.why.unasked ? "kept without a question, because it was visible a few answers before; asked, it is "
-                             : "kept for want of a certificate; by drawing it is ";
-    std::string text =
-        eyeText(answer) + first +
-        explanationText(answer.why, titleOf(asked.scene, answer.object), name, kept ? sighting : std::string());
+    std::string text;
+    if (answer.kept)
+        text = answer.why.unasked
+                   ? "kept without a question, because it was visible a few answers before; asked, it is "
+                   : "kept for want of a certificate; to a query that remembers nothing it is ";
+    text += explanationText(answer.why, titleOf(asked.scene, answer.object), name, kept ? sighting : std::string());
     if (!kept && !sighting.empty()) text += " " + sighting;
     if (isByCells(answer.why)) text += cellsText(asked, answer.why.cells);
-    return wrapped(text, kColumns, "  ") + "\n";
+    return text;
+}
+
+std::string answerText(const AskedScene& asked, const ObjectAnswer& answer) {
+    return wrapped(eyeText(answer) + answerSentences(asked, answer), kColumns, "  ") + "\n";
 }
 
 std::string answerLine(const AskedScene& asked, const ObjectAnswer& answer) {
@@ -445,8 +449,8 @@ std::string answerLine(const AskedScene& asked, const ObjectAnswer& answer) {
         line = fmt::format("frame {:>4}  {}{:<10} {}{}", answer.frame, eyeText(answer),
                            stage.empty() || answer.kept ? "kept" : stage,
                            !answer.kept         ? ""
-                           : answer.why.unasked ? "unasked; it lies "
-                                                : "no certificate; it lies ",
+                           : answer.why.unasked ? "unasked; by itself: "
+                                                : "no certificate; by itself: ",
                            explanationClause(answer.why, name, occluders));
     }
     return shortened(line, kColumns) + "\n";
@@ -502,8 +506,7 @@ Json answerJson(const AskedScene& asked, const ObjectAnswer& answer) {
         }
         if (sighting.by_named) out["witness"]["by_named"] = true;
     }
-    out["text"] =
-        explanationText(why, titleOf(asked.scene, answer.object), [&](ObjectId id) { return asked.nameOf(id); });
+    out["text"] = answerSentences(asked, answer);
     return out;
 }
 

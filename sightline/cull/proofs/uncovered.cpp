@@ -105,7 +105,7 @@ bool Uncovered::split(const Piece& from, const glm::dvec3& line, Piece& within, 
 bool Uncovered::push(const Piece& piece) {
     if (piece.count == 0) return true;
     if (next_count_ == kMostPieces) return false;
-    next_[next_count_++] = piece;
+    next()[next_count_++] = piece;
     return true;
 }
 
@@ -171,29 +171,28 @@ bool Uncovered::begin(const VolumeView& view, const ImageFrame& frame, const glm
     const double edge = 1.0 + margin_;
     for (const glm::dvec3& side :
          {glm::dvec3(1, 0, edge), glm::dvec3(-1, 0, edge), glm::dvec3(0, 1, edge), glm::dvec3(0, -1, edge)}) {
+        uint32_t crossing = 0;
+        const Meets how = meets(piece, &side, 1, crossing);
+        if (how == Meets::kWhole) continue;
         Piece within;
         if (!split(piece, side, within, rest)) return false;
         piece = within;
     }
-    next_count_ = 0;
-    push(piece);
-    std::swap(pieces_[0], next_[0]);
-    piece_count_ = next_count_;
+    if (piece.count > 0) pieces()[piece_count_++] = piece;
     return true;
 }
 
-/// The image of what of the body is not above a plane.
-/// @returns false if it cannot be told
-bool Uncovered::cutOff(const glm::dvec4& plane, Piece& out) const {
+/// Points in the image whose hull is that of what of the body is not above a plane.
+/// @returns false if they cannot be told
+bool Uncovered::cutOff(const glm::dvec4& plane, Cloud& cloud) const {
     double height[kMostPoints];
     bool none = true;
     for (uint32_t i = 0; i < body_count_; ++i) {
         height[i] = glm::dot(glm::dvec3(plane), body_[i]) + plane.w;
         none = none && height[i] > 0;
     }
-    out.count = 0;
+    cloud.count = 0;
     if (none) return true;
-    Cloud cloud;
     for (uint32_t i = 0; i < body_count_; ++i) {
         if (height[i] > 0) continue;
         if (!addPoint(cloud, body_[i])) return false;
@@ -202,7 +201,19 @@ bool Uncovered::cutOff(const glm::dvec4& plane, Piece& out) const {
             if (!addPoint(cloud, body_[i] + height[i] / (height[i] - height[k]) * (body_[k] - body_[i]))) return false;
         }
     }
-    return cloud.outline(out);
+    return true;
+}
+
+/// Whether all points lie beyond one side of a piece.
+bool Uncovered::isBeside(const Cloud& cloud, const Piece& piece) const {
+    for (uint32_t i = 0; i < piece.count; ++i) {
+        const glm::dvec2 a = piece.corner[i], side = piece.corner[i + 1 == piece.count ? 0 : i + 1] - a;
+        const double least = 2.0 * margin_ * glm::length(side);
+        bool beyond = true;
+        for (uint32_t k = 0; k < cloud.count && beyond; ++k) beyond = cross(side, cloud.point[k] - a) < -least;
+        if (beyond) return true;
+    }
+    return false;
 }
 
 /// How a piece lies to lines, and a bit for each that crosses it.
@@ -254,61 +265,80 @@ bool Uncovered::keepBefore(const Piece& piece, const Piece& before) {
 }
 
 double Uncovered::share(const Shadow& shadow) {
+    if (!subtract(shadow)) return 0;
+    double before = 0, after = 0;
+    for (uint32_t i = 0; i < piece_count_; ++i) before += pieces()[i].area();
+    for (uint32_t i = 0; i < next_count_; ++i) after += next()[i].area();
+    return next_count_ == 0 ? 1.0 : std::max(0.0, 1.0 - after / before);
+}
+
+/// Leaves in the next pieces what a shadow leaves.
+/// @returns false if it hides nothing, or it cannot be told
+bool Uncovered::subtract(const Shadow& shadow) {
     glm::dvec3 lines[OccluderVolume::kMaxPlanes];
     for (uint32_t i = 0; i < shadow.line_count; ++i) {
         lines[i] = shadow.lines[i].line;
         lines[i].z -= 2.0 * (shadow.lines[i].still + error_) / nearest_ + kMargin;
     }
-    Piece cuts[Shadow::kMostFaces];
-    bool known = false;
-    double before = 0, after = 0;
+    Cloud before[Shadow::kMostFaces];
+    Piece outlines[Shadow::kMostFaces];
+    bool known = false, outlined[Shadow::kMostFaces] = {};
     next_count_ = 0;
     for (uint32_t i = 0; i < piece_count_; ++i) {
-        const Piece& piece = pieces_[i];
+        const Piece& piece = pieces()[i];
         uint32_t crossing = 0;
-        before += piece.area();
         if (meets(piece, lines, shadow.line_count, crossing) == Meets::kNot) {
-            if (!push(piece)) return 0;
+            if (!push(piece)) return false;
             continue;
         }
         ++cuts_;
-        for (uint32_t face = 0; face < shadow.face_count && !known; ++face) {
-            const glm::dvec4& plane = shadow.faces[face];
-            const double slack = shadow.slack[face][0] + 2.0 * error_ + (shadow.slack[face][1] + 1e-12) * reach_;
-            if (!cutOff({glm::dvec3(plane), plane.w - slack - 1e-12 * std::abs(plane.w)}, cuts[face])) return 0;
-        }
-        known = true;
         const uint32_t kept = next_count_;
         Piece both[2];
         const Piece* const within = cutAlong(piece, lines, crossing, both);
-        if (!within) return 0;
+        if (!within) return false;
         if (within->count == 0) {  // it misses the piece after all
             next_count_ = kept;
-            if (!push(piece)) return 0;
+            if (!push(piece)) return false;
             continue;
         }
-        for (uint32_t face = 0; face < shadow.face_count; ++face)
-            if (cuts[face].count > 0 && !keepBefore(*within, cuts[face])) return 0;
+        for (uint32_t face = 0; face < shadow.face_count && !known; ++face) {
+            const glm::dvec4& plane = shadow.faces[face];
+            const double slack = shadow.slack[face][0] + 2.0 * error_ + (shadow.slack[face][1] + 1e-12) * reach_;
+            if (!cutOff({glm::dvec3(plane), plane.w - slack - 1e-12 * std::abs(plane.w)}, before[face])) return false;
+        }
+        known = true;
+        for (uint32_t face = 0; face < shadow.face_count; ++face) {
+            if (before[face].count == 0 || isBeside(before[face], *within)) continue;
+            if (!outlined[face] && !before[face].outline(outlines[face])) return false;
+            outlined[face] = true;
+            if (!keepBefore(*within, outlines[face])) return false;
+        }
     }
-    if (!known) return 0;
-    for (uint32_t i = 0; i < next_count_; ++i) after += next_[i].area();
-    return next_count_ == 0 ? 1.0 : std::max(0.0, 1.0 - after / before);
+    return known;
 }
 
 double Uncovered::remove(const Shadow& shadow, double least) {
     const double taken = share(shadow);
     if (!(taken > least)) return 0;
-    for (uint32_t i = 0; i < next_count_; ++i) pieces_[i] = next_[i];
-    piece_count_ = next_count_;
+    takeNext();
     return taken;
+}
+
+void Uncovered::takeNext() {
+    now_ = 1 - now_;
+    piece_count_ = next_count_;
+}
+
+void Uncovered::take(const Shadow& shadow) {
+    if (subtract(shadow)) takeNext();
 }
 
 const Uncovered::Piece& Uncovered::largest() const {
     uint32_t at = 0;
     double most = -1;
     for (uint32_t i = 0; i < piece_count_; ++i)
-        if (const double area = pieces_[i].area(); area > most) most = area, at = i;
-    return pieces_[at];
+        if (const double area = pieces()[i].area(); area > most) most = area, at = i;
+    return pieces()[at];
 }
 
 glm::dvec3 Uncovered::direction() const {

@@ -65,6 +65,8 @@ public:
     /// Takes away what a volume of the same view hides, if that is more than a share of what is left.
     /// @returns the share that it took; 0: nothing
     double remove(const Shadow& shadow, double least = 0);
+    /// Takes away whatever a volume of the same view hides.
+    void take(const Shadow& shadow);
     /// Takes up a body of which nothing can be seen.
     void clear() { piece_count_ = 0; }
     /// Outlines that were made, and pieces that volumes were taken from, so far over all bodies.
@@ -104,13 +106,19 @@ private:
         bool outline(Piece& piece);
     };
 
+    Piece* pieces() { return both_[now_]; }  ///< what is left
+    const Piece* pieces() const { return both_[now_]; }
+    Piece* next() { return both_[1 - now_]; }  ///< what a shadow would leave
     const Piece& largest() const;
     static bool split(const Piece& from, const glm::dvec3& line, Piece& within, Piece& outside);
     bool addPoint(Cloud& cloud, const glm::dvec3& q) const;
-    bool cutOff(const glm::dvec4& plane, Piece& out) const;
+    bool cutOff(const glm::dvec4& plane, Cloud& cloud) const;
+    bool isBeside(const Cloud& cloud, const Piece& piece) const;
     enum class Meets : uint8_t { kNot, kPartly, kWhole };
     static Meets meets(const Piece& piece, const glm::dvec3* lines, uint32_t count, uint32_t& crossing);
     const Piece* cutAlong(const Piece& piece, const glm::dvec3* lines, uint32_t crossing, Piece* both);
+    bool subtract(const Shadow& shadow);
+    void takeNext();
     bool keepBefore(const Piece& piece, const Piece& before);
     bool push(const Piece& piece);
     bool clipNear(const VolumeView& view, const glm::dvec3* corners, uint32_t count, bool box);
@@ -120,8 +128,9 @@ private:
     uint32_t body_count_ = 0;
     bool is_box_ = false;
     double error_ = 0, nearest_ = 0, farthest_ = 0, reach_ = 0;
-    double margin_ = 0;                              ///< by which cuts are too large
-    Piece pieces_[kMostPieces], next_[kMostPieces];  ///< what is left; what share() would leave
+    double margin_ = 0;  ///< by which cuts are too large
+    Piece both_[2][kMostPieces];
+    uint32_t now_ = 0;  ///< of these
     uint64_t cuts_ = 0;
     uint32_t piece_count_ = 0, next_count_ = 0;
 };

@@ -2,16 +2,23 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
 #include "sightline/geom/view.h"
+#include "sightline/math/box.h"
 #include "sightline/tools/report/pictures/explain_picture.h"
 #include "sightline/tools/report/pictures/picture.h"
 #include "sightline/tools/report/pictures/png.h"
 
 namespace sightline::tools {
 
-/// Where the shadow of a corner ends: on the ray from the eye, so far from it, or in the corner.
-/// @param far  [world units]
-glm::dvec3 shadowEnd(const glm::dvec3& eye, const glm::dvec3& corner, double far);
+/// How far from the eye the shadow of a part is drawn: behind the object and behind the part.  [world units]
+double shadowReach(const glm::dvec3& eye, const Box3d& object, std::span<const glm::dvec3> outline);
+/// Where it ends, at the same distance from the eye everywhere: a closed line, with each corner's end and places between.
+std::vector<glm::dvec3> shadowEnd(const glm::dvec3& eye, std::span<const glm::dvec3> outline, double reach);
 
 /// The object, its occluders and nothing else, from the side and above, with the frustum. Each outline is drawn with the
 /// rays from the eye through its corners, and behind it its shadow, which ends a little behind the object.

@@ -93,7 +93,20 @@ std::string planeText(const FrustumReason& reason) {
     return fmt::format("beyond {} by {} units", where, units(reason.distance()));
 }
 
-std::string frustumText(const Explanation& why, const std::string& subject) {
+/// Whether drawing would keep it.
+bool isByCertificateAlone(const Explanation& why) {
+    const Array<Hider>& hiders = why.occlusion.hiders;
+    return why.verdict == Verdict::kOccluded && !why.certificate.empty() && !hiders.empty() && hiders[0].share == 0;
+}
+
+std::string certificateText(const Explanation& why, const NameOfObject& name) {
+    if (why.certificate.empty() || isByCertificateAlone(why)) return "";
+    Array<Hider> named;
+    for (const Visible& hider : why.certificate) named.push_back({hider.id, hider.key, 0});
+    return " A certificate culled it, which names " + listOf(named, name) + ".";
+}
+
+std::string frustumText(const Explanation& why, const std::string& subject, const NameOfObject& name) {
     const FrustumReason& reason = why.frustum;
     std::string text = fmt::format("culled by frustum: {} lies {}", subject, planeText(reason));
     std::string also;
@@ -104,7 +117,7 @@ std::string frustumText(const Explanation& why, const std::string& subject) {
     if (!also.empty()) text += " (and beyond " + also + ")";
     text +=
         reason.by_rectangle ? "; its rectangle on the screen showed it, the planes could not tell for rounding." : ".";
-    return text + togetherText(why);
+    return text + togetherText(why) + certificateText(why, name);
 }
 
 std::string withoutText(const OcclusionReason& reason, const NameOfObject& name) {
@@ -131,19 +144,6 @@ std::string askedText(const OcclusionReason& reason) {
     if (reason.by_triangles) return " The rectangle around its box is not hidden all over; its own triangles are.";
     if (reason.by_faces) return " The rectangle around its box is not hidden all over; the faces of the box are.";
     return "";
-}
-
-/// Whether drawing would keep it.
-bool isByCertificateAlone(const Explanation& why) {
-    const Array<Hider>& hiders = why.occlusion.hiders;
-    return why.verdict == Verdict::kOccluded && !why.certificate.empty() && !hiders.empty() && hiders[0].share == 0;
-}
-
-std::string certificateText(const Explanation& why, const NameOfObject& name) {
-    if (why.certificate.empty() || isByCertificateAlone(why)) return "";
-    Array<Hider> named;
-    for (const Visible& hider : why.certificate) named.push_back({hider.id, hider.key, 0});
-    return " A certificate culled it, which names " + listOf(named, name) + ".";
 }
 
 std::string occlusionText(const Explanation& why, const std::string& subject, const NameOfObject& name) {
@@ -249,7 +249,7 @@ std::string explanationText(const Explanation& why, const std::string& subject, 
         case Verdict::kOutsideLayers:
             return fmt::format("left out: {} is in none of the view's layers.", subject);
         case Verdict::kOutsideFrustum:
-            return frustumText(why, subject);
+            return frustumText(why, subject, name);
         case Verdict::kOccluded:
             return occlusionText(why, subject, name);
         case Verdict::kTooFar:

@@ -110,7 +110,11 @@ TEST(ExplainPicture, ShowsOutlinesAndTheirShadows) {
     EXPECT_EQ(side.width, 300u);
     EXPECT_GT(marksOf(side).pixels, 100) << "the object's box";
     EXPECT_GT(shadowPixels(side), 300);
-    // The object lies in the shadow: between its lines, on the side away from the eye.
+    // Its end is behind the object, wherever that is, and as far from the eye all around.
+    const glm::dvec3 eye(0, 0, 10);
+    const double reach = shadowReach(eye, maker.bounds()[1], outlines[0]);
+    EXPECT_GT(reach, glm::length(glm::dvec3(1, 1, -7) - eye));
+    for (const glm::dvec3& end : shadowEnd(eye, outlines[0], reach)) EXPECT_NEAR(glm::length(end - eye), reach, 1e-9);
     emphasis.outlines = {};
     EXPECT_LT(shadowPixels(shadowPicture(maker, view, emphasis)), shadowPixels(side) / 4);
 }
