@@ -47,7 +47,8 @@ bool makeShadow(const ImageFrame& frame, Shadow& shadow);
 /// is largest, and by how far a corner may lie elsewhere; each cut is made too large by as much, and more. A computed piece
 /// differs from what it stands for by that, and by some 1e-15 for each line that it was cut by, of which there are a few
 /// hundred at most. By induction, what is left in truth lies within so much of what is left here: a point near a piece that
-/// is dropped is within the lines by more than the slack. Nothing is dropped for being small.
+/// is dropped is within the lines by more than the slack. Nothing is dropped for being small. A cut is passed over for a
+/// piece only if it lies beyond one of its sides by twice what cuts are too large.
 class Uncovered {
 public:
     static constexpr uint32_t kMostCorners = 32;
