@@ -48,10 +48,13 @@ TEST(DepthImages, ClaimNoPixelThatSamplesSeeThrough) {
             for (uint8_t& both : double_sided) both = random.uniform() < share;
             const glm::dmat4 transform = anyhow(random);
             World world;
-            world.add({.bounds = {glm::dvec3(0.0), glm::dvec3(1.0)},
-                       .transform = transform,
-                       .occluder = world.addOccluder(prepareOccluder(mesh.view(), {}, double_sided))});
-            world.add({.bounds = {{-150, -150, -200}, {150, 150, -199}}});  // for which it is drawn
+            ObjectDef sheet, behind;
+            sheet.bounds = {glm::dvec3(0.0), glm::dvec3(1.0)};
+            sheet.transform = transform;
+            sheet.occluder = world.addOccluder(prepareOccluder(mesh.view(), {}, double_sided));
+            world.add(sheet);
+            behind.bounds = {{-150, -150, -200}, {150, 150, -199}};  // for which it is drawn
+            world.add(behind);
             View view = viewFrom({0, 0, 9}, {0, 0, -1}, {60, 384, 216, 0.05});
             view.jitter = 0;
             Query query;

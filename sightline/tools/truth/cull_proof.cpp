@@ -26,6 +26,8 @@ constexpr size_t kFewTriangles = 8;
 /// So many places that are left end the proof of an object.
 constexpr int kMostOpen = 64;
 
+}  // namespace
+
 /// The planes of a view, relative to the eye.
 struct ProofView {
     SightOrigin origin;
@@ -100,6 +102,8 @@ private:
         return true;
     }
 };
+
+namespace {
 
 /// How large a triangle looks, or nearly: who hides most is asked first.
 double sizeInSight(const ExactTriangle& triangle, const SightOrigin& origin) {

@@ -56,7 +56,7 @@ inline std::vector<DrawItem> itemsOf(const SceneFacts& facts) {
 inline void expectNoFalseCulls(const Witness& witness, const View& view, const std::vector<uint8_t>& reasons,
                                const WitnessSettings& looks, const std::string& what) {
     const FrameVerdict verdict = witness.judge(view, reasons, looks);
-    if (verdict.proofs) EXPECT_EQ(verdict.proofs->culled_undecided, 0u) << what;
+    if (verdict.proofs) { EXPECT_EQ(verdict.proofs->culled_undecided, 0u) << what; }
     for (const FalseCull& cull : verdict.false_culls)
         ADD_FAILURE() << what << ": object " << cull.object << " is seen at (" << cull.x << ", " << cull.y << ") by "
                       << cull.witness << " but was culled by stage " << int(reasons[cull.object]) - 1;
