@@ -113,7 +113,7 @@ TEST_F(ExplainVerb, AnswersForEachOfTwoEyes) {
     // So far apart that each sees past the walls what the other does not.
     const Outcome culled = run("cull city:1:400 --frames 2 --stereo 8 --json -");
     const json frame = json::parse(culled.out)["frames"][1];
-    for (size_t i = 0; i < frame["visible"].size(); i += 7) {
+    for (size_t i = 0; i < frame["visible"].size(); i += 14) {
         const json answers = answersOf("city:1:400 --frames 2 --frame 1 --rays 1000 --no-proofs --stereo 8 --object " +
                                        std::to_string(frame["visible"][i].get<int>()));
         const int eyes = frame["eyes"][i];
