@@ -11,7 +11,6 @@ namespace {
 
 #if GTEST_HAS_DEATH_TEST
 TEST(AssertDeathTest, StopsTheProgramOnceTheHookHasHeard) {
-    GTEST_FLAG_SET(death_test_style, "threadsafe");
     const int two = 2;
     SIGHTLINE_ASSERT(two == 2);
     EXPECT_DEATH(SIGHTLINE_ASSERT(two == 3), "assert_test.cpp:[0-9]+: assertion failed: two == 3");
