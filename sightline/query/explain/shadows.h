@@ -1,5 +1,7 @@
 // Whose shadows hide an object: the parts of others, as the eye sees them, behind which all of it lies.
 // SPDX-License-Identifier: MIT
+//
+// Satyan Coorg, Seth Teller. Real-Time Occlusion Culling for Models with Large Occluders. 1997.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -24,7 +26,7 @@ void addOutlines(const ProofMemory& proofs, const Frame& frame, const Certificat
 
 /// Looks for parts of other objects whose shadows together hold all of an object that lies in a view and shows its front:
 /// a certificate, as QuerySettings::proofs finds it, for one object and without drawing. What it finds is a proof in
-/// object space; that it finds none says nothing. For pictures and tools: some microseconds to a millisecond.
+/// object space; that it finds none says nothing. For pictures and tools. Takes up the view anew in each call.
 /// @param settings  what is culled as too far or too small hides nothing
 /// @param outlines  receives these parts; none: the object lies outside of the view, or shows no front
 /// @param corners   and their corners  [world units]

@@ -125,7 +125,7 @@ Image<Rgb> shadowPicture(const PictureMaker& maker, const View& view, const Emph
     shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
     const PictureMaker::Look look = maker.look(outside, shown);
     WorldLines lines(outside, look.width, look.height, look.nearness);
-    // Fronts of occluders show their backs to the side: then their boxes are there all the same.
+    // Backs of single-sided occluders are not drawn: their boxes stand for them.
     for (const uint32_t occluder : emphasis.occluders)
         drawBox(lines, scene.meshes[scene.objects[occluder].mesh].bounds, scene.objects[occluder].transform,
                 {kOccluder, 1, 0.6, 0.3});
