@@ -1,4 +1,4 @@
-// A GL context without a window, drawn by Mesa in software: the renderer that shares nothing with ours.
+// A GL context without a window, drawn by Mesa in software: the renderer that shares nothing with ours; or somebody else's.
 // SPDX-License-Identifier: MIT
 #include "apps/gl/context.h"
 
@@ -60,6 +60,23 @@ Result<GlContext> GlContext::create(uint32_t threads) {
     return last;
 }
 
+Result<GlContext> GlContext::current() {
+    const int version = epoxy_gl_version();
+    if (version < 45)
+        return fault("4.5 is needed, and here is " + std::to_string(version / 10) + "." + std::to_string(version % 10));
+    GlContext context;
+    context.readRenderer();
+    return context;
+}
+
+void GlContext::readRenderer() {
+    const auto text = [](GLenum name) {
+        const GLubyte* value = glGetString(name);
+        return std::string(value != nullptr ? reinterpret_cast<const char*>(value) : "unknown");
+    };
+    renderer_ = text(GL_RENDERER) + ", " + text(GL_VERSION);
+}
+
 Status GlContext::open(int way) {
     const EGLDisplay display = displayOf(way);
     if (display == EGL_NO_DISPLAY) return fault("EGL has no display for the software driver");
@@ -72,18 +89,15 @@ Status GlContext::open(int way) {
     context_ = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wish);
     if (context_ == EGL_NO_CONTEXT) return fault(eglFault("eglCreateContext for GL 4.5"));
     if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) return fault(eglFault("eglMakeCurrent"));
-    const auto text = [](GLenum name) {
-        const GLubyte* value = glGetString(name);
-        return std::string(value != nullptr ? reinterpret_cast<const char*>(value) : "unknown");
-    };
-    renderer_ = text(GL_RENDERER) + ", " + text(GL_VERSION);
+    readRenderer();
     if (renderer_.find("llvmpipe") == std::string::npos)
         return fault("drawn by " + renderer_ + ", not by Mesa's llvmpipe");
     return success();
 }
 
 void GlContext::makeCurrent() const {
-    if (eglGetCurrentContext() != context_) eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
+    if (context_ != nullptr && eglGetCurrentContext() != context_)
+        eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
 }
 
 void GlContext::close() {

@@ -1,4 +1,4 @@
-// A GL context without a window, drawn by Mesa in software: the renderer that shares nothing with ours.
+// A GL context without a window, drawn by Mesa in software: the renderer that shares nothing with ours; or somebody else's.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -19,6 +19,9 @@ public:
     /// @param threads  that fill pixels; the caller's thread transforms and bins  [limit: 0 to 16; 0: the caller's too]
     /// Errors: no EGL, no software driver, a GL older than 4.5, two contexts alive already.
     static Result<GlContext> create(uint32_t threads = 1);
+    /// The context that is current on this thread, whosever it is and whatever draws it. There must be one, and stay while
+    /// what was made in it is used, for makeCurrent() does nothing. Errors: a GL older than 4.5.
+    static Result<GlContext> current();
 
     GlContext(GlContext&& other) noexcept;
     GlContext& operator=(GlContext&& other) noexcept;
@@ -34,10 +37,11 @@ private:
     GlContext() = default;
     Status open(int way);
     void close();
+    void readRenderer();
 
     void* display_ = nullptr;
-    void* context_ = nullptr;
-    int way_ = -1;  ///< which of the ways in this one has taken; -1: none
+    void* context_ = nullptr;  ///< null: somebody else's
+    int way_ = -1;             ///< which of the ways in this one has taken; -1: none
     uint32_t threads_ = 0;
     std::string renderer_;
 };

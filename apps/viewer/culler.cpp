@@ -34,7 +34,8 @@ Culler::Culler(const Scene& scene, LoadedWorld world, const QuerySettings& asked
         bounds_.push_back(transformBox(scene.meshes[of.mesh].bounds, of.transform));
     }
     settings.time_stages = true;
-    settings.proofs = false;  // it shows the buffer, and the same answer whenever a switch is as it was
+    settings.lod_fade = 0;    // nobody asks again while nothing moves
+    settings.proofs = false;  // until the user wants them: the buffer is shown, and a switch put back changes nothing
     if (!hasCells()) return;
     for (const auto& name : now_.state().cell_state.cells->doors) doors_.push_back({std::string(name), 1.0f});
     set_.assign(doors_.size(), 1.0f);
@@ -66,6 +67,8 @@ bool Culler::ask(const View& view) {
     receivers_.assign(set.objects.begin(), set.objects.end());
     has_casters_ = false;
     for (const Visible& object : set.objects) visible_.push_back(objectOf(object.id));
+    levels_.assign(set.lods.empty() ? 0 : scene_.objects.size(), 0);
+    for (size_t i = 0; i < set.lods.size(); ++i) levels_[visible_[i]] = set.lods[i].level;
     std::sort(visible_.begin(), visible_.end());
     fresh_ = true;
     has_reasons_ = false;
@@ -100,16 +103,16 @@ std::string Culler::nameOf(uint32_t object) const {
 }
 
 ObjectWhy Culler::why(uint32_t object) const {
-    Explainer explainer(now_, view_, settings);
-    const Explanation found = explainer.explain(world_.ids[object]);
+    const ObjectId id = world_.ids[object];
+    const Explanation found = query_.explain(now_, view_, id, settings);
     ObjectWhy why;
     why.kept = found.verdict == Verdict::kVisible;
-    why.text = explanationText(found, nameOf(object), [&](ObjectId id) { return nameOf(objectOf(id)); });
+    why.text = explanationText(found, nameOf(object), [&](ObjectId of) { return nameOf(objectOf(of)); });
     for (const Hider& hider : found.occlusion.hiders) why.hiders.push_back(objectOf(hider.id));
     if (found.verdict != Verdict::kOccluded) return why;
     Array<HiderOutline> outlines;
     Array<glm::dvec3> corners;
-    findShadows(now_, view_, world_.ids[object], settings, outlines, corners);
+    if (!query_.certificateOf(id, outlines, corners)) findShadows(now_, view_, id, settings, outlines, corners);
     for (const HiderOutline& outline : outlines) {
         const auto first = corners.begin() + outline.first;
         why.outlines.emplace_back(first, first + outline.count);

@@ -43,6 +43,8 @@ public:
 
     /// Objects, rising: so that of two surfaces at one depth the same is shown, whatever is culled.
     std::span<const uint32_t> visible() const { return visible_; }
+    /// The level of detail to draw of an object that is visible; 0 is the finest.
+    uint8_t levelOf(uint32_t object) const { return object < levels_.size() ? levels_[object] : 0; }
     const QueryStats& stats() const { return stats_; }
     /// Per object: 0 visible, 1 + Stage of the stage that culled it.  [size: objects]
     std::span<const uint8_t> reasons();
@@ -60,12 +62,13 @@ public:
     std::vector<ViewerDoor>& doors() { return doors_; }
     bool hasCells() const;
     const Snapshot& now() const { return now_; }
+    ObjectId idOf(uint32_t object) const { return world_.ids[object]; }
+    uint32_t objectOf(ObjectId id) const { return object_of_[id.index]; }
     const tools::Scene& scene() const { return scene_; }
     /// In world space; may not be finite.
     const Box3d& boundsOf(uint32_t object) const { return bounds_[object]; }
 
 private:
-    uint32_t objectOf(ObjectId id) const { return object_of_[id.index]; }
     void moveDoors();
 
     const tools::Scene& scene_;
@@ -80,6 +83,7 @@ private:
     QuerySettings asked_;
     bool fresh_ = false, has_reasons_ = false, has_casters_ = false;
     std::vector<uint32_t> visible_, casters_;
+    std::vector<uint8_t> levels_;  ///< by object; empty: no levels were chosen
     std::vector<Visible> receivers_;
     ShadowQuery shadow_query_;
     CasterStats caster_stats_;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "apps/viewer/settings_panel.h"
 #include "sightline/tools/report/readable.h"
 
 namespace sightline::viewer {
@@ -41,7 +42,12 @@ public:
 
 private:
     void answer();
+    void stages();
+    void certificates();
     void show();
+    void paint();
+    void ways() const;
+    void clusters();
     void cut();
     void path();
     void doors();
@@ -63,10 +69,7 @@ private:
     PanelWishes wishes_;
 };
 
-void Panels::note(const char* words) {
-    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    places_[words] = {low.x, low.y, high.x, high.y};
-}
+void Panels::note(const char* words) { notePlace(places_, words); }
 
 bool Panels::check(const char* words, bool& value) {
     const bool changed = ImGui::Checkbox(words, &value);
@@ -92,6 +95,8 @@ PanelWishes Panels::draw() {
     ImGui::SetNextWindowSize({340, std::max(height - 16, 100.0f)}, ImGuiCond_FirstUseEver);
     if (ImGui::Begin("Sightline")) {
         answer();
+        stages();
+        drawSettings(culler_.settings, places_);
         show();
         cut();
         path();
@@ -102,11 +107,12 @@ PanelWishes Panels::draw() {
     ImGui::End();
     if (state_.chosen) chosen();
     if (state_.buffer) buffer();
+    if (state_.ways) ways();
     if (state_.windows && !state_.frozen) windows();
     return wishes_;
 }
 
-/// What was culled by which stage, and the stages' switches.
+/// What is visible, and how what is not is shown.
 void Panels::answer() {
     const QueryStats& stats = culler_.stats();
     ImGui::TextUnformatted(facts_.scene.name.c_str());
@@ -128,7 +134,14 @@ void Panels::answer() {
             ImGui::Text("%s %s more are not drawn", grouped(facts_.left_out).c_str(),
                         kCulledAsNames[static_cast<int>(state_.culled_as)]);
     }
-    if (!ImGui::CollapsingHeader("stages", ImGuiTreeNodeFlags_DefaultOpen)) return;
+}
+
+/// What was culled by which stage, and the stages' switches.
+void Panels::stages() {
+    const QueryStats& stats = culler_.stats();
+    const bool open = ImGui::CollapsingHeader("stages", ImGuiTreeNodeFlags_DefaultOpen);
+    note("stages");
+    if (!open) return;
     if (!ImGui::BeginTable("stages", 4, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_RowBg)) return;
     ImGui::TableSetupColumn("stage");
     ImGui::TableSetupColumn("tested");
@@ -167,12 +180,23 @@ void Panels::answer() {
     if (ImGui::SliderInt("buffer width", &width, 64, 1280))
         culler_.settings.occlusion_size = static_cast<uint32_t>(width);
     note("buffer width");
+    certificates();
+}
+
+/// Whether what hid a thing before is held against it first, and how far that goes.
+void Panels::certificates() {
+    check("certificates", culler_.settings.proofs);
+    if (!culler_.settings.proofs) return;
+    const QueryStats& stats = culler_.stats();
+    ImGui::SameLine();
+    ImGui::Text("%s culled so, %s of %s found, %s", grouped(stats.proved).c_str(), grouped(stats.proofs_found).c_str(),
+                grouped(stats.proofs_sought).c_str(), stats.occluder_triangles > 0 ? "drawn" : "not drawn");
 }
 
 void Panels::show() {
     if (!ImGui::CollapsingHeader("show", ImGuiTreeNodeFlags_DefaultOpen)) return;
     ImGui::TextUnformatted("colours (V)");
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < kColourings; ++i) {
         if (i > 0) ImGui::SameLine();
         if (ImGui::RadioButton(kColourByNames[i], static_cast<int>(state_.colour_by) == i))
             state_.colour_by = static_cast<ColourBy>(i);
@@ -195,6 +219,54 @@ void Panels::show() {
     }
     ImGui::SliderInt("tree level", &state_.tree_level, -1, 12, state_.tree_level < 0 ? "none" : "%d");
     note("tree level");
+    check("ways of culling, side by side", state_.ways);
+    paint();
+}
+
+/// The picture in the order of a BSP tree.
+void Panels::paint() {
+    check("paint by a BSP tree", state_.bsp);
+    if (!state_.bsp) return;
+    if (!facts_.painter) return ImGui::TextWrapped("%s", facts_.bsp_problem.c_str());
+    slide("painted", state_.bsp_part, 0, 1);
+    if (press("paint anew")) {
+        state_.bsp_part = 0;
+        state_.bsp_plays = true;
+    }
+    ImGui::SameLine();
+    ImGui::Text("%s of %s pieces", grouped(facts_.painter->drawn()).c_str(), grouped(facts_.painter->pieces()).c_str());
+}
+
+/// The same view by each way.
+void Panels::ways() const {
+    ImGui::SetNextWindowPos({360, static_cast<float>(facts_.height) - 232}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize({560, 224}, ImGuiCond_FirstUseEver);
+    if (ImGui::Begin("ways of culling", &state_.ways)) {
+        if (!facts_.ways_problem.empty()) ImGui::TextWrapped("%s", facts_.ways_problem.c_str());
+        else if (facts_.ways && ImGui::BeginTable("ways", 5, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_RowBg)) {
+            for (const char* head : {"way", "kept", "missed", "ms", "how"}) ImGui::TableSetupColumn(head);
+            ImGui::TableHeadersRow();
+            for (int i = 0; i < kWays; ++i) {
+                const WayAnswer& answer = facts_.ways->of(static_cast<Way>(i));
+                ImGui::TableNextRow();
+                const auto cell = [](const std::string& words) {
+                    ImGui::TableNextColumn();
+                    ImGui::TextUnformatted(words.c_str());
+                };
+                cell(kWayNames[i]);
+                cell(grouped(answer.kept.size()));
+                cell(grouped(answer.missed));
+                cell(facts_.times ? fmt::format("{:.2f}", answer.milliseconds) : "");
+                cell(answer.note);
+            }
+            ImGui::EndTable();
+            ImGui::TextWrapped(
+                "The GL's image of everything shows %s objects. Ways of the GL keep what its samples show, and know it "
+                "when all is drawn; the others keep all that is visible, and know it before.",
+                grouped(facts_.ways->seen()).c_str());
+        }
+    }
+    ImGui::End();
 }
 
 void Panels::cut() {
@@ -265,6 +337,7 @@ void Panels::chosen() {
         ImGui::SameLine();
         check("isolate (I)", state_.isolate);
         if (!state_.outlines.empty()) check("the shadows that hide it", state_.shadows);
+        clusters();
         if (!state_.hiders.empty()) ImGui::TextUnformatted("hidden by, in orange:");
         for (size_t i = 0; i < std::min<size_t>(state_.hiders.size(), 12); ++i) {
             ImGui::PushID(static_cast<int>(i));  // several may have one name
@@ -273,6 +346,19 @@ void Panels::chosen() {
         }
     }
     ImGui::End();
+}
+
+/// The clusters of its triangles, and the culling volume of one.
+void Panels::clusters() {
+    check("its clusters", state_.clusters);
+    if (!state_.clusters || !facts_.clusters) return;
+    const size_t with_backs = facts_.clusters->withBacks();
+    ImGui::Text("%s of %s are seen from their backs", grouped(facts_.clusters_back).c_str(),
+                grouped(facts_.clusters->count()).c_str());
+    if (with_backs == 0) return;
+    ImGui::SliderInt("culling volume", &state_.cluster, -1, static_cast<int>(with_backs) - 1,
+                     state_.cluster < 0 ? "none" : "%d");
+    note("culling volume");
 }
 
 void Panels::times() const {
@@ -300,7 +386,11 @@ void Panels::windows() const {
 /// The occlusion buffer, the nearer the brighter.
 void Panels::buffer() {
     const Query::DepthImage image = culler_.depthImage();
-    if (image.width == 0) return;
+    if (image.width == 0) {
+        if (ImGui::Begin("occlusion buffer", &state_.buffer, ImGuiWindowFlags_AlwaysAutoResize))
+            ImGui::TextUnformatted("certificates answered: nothing was drawn");
+        return ImGui::End();
+    }
     constexpr float kWidth = 384;
     const float scale = kWidth / static_cast<float>(image.width);
     ImGui::SetNextWindowPos({static_cast<float>(facts_.width) - kWidth - 24,
@@ -349,6 +439,11 @@ void Panels::keys() {
 }
 
 }  // namespace
+
+void notePlace(PanelPlaces& places, const std::string& words) {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    places[words] = {low.x, low.y, high.x, high.y};
+}
 
 PanelWishes drawPanels(const PanelFacts& facts, ViewerState& state, Culler& culler, PanelPlaces& places) {
     return Panels(facts, state, culler, places).draw();

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
 
+#include "apps/viewer/bsp_painter.h"
 #include "apps/viewer/culler.h"
+#include "apps/viewer/object_clusters.h"
+#include "apps/viewer/panel_places.h"
+#include "apps/viewer/side_by_side.h"
 #include "apps/viewer/viewer_state.h"
 #include "sightline/tools/scene/camera_path.h"
 #include "sightline/tools/scene/scene.h"
@@ -26,6 +29,12 @@ struct PanelFacts {
     double size = 1;                 ///< of the scene  [world units]
     bool times = true;               ///< are shown
     std::span<const float> frame_milliseconds, query_microseconds;
+    const SideBySide* ways = nullptr;
+    const std::string& ways_problem;
+    const BspPainter* painter = nullptr;
+    const std::string& bsp_problem;
+    const ObjectClusters* clusters = nullptr;
+    size_t clusters_back = 0;  ///< of these, seen from their backs
 };
 
 /// What the user asked of them that is more than a choice.
@@ -34,12 +43,6 @@ struct PanelWishes {
     std::optional<uint32_t> choose;  ///< an object
     bool explain = false, look_at_chosen = false, save_path = false;
 };
-
-/// Where a part of the panels is, by its words: for tests, which click there.
-struct PanelPlace {
-    float left = 0, top = 0, right = 0, bottom = 0;
-};
-using PanelPlaces = std::map<std::string, PanelPlace>;
 
 /// Between Gui::begin() and Gui::draw().
 PanelWishes drawPanels(const PanelFacts& facts, ViewerState& state, Culler& culler, PanelPlaces& places);

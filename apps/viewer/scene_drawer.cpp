@@ -113,16 +113,18 @@ Result<SceneDrawer> SceneDrawer::create(const Scene& scene) {
     for (const Mesh& mesh : scene.meshes) {
         Held held;
         held.base_vertex = static_cast<uint32_t>(positions.size());
-        const auto first = static_cast<uint32_t>(indices.size());
-        for (uint32_t i = 0; i < mesh.primitives.size(); ++i) {
-            const Primitive& primitive = mesh.primitives[i];
-            if (primitive.triangle_count == 0) continue;
-            held.ranges.push_back({first + 3 * static_cast<uint32_t>(primitive.first_triangle),
-                                   3 * static_cast<uint32_t>(primitive.triangle_count),
-                                   scene.materials[primitive.material].double_sided, i});
-        }
+        const auto addLevel = [&](std::span<const Primitive> primitives, std::span<const uint32_t> of) {
+            const auto first = static_cast<uint32_t>(indices.size());
+            std::vector<Range>& ranges = held.levels.emplace_back();
+            for (const Primitive& primitive : primitives)
+                if (primitive.triangle_count > 0)
+                    ranges.push_back({first + 3 * primitive.first_triangle, 3 * primitive.triangle_count,
+                                      scene.materials[primitive.material].double_sided, primitive.material});
+            indices.insert(indices.end(), of.begin(), of.end());
+        };
+        addLevel(mesh.primitives, mesh.indices);
+        for (const MeshLod& lod : mesh.lods) addLevel(lod.primitives, lod.indices);
         positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
-        indices.insert(indices.end(), mesh.indices.begin(), mesh.indices.end());
         drawer.meshes_.push_back(std::move(held));
     }
     drawer.array_ = makeArray();
@@ -176,19 +178,19 @@ void SceneDrawer::drawRange(const Held& mesh, const Range& range) const {
                              static_cast<GLint>(mesh.base_vertex));
 }
 
-void SceneDrawer::draw(uint32_t object, const Paint& paint) {
+void SceneDrawer::draw(uint32_t object, const Paint& paint, uint8_t level) {
     const SceneObject& of = scene_->objects[object];
     const Held& mesh = meshes_[of.mesh];
     place(object);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    for (const Range& range : mesh.ranges) {
-        const Primitive& primitive = scene_->meshes[of.mesh].primitives[range.primitive];
-        const bool solid = isSolid(scene_->materials[primitive.material]);
+    for (const Range& range : mesh.rangesOf(level)) {
+        const bool solid = isSolid(scene_->materials[range.material]);
         const float opacity = solid ? paint.opacity : std::min(paint.opacity, kGlass);
         if (opacity < 1) glEnable(GL_BLEND);
         else glDisable(GL_BLEND);
         glDepthMask(opacity < 1 ? GL_FALSE : GL_TRUE);
-        const glm::vec3 own(colourOf(*scene_, of, primitive)), base = glm::mix(own, paint.tint, paint.tinted);
+        const glm::vec3 own(colourOf(*scene_, of, {.material = range.material})),
+            base = glm::mix(own, paint.tint, paint.tinted);
         glUniform1f(opacity_, opacity);
         glUniform3fv(base_, 1, &base[0]);
         drawRange(mesh, range);
@@ -196,11 +198,11 @@ void SceneDrawer::draw(uint32_t object, const Paint& paint) {
     }
 }
 
-void SceneDrawer::drawNumber(uint32_t object) {
+void SceneDrawer::drawNumber(uint32_t object, uint8_t level) {
     const Held& mesh = meshes_[scene_->objects[object].mesh];
     place(object);
     glUniform1ui(number_, object);
-    for (const Range& range : mesh.ranges) drawRange(mesh, range);
+    for (const Range& range : mesh.rangesOf(level)) drawRange(mesh, range);
 }
 
 }  // namespace sightline::viewer

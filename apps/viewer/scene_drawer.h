@@ -30,21 +30,24 @@ public:
 
     /// @param sections  of the world: what is outside of one is cut away  [size: <= ViewPlanes::kMost]
     void begin(const GlView& view, std::span<const glm::dvec4> sections);
-    void draw(uint32_t object, const Paint& paint);
+    /// @param level  of detail: 0 is the finest, and stands in for what the mesh has not
+    void draw(uint32_t object, const Paint& paint, uint8_t level = 0);
     /// Instead of begin() and draw(): colours that are numbers, readNumber() of which gives them back.
     void beginNumbers(const GlView& view, std::span<const glm::dvec4> sections);
-    void drawNumber(uint32_t object);
+    void drawNumber(uint32_t object, uint8_t level = 0);
     uint64_t triangles() const { return triangles_; }  ///< drawn since begin()
 
 private:
     struct Range {
         uint32_t first = 0, count = 0;  ///< indices
         bool double_sided = false;
-        uint32_t primitive = 0;
+        uint32_t material = 0;
     };
     struct Held {
-        std::vector<Range> ranges;
+        std::vector<std::vector<Range>> levels;  ///< finest first
         uint32_t base_vertex = 0;
+
+        const std::vector<Range>& rangesOf(uint8_t level) const { return levels[level < levels.size() ? level : 0]; }
     };
 
     void place(uint32_t object);

@@ -27,6 +27,9 @@ constexpr uint32_t kMostGhosts = 4000;      // objects that are drawn see-throug
 constexpr size_t kTimes = 240;              // frames that times are kept of
 constexpr size_t kLeastRecorded = 10;       // frames: a shorter recording was a slip
 constexpr double kPathFps = 30;             // of a path that is recorded or shown
+constexpr uint32_t kAskedOfAll = 3;         // times that all ways are asked about a view: each remembers the one before
+constexpr double kPaintSeconds = 12;        // that all pieces take to be painted
+constexpr glm::vec3 kPortal(0.3f, 0.9f, 0.9f), kDoor(1.0f, 0.6f, 0.9f), kSeenThrough(1.0f, 1.0f, 0.5f);
 
 /// Pressed since the last frame.
 bool pressedNow(const Input& now, const Input& last, uint16_t key) { return now.holds(key) && !last.holds(key); }
@@ -141,7 +144,7 @@ void Viewer::pressed(const Input& input) {
     const auto now = [&](uint16_t key) { return pressedNow(input, last_, key); };
     if (now('F')) state.frozen = !state.frozen;
     if (now('C')) state.culled_as = static_cast<CulledAs>((static_cast<int>(state.culled_as) + 1) % 3);
-    if (now('V')) state.colour_by = static_cast<ColourBy>((static_cast<int>(state.colour_by) + 1) % 3);
+    if (now('V')) state.colour_by = static_cast<ColourBy>((static_cast<int>(state.colour_by) + 1) % kColourings);
     if (now('X')) state.x_ray = !state.x_ray;
     if (now('I')) state.isolate = !state.isolate && state.chosen.has_value();
     if (now('H')) state.panels = !state.panels;
@@ -159,9 +162,23 @@ void Viewer::pressed(const Input& input) {
 /// Shows the panels, and does what they are asked for.
 void Viewer::drawPanels() {
     const size_t left_out = state.culled_as == CulledAs::kBoxes ? boxes_left_out_ : ghosts_left_out_;
-    const PanelFacts facts{scene_,          settings_.path,      path_frame_,        width_,
-                           height_,         triangles_,          left_out,           size_,
-                           settings_.times, frame_milliseconds_, query_microseconds_};
+    const PanelFacts facts{scene_,
+                           settings_.path,
+                           path_frame_,
+                           width_,
+                           height_,
+                           triangles_,
+                           left_out,
+                           size_,
+                           settings_.times,
+                           frame_milliseconds_,
+                           query_microseconds_,
+                           ways_.get(),
+                           ways_problem_,
+                           painter_.get(),
+                           bsp_problem_,
+                           clusters_ ? &*clusters_ : nullptr,
+                           clusters_ ? clusters_->back(viewOf(culling)) : 0};
     const PanelWishes wishes = sightline::viewer::drawPanels(facts, state, culler_, places_);
     if (wishes.go_to) goTo(*wishes.go_to);
     if (wishes.choose) choose(*wishes.choose);
@@ -228,6 +245,8 @@ void Viewer::drawObjects() {
                 paint.tint[i] = 0.25f + 0.6f * static_cast<float>(mixed >> (8 + 16 * i) & 0xff) / 255;
         } else if (state.colour_by == ColourBy::kAnswer) {
             paint.tint = glm::vec3(0.35f, 0.65f, 0.4f);
+        } else if (state.colour_by == ColourBy::kLevels) {
+            paint.tint = levelColour(culler_.levelOf(object));
         }
         if (state.x_ray) paint.opacity = 0.25f;
         if (state.chosen == object) {
@@ -238,8 +257,37 @@ void Viewer::drawObjects() {
             paint.tint = kHider;
             paint.tinted = 0.8f;
         }
-        drawer_->draw(object, paint);
+        drawer_->draw(object, paint, culler_.levelOf(object));
     }
+}
+
+/// Asks all ways about the culling camera's view.
+void Viewer::askWays() {
+    ways_problem_.clear();
+    const View view = viewOf(culling);
+    if (view.sections.count > 0) {
+        ways_problem_ = "not with a section";
+        return;
+    }
+    if (!ways_) {
+        Result<std::unique_ptr<SideBySide>> made = SideBySide::create(culler_);
+        if (made) ways_ = std::move(*made);
+        else ways_problem_ = made.error().message;
+    }
+    if (!ways_) return;
+    if (const Status asked = ways_->ask(view); !asked) ways_problem_ = asked.error().message;
+}
+
+/// @returns false if there is no tree to paint by
+bool Viewer::paintBsp(const View& view, const GlView& gl_view) {
+    if (!painter_ && bsp_problem_.empty()) {
+        Result<std::unique_ptr<BspPainter>> made = BspPainter::create(scene_);
+        if (made) painter_ = std::move(*made);
+        else bsp_problem_ = made.error().message;
+    }
+    if (!painter_) return false;
+    painter_->draw(view, gl_view, static_cast<double>(state.bsp_part));
+    return true;
 }
 
 /// Whether an object that was culled is shown as what it is.
@@ -303,19 +351,8 @@ void Viewer::drawLines(const GlView& view) {
         for (const uint32_t object : culler_.visible())
             if (culler_.boundsOf(object).finite() && isShown(object))
                 lines_->box(culler_.boundsOf(object), glm::vec3(0.45f, 0.8f, 0.5f));
-    if (state.portals && culler_.hasCells()) {
-        const PortalGraph& graph = culler_.now().state().cell_state.cells->graph;
-        const PortalCorners corners = graph.corners();
-        std::vector<glm::dvec3> points;
-        for (uint32_t cell = 0; cell < graph.cells(); ++cell)
-            for (const DirectedPortal& portal : graph.portalsFrom(cell)) {
-                points.clear();
-                for (uint32_t i = portal.first; i < portal.first + portal.count; ++i)
-                    points.emplace_back(corners.x[i], corners.y[i], corners.z[i]);
-                lines_->outline(points, portal.door == CellPortal::kNone ? glm::vec3(0.3f, 0.9f, 0.9f)
-                                                                         : glm::vec3(1.0f, 0.6f, 0.9f));
-            }
-    }
+    if (state.portals && culler_.hasCells()) drawPortals();
+    if (state.clusters && state.chosen) drawClusters();
     if (state.tree_level >= 0) {
         const PlacedBvh& tree = culler_.now().state().bvh;
         std::vector<std::pair<uint32_t, int>> open;
@@ -350,6 +387,32 @@ void Viewer::drawLines(const GlView& view) {
         if (state.shadows && !state.why_is_old) drawShadows(box);
     }
     lines_->draw(view, 0.25f);
+}
+
+/// All portals, and in another colour those that a cell is seen through.
+void Viewer::drawPortals() {
+    const PortalGraph& graph = culler_.now().state().cell_state.cells->graph;
+    const PortalCorners corners = graph.corners();
+    std::vector<uint32_t> seen;
+    for (const SeenWindow& window : culler_.windows()) seen.push_back(window.portal);
+    std::sort(seen.begin(), seen.end());
+    std::vector<glm::dvec3> points;
+    for (uint32_t cell = 0; cell < graph.cells(); ++cell)
+        for (const DirectedPortal& portal : graph.portalsFrom(cell)) {
+            points.clear();
+            for (uint32_t i = portal.first; i < portal.first + portal.count; ++i)
+                points.emplace_back(corners.x[i], corners.y[i], corners.z[i]);
+            const bool through = std::binary_search(seen.begin(), seen.end(), portal.portal);
+            lines_->outline(points, through ? kSeenThrough : portal.door == CellPortal::kNone ? kPortal : kDoor);
+        }
+}
+
+/// The clusters of the chosen object, and one's culling volume.
+void Viewer::drawClusters() {
+    if (!clusters_ || clusters_->object() != *state.chosen) clusters_.emplace(scene_, *state.chosen);
+    clusters_->addEdges(viewOf(culling), *lines_);
+    if (state.cluster >= 0 && static_cast<size_t>(state.cluster) < clusters_->withBacks())
+        clusters_->addVolume(static_cast<size_t>(state.cluster), *lines_);
 }
 
 /// The parts that hide the chosen object; from outside of the frozen camera also their shadows.
@@ -398,7 +461,7 @@ Status Viewer::pick(const View& view, float x, float y) {
     glEnable(GL_SCISSOR_TEST);
     glScissor(static_cast<GLint>(x), row, 1, 1);
     for (const uint32_t object : culler_.visible())
-        if (isShown(object)) drawer_->drawNumber(object);
+        if (isShown(object)) drawer_->drawNumber(object, culler_.levelOf(object));
     for (const uint32_t object : ghosts_) drawer_->drawNumber(object);
     if (state.casters)
         for (const uint32_t object : culler_.casters(kSun))
@@ -432,7 +495,18 @@ Status Viewer::frame(const Input& input, uint32_t width, uint32_t height) {
 
     answer_changed_ = culler_.ask(viewOf(culling));
     culled_boxes_stale_ = culled_boxes_stale_ || answer_changed_;
-    rests_ = rests_ && !answer_changed_;
+    if (answer_changed_ || !state.ways) ways_asked_ = 0;
+    if (state.ways && ways_asked_ < kAskedOfAll) {
+        askWays();
+        ++ways_asked_;
+    }
+    if (state.bsp && state.bsp_plays) {
+        state.bsp_part += static_cast<float>(std::min(input.seconds, 0.1) / kPaintSeconds);
+        state.bsp_plays = state.bsp_part < 1;
+        state.bsp_part = std::min(state.bsp_part, 1.0f);
+    }
+    if (!state.chosen || !state.clusters) clusters_.reset();
+    rests_ = rests_ && !answer_changed_ && !(state.ways && ways_asked_ < kAskedOfAll) && !state.bsp_plays;
     // While the camera moves what is said of the chosen object is of an earlier view; when it rests it is asked again.
     if (state.chosen && (state.why.empty() || (state.why_is_old && !answer_changed_))) explainChosen();
     state.why_is_old = state.why_is_old || answer_changed_;
@@ -443,8 +517,12 @@ Status Viewer::frame(const Input& input, uint32_t width, uint32_t height) {
     glClearColor(kBackground.r, kBackground.g, kBackground.b, 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     drawer_->begin(gl_view, view.sections.all());
-    drawObjects();
-    triangles_ = drawer_->triangles();
+    if (state.bsp && paintBsp(view, gl_view)) {
+        triangles_ = painter_->triangles();
+    } else {
+        drawObjects();
+        triangles_ = drawer_->triangles();
+    }
     listGhosts();
     if (state.frozen || state.x_ray || state.casters || state.chosen) drawCulled(gl_view);
     drawLines(gl_view);

@@ -9,12 +9,15 @@
 #include <string>
 #include <vector>
 
+#include "apps/viewer/bsp_painter.h"
 #include "apps/viewer/culler.h"
 #include "apps/viewer/fly_camera.h"
 #include "apps/viewer/gui.h"
 #include "apps/viewer/line_drawer.h"
+#include "apps/viewer/object_clusters.h"
 #include "apps/viewer/panels.h"
 #include "apps/viewer/scene_drawer.h"
+#include "apps/viewer/side_by_side.h"
 #include "sightline/tools/report/pictures/png.h"
 #include "sightline/tools/scene/camera_path.h"
 
@@ -53,6 +56,11 @@ public:
     const tools::CameraPath& path() const { return settings_.path; }
     size_t pathFrame() const { return path_frame_; }
 
+    /// The last view by all ways; null: nobody wanted it, or the GL cannot.
+    const SideBySide* ways() const { return ways_.get(); }
+    /// Null: nobody wanted it, or the scene is too large.
+    const BspPainter* painter() const { return painter_.get(); }
+
     const PanelPlaces& places() const { return places_; }  ///< of the last frame
     /// Whether the next frame would be the same, were nothing done meanwhile.
     bool rests() const { return rests_; }
@@ -66,9 +74,13 @@ private:
     void keepRecording();
     void pressed(const Input& input);
     View viewOf(const FlyCamera& camera) const;
+    void askWays();
+    bool paintBsp(const View& view, const GlView& gl_view);
     void drawObjects();
     void drawCulled(const GlView& view);
     void drawLines(const GlView& view);
+    void drawPortals();
+    void drawClusters();
     void drawShadows(const Box3d& box);
     Status pick(const View& view, float x, float y);
     void choose(std::optional<uint32_t> object);
@@ -86,6 +98,11 @@ private:
     ViewerSettings settings_;
     std::optional<SceneDrawer> drawer_;
     std::optional<LineDrawer> lines_, culled_lines_;
+    std::unique_ptr<SideBySide> ways_;
+    std::unique_ptr<BspPainter> painter_;
+    std::optional<ObjectClusters> clusters_;  ///< of the chosen object
+    std::string ways_problem_, bsp_problem_;
+    uint32_t ways_asked_ = 0;  ///< times, about the view at hand
     Gui gui_;
     ScreenImage image_, pick_image_;
     Box3d bounds_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,8 +14,9 @@
 
 namespace sightline::viewer {
 
-enum class ColourBy : uint8_t { kMaterials, kObjects, kAnswer };
-inline constexpr const char* kColourByNames[] = {"materials", "objects", "answer"};
+enum class ColourBy : uint8_t { kMaterials, kObjects, kAnswer, kLevels };
+inline constexpr int kColourings = 4;
+inline constexpr const char* kColourByNames[kColourings] = {"materials", "objects", "answer", "levels"};
 
 /// How what was culled looks while the culling camera is left alone.
 enum class CulledAs : uint8_t { kNothing, kBoxes, kGhosts };
@@ -33,8 +35,12 @@ struct ViewerState {
     bool casters = false;  ///< what may darken what is visible, under a sun
     int tree_level = -1;   ///< boxes of the hierarchy's nodes of a level; below 0: none
     bool buffer = false;   ///< the occlusion buffer as a picture
+    bool ways = false;     ///< of culling, side by side
     bool x_ray = false;    ///< all that is solid is see-through
     bool isolate = false;  ///< the chosen object alone, and what hides it
+    bool bsp = false;      ///< the picture is painted in the order of a BSP tree
+    float bsp_part = 1;    ///< of its pieces, the farthest first  [0 to 1]
+    bool bsp_plays = false;
     bool section = false;
     int section_axis = 1;
     float section_at = 0.5f;  ///< between the ends of the scene  [0 to 1]
@@ -47,6 +53,8 @@ struct ViewerState {
     std::vector<uint32_t> hiders;                   ///< of it
     bool shadows = true;                            ///< of the parts that hide it
     std::vector<std::vector<glm::dvec3>> outlines;  ///< these parts
+    bool clusters = false;                          ///< of its triangles
+    int cluster = -1;                               ///< whose culling volume is shown; below 0: none
     std::string said;                               ///< the last message
     bool wants_picture = false;                     ///< of the next frame, into a file of the user's
     bool wants_to_close = false;
@@ -58,6 +66,16 @@ inline glm::vec3 stageColour(int stage) {
                                                  {0.94f, 0.89f, 0.26f}, {0.80f, 0.47f, 0.65f}, {0.84f, 0.37f, 0.00f},
                                                  {0.90f, 0.20f, 0.20f}, {0.60f, 0.40f, 0.80f}, {0.70f, 0.70f, 0.30f}};
     return kColours[stage];
+}
+
+/// The colour of a level of detail: the coarser, the redder.
+inline glm::vec3 levelColour(uint8_t level) {
+    constexpr glm::vec3 kColours[] = {{0.35f, 0.55f, 0.85f},
+                                      {0.30f, 0.75f, 0.45f},
+                                      {0.90f, 0.80f, 0.25f},
+                                      {0.95f, 0.55f, 0.20f},
+                                      {0.85f, 0.25f, 0.20f}};
+    return kColours[level < std::size(kColours) ? level : std::size(kColours) - 1];
 }
 
 }  // namespace sightline::viewer

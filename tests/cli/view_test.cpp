@@ -30,13 +30,20 @@ TEST_F(ViewVerb, WritesWhatIsSeen) {
     differs("--frame 2 --x-ray", plain);
     differs("--frame 2 --tree-level 1", plain);
     differs("--frame 2 --section 0,-1,0,1", plain);
+    differs("--frame 2 --bsp 0.5", plain);
+    differs("--frame 2 --colours levels --lod-error 4", plain);
     const std::string frozen = picture("city:1:200 --frames 6 --frame 2 --no-panels --frozen 0");
     EXPECT_NE(frozen, plain);
     differs("--frame 2 --frozen 0 --culled ghosts", frozen);
     const std::string panels = picture("city:1:200 --frames 6 --frame 2");
     EXPECT_NE(panels, plain);
     EXPECT_EQ(picture("city:1:200 --frames 6 --frame 2"), panels) << "without a window they show no times";
-    EXPECT_NE(picture("city:1:200 --frames 6 --frame 2 --object 7"), panels);
+    const std::string chosen = picture("city:1:200 --frames 6 --frame 2 --object 7");
+    EXPECT_NE(chosen, panels);
+    EXPECT_NE(picture("city:1:200 --frames 6 --frame 2 --object 7 --clusters"), chosen);
+    const std::string ways = picture("city:1:200 --frames 6 --frame 2 --ways");
+    EXPECT_NE(ways, panels);
+    EXPECT_EQ(picture("city:1:200 --frames 6 --frame 2 --ways"), ways);
 }
 
 TEST_F(ViewVerb, DrawsParallelViews) {
@@ -68,6 +75,8 @@ TEST_F(ViewVerb, RefusesWhatCannotBe) {
     refused("city:1:20 --headless --screenshot nowhere/else/v.png --size 0x5", 2, "--size");
     refused("none.glb --headless --screenshot v.png", 3, "none.glb");
     refused("city:1:20 --headless --screenshot v.png --colours red", 2, "--colours");
+    refused("city:1:20 --headless --screenshot v.png --bsp 2", 2, "--bsp");
+    refused("city:1:20 --headless --screenshot v.png --clusters", 2, "--clusters: of which object?");
     unsetenv("DISPLAY");
     unsetenv("WAYLAND_DISPLAY");
     refused("city:1:20 --size 64x64", 3, "no window can be opened here");

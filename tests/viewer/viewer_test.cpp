@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,9 +14,11 @@
 
 #include "apps/gl/context.h"
 #include "sightline/tools/import/gltf/gltf.h"
+#include "sightline/tools/load/mesh_lods.h"
 #include "sightline/tools/load/seeded_cameras.h"
 #include "sightline/tools/scene/camera_path.h"
 #include "sightline/tools/scene/city/city.h"
+#include "sightline/tools/scene/terrain/terrain.h"
 #include "tests/support/random.h"
 #include "tests/support/shared_scenes.h"
 
@@ -24,20 +27,23 @@ namespace {
 using namespace test;
 using namespace tools;
 
-constexpr uint32_t kWidth = 640, kHeight = 800;  // high enough for all panels
+constexpr uint32_t kWidth = 640, kHeight = 900;  // high enough for all panels
 
 /// A viewer with a mouse and keys.
 class Driven {
 public:
-    Driven(const GlContext& context, const Scene& scene, const CameraPath& path) {
+    Driven(const GlContext& context, const Scene& scene, const CameraPath& path, double lod_error = 0) {
         context.makeCurrent();
         ViewerSettings settings;
         settings.path = path;
         settings.path_file = path_file_.string();
         QuerySettings query;
         query.stages = stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion);
+        if (lod_error > 0) query.stages |= stageBit(Stage::kLod);
+        query.lod_error = lod_error;
         LoadSettings load;
         load.volumes = true;
+        load.lods = lod_error > 0;
         Result<std::unique_ptr<Viewer>> made = Viewer::create(scene, loadWorld(scene, {}, load), query, settings);
         EXPECT_TRUE(made.ok()) << made.error().message;
         if (made) viewer_ = std::move(*made);
@@ -85,6 +91,15 @@ public:
         const PanelPlace at = place->second;
         clickAt(at.left + 8, 0.5f * (at.top + at.bottom));
         away();
+        return true;
+    }
+    /// Types into a part of a panel, and ends with Enter.
+    bool type(const std::string& words, const std::string& text) {
+        if (!click(words)) return false;
+        input_.text = text;
+        frames();
+        input_.text.clear();
+        press(kEnter);
         return true;
     }
     /// Presses the left button at one place and lets go of it at another.
@@ -238,7 +253,22 @@ TEST_F(ViewerTest, EveryModeCanBeSeen) {
     state.outlines.clear();
     state.hiders.clear();
     state.why.clear();
+    shows("clusters", [&] {
+        state.chosen = viewer->culler().visible().front();
+        state.clusters = true;
+    });
+    shows("a culling volume", [&] {
+        state.chosen = viewer->culler().visible().front();
+        state.clusters = true;
+        state.cluster = 0;
+    });
+    shows("levels", [&] { state.colour_by = ColourBy::kLevels; });
+    shows("half of a BSP tree", [&] {
+        state.bsp = true;
+        state.bsp_part = 0.5f;
+    });
     shows("panels", [&] { state.panels = true; });
+    shows("ways", [&] { state.panels = state.ways = true; });
     shows("buffer", [&] { state.panels = state.buffer = true; });
     EXPECT_EQ(differing(plain, viewer.picture()), 0u) << "all that was changed is as it was";
 }
@@ -270,6 +300,149 @@ TEST_F(ViewerTest, PanelsDoWhatTheySay) {
     ASSERT_TRUE(viewer.click("picture (F12)"));
     EXPECT_TRUE(viewer->state.wants_picture);
     EXPECT_FALSE(viewer.click("what no panel has"));
+}
+
+TEST_F(ViewerTest, SettingsAreTyped) {
+    Driven viewer(*context_, city_, path_);
+    ASSERT_TRUE(viewer.click("stages"));  // shut, so that all settings have room
+    ASSERT_TRUE(viewer.click("settings"));
+    QuerySettings& settings = viewer->culler().settings;
+    EXPECT_EQ(settings.occlusion_size, QuerySettings().occlusion_size);
+    ASSERT_TRUE(viewer.type("occlusion_size", "128"));
+    EXPECT_EQ(settings.occlusion_size, 128u);
+    const Query::DepthImage image = viewer->culler().depthImage();
+    EXPECT_EQ(std::max(image.width, image.height), 128u);
+    ASSERT_TRUE(viewer.type("occlusion_size", "999999"));
+    EXPECT_EQ(settings.occlusion_size, 8192u) << "the most there is";
+    ASSERT_TRUE(viewer.type("occlusion_size", "0"));
+    EXPECT_EQ(settings.occlusion_size, 1u);
+    ASSERT_TRUE(viewer.type("occlusion_size", "384"));
+    ASSERT_TRUE(viewer.type("hysteresis", "0.25"));
+    EXPECT_EQ(settings.hysteresis, 0.25);
+    ASSERT_TRUE(viewer.click("masked"));
+    EXPECT_TRUE(settings.masked);
+    size_t rows = 0;
+    forEachSetting([&](const auto& row) {
+        rows += std::string(row.name) != "stages" && viewer->places().contains(row.name);  // a panel has that name
+    });
+    EXPECT_EQ(rows + 5, std::tuple_size_v<decltype(kQuerySettings)>) << "all but those that are elsewhere";
+}
+
+TEST_F(ViewerTest, CertificatesCanBeSwitchedOn) {
+    Driven viewer(*context_, city_, path_);
+    const std::vector<uint32_t> before(viewer->culler().visible().begin(), viewer->culler().visible().end());
+    ASSERT_TRUE(viewer.click("certificates"));
+    EXPECT_TRUE(viewer->culler().settings.proofs);
+    viewer->state.panels = false;
+    uint64_t proved = 0;
+    for (size_t frame = 0; frame < path_.frames.size(); ++frame) {
+        viewer->goTo(frame);
+        viewer.hold('W', 12);  // views that follow one another
+        proved += viewer->culler().stats().proved;
+        const Image<Rgb> culled = viewer.picture();
+        viewer->culler().settings.stages = 0;
+        EXPECT_EQ(differing(culled, viewer.picture()), 0u) << "frame " << frame;
+        viewer->culler().settings.stages = stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion);
+        viewer.frames();
+    }
+    EXPECT_GT(proved, 0u);
+    viewer->state.panels = true;
+    viewer->goTo(0);
+    viewer.frames(2);
+    ASSERT_TRUE(viewer.click("certificates"));
+    EXPECT_FALSE(viewer->culler().settings.proofs);
+}
+
+TEST_F(ViewerTest, AllWaysKeepWhatTheImageShows) {
+    Driven viewer(*context_, city_, path_);
+    viewer.click("ways of culling, side by side");
+    ASSERT_NE(viewer->ways(), nullptr);
+    const SideBySide& ways = *viewer->ways();
+    size_t kept[kWays] = {}, seen = 0;
+    for (size_t frame = 0; frame < path_.frames.size(); ++frame) {
+        viewer->goTo(frame);
+        viewer.frames(4);
+        EXPECT_GT(ways.seen(), 0u);
+        seen += ways.seen();
+        for (int way = 0; way < kWays; ++way) {
+            const WayAnswer& answer = ways.of(static_cast<Way>(way));
+            EXPECT_EQ(answer.missed, 0u) << kWayNames[way] << " frame " << frame;
+            EXPECT_GE(answer.kept.size(), ways.seen()) << kWayNames[way] << " frame " << frame;
+            EXPECT_LT(answer.kept.size(), city_.objects.size() / 2) << kWayNames[way] << " frame " << frame;
+            EXPECT_FALSE(answer.note.empty());
+            kept[way] += answer.kept.size();
+        }
+    }
+    EXPECT_LE(kept[static_cast<int>(Way::kProposals)], kept[static_cast<int>(Way::kCertificates)]);
+    EXPECT_GE(kept[static_cast<int>(Way::kProposals)], seen);
+}
+
+/// How often two pictures differ in the proportion of red, green and blue, which light leaves as it is.
+size_t differingHues(const Image<Rgb>& a, const Image<Rgb>& b) {
+    const auto hue = [](const Rgb& pixel) {
+        glm::dvec3 linear;
+        for (int i = 0; i < 3; ++i) linear[i] = std::pow((double(pixel[size_t(i)]) + 0.5) / 256, 2.2);
+        return linear / (linear.r + linear.g + linear.b);
+    };
+    size_t count = 0;
+    for (size_t i = 0; i < a.pixels.size(); ++i) count += glm::length(hue(a.pixels[i]) - hue(b.pixels[i])) > 0.03;
+    return count;
+}
+
+TEST_F(ViewerTest, ABspTreePaintsWhatADepthBufferShows) {
+    Driven viewer(*context_, city_, path_);
+    viewer->state.panels = false;
+    for (const size_t frame : {size_t{0}, size_t{4}, size_t{9}}) {
+        viewer->goTo(frame);
+        viewer->state.bsp = false;
+        const Image<Rgb> drawn = viewer.picture();
+        viewer->state.bsp = true;
+        viewer->state.bsp_part = 1;
+        const Image<Rgb> painted = viewer.picture();
+        ASSERT_NE(viewer->painter(), nullptr);
+        EXPECT_EQ(viewer->painter()->drawn(), viewer->painter()->pieces());
+        EXPECT_LT(differingHues(drawn, painted), drawn.pixels.size() / 100) << "frame " << frame;
+        viewer->state.bsp_part = 0;
+        const Image<Rgb> nothing = viewer.picture();
+        EXPECT_EQ(std::count(nothing.pixels.begin(), nothing.pixels.end(), nothing.pixels[0]),
+                  std::ptrdiff_t(nothing.pixels.size()));
+        viewer->state.bsp_part = 0.5f;
+        EXPECT_GT(differingHues(painted, viewer.picture()), drawn.pixels.size() / 100) << "frame " << frame;
+    }
+    viewer->state.panels = true;
+    viewer.frames(2);
+    ASSERT_TRUE(viewer.click("paint anew"));
+    EXPECT_LT(viewer->state.bsp_part, 0.1f);
+    viewer.frames(30);
+    EXPECT_GT(viewer->state.bsp_part, 0.02f) << "it goes on by itself";
+}
+
+TEST_F(ViewerTest, LevelsOfDetailAreDrawn) {
+    Scene scene = makeTerrain(1, 64);
+    for (Mesh& mesh : scene.meshes) addMeshLods(mesh);
+    CameraPath path;
+    path.frames.resize(2);
+    const Box3d box = worldBounds(scene);
+    path.frames[0].target = path.frames[1].target = box.center();
+    path.frames[0].eye = box.center() + glm::dvec3(0, 0.05, 0.05) * glm::length(box.size());
+    path.frames[1].eye = box.center() + glm::dvec3(0, 20, 20) * glm::length(box.size());
+    Driven viewer(*context_, scene, path, 4);
+    const auto coarsest = [&] {
+        uint8_t level = 0;
+        for (const uint32_t object : viewer->culler().visible())
+            level = std::max(level, viewer->culler().levelOf(object));
+        return level;
+    };
+    viewer->goTo(1);
+    viewer.frames(2);
+    EXPECT_GT(coarsest(), 0);
+    const uint8_t far = coarsest();
+    viewer->goTo(0);
+    viewer.frames(2);
+    EXPECT_LT(coarsest(), far);
+    ASSERT_TRUE(viewer.click("lod"));
+    viewer.frames(2);
+    EXPECT_EQ(coarsest(), 0) << "its switch";
 }
 
 TEST_F(ViewerTest, NothingThatIsClickedDoesHarm) {

@@ -14,6 +14,7 @@
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/tool.h"
 #include "apps/cli/verbs/common.h"
+#include "apps/cli/verbs/cull_path.h"
 #include "apps/cli/verbs/explain_object.h"
 #include "apps/cli/verbs/verbs.h"
 #include "apps/cli/verbs/visibility_choice.h"
@@ -33,8 +34,9 @@ struct ViewOptions : RunOptions {
     uint32_t frame = 0;
     std::optional<uint32_t> frozen;
     std::string object, colours = "materials", culled = "boxes";
-    bool x_ray = false;
+    bool x_ray = false, ways = false, clusters = false;
     int tree_level = -1;
+    std::optional<double> bsp;
 };
 
 template <class Choice, size_t count>
@@ -50,6 +52,10 @@ Status arrange(const ViewOptions& options, const Scene& scene, viewer::Viewer& v
     state.culled_as = choiceOf<viewer::CulledAs>(viewer::kCulledAsNames, options.culled);
     state.x_ray = options.x_ray;
     state.tree_level = options.tree_level;
+    state.ways = options.ways;
+    state.clusters = options.clusters;
+    state.bsp = options.bsp.has_value();
+    state.bsp_part = static_cast<float>(options.bsp.value_or(1));
     for (const DoorAsked& asked : options.visibility.doors)
         for (viewer::ViewerDoor& door : viewer.culler().doors())
             if (door.name == asked.name) door.open = static_cast<float>(asked.open);
@@ -80,9 +86,9 @@ std::string freeName() {
     }
 }
 
-/// Panels take their places in the first frames.
+/// Panels take their places in the first frames, and other ways of culling find out in some what they show.
 Status drawOnce(const ViewOptions& options, viewer::Viewer& viewer) {
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 5; ++i)
         if (Status drawn = viewer.frame({}, options.width, options.height); !drawn) return drawn;
     if (options.screenshot.empty()) return success();
     return writePicture(viewer, options.screenshot);
@@ -119,6 +125,7 @@ Status checkView(const ViewOptions& options) {
     files.write("--screenshot", options.screenshot);
     if (!files.status()) return files.status();
     if (options.screenshot == "-") return usageError("--screenshot -: pictures go into files");
+    if (options.clusters && options.object.empty()) return usageError("--clusters: of which object? --object OBJECT");
     if (options.headless && options.screenshot.empty()) return usageError("--headless goes with --screenshot");
     return options.screenshot.empty() ? success() : canWriteFile(options.screenshot);
 }
@@ -136,8 +143,9 @@ LoadedWorld loadForView(const Scene& scene, const ViewOptions& options) {
 Status runView(const CLI::App& verb, ViewOptions& options) {
     if (Status good = finish(verb, options); !good) return good;
     if (Status good = checkView(options); !good) return good;
-    const Result<Scene> scene = loadScene(options.scene);
+    Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
+    prepareLods(*scene, options);
     if (Status opened = openVisibility(*scene, options); !opened) return opened;
     const Result<CameraPath> path = loadPath(*scene, options);
     if (!path) return path.error();
@@ -195,8 +203,9 @@ void addView(CLI::App& tool, int& exit_code) {
     verb->add_option("--object", options->object, "choose this object: its key, its name or a part of its path")
         ->type_name("OBJECT");
     verb->add_option("--colours", options->colours, "of what is visible")
-        ->check(CLI::IsMember({"materials", "objects", "answer"}))
-        ->type_name("materials|objects|answer")
+        ->check(CLI::IsMember(
+            std::vector<std::string>(std::begin(viewer::kColourByNames), std::end(viewer::kColourByNames))))
+        ->type_name("materials|objects|answer|levels")
         ->capture_default_str();
     verb->add_option("--culled", options->culled, "what was culled is shown as")
         ->check(CLI::IsMember({"nothing", "boxes", "ghosts"}))
@@ -207,6 +216,12 @@ void addView(CLI::App& tool, int& exit_code) {
         ->check(CLI::Range(-1, 12))
         ->type_name("N")
         ->capture_default_str();
+    verb->add_option("--bsp", options->bsp,
+                     "paint this part of the scene in the order of a BSP tree, the farthest first (0 to 1)")
+        ->check(CLI::Range(0.0, 1.0))
+        ->type_name("PART");
+    verb->add_flag("--ways", options->ways, "show what other ways of culling keep of the same view");
+    verb->add_flag("--clusters", options->clusters, "show the clusters of the chosen object's triangles (--object)");
     verb->add_flag("--no-panels", options->no_panels, "without panels");
     verb->callback([verb, options, &exit_code] {
         const Status done = runView(*verb, *options);

@@ -10,9 +10,11 @@ namespace sightline::tools {
 using namespace studies;
 
 RenderList::RenderList(const Scene& scene, const View& view)
-    : scene_(scene), items_(chooseItems(view)), list_(items_), bounds_(finiteBounds(scene)) {}
+    : scene_(scene), items_(chooseItems(&view)), list_(items_), bounds_(finiteBounds(scene)) {}
+RenderList::RenderList(const Scene& scene)
+    : scene_(scene), items_(chooseItems(nullptr)), list_(items_), bounds_(finiteBounds(scene)) {}
 
-std::vector<DrawItem> RenderList::chooseItems(const View& view) {
+std::vector<DrawItem> RenderList::chooseItems(const View* view) {
     flags_.resize(scene_.meshes.size());
     for (size_t m = 0; m < flags_.size(); ++m) {
         const Mesh& mesh = scene_.meshes[m];
@@ -26,7 +28,7 @@ std::vector<DrawItem> RenderList::chooseItems(const View& view) {
                         isSolid(material));
         }
     }
-    const glm::dmat4 clip = view.projection * view.view;
+    const glm::dmat4 clip = view ? view->projection * view->view : glm::dmat4(1.0);
     std::vector<DrawItem> items;
     for (size_t i = 0; i < scene_.objects.size(); ++i) {
         const SceneObject& object = scene_.objects[i];
@@ -40,7 +42,7 @@ std::vector<DrawItem> RenderList::chooseItems(const View& view) {
         item.transform = object.transform;
         item.id = static_cast<uint32_t>(i);
         casters_.push_back(item);
-        if (mayBeInView(clip, box)) items.push_back(item);
+        if (!view || mayBeInView(clip, box)) items.push_back(item);
     }
     return items;
 }

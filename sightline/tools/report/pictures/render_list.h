@@ -18,11 +18,13 @@ using namespace studies;
 class RenderList {
 public:
     RenderList(const Scene& scene, const View& view);
+    /// Of all objects, for many views.
+    explicit RenderList(const Scene& scene);
     RenderList(const RenderList&) = delete;
     RenderList& operator=(const RenderList&) = delete;
 
     const Scene& scene() const { return scene_; }
-    const DrawList& list() const { return list_; }                  ///< of the objects that may be in view
+    const DrawList& list() const { return list_; }                  ///< of the objects that may be in view, or all
     std::span<const DrawItem> casters() const { return casters_; }  ///< all objects: shadows come from outside, too
     const Box3d& bounds() const { return bounds_; }                 ///< of the scene, as far as it is finite
 
@@ -33,7 +35,7 @@ private:
     struct Flags {
         std::vector<uint8_t> double_sided, solid;  // per triangle
     };
-    std::vector<DrawItem> chooseItems(const View& view);
+    std::vector<DrawItem> chooseItems(const View* view);
 
     const Scene& scene_;
     std::vector<Flags> flags_;  // per mesh
