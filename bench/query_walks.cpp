@@ -53,12 +53,12 @@ Layers::Layers(int depth) {
     }
 }
 
-Walked::Walked(const Scene& scene, uint32_t frames, uint32_t width, uint32_t height) : list_(scene, View()) {
+Walked::Walked(const Scene& scene, uint32_t frames, uint32_t width, uint32_t height) : list_(scene) {
     std::vector<Box3d> boxes;
-    for (const DrawItem& item : list_.casters())
+    for (const DrawItem& item : list_.list().items())
         boxes.push_back(transformBox(scene.meshes[scene.objects[item.id].mesh].bounds, item.transform));
     scene_.name = scene.name;
-    scene_.items = list_.casters();
+    scene_.items = list_.list().items();
     scene_.plant(boxes);
     WalkSettings settings;
     settings.frames = frames;

@@ -45,6 +45,7 @@ private:
     void stages();
     void certificates();
     void show();
+    void cells() const;
     void paint();
     void ways() const;
     void clusters();
@@ -216,11 +217,23 @@ void Panels::show() {
     if (culler_.hasCells()) {
         check("portals", state_.portals);
         check("windows of cells", state_.windows);
+        cells();
     }
     ImGui::SliderInt("tree level", &state_.tree_level, -1, 12, state_.tree_level < 0 ? "none" : "%d");
     note("tree level");
     check("ways of culling, side by side", state_.ways);
     paint();
+}
+
+/// Where the eye is, and how far it sees from there.
+void Panels::cells() const {
+    const std::span<const SeenWindow> windows = culler_.windows();
+    const auto isStart = [](const SeenWindow& window) { return window.from == SeenWindow::kNone; };
+    const auto start = std::find_if(windows.begin(), windows.end(), isStart);
+    if (start == windows.end()) return ImGui::TextUnformatted("no portals decide here");
+    const auto starts = static_cast<size_t>(std::count_if(windows.begin(), windows.end(), isStart));
+    const std::string others = starts > 1 ? fmt::format(" or {} more", starts - 1) : "";
+    ImGui::Text("in cell %u%s, sees cells in %zu windows", start->cell, others.c_str(), windows.size());
 }
 
 /// The picture in the order of a BSP tree.
