@@ -41,6 +41,9 @@ constexpr Case kCases[] = {
     {"queries", benchQueries},
     {"rows", benchRows},
     {"shadow", benchShadow},
+#ifdef SIGHTLINE_VIEWER
+    {"viewer", benchViewer},
+#endif
     {"vis", benchVis},
     {"volumes", benchVolumes},
     {"walks", benchWalks},

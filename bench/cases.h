@@ -88,6 +88,12 @@ Table benchRows(const Options& options);
 /// that the reference renderer lights otherwise without the rest.
 Table benchShadow(const Options& options);
 
+#ifdef SIGHTLINE_VIEWER
+/// A frame of the viewer, picture and all, along a walk through a city or a scene: by all stages and by the frustum alone, beside
+/// one without culling.
+Table benchViewer(const Options& options);
+#endif
+
 /// The cells of real maps, where ../shared/maps is there, and of rooms in a grid: baking who sees whom beside classic portal flow,
 /// which is given half a minute, and on two threads beside one.
 Table benchVis(const Options& options);

@@ -85,15 +85,17 @@ Status BspPainter::prepare() {
     return checkGl("uploading a BSP tree");
 }
 
-/// Walks the tree for an eye, and uploads what it sees in that order.
-void BspPainter::sort(const glm::dvec4& eye) {
-    eye_ = eye;
+/// Walks the tree for a view, and uploads what it sees in that order.
+void BspPainter::sort(const View& view) {
+    const glm::dvec4 eye = isOrthographic(view)
+                               ? bspParallelEye(-glm::dvec3(view.view[0][2], view.view[1][2], view.view[2][2]))
+                               : bspEye(eyePosition(view));
     order_.clear();
     end_.clear();
     std::vector<uint32_t> indices;
     const BspTree& tree = scene_.tree;
     walkBackToFront(
-        BspStatic{tree}, eye, stack_, [](uint32_t) { return true; },
+        BspStatic{tree}, eye, stack_, [&](uint32_t node) { return mayBeInView(clip_, tree.bounds[node]); },
         [&](uint32_t at) {
             const BspNode& node = tree.nodes[at];
             const bool in_front = glm::dot(node.plane, eye) >= 0;
@@ -115,10 +117,10 @@ void BspPainter::sort(const glm::dvec4& eye) {
 void BspPainter::draw(const View& view, const GlView& gl_view, double part) {
     glUseProgram(program_.get());
     glBindVertexArray(array_.get());
-    const glm::dvec4 eye = isOrthographic(view)
-                               ? bspParallelEye(-glm::dvec3(view.view[0][2], view.view[1][2], view.view[2][2]))
-                               : bspEye(eyePosition(view));
-    if (eye != eye_) sort(eye);
+    if (const glm::dmat4 clip = view.projection * view.view; clip != clip_) {
+        clip_ = clip;
+        sort(view);
+    }
     drawn_ = static_cast<size_t>(std::llround(std::clamp(part, 0.0, 1.0) * static_cast<double>(order_.size())));
     if (drawn_ == 0) return;
     glm::dmat4 from_origin(1.0);

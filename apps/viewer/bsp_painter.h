@@ -25,7 +25,8 @@ public:
     /// Errors: more triangles than that; of the GL.
     static Result<std::unique_ptr<BspPainter>> create(const tools::Scene& scene);
 
-    /// Draws the first pieces of the order that the view's eye sees them in. Backs of single-sided ones have no place in it.
+    /// Draws the first pieces of the order that the view's eye sees them in. Backs of single-sided ones have no place in it,
+    /// nor has most of what lies outside of the view.
     /// @param part  of the pieces  [0 to 1]
     void draw(const View& view, const GlView& gl_view, double part);
     size_t pieces() const { return order_.size(); }  ///< in the order
@@ -41,7 +42,7 @@ private:
 
     explicit BspPainter(const tools::Scene& scene) : list_(scene) {}
     Status prepare();
-    void sort(const glm::dvec4& eye);
+    void sort(const View& view);
 
     tools::RenderList list_;
     studies::BspScene scene_;
@@ -49,7 +50,7 @@ private:
     std::vector<uint32_t> order_;  ///< pieces
     std::vector<size_t> end_;      ///< per piece of the order: of its indices
     BspStack stack_;
-    glm::dvec4 eye_{0.0};  ///< that the order is of; 0: of none
+    glm::dmat4 clip_{0.0};  ///< of the view that the order is of; 0: of none
     glm::dvec3 origin_{0.0};
     size_t drawn_ = 0;
     GlName vertices_, indices_, array_, program_;

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "sightline/cells/portal_graph.h"
+#include "sightline/query/explain/credits.h"
 #include "sightline/query/explain/explain.h"
 #include "sightline/query/explain/shadows.h"
 #include "sightline/tools/report/run/explain_text.h"
@@ -16,6 +18,8 @@
 namespace sightline::viewer {
 using namespace tools;
 namespace {
+
+constexpr size_t kMostNamed = 200'000;  // objects of which names are compared
 
 bool sameView(const View& a, const View& b) {
     return a.view == b.view && a.projection == b.projection && a.width == b.width && a.height == b.height &&
@@ -36,9 +40,40 @@ Culler::Culler(const Scene& scene, LoadedWorld world, const QuerySettings& asked
     settings.time_stages = true;
     settings.lod_fade = 0;    // nobody asks again while nothing moves
     settings.proofs = false;  // until the user wants them: the buffer is shown, and a switch put back changes nothing
-    if (!hasCells()) return;
-    for (const auto& name : now_.state().cell_state.cells->doors) doors_.push_back({std::string(name), 1.0f});
+    if (scene.objects.size() <= kMostNamed)
+        for (const SceneObject& object : scene.objects) ++names_[{object.name, object.node}];
+    if (hasCells()) listDoors();
+}
+
+/// The bake names a door after the object that shuts it; of several of one name, with the object's key behind it.
+void Culler::listDoors() {
+    const detail::AttachedCells& cells = *now_.state().cell_state.cells;
+    std::map<std::string, uint32_t> object_of;
+    for (uint32_t object = 0; object < scene_.objects.size(); ++object) {
+        const SceneObject& of = scene_.objects[object];
+        object_of.try_emplace(of.name, object);
+        object_of.try_emplace(fmt::format("{} {}", of.name, of.key), object);
+    }
+    for (const auto& name : cells.doors) {
+        ViewerDoor& door = doors_.emplace_back();
+        door.name = door.label = std::string(name);
+        const auto known = object_of.find(door.name);
+        if (known == object_of.end()) continue;
+        door.object = known->second;
+        door.label = objectPath(scene_, scene_.objects[known->second]);
+    }
     set_.assign(doors_.size(), 1.0f);
+    const PortalCorners corners = cells.graph.corners();
+    std::vector<uint8_t> known(cells.graph.portals(), 0);
+    for (uint32_t cell = 0; cell < cells.graph.cells(); ++cell)
+        for (const DirectedPortal& portal : cells.graph.portalsFrom(cell)) {
+            if (portal.door == CellPortal::kNone || known[portal.portal]++) continue;
+            ViewerDoor& door = doors_[portal.door];
+            std::vector<glm::dvec3>& outline = door.portals.emplace_back();
+            for (uint32_t i = portal.first; i < portal.first + portal.count; ++i)
+                outline.emplace_back(corners.x[i], corners.y[i], corners.z[i]);
+            if (!outline.empty()) door.middle = outline.front();
+        }
 }
 
 bool Culler::hasCells() const { return now_.state().cell_state.cells != nullptr; }
@@ -65,7 +100,7 @@ bool Culler::ask(const View& view) {
     stats_ = set.stats;
     visible_.clear();
     receivers_.assign(set.objects.begin(), set.objects.end());
-    has_casters_ = false;
+    has_casters_ = has_hides_ = false;
     for (const Visible& object : set.objects) visible_.push_back(objectOf(object.id));
     levels_.assign(set.lods.empty() ? 0 : scene_.objects.size(), 0);
     for (size_t i = 0; i < set.lods.size(); ++i) levels_[visible_[i]] = set.lods[i].level;
@@ -97,9 +132,24 @@ std::span<const uint32_t> Culler::casters(const glm::dvec3& sun) {
     return casters_;
 }
 
+std::span<const HidesMost> Culler::hidesMost() {
+    if (has_hides_) return hides_;
+    hides_.clear();
+    for (const Credit& credit : CreditBook(now_).credits(view_, settings))
+        if (credit.hidden > 0) hides_.push_back({objectOf(credit.id), credit.hidden});
+    std::stable_sort(hides_.begin(), hides_.end(),
+                     [](const HidesMost& a, const HidesMost& b) { return a.hidden > b.hidden; });
+    has_hides_ = true;
+    return hides_;
+}
+
 std::string Culler::nameOf(uint32_t object) const {
-    const std::string path = objectPath(scene_, scene_.objects[object]);
-    return path.empty() ? fmt::format("object {}", scene_.objects[object].key) : fmt::format("'{}'", oneLine(path, 60));
+    const SceneObject& of = scene_.objects[object];
+    const std::string path = objectPath(scene_, of);
+    if (path.empty()) return fmt::format("object {}", of.key);
+    const auto named = names_.find({of.name, of.node});
+    const bool alone = named == names_.end() || named->second == 1;
+    return alone ? fmt::format("'{}'", oneLine(path, 60)) : fmt::format("'{}' #{}", oneLine(path, 60), of.key);
 }
 
 ObjectWhy Culler::why(uint32_t object) const {

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sightline/query/query.h"
@@ -16,8 +19,18 @@ namespace sightline::viewer {
 
 /// A door of the attached cells.
 struct ViewerDoor {
-    std::string name;
+    std::string name;   ///< of the door in the visibility file
+    std::string label;  ///< the path of the object that shuts it, if there is one
     float open = 1;
+    std::optional<uint32_t> object;  ///< that shuts it
+    std::vector<std::vector<glm::dvec3>> portals;
+    glm::dvec3 middle{0.0};
+};
+
+/// Whom an object of the answer hid.
+struct HidesMost {
+    uint32_t object = 0;
+    double hidden = 0;  ///< objects; one that several hide is shared among them
 };
 
 /// Why an object is, or is not, in the answer.
@@ -57,7 +70,11 @@ public:
     Query::DepthImage depthImage() { return query_.depthImage(true); }
 
     ObjectWhy why(uint32_t object) const;
+    /// The object's path; of several of one name, with its key.
     std::string nameOf(uint32_t object) const;
+    /// Who hides most in the last answer, the most first. Costs some tens of queries, once an answer.
+    std::span<const HidesMost> hidesMost();
+    bool knowsHidesMost() const { return has_hides_; }
 
     std::vector<ViewerDoor>& doors() { return doors_; }
     bool hasCells() const;
@@ -69,6 +86,7 @@ public:
     const Box3d& boundsOf(uint32_t object) const { return bounds_[object]; }
 
 private:
+    void listDoors();
     void moveDoors();
 
     const tools::Scene& scene_;
@@ -81,7 +99,9 @@ private:
     Query query_;
     View view_;
     QuerySettings asked_;
-    bool fresh_ = false, has_reasons_ = false, has_casters_ = false;
+    bool fresh_ = false, has_reasons_ = false, has_casters_ = false, has_hides_ = false;
+    std::vector<HidesMost> hides_;
+    std::map<std::pair<std::string, uint32_t>, uint32_t> names_;  ///< objects of one name below one node
     std::vector<uint32_t> visible_, casters_;
     std::vector<uint8_t> levels_;  ///< by object; empty: no levels were chosen
     std::vector<Visible> receivers_;

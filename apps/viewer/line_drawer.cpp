@@ -1,4 +1,4 @@
-// Lines and boxes in the world: frusta, cells, portals, bounds; faint where they are behind something.
+// Lines, boxes and flat faces in the world: frusta, portals, bounds, shut doors; lines are faint behind something.
 // SPDX-License-Identifier: MIT
 #include "apps/viewer/line_drawer.h"
 
@@ -68,17 +68,24 @@ void LineDrawer::outline(std::span<const glm::dvec3> points, const glm::vec3& co
     for (size_t i = 0; i < points.size(); ++i) line(points[i], points[(i + 1) % points.size()], colour);
 }
 
+void LineDrawer::face(std::span<const glm::dvec3> points, const glm::vec3& colour) {
+    for (size_t i = 2; i < points.size(); ++i)
+        for (const size_t corner : {size_t{0}, i - 1, i}) faces_.push_back({points[corner], colour});
+    changed_ = true;
+}
+
 void LineDrawer::draw(const GlView& view, float behind) {
-    if (lines_.empty()) return;
+    if (lines_.empty() && faces_.empty()) return;
     glUseProgram(program_.get());
     glBindVertexArray(array_.get());
     if (changed_) {
         vertices_.clear();
-        origin_ = lines_.front().from;
+        origin_ = lines_.empty() ? faces_.front().place : lines_.front().from;
         for (const Line& line : lines_) {
             vertices_.push_back({glm::vec3(line.from - origin_), line.colour});
             vertices_.push_back({glm::vec3(line.to - origin_), line.colour});
         }
+        for (const Corner& corner : faces_) vertices_.push_back({glm::vec3(corner.place - origin_), corner.colour});
         glBindBuffer(GL_ARRAY_BUFFER, buffer_.get());
         glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices_.size() * sizeof(Vertex)), vertices_.data(),
                      GL_STREAM_DRAW);
@@ -89,10 +96,18 @@ void LineDrawer::draw(const GlView& view, float behind) {
     const glm::mat4 to_clip(toClipOf(view, from_origin));
     glUniformMatrix4fv(to_clip_, 1, GL_FALSE, &to_clip[0][0]);
     for (GLenum i = 0; i < 8; ++i) glDisable(GL_CLIP_DISTANCE0 + i);
+    const auto count = static_cast<GLsizei>(2 * lines_.size());
+    if (!faces_.empty()) {
+        setDepth(true);
+        glDisable(GL_BLEND);
+        glDisable(GL_CULL_FACE);
+        glUniform1f(opacity_, 1.0f);
+        glDrawArrays(GL_TRIANGLES, count, static_cast<GLsizei>(faces_.size()));
+    }
+    if (lines_.empty()) return;
     setDepth(false);
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    const auto count = static_cast<GLsizei>(vertices_.size());
     if (behind > 0) {
         glDisable(GL_DEPTH_TEST);
         glUniform1f(opacity_, behind);

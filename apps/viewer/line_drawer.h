@@ -1,4 +1,4 @@
-// Lines and boxes in the world: frusta, cells, portals, bounds; faint where they are behind something.
+// Lines, boxes and flat faces in the world: frusta, portals, bounds, shut doors; lines are faint behind something.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -20,6 +20,7 @@ public:
 
     void clear() {
         lines_.clear();
+        faces_.clear();
         changed_ = true;
     }
     void line(const glm::dvec3& from, const glm::dvec3& to, const glm::vec3& colour);
@@ -28,6 +29,8 @@ public:
     void hexahedron(const glm::dvec3 (&corners)[8], const glm::vec3& colour);
     /// A closed outline.
     void outline(std::span<const glm::dvec3> points, const glm::vec3& colour);
+    /// A flat, convex face, solid from both sides.
+    void face(std::span<const glm::dvec3> points, const glm::vec3& colour);
     size_t count() const { return lines_.size(); }
 
     /// @param behind  opacity of what is behind something  [0 to 1]
@@ -42,7 +45,13 @@ private:
         glm::vec3 place, colour;
     };
 
+    struct Corner {
+        glm::dvec3 place;
+        glm::vec3 colour;
+    };
+
     std::vector<Line> lines_;
+    std::vector<Corner> faces_;  ///< three for a triangle
     std::vector<Vertex> vertices_;
     glm::dvec3 origin_{0.0};  ///< that uploaded places are relative to
     bool changed_ = true;

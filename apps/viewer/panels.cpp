@@ -10,6 +10,7 @@
 #include <imgui.h>
 
 #include "apps/viewer/settings_panel.h"
+#include "apps/viewer/ways_panel.h"
 #include "sightline/tools/report/readable.h"
 
 namespace sightline::viewer {
@@ -44,14 +45,15 @@ private:
     void answer();
     void stages();
     void certificates();
+    void hidesMost();
     void show();
     void cells() const;
     void paint();
-    void ways() const;
     void clusters();
     void cut();
     void path();
     void doors();
+    void door(size_t index, const char* words);
     void chosen();
     void times() const;
     void windows() const;
@@ -62,6 +64,7 @@ private:
     bool press(const char* words);
     bool slide(const char* words, float& value, float low, float high);
     void note(const char* words);
+    void tip(const char* words) const;
 
     const PanelFacts& facts_;
     ViewerState& state_;
@@ -71,6 +74,16 @@ private:
 };
 
 void Panels::note(const char* words) { notePlace(places_, words); }
+
+/// Shows what the last part means while the mouse is at it.
+void Panels::tip(const char* words) const {
+    if (!ImGui::IsItemHovered()) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(360);
+    ImGui::TextUnformatted(words);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
 
 bool Panels::check(const char* words, bool& value) {
     const bool changed = ImGui::Checkbox(words, &value);
@@ -96,19 +109,22 @@ PanelWishes Panels::draw() {
     ImGui::SetNextWindowSize({340, std::max(height - 16, 100.0f)}, ImGuiCond_FirstUseEver);
     if (ImGui::Begin("Sightline")) {
         answer();
+        keys();
         stages();
+        hidesMost();
         drawSettings(culler_.settings, places_);
         show();
         cut();
         path();
         doors();
         times();
-        keys();
     }
     ImGui::End();
     if (state_.chosen) chosen();
     if (state_.buffer) buffer();
-    if (state_.ways) ways();
+    const bool doors_shut = std::any_of(culler_.doors().begin(), culler_.doors().end(),
+                                        [](const ViewerDoor& door) { return door.open < 1; });
+    if (state_.ways) drawWays(facts_.ways, facts_.ways_problem, facts_.times, doors_shut, facts_.height, state_.ways);
     if (state_.windows && !state_.frozen) windows();
     return wishes_;
 }
@@ -123,18 +139,21 @@ void Panels::answer() {
         ImGui::Text("query %.0f us, frame %.1f ms", 1e-3 * static_cast<double>(stats.nanoseconds),
                     meanOf(facts_.frame_milliseconds));
     check("freeze the culling camera (F)", state_.frozen);
-    if (state_.frozen || state_.x_ray) {
-        ImGui::TextUnformatted("culled is shown as (C)");
-        for (int i = 0; i < 3; ++i) {
-            if (i > 0) ImGui::SameLine();
-            if (ImGui::RadioButton(kCulledAsNames[i], static_cast<int>(state_.culled_as) == i))
-                state_.culled_as = static_cast<CulledAs>(i);
-            note(kCulledAsNames[i]);
-        }
-        if (state_.culled_as != CulledAs::kNothing && facts_.left_out > 0)
-            ImGui::Text("%s %s more are not drawn", grouped(facts_.left_out).c_str(),
-                        kCulledAsNames[static_cast<int>(state_.culled_as)]);
+    ImGui::TextUnformatted("culled is shown as (C)");
+    for (int i = 0; i < 3; ++i) {
+        if (i > 0) ImGui::SameLine();
+        if (ImGui::RadioButton(kCulledAsNames[i], static_cast<int>(state_.culled_as) == i))
+            state_.culled_as = static_cast<CulledAs>(i);
+        note(kCulledAsNames[i]);
     }
+    // One line, whatever it says, so that nothing jumps.
+    if (!state_.frozen && !state_.x_ray) ImGui::TextUnformatted("once the camera is frozen, or with x-ray");
+    else if (state_.culled_as != CulledAs::kNothing && facts_.left_out > 0)
+        ImGui::Text("%s more %s would be too many", grouped(facts_.left_out).c_str(),
+                    kCulledAsNames[static_cast<int>(state_.culled_as)]);
+    else if (state_.culled_as == CulledAs::kGhosts && !state_.x_ray)
+        ImGui::TextUnformatted("walls hide them: x-ray (X) sees through");
+    else ImGui::TextUnformatted(" ");
 }
 
 /// What was culled by which stage, and the stages' switches.
@@ -187,15 +206,39 @@ void Panels::stages() {
 /// Whether what hid a thing before is held against it first, and how far that goes.
 void Panels::certificates() {
     check("certificates", culler_.settings.proofs);
+    tip("Remember who hid a thing, and ask first whether they still do. Where nearly all is hidden by whom is known, "
+        "no "
+        "buffer is drawn. Fly to see it at work.");
     if (!culler_.settings.proofs) return;
     const QueryStats& stats = culler_.stats();
     ImGui::SameLine();
-    ImGui::Text("%s culled so, %s of %s found, %s", grouped(stats.proved).c_str(), grouped(stats.proofs_found).c_str(),
-                grouped(stats.proofs_sought).c_str(), stats.occluder_triangles > 0 ? "drawn" : "not drawn");
+    ImGui::TextUnformatted(stats.occluder_triangles > 0 ? "a buffer was drawn" : "no buffer was drawn");
+    ImGui::Text("%s culled by whom is known, %s of %s found", grouped(stats.proved).c_str(),
+                grouped(stats.proofs_found).c_str(), grouped(stats.proofs_sought).c_str());
+}
+
+/// The objects that hide most of the others.
+void Panels::hidesMost() {
+    const bool open = ImGui::CollapsingHeader("who hides most");
+    note("who hides most");
+    if (!open) return;
+    if (!culler_.knowsHidesMost() && !press("find out")) return;
+    const std::span<const HidesMost> most = culler_.hidesMost();
+    if (most.empty()) ImGui::TextUnformatted("nobody hides anything");
+    for (size_t i = 0; i < std::min<size_t>(most.size(), 12); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        const std::string words = fmt::format("{:.1f} by {}", most[i].hidden, culler_.nameOf(most[i].object));
+        if (ImGui::Selectable(words.c_str(), state_.chosen == most[i].object)) wishes_.choose = most[i].object;
+        if (i == 0) note("the one that hides most");
+        tip(words.c_str());
+        ImGui::PopID();
+    }
 }
 
 void Panels::show() {
-    if (!ImGui::CollapsingHeader("show", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    const bool open = ImGui::CollapsingHeader("show", ImGuiTreeNodeFlags_DefaultOpen);
+    note("show");
+    if (!open) return;
     ImGui::TextUnformatted("colours (V)");
     for (int i = 0; i < kColourings; ++i) {
         if (i > 0) ImGui::SameLine();
@@ -207,6 +250,7 @@ void Panels::show() {
     check("bounds of what is visible", state_.bounds);
     check("x-ray (X)", state_.x_ray);
     check("occlusion buffer", state_.buffer);
+    tip("The depths that occlusion asks: the nearer, the brighter; black is open.");
     check("shadow casters of a sun", state_.casters);
     if (state_.casters) {
         const CasterStats& stats = culler_.casterStats();
@@ -216,12 +260,15 @@ void Panels::show() {
     }
     if (culler_.hasCells()) {
         check("portals", state_.portals);
+        tip("Yellow: looked through. Cyan: others. Pink: doors.");
         check("windows of cells", state_.windows);
         cells();
     }
     ImGui::SliderInt("tree level", &state_.tree_level, -1, 12, state_.tree_level < 0 ? "none" : "%d");
     note("tree level");
+    tip("The boxes of a level of the hierarchy that the query descends.");
     check("ways of culling, side by side", state_.ways);
+    tip("What queries to the graphics card and other ways keep of the same view.");
     paint();
 }
 
@@ -239,8 +286,9 @@ void Panels::cells() const {
 /// The picture in the order of a BSP tree.
 void Panels::paint() {
     check("paint by a BSP tree", state_.bsp);
-    if (!state_.bsp) return;
-    if (!facts_.painter) return ImGui::TextWrapped("%s", facts_.bsp_problem.c_str());
+    tip("Without a depth buffer: pieces of the scene one over the other, the farthest first.");
+    if (!facts_.bsp_problem.empty()) ImGui::TextWrapped("%s", facts_.bsp_problem.c_str());
+    if (!state_.bsp || !facts_.painter) return;
     slide("painted", state_.bsp_part, 0, 1);
     if (press("paint anew")) {
         state_.bsp_part = 0;
@@ -248,38 +296,6 @@ void Panels::paint() {
     }
     ImGui::SameLine();
     ImGui::Text("%s of %s pieces", grouped(facts_.painter->drawn()).c_str(), grouped(facts_.painter->pieces()).c_str());
-}
-
-/// The same view by each way.
-void Panels::ways() const {
-    ImGui::SetNextWindowPos({360, static_cast<float>(facts_.height) - 232}, ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize({560, 224}, ImGuiCond_FirstUseEver);
-    if (ImGui::Begin("ways of culling", &state_.ways)) {
-        if (!facts_.ways_problem.empty()) ImGui::TextWrapped("%s", facts_.ways_problem.c_str());
-        else if (facts_.ways && ImGui::BeginTable("ways", 5, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_RowBg)) {
-            for (const char* head : {"way", "kept", "missed", "ms", "how"}) ImGui::TableSetupColumn(head);
-            ImGui::TableHeadersRow();
-            for (int i = 0; i < kWays; ++i) {
-                const WayAnswer& answer = facts_.ways->of(static_cast<Way>(i));
-                ImGui::TableNextRow();
-                const auto cell = [](const std::string& words) {
-                    ImGui::TableNextColumn();
-                    ImGui::TextUnformatted(words.c_str());
-                };
-                cell(kWayNames[i]);
-                cell(grouped(answer.kept.size()));
-                cell(grouped(answer.missed));
-                cell(facts_.times ? fmt::format("{:.2f}", answer.milliseconds) : "");
-                cell(answer.note);
-            }
-            ImGui::EndTable();
-            ImGui::TextWrapped(
-                "The GL's image of everything shows %s objects. Ways of the GL keep what its samples show, and know it "
-                "when all is drawn; the others keep all that is visible, and know it before.",
-                grouped(facts_.ways->seen()).c_str());
-        }
-    }
-    ImGui::End();
 }
 
 void Panels::cut() {
@@ -314,18 +330,39 @@ void Panels::path() {
     if (!state_.said.empty()) ImGui::TextWrapped("%s", state_.said.c_str());
 }
 
+/// The slider of a door.
+void Panels::door(size_t index, const char* words) {
+    ViewerDoor& door = culler_.doors()[index];
+    const char* const format = door.open <= 0 ? "shut" : door.open >= 1 ? "open" : "%.2f";
+    ImGui::SetNextItemWidth(80);
+    ImGui::SliderFloat(words, &door.open, 0, 1, format);
+    note(words);
+    if (!ImGui::IsItemHovered() && !ImGui::IsItemActive()) return;
+    state_.door = index;
+    tip(door.label.c_str());
+}
+
+/// The doors, those next to the eye first.
 void Panels::doors() {
     std::vector<ViewerDoor>& doors = culler_.doors();
-    if (doors.empty() || !ImGui::CollapsingHeader("doors")) return note("doors");
+    state_.door.reset();
+    if (doors.empty()) return;
+    const bool open = ImGui::CollapsingHeader("doors");
     note("doors");
+    if (!open) return;
     if (press("open all"))
         for (ViewerDoor& door : doors) door.open = 1;
     ImGui::SameLine();
     if (press("shut all"))
         for (ViewerDoor& door : doors) door.open = 0;
+    std::vector<size_t> order(doors.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+        return glm::distance(doors[a].middle, facts_.eye) < glm::distance(doors[b].middle, facts_.eye);
+    });
     for (size_t i = 0; i < std::min<size_t>(doors.size(), 200); ++i) {
-        ImGui::PushID(static_cast<int>(i));
-        slide(doors[i].name.c_str(), doors[i].open, 0, 1);
+        ImGui::PushID(static_cast<int>(order[i]));
+        door(order[i], doors[order[i]].label.c_str());
         ImGui::PopID();
     }
 }
@@ -335,8 +372,9 @@ void Panels::chosen() {
     const uint32_t object = *state_.chosen;
     const float width = static_cast<float>(facts_.width);
     ImGui::SetNextWindowPos({width - 388, 8}, ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize({380, 260}, ImGuiCond_FirstUseEver);
-    if (ImGui::Begin("chosen object")) {
+    ImGui::SetNextWindowSize({380, 420}, ImGuiCond_FirstUseEver);
+    bool open = true;
+    if (ImGui::Begin("chosen object", &open)) {
         const SceneObject& of = facts_.scene.objects[object];
         ImGui::TextWrapped("%s, key %llu, %s triangles", culler_.nameOf(object).c_str(),
                            static_cast<unsigned long long>(of.key),
@@ -351,6 +389,11 @@ void Panels::chosen() {
         check("isolate (I)", state_.isolate);
         if (!state_.outlines.empty()) check("the shadows that hide it", state_.shadows);
         clusters();
+        for (size_t i = 0; i < culler_.doors().size(); ++i)
+            if (culler_.doors()[i].object == object) door(i, "this door");
+        if (culler_.knowsHidesMost())
+            for (const HidesMost& most : culler_.hidesMost())
+                if (most.object == object) ImGui::Text("hides %.1f objects", most.hidden);
         if (!state_.hiders.empty()) ImGui::TextUnformatted("hidden by, in orange:");
         for (size_t i = 0; i < std::min<size_t>(state_.hiders.size(), 12); ++i) {
             ImGui::PushID(static_cast<int>(i));  // several may have one name
@@ -359,11 +402,14 @@ void Panels::chosen() {
         }
     }
     ImGui::End();
+    if (!open) wishes_.let_go = true;
 }
 
 /// The clusters of its triangles, and the culling volume of one.
 void Panels::clusters() {
     check("its clusters", state_.clusters);
+    tip("The runs of triangles that are culled together, each in a colour; grey: the culling camera sees them from "
+        "their backs.");
     if (!state_.clusters || !facts_.clusters) return;
     const size_t with_backs = facts_.clusters->withBacks();
     ImGui::Text("%s of %s are seen from their backs", grouped(facts_.clusters_back).c_str(),
@@ -372,11 +418,13 @@ void Panels::clusters() {
     ImGui::SliderInt("culling volume", &state_.cluster, -1, static_cast<int>(with_backs) - 1,
                      state_.cluster < 0 ? "none" : "%d");
     note("culling volume");
+    tip("Of one cluster, in pink: an eye in there sees all of it from its back. Freeze the camera and go around to see "
+        "it.");
 }
 
 void Panels::times() const {
     if (!facts_.times) return;
-    if (!ImGui::CollapsingHeader("times", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    if (!ImGui::CollapsingHeader("times")) return;
     const auto plot = [](const char* words, std::span<const float> values, const char* unit) {
         const float most = values.empty() ? 1 : *std::max_element(values.begin(), values.end());
         const std::string over = fmt::format("{}: mean {:.1f}, most {:.1f} {}", words, meanOf(values), most, unit);

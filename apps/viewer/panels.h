@@ -27,7 +27,8 @@ struct PanelFacts {
     uint64_t triangles = 0;          ///< drawn
     size_t left_out = 0;             ///< boxes or ghosts
     double size = 1;                 ///< of the scene  [world units]
-    bool times = true;               ///< are shown
+    glm::dvec3 eye{0.0};
+    bool times = true;  ///< are shown
     std::span<const float> frame_milliseconds, query_microseconds;
     const SideBySide* ways = nullptr;
     const std::string& ways_problem;
@@ -41,7 +42,7 @@ struct PanelFacts {
 struct PanelWishes {
     std::optional<size_t> go_to;     ///< a frame of the path
     std::optional<uint32_t> choose;  ///< an object
-    bool explain = false, look_at_chosen = false, save_path = false;
+    bool explain = false, look_at_chosen = false, let_go = false, save_path = false;
 };
 
 /// Between Gui::begin() and Gui::draw().

@@ -7,19 +7,14 @@
 
 #include <fmt/format.h>
 
-#include "sightline/cells/portal_graph.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/pictures/scene_look.h"
-#include "sightline/tools/report/pictures/shadow_picture.h"
-#include "sightline/tree/descend.h"
-#include "sightline/world/world_state.h"
 
 namespace sightline::viewer {
 using namespace tools;
 namespace {
 
 constexpr glm::vec3 kBackground(0.10f, 0.115f, 0.14f);
-constexpr glm::vec3 kChosen(0.15f, 0.55f, 1.0f), kHider(1.0f, 0.55f, 0.1f), kFrustumInk(1.0f, 0.95f, 0.6f);
 constexpr glm::vec3 kCaster(0.75f, 0.45f, 1.0f);
 constexpr glm::dvec3 kSun(0.4, 0.8, 0.45);  // as the shading has it
 constexpr size_t kMostBoxes = 40000;        // of culled objects
@@ -29,7 +24,6 @@ constexpr size_t kLeastRecorded = 10;       // frames: a shorter recording was a
 constexpr double kPathFps = 30;             // of a path that is recorded or shown
 constexpr uint32_t kAskedOfAll = 3;         // times that all ways are asked about a view: each remembers the one before
 constexpr double kPaintSeconds = 12;        // that all pieces take to be painted
-constexpr glm::vec3 kPortal(0.3f, 0.9f, 0.9f), kDoor(1.0f, 0.6f, 0.9f), kSeenThrough(1.0f, 1.0f, 0.5f);
 
 /// Pressed since the last frame.
 bool pressedNow(const Input& now, const Input& last, uint16_t key) { return now.holds(key) && !last.holds(key); }
@@ -84,17 +78,23 @@ void Viewer::goTo(size_t frame) {
     if (!state.frozen) culling = eye;
 }
 
-View Viewer::viewOf(const FlyCamera& camera) const {
-    View view = camera.view(std::max(width_, 1u), std::max(height_, 1u));
-    view.sections = settings_.sections;
-    view.jitter = settings_.jitter;
-    if (!state.section) return view;
+/// Those that were asked for, and the user's own.
+ViewPlanes Viewer::sections() const {
+    ViewPlanes planes = settings_.sections;
+    if (!state.section) return planes;
     const int axis = state.section_axis;
     const double at = glm::mix(bounds_.min[axis], bounds_.max[axis], static_cast<double>(state.section_at));
     glm::dvec4 plane(0.0);
     plane[axis] = state.section_keeps_upper ? 1 : -1;
     plane.w = state.section_keeps_upper ? -at : at;
-    view.sections.add(plane);
+    planes.add(plane);
+    return planes;
+}
+
+View Viewer::viewOf(const FlyCamera& camera, const ViewPlanes& sections) const {
+    View view = camera.view(std::max(width_, 1u), std::max(height_, 1u));
+    view.sections = sections;
+    view.jitter = settings_.jitter;
     return view;
 }
 
@@ -155,8 +155,18 @@ void Viewer::pressed(const Input& input) {
     if (now(kF12)) state.wants_picture = true;
     if (now(kEscape)) {
         if (state.chosen) choose(std::nullopt);
-        else state.wants_to_close = true;
+        else leave();
+    } else if (!input.holds(kEscape) && (std::find(input.keys, input.keys + kKeys, true) != input.keys + kKeys ||
+                                         input.buttons[0] || input.buttons[1] || input.buttons[2])) {
+        may_end_ = false;
     }
+}
+
+/// Escape asks twice before the viewer ends.
+void Viewer::leave() {
+    state.wants_to_close = may_end_;
+    may_end_ = true;
+    if (!state.wants_to_close) state.said = "Esc once more ends";
 }
 
 /// Shows the panels, and does what they are asked for.
@@ -170,6 +180,7 @@ void Viewer::drawPanels() {
                            triangles_,
                            left_out,
                            size_,
+                           eye.eye(),
                            settings_.times,
                            frame_milliseconds_,
                            query_microseconds_,
@@ -178,9 +189,10 @@ void Viewer::drawPanels() {
                            painter_.get(),
                            bsp_problem_,
                            clusters_ ? &*clusters_ : nullptr,
-                           clusters_ ? clusters_->back(viewOf(culling)) : 0};
+                           clusters_ ? clusters_->back(cullingView()) : 0};
     const PanelWishes wishes = sightline::viewer::drawPanels(facts, state, culler_, places_);
     if (wishes.go_to) goTo(*wishes.go_to);
+    if (wishes.let_go) choose(std::nullopt);
     if (wishes.choose) choose(*wishes.choose);
     if (wishes.explain) explainChosen();
     if (wishes.look_at_chosen) lookAtChosen();
@@ -264,7 +276,7 @@ void Viewer::drawObjects() {
 /// Asks all ways about the culling camera's view.
 void Viewer::askWays() {
     ways_problem_.clear();
-    const View view = viewOf(culling);
+    const View view = cullingView();
     if (view.sections.count > 0) {
         ways_problem_ = "not with a section";
         return;
@@ -285,6 +297,7 @@ bool Viewer::paintBsp(const View& view, const GlView& gl_view) {
         if (made) painter_ = std::move(*made);
         else bsp_problem_ = made.error().message;
     }
+    state.bsp = painter_ != nullptr;
     if (!painter_) return false;
     painter_->draw(view, gl_view, static_cast<double>(state.bsp_part));
     return true;
@@ -330,106 +343,6 @@ void Viewer::drawCulled(const GlView& view) {
     if (!state.isolate) culled_lines_->draw(view, 0.12f);
 }
 
-void Viewer::drawLines(const GlView& view) {
-    lines_->clear();
-    if (state.frozen && state.frustum) {
-        const View of = viewOf(culling);
-        const glm::dmat4 back = glm::inverse(of.projection * of.view);
-        glm::dvec3 corners[8];
-        for (int i = 0; i < 8; ++i) {
-            const glm::dvec4 near = back * glm::dvec4(i & 1 ? 1 : -1, i & 2 ? 1 : -1, -1, 1);
-            corners[i] = glm::dvec3(near) / near.w;
-            if ((i & 4) == 0) continue;
-            // To the far end of the scene, in place of a far plane that may be infinitely far away.
-            const glm::dvec3 from = eyePosition(of), ahead = corners[i] - from;
-            corners[i] = isOrthographic(of) ? corners[i] + size_ * culling.forward()
-                                            : from + ahead * (0.6 * size_ / std::max(glm::length(ahead), 1e-12));
-        }
-        lines_->hexahedron(corners, kFrustumInk);
-    }
-    if (state.bounds)
-        for (const uint32_t object : culler_.visible())
-            if (culler_.boundsOf(object).finite() && isShown(object))
-                lines_->box(culler_.boundsOf(object), glm::vec3(0.45f, 0.8f, 0.5f));
-    if (state.portals && culler_.hasCells()) drawPortals();
-    if (state.clusters && state.chosen) drawClusters();
-    if (state.tree_level >= 0) {
-        const PlacedBvh& tree = culler_.now().state().bvh;
-        std::vector<std::pair<uint32_t, int>> open;
-        if (tree.nodes.size() > 0) open.emplace_back(0, 0);
-        while (!open.empty()) {
-            const uint32_t node = open.back().first;
-            const int level = open.back().second;
-            open.pop_back();
-            const BvhNode& children = tree.nodes[node];
-            forEachSlot(usedSlots(children), [&](int slot) {
-                const bool leaf = (children.child[slot] & BvhNode::kLeaf) != 0;
-                if (level == state.tree_level) {
-                    const Box3f box = slotBox(children, slot);
-                    lines_->box({tree.origin + glm::dvec3(box.min), tree.origin + glm::dvec3(box.max)},
-                                glm::vec3(0.7f, 0.7f, 1.0f));
-                } else if (!leaf) {
-                    open.emplace_back(children.child[slot], level + 1);
-                }
-            });
-        }
-    }
-    if (state.chosen && culler_.boundsOf(*state.chosen).finite()) {
-        const Box3d& box = culler_.boundsOf(*state.chosen);
-        lines_->box(box, kChosen);
-        // Whether something stands in between is seen along the lines from the culling camera.
-        if (state.frozen && !isOrthographic(viewOf(culling)))
-            for (int i = 0; i < 8; ++i)
-                lines_->line(
-                    culling.eye(),
-                    {i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z},
-                    0.7f * kChosen);
-        if (state.shadows && !state.why_is_old) drawShadows(box);
-    }
-    lines_->draw(view, 0.25f);
-}
-
-/// All portals, and in another colour those that a cell is seen through.
-void Viewer::drawPortals() {
-    const PortalGraph& graph = culler_.now().state().cell_state.cells->graph;
-    const PortalCorners corners = graph.corners();
-    std::vector<uint32_t> seen;
-    for (const SeenWindow& window : culler_.windows()) seen.push_back(window.portal);
-    std::sort(seen.begin(), seen.end());
-    std::vector<glm::dvec3> points;
-    for (uint32_t cell = 0; cell < graph.cells(); ++cell)
-        for (const DirectedPortal& portal : graph.portalsFrom(cell)) {
-            points.clear();
-            for (uint32_t i = portal.first; i < portal.first + portal.count; ++i)
-                points.emplace_back(corners.x[i], corners.y[i], corners.z[i]);
-            const bool through = std::binary_search(seen.begin(), seen.end(), portal.portal);
-            lines_->outline(points, through ? kSeenThrough : portal.door == CellPortal::kNone ? kPortal : kDoor);
-        }
-}
-
-/// The clusters of the chosen object, and one's culling volume.
-void Viewer::drawClusters() {
-    if (!clusters_ || clusters_->object() != *state.chosen) clusters_.emplace(scene_, *state.chosen);
-    clusters_->addEdges(viewOf(culling), *lines_);
-    if (state.cluster >= 0 && static_cast<size_t>(state.cluster) < clusters_->withBacks())
-        clusters_->addVolume(static_cast<size_t>(state.cluster), *lines_);
-}
-
-/// The parts that hide the chosen object; from outside of the frozen camera also their shadows.
-void Viewer::drawShadows(const Box3d& box) {
-    const glm::dvec3 eye = culling.eye();
-    for (const std::vector<glm::dvec3>& outline : state.outlines) {
-        lines_->outline(outline, kHider);
-        if (!state.frozen) continue;
-        const std::vector<glm::dvec3> ends = shadowEnd(eye, outline, shadowReach(eye, box, outline));
-        lines_->outline(ends, 0.8f * kHider);
-        for (size_t i = 0; i < outline.size(); ++i) {
-            lines_->line(eye, outline[i], 0.5f * kHider);
-            lines_->line(outline[i], ends[i * ends.size() / outline.size()], 0.8f * kHider);
-        }
-    }
-}
-
 void Viewer::choose(std::optional<uint32_t> object) {
     state.chosen = object;
     state.why.clear();
@@ -447,31 +360,51 @@ void Viewer::explainChosen() {
     state.outlines = std::move(why.outlines);
 }
 
-/// Chooses what is at a pixel.
+/// The nearest of some objects at a pixel, without those that clicks chose there before.
+std::optional<uint32_t> Viewer::nearestAt(std::span<const uint32_t> objects, int32_t column, int32_t row) {
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    for (const uint32_t object : objects)
+        if (std::find(picked_.begin(), picked_.end(), object) == picked_.end())
+            drawer_->drawNumber(object, culler_.levelOf(object));
+    uint8_t bytes[4] = {};
+    glReadPixels(column, row, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, bytes);
+    const uint32_t number = bytes[0] | bytes[1] << 8 | bytes[2] << 16 | static_cast<uint32_t>(bytes[3]) << 24;
+    return number == 0 ? std::nullopt : std::optional(number - 1);
+}
+
+/// Chooses what is at a pixel: of what is solid the nearest, then of what is faint; through x-ray the other way round. Further
+/// clicks at that place choose what is behind.
 Status Viewer::pick(const View& view, float x, float y) {
     if (Status ready = pick_image_.resize(width_, height_, false); !ready) return ready;
     pick_image_.begin();
     glDepthMask(GL_TRUE);
     setDepth(true);
     glClearColor(0, 0, 0, 0);
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    const GlView gl_view = glViewOf(view);
-    drawer_->beginNumbers(gl_view, view.sections.all());
-    const auto row = static_cast<GLint>(height_) - 1 - static_cast<GLint>(y);
+    drawer_->beginNumbers(glViewOf(view), view.sections.all());
+    const auto column = static_cast<GLint>(x), row = static_cast<GLint>(height_) - 1 - static_cast<GLint>(y);
     glEnable(GL_SCISSOR_TEST);
-    glScissor(static_cast<GLint>(x), row, 1, 1);
+    glScissor(column, row, 1, 1);
+    std::vector<uint32_t> solid, faint(ghosts_);
     for (const uint32_t object : culler_.visible())
-        if (isShown(object)) drawer_->drawNumber(object, culler_.levelOf(object));
-    for (const uint32_t object : ghosts_) drawer_->drawNumber(object);
+        if (isShown(object)) solid.push_back(object);
     if (state.casters)
         for (const uint32_t object : culler_.casters(kSun))
-            if (isCulled(object)) drawer_->drawNumber(object);
-    if (state.chosen && culler_.reasons()[*state.chosen] != 0) drawer_->drawNumber(*state.chosen);
+            if (isCulled(object)) faint.push_back(object);
+    if (state.chosen && culler_.reasons()[*state.chosen] != 0) faint.push_back(*state.chosen);
+    if (state.x_ray) std::swap(solid, faint);
+    if (picked_from_ != view.view || glm::distance(picked_at_, glm::vec2(x, y)) > 3) picked_.clear();
+    picked_from_ = view.view;
+    picked_at_ = {x, y};
+    std::optional<uint32_t> found;
+    for (bool again = true; again;) {
+        found = nearestAt(solid, column, row);
+        if (!found) found = nearestAt(faint, column, row);
+        again = !found && !picked_.empty();  // behind the last one the first is chosen again
+        if (again) picked_.clear();
+    }
     glDisable(GL_SCISSOR_TEST);
-    uint8_t bytes[4] = {};
-    glReadPixels(static_cast<GLint>(x), row, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, bytes);
-    const uint32_t number = bytes[0] | bytes[1] << 8 | bytes[2] << 16 | static_cast<uint32_t>(bytes[3]) << 24;
-    choose(number == 0 ? std::nullopt : std::optional(number - 1));
+    if (found) picked_.push_back(*found);
+    choose(found);
     return checkGl("choosing an object");
 }
 
@@ -491,9 +424,12 @@ Status Viewer::frame(const Input& input, uint32_t width, uint32_t height) {
     rests_ = sameInput(input, last_) && !state.playing && !state.recording;
     last_ = input;
     playPath();
-    if (!state.frozen) culling = eye;
+    if (!state.frozen) {
+        culling = eye;
+        culling_sections_ = sections();
+    }
 
-    answer_changed_ = culler_.ask(viewOf(culling));
+    answer_changed_ = culler_.ask(cullingView());
     culled_boxes_stale_ = culled_boxes_stale_ || answer_changed_;
     if (answer_changed_ || !state.ways) ways_asked_ = 0;
     if (state.ways && ways_asked_ < kAskedOfAll) {
@@ -510,7 +446,7 @@ Status Viewer::frame(const Input& input, uint32_t width, uint32_t height) {
     // While the camera moves what is said of the chosen object is of an earlier view; when it rests it is asked again.
     if (state.chosen && (state.why.empty() || (state.why_is_old && !answer_changed_))) explainChosen();
     state.why_is_old = state.why_is_old || answer_changed_;
-    const View view = viewOf(eye);
+    const View view = viewOf(eye, sections());
     const GlView gl_view = glViewOf(view);
     image_.begin();
     setDepth(true);

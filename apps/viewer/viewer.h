@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -73,7 +74,10 @@ private:
     void playPath();
     void keepRecording();
     void pressed(const Input& input);
-    View viewOf(const FlyCamera& camera) const;
+    ViewPlanes sections() const;
+    View viewOf(const FlyCamera& camera, const ViewPlanes& sections) const;
+    /// As the query is asked: what the section cuts after the camera was frozen, it cuts from the picture alone.
+    View cullingView() const { return viewOf(culling, culling_sections_); }
     void askWays();
     bool paintBsp(const View& view, const GlView& gl_view);
     void drawObjects();
@@ -81,8 +85,11 @@ private:
     void drawLines(const GlView& view);
     void drawPortals();
     void drawClusters();
+    void drawDoors();
     void drawShadows(const Box3d& box);
     Status pick(const View& view, float x, float y);
+    std::optional<uint32_t> nearestAt(std::span<const uint32_t> objects, int32_t column, int32_t row);
+    void leave();
     void choose(std::optional<uint32_t> object);
     void explainChosen();
     void lookAtChosen();
@@ -109,6 +116,11 @@ private:
     double size_ = 1;  ///< of the scene  [world units]
     uint32_t width_ = 0, height_ = 0;
     Input last_;
+    ViewPlanes culling_sections_;
+    std::vector<uint32_t> picked_;  ///< by clicks at one place, one after the other
+    glm::vec2 picked_at_{-1.0f};
+    glm::dmat4 picked_from_{0.0};
+    bool may_end_ = false;  ///< Escape was pressed, and nothing since
     size_t path_frame_ = 0;
     double path_time_ = 0;
     bool dragged_ = false, pressed_in_world_ = false, culled_boxes_stale_ = true, answer_changed_ = false;

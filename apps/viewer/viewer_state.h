@@ -55,10 +55,14 @@ struct ViewerState {
     std::vector<std::vector<glm::dvec3>> outlines;  ///< these parts
     bool clusters = false;                          ///< of its triangles
     int cluster = -1;                               ///< whose culling volume is shown; below 0: none
+    std::optional<size_t> door;                     ///< that the mouse is at in the list
     std::string said;                               ///< the last message
     bool wants_picture = false;                     ///< of the next frame, into a file of the user's
     bool wants_to_close = false;
 };
+
+/// The chosen object, and who hides it.
+inline constexpr glm::vec3 kChosen(0.15f, 0.55f, 1.0f), kHider(1.0f, 0.55f, 0.1f);
 
 /// The colour of what a stage culled.
 inline glm::vec3 stageColour(int stage) {

@@ -7,16 +7,20 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <unistd.h>
 
 #include "apps/gl/context.h"
+#include "sightline/bake/bake.h"
 #include "sightline/tools/import/gltf/gltf.h"
 #include "sightline/tools/load/mesh_lods.h"
 #include "sightline/tools/load/seeded_cameras.h"
 #include "sightline/tools/scene/camera_path.h"
+#include "sightline/tools/scene/building/building.h"
 #include "sightline/tools/scene/city/city.h"
 #include "sightline/tools/scene/terrain/terrain.h"
 #include "tests/support/random.h"
@@ -27,24 +31,36 @@ namespace {
 using namespace test;
 using namespace tools;
 
-constexpr uint32_t kWidth = 640, kHeight = 900;  // high enough for all panels
+constexpr uint32_t kWidth = 640, kHeight = 1000;  // high enough for all panels
+
+struct DrivenSettings {
+    double lod_error = 0;  ///< levels of detail are chosen by it
+    bool cells = false;    ///< those that the scene marks are attached, without rows
+};
 
 /// A viewer with a mouse and keys.
 class Driven {
 public:
-    Driven(const GlContext& context, const Scene& scene, const CameraPath& path, double lod_error = 0) {
+    Driven(const GlContext& context, const Scene& scene, const CameraPath& path, const DrivenSettings& with = {}) {
         context.makeCurrent();
         ViewerSettings settings;
         settings.path = path;
         settings.path_file = path_file_.string();
         QuerySettings query;
         query.stages = stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion);
-        if (lod_error > 0) query.stages |= stageBit(Stage::kLod);
-        query.lod_error = lod_error;
+        if (with.lod_error > 0) query.stages |= stageBit(Stage::kLod);
+        if (with.cells) query.stages |= stageBit(Stage::kPortals);
+        query.lod_error = with.lod_error;
         LoadSettings load;
         load.volumes = true;
-        load.lods = lod_error > 0;
-        Result<std::unique_ptr<Viewer>> made = Viewer::create(scene, loadWorld(scene, {}, load), query, settings);
+        load.lods = with.lod_error > 0;
+        LoadedWorld world = loadWorld(scene, {}, load);
+        if (with.cells) {
+            bake::SceneCellSettings marks;
+            marks.trusted = true;
+            EXPECT_TRUE(world.world.attach(bake::sceneToBake(scene, "house", marks).space));
+        }
+        Result<std::unique_ptr<Viewer>> made = Viewer::create(scene, std::move(world), query, settings);
         EXPECT_TRUE(made.ok()) << made.error().message;
         if (made) viewer_ = std::move(*made);
         frames(2);
@@ -426,7 +442,7 @@ TEST_F(ViewerTest, LevelsOfDetailAreDrawn) {
     path.frames[0].target = path.frames[1].target = box.center();
     path.frames[0].eye = box.center() + glm::dvec3(0, 0.05, 0.05) * glm::length(box.size());
     path.frames[1].eye = box.center() + glm::dvec3(0, 20, 20) * glm::length(box.size());
-    Driven viewer(*context_, scene, path, 4);
+    Driven viewer(*context_, scene, path, {.lod_error = 4});
     const auto coarsest = [&] {
         uint8_t level = 0;
         for (const uint32_t object : viewer->culler().visible())
@@ -443,6 +459,155 @@ TEST_F(ViewerTest, LevelsOfDetailAreDrawn) {
     ASSERT_TRUE(viewer.click("lod"));
     viewer.frames(2);
     EXPECT_EQ(coarsest(), 0) << "its switch";
+}
+
+TEST_F(ViewerTest, WhoHidesMostIsFound) {
+    Driven viewer(*context_, city_, path_);
+    ASSERT_TRUE(viewer.click("who hides most"));
+    EXPECT_FALSE(viewer->culler().knowsHidesMost()) << "it takes time";
+    ASSERT_TRUE(viewer.click("find out"));
+    ASSERT_TRUE(viewer->culler().knowsHidesMost());
+    const std::span<const HidesMost> most = viewer->culler().hidesMost();
+    ASSERT_GE(most.size(), 2u);
+    double hidden = 0;
+    for (size_t i = 0; i < most.size(); ++i) {
+        hidden += most[i].hidden;
+        EXPECT_LE(most[i].hidden, most[i > 0 ? i - 1 : 0].hidden);
+    }
+    EXPECT_NEAR(hidden, double(viewer->culler().stats().of(Stage::kOcclusion).culled), 1e-6 * hidden);
+    const uint32_t first = most[0].object;
+    ASSERT_TRUE(viewer.click("the one that hides most"));
+    EXPECT_EQ(viewer->state.chosen, first);
+    viewer->goTo(5);
+    viewer.frames();
+    EXPECT_FALSE(viewer->culler().knowsHidesMost()) << "of another view";
+}
+
+TEST_F(ViewerTest, FurtherClicksChooseWhatIsBehind) {
+    Driven viewer(*context_, city_, path_);
+    viewer.press('F');
+    viewer->state.panels = false;
+    viewer->state.culled_as = CulledAs::kGhosts;
+    viewer.press(kHome);  // the whole city
+    size_t deep = 0;
+    std::optional<glm::vec2> with_ghosts;
+    for (const uint32_t object : viewer->culler().visible()) {
+        const View view = viewer->eye.view(kWidth, kHeight);
+        const glm::dvec4 clip =
+            view.projection * view.view * glm::dvec4(viewer->culler().boundsOf(object).center(), 1.0);
+        if (clip.w <= 0 || std::abs(clip.x) > clip.w || std::abs(clip.y) > clip.w) continue;
+        const glm::vec2 at(0.5 * kWidth * (1 + clip.x / clip.w), 0.5 * kHeight * (1 - clip.y / clip.w));
+        viewer.clickAt(at.x, at.y);
+        if (!viewer->state.chosen) continue;
+        const uint32_t front = *viewer->state.chosen;
+        if (viewer->culler().reasons()[front] != 0) continue;  // no solid thing is there
+        std::set<uint32_t> here{front};
+        for (int i = 0; i < 200 && (i == 0 || viewer->state.chosen != front); ++i) {
+            viewer.clickAt(at.x, at.y);
+            ASSERT_TRUE(viewer->state.chosen);
+            here.insert(*viewer->state.chosen);
+            if (viewer->culler().reasons()[*viewer->state.chosen] != 0) with_ghosts = at;
+        }
+        EXPECT_EQ(viewer->state.chosen, front) << "after the last comes the first";
+        deep = std::max(deep, here.size());
+        viewer.clickAt(at.x + 60, at.y);
+        viewer.clickAt(at.x, at.y);
+        EXPECT_EQ(viewer->state.chosen, front) << "another place begins anew";
+        if (with_ghosts && deep > 2) break;
+    }
+    EXPECT_GT(deep, 2u);
+    ASSERT_TRUE(with_ghosts);
+    viewer->state.chosen.reset();
+    viewer->state.x_ray = true;
+    viewer.clickAt(with_ghosts->x + 60, with_ghosts->y);
+    viewer.clickAt(with_ghosts->x, with_ghosts->y);
+    ASSERT_TRUE(viewer->state.chosen);
+    EXPECT_NE(viewer->culler().reasons()[*viewer->state.chosen], 0) << "through x-ray ghosts are";
+}
+
+TEST_F(ViewerTest, ASectionLeavesAFrozenAnswer) {
+    Driven viewer(*context_, city_, path_);
+    viewer->state.panels = false;
+    viewer.press('F');
+    const Image<Rgb> whole = viewer.picture();
+    const std::vector<uint32_t> before(viewer->culler().visible().begin(), viewer->culler().visible().end());
+    viewer->state.section = true;
+    viewer->state.section_at = 0.05f;
+    EXPECT_GT(differing(whole, viewer.picture()), 1000u);
+    EXPECT_TRUE(
+        std::equal(before.begin(), before.end(), viewer->culler().visible().begin(), viewer->culler().visible().end()));
+    viewer.press('F');
+    EXPECT_FALSE(
+        std::equal(before.begin(), before.end(), viewer->culler().visible().begin(), viewer->culler().visible().end()));
+}
+
+TEST_F(ViewerTest, EscapeEndsOnceItIsPressedTwice) {
+    Driven viewer(*context_, city_, path_);
+    viewer->state.chosen = viewer->culler().visible().front();
+    viewer.frames();
+    viewer.hold(kEscape, 4);
+    EXPECT_FALSE(viewer->state.chosen || viewer->state.wants_to_close);
+    viewer.press(kEscape);
+    EXPECT_FALSE(viewer->state.wants_to_close);
+    viewer.press('V');
+    viewer.press(kEscape);
+    EXPECT_FALSE(viewer->state.wants_to_close) << "something came between";
+    viewer.press(kEscape);
+    EXPECT_TRUE(viewer->state.wants_to_close);
+}
+
+TEST_F(ViewerTest, AShutDoorIsSeen) {
+    const Scene house = makeBuilding(1, 1);
+    Driven viewer(*context_, house, seededCameras(house, 1, 5), {.cells = true});
+    std::vector<ViewerDoor>& doors = viewer->culler().doors();
+    ASSERT_FALSE(doors.empty());
+    for (const ViewerDoor& door : doors) {
+        EXPECT_TRUE(door.object.has_value()) << door.name;
+        EXPECT_NE(door.label.find('/'), std::string::npos) << "it says where it is";
+        EXPECT_FALSE(door.portals.empty());
+    }
+    viewer->state.panels = false;
+    viewer->state.bsp = true;
+    viewer->state.bsp_part = 0;
+    const Rgb background = viewer.picture().pixels[0];
+    viewer->state.bsp = false;
+    size_t fewer = 0, changed = 0;
+    for (const ViewerDoor& at : doors) {
+        // Straight through a door whose leaf stands open.
+        if (at.name.find("(open)") == std::string::npos || fewer == 4) continue;
+        const std::vector<glm::dvec3>& portal = at.portals.front();
+        const glm::dvec3 through = glm::normalize(glm::cross(portal[1] - portal[0], portal[2] - portal[0]));
+        CameraFrame camera;
+        camera.target = 0.5 * (portal[0] + portal[2]);
+        camera.eye = camera.target + 1.5 * through;
+        viewer->eye.take(camera);
+        for (ViewerDoor& door : doors) door.open = 1;
+        const Image<Rgb> open = viewer.picture();
+        const size_t visible = viewer->culler().visible().size();
+        for (ViewerDoor& door : doors) door.open = 0;
+        const Image<Rgb> shut = viewer.picture();
+        EXPECT_LE(viewer->culler().visible().size(), visible);
+        fewer += viewer->culler().visible().size() < visible;
+        changed += differing(open, shut) > 0;
+        size_t holes = 0;
+        for (size_t i = 0; i < shut.pixels.size(); ++i)
+            holes += shut.pixels[i] == background && open.pixels[i] != background;
+        EXPECT_EQ(holes, 0u) << at.label;
+    }
+    EXPECT_EQ(fewer, 4u);
+    EXPECT_GE(changed, 4u);
+    viewer->state.panels = true;
+    viewer->state.chosen = doors[0].object;
+    viewer.frames(2);
+    EXPECT_TRUE(viewer->places().contains("this door"));
+    viewer->state.chosen.reset();
+    ASSERT_TRUE(viewer.click("stages"));
+    ASSERT_TRUE(viewer.click("show"));
+    ASSERT_TRUE(viewer.click("doors"));
+    ASSERT_TRUE(viewer.click("open all"));
+    for (const ViewerDoor& door : doors) EXPECT_EQ(door.open, 1);
+    ASSERT_TRUE(viewer.click("shut all"));
+    for (const ViewerDoor& door : doors) EXPECT_EQ(door.open, 0);
 }
 
 TEST_F(ViewerTest, NothingThatIsClickedDoesHarm) {
