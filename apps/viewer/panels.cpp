@@ -112,11 +112,11 @@ PanelWishes Panels::draw() {
         keys();
         stages();
         hidesMost();
+        doors();
         drawSettings(culler_.settings, places_);
         show();
         cut();
         path();
-        doors();
         times();
     }
     ImGui::End();
