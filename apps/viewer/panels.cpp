@@ -138,6 +138,8 @@ void Panels::answer() {
     if (facts_.times)
         ImGui::Text("query %.0f us, frame %.1f ms", 1e-3 * static_cast<double>(stats.nanoseconds),
                     meanOf(facts_.frame_milliseconds));
+    ImGui::TextUnformatted(state_.said.empty() ? " " : state_.said.c_str());
+    if (!state_.said.empty()) tip(state_.said.c_str());
     check("freeze the culling camera (F)", state_.frozen);
     ImGui::TextUnformatted("culled is shown as (C)");
     for (int i = 0; i < 3; ++i) {
@@ -206,9 +208,9 @@ void Panels::stages() {
 /// Whether what hid a thing before is held against it first, and how far that goes.
 void Panels::certificates() {
     check("certificates", culler_.settings.proofs);
-    tip("Remember who hid a thing, and ask first whether they still do. Where nearly all is hidden by whom is known, "
-        "no "
-        "buffer is drawn. Fly to see it at work.");
+    tip("Remember who hid a thing, and ask first whether they still do. Where that is known of nearly all, no buffer "
+        "is "
+        "drawn. Fly to see it at work.");
     if (!culler_.settings.proofs) return;
     const QueryStats& stats = culler_.stats();
     ImGui::SameLine();
@@ -327,7 +329,6 @@ void Panels::path() {
     if (frames > 0 && press("save path")) wishes_.save_path = true;
     if (frames > 0) ImGui::SameLine();
     if (press("picture (F12)")) state_.wants_picture = true;
-    if (!state_.said.empty()) ImGui::TextWrapped("%s", state_.said.c_str());
 }
 
 /// The slider of a door.
