@@ -29,8 +29,8 @@ struct ViewerSettings {
     std::string path_file = "sightline-path.json";  ///< that a recorded path is written to
     ViewPlanes sections;                            ///< that cut the scene open, beside the user's own
     double jitter = 0.5;                            ///< View::jitter of the culling camera
-    bool times = true;                              ///< are shown; else pictures are the same each time
-    float scale = 1;                                ///< of the panels
+    bool times = true;  ///< are shown; else pictures are the same each time, but for the card's queries
+    float scale = 1;    ///< of the panels
 };
 
 class Viewer {
