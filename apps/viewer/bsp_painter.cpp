@@ -13,17 +13,6 @@ namespace sightline::viewer {
 using namespace tools;
 namespace {
 
-constexpr const char* kVertexShader = R"(#version 330 core
-layout(location = 0) in vec3 place;
-layout(location = 1) in vec3 colour;
-uniform mat4 to_clip;
-flat out vec3 ink;
-void main() {
-    gl_Position = to_clip * vec4(place, 1.0);
-    ink = colour;
-}
-)";
-
 constexpr const char* kFragmentShader = R"(#version 330 core
 flat in vec3 ink;
 out vec4 shown;
@@ -68,7 +57,7 @@ Status BspPainter::prepare() {
                 vertices.push_back({glm::vec3(point - origin_), colour});
         }
     }
-    Result<GlName> program = makeGlProgram(kVertexShader, kFragmentShader);
+    Result<GlName> program = makeGlProgram(kInkVertexShader, kFragmentShader);
     if (!program) return program.error();
     program_ = std::move(*program);
     to_clip_ = glGetUniformLocation(program_.get(), "to_clip");

@@ -13,6 +13,18 @@
 
 namespace sightline::viewer {
 
+/// Places with a colour each, handed on as `ink`.
+inline constexpr const char* kInkVertexShader = R"(#version 330 core
+layout(location = 0) in vec3 place;
+layout(location = 1) in vec3 colour;
+uniform mat4 to_clip;
+flat out vec3 ink;
+void main() {
+    gl_Position = to_clip * vec4(place, 1.0);
+    ink = colour;
+}
+)";
+
 GlName makeBuffer(GLenum target, std::span<const std::byte> bytes, GLenum usage);
 GlName makeArray();
 

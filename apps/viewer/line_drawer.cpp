@@ -7,17 +7,6 @@
 namespace sightline::viewer {
 namespace {
 
-constexpr const char* kVertexShader = R"(#version 330 core
-layout(location = 0) in vec3 place;
-layout(location = 1) in vec3 colour;
-uniform mat4 to_clip;
-flat out vec3 ink;
-void main() {
-    gl_Position = to_clip * vec4(place, 1.0);
-    ink = colour;
-}
-)";
-
 constexpr const char* kFragmentShader = R"(#version 330 core
 flat in vec3 ink;
 uniform float opacity;
@@ -29,7 +18,7 @@ void main() { shown = vec4(ink, opacity); }
 
 Result<LineDrawer> LineDrawer::create() {
     LineDrawer drawer;
-    Result<GlName> program = makeGlProgram(kVertexShader, kFragmentShader);
+    Result<GlName> program = makeGlProgram(kInkVertexShader, kFragmentShader);
     if (!program) return program.error();
     drawer.program_ = std::move(*program);
     drawer.to_clip_ = glGetUniformLocation(drawer.program_.get(), "to_clip");

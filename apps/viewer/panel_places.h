@@ -1,4 +1,4 @@
-// Where the parts of the panels are, by their words: for tests, which click there.
+// The parts of the panels: where each is, for tests, which click there; and what it means, where the mouse is.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -14,5 +14,8 @@ using PanelPlaces = std::map<std::string, PanelPlace>;
 
 /// Notes where the part is that was drawn last.
 void notePlace(PanelPlaces& places, const std::string& words);
+
+/// Shows what the part that was drawn last means while the mouse is at it.
+void showTip(const char* words);
 
 }  // namespace sightline::viewer

@@ -64,7 +64,6 @@ private:
     bool press(const char* words);
     bool slide(const char* words, float& value, float low, float high);
     void note(const char* words);
-    void tip(const char* words) const;
 
     const PanelFacts& facts_;
     ViewerState& state_;
@@ -74,16 +73,6 @@ private:
 };
 
 void Panels::note(const char* words) { notePlace(places_, words); }
-
-/// Shows what the last part means while the mouse is at it.
-void Panels::tip(const char* words) const {
-    if (!ImGui::IsItemHovered()) return;
-    ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(360);
-    ImGui::TextUnformatted(words);
-    ImGui::PopTextWrapPos();
-    ImGui::EndTooltip();
-}
 
 bool Panels::check(const char* words, bool& value) {
     const bool changed = ImGui::Checkbox(words, &value);
@@ -139,7 +128,7 @@ void Panels::answer() {
         ImGui::Text("query %.0f us, frame %.1f ms", 1e-3 * static_cast<double>(stats.nanoseconds),
                     meanOf(facts_.frame_milliseconds));
     ImGui::TextUnformatted(state_.said.empty() ? " " : state_.said.c_str());
-    if (!state_.said.empty()) tip(state_.said.c_str());
+    if (!state_.said.empty()) showTip(state_.said.c_str());
     check("freeze the culling camera (F)", state_.frozen);
     ImGui::TextUnformatted("culled is shown as (C)");
     for (int i = 0; i < 3; ++i) {
@@ -208,7 +197,8 @@ void Panels::stages() {
 /// Whether what hid a thing before is held against it first, and how far that goes.
 void Panels::certificates() {
     check("certificates", culler_.settings.proofs);
-    tip("Remember who hid a thing, and ask first whether they still do. Where that is known of nearly all, no buffer "
+    showTip(
+        "Remember who hid a thing, and ask first whether they still do. Where that is known of nearly all, no buffer "
         "is "
         "drawn. Fly to see it at work.");
     if (!culler_.settings.proofs) return;
@@ -232,7 +222,7 @@ void Panels::hidesMost() {
         const std::string words = fmt::format("{:.1f} by {}", most[i].hidden, culler_.nameOf(most[i].object));
         if (ImGui::Selectable(words.c_str(), state_.chosen == most[i].object)) wishes_.choose = most[i].object;
         if (i == 0) note("the one that hides most");
-        tip(words.c_str());
+        showTip(words.c_str());
         ImGui::PopID();
     }
 }
@@ -252,7 +242,7 @@ void Panels::show() {
     check("bounds of what is visible", state_.bounds);
     check("x-ray (X)", state_.x_ray);
     check("occlusion buffer", state_.buffer);
-    tip("The depths that occlusion asks: the nearer, the brighter; black is open.");
+    showTip("The depths that occlusion asks: the nearer, the brighter; black is open.");
     check("shadow casters of a sun", state_.casters);
     if (state_.casters) {
         const CasterStats& stats = culler_.casterStats();
@@ -262,15 +252,15 @@ void Panels::show() {
     }
     if (culler_.hasCells()) {
         check("portals", state_.portals);
-        tip("Yellow: looked through. Cyan: others. Pink: doors.");
+        showTip("Yellow: looked through. Cyan: others. Pink: doors.");
         check("windows of cells", state_.windows);
         cells();
     }
     ImGui::SliderInt("tree level", &state_.tree_level, -1, 12, state_.tree_level < 0 ? "none" : "%d");
     note("tree level");
-    tip("The boxes of a level of the hierarchy that the query descends.");
+    showTip("The boxes of a level of the hierarchy that the query descends.");
     check("ways of culling, side by side", state_.ways);
-    tip("What queries to the graphics card and other ways keep of the same view.");
+    showTip("What queries to the graphics card and other ways keep of the same view.");
     paint();
 }
 
@@ -288,7 +278,7 @@ void Panels::cells() const {
 /// The picture in the order of a BSP tree.
 void Panels::paint() {
     check("paint by a BSP tree", state_.bsp);
-    tip("Without a depth buffer: pieces of the scene one over the other, the farthest first.");
+    showTip("Without a depth buffer: pieces of the scene one over the other, the farthest first.");
     if (!facts_.bsp_problem.empty()) ImGui::TextWrapped("%s", facts_.bsp_problem.c_str());
     if (!state_.bsp || !facts_.painter) return;
     slide("painted", state_.bsp_part, 0, 1);
@@ -340,7 +330,7 @@ void Panels::door(size_t index, const char* words) {
     note(words);
     if (!ImGui::IsItemHovered() && !ImGui::IsItemActive()) return;
     state_.door = index;
-    tip(door.label.c_str());
+    showTip(door.label.c_str());
 }
 
 /// The doors, those next to the eye first.
@@ -409,7 +399,8 @@ void Panels::chosen() {
 /// The clusters of its triangles, and the culling volume of one.
 void Panels::clusters() {
     check("its clusters", state_.clusters);
-    tip("The runs of triangles that are culled together, each in a colour; grey: the culling camera sees them from "
+    showTip(
+        "The runs of triangles that are culled together, each in a colour; grey: the culling camera sees them from "
         "their backs.");
     if (!state_.clusters || !facts_.clusters) return;
     const size_t with_backs = facts_.clusters->withBacks();
@@ -419,7 +410,8 @@ void Panels::clusters() {
     ImGui::SliderInt("culling volume", &state_.cluster, -1, static_cast<int>(with_backs) - 1,
                      state_.cluster < 0 ? "none" : "%d");
     note("culling volume");
-    tip("Of one cluster, in pink: an eye in there sees all of it from its back. Freeze the camera and go around to see "
+    showTip(
+        "Of one cluster, in pink: an eye in there sees all of it from its back. Freeze the camera and go around to see "
         "it.");
 }
 
@@ -505,6 +497,15 @@ void Panels::keys() {
 void notePlace(PanelPlaces& places, const std::string& words) {
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     places[words] = {low.x, low.y, high.x, high.y};
+}
+
+void showTip(const char* words) {
+    if (!ImGui::IsItemHovered()) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(360);
+    ImGui::TextUnformatted(words);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
 }
 
 PanelWishes drawPanels(const PanelFacts& facts, ViewerState& state, Culler& culler, PanelPlaces& places) {

@@ -55,13 +55,7 @@ void drawSettings(QuerySettings& settings, PanelPlaces& places) {
         if (isElsewhere(row.name)) return;
         edit(row.name, settings.*row.member, row.least, row.most);
         notePlace(places, row.name);
-        if (!ImGui::IsItemHovered()) return;
-        const std::string unit = *row.unit ? fmt::format(" [{}]", row.unit) : "";
-        ImGui::BeginTooltip();
-        ImGui::PushTextWrapPos(360);
-        ImGui::TextUnformatted(fmt::format("{}{}", row.help, unit).c_str());
-        ImGui::PopTextWrapPos();
-        ImGui::EndTooltip();
+        showTip(fmt::format("{}{}", row.help, *row.unit ? fmt::format(" [{}]", row.unit) : "").c_str());
     });
     ImGui::PopItemWidth();
 }
