@@ -19,6 +19,7 @@
 
 #include "apps/import/fault.h"
 #include "apps/import/send_scene.h"
+#include "sightline/base/sanitized.h"
 #include "sightline/tools/import/foreign/scene_stream.h"
 
 namespace sightline::import {
@@ -32,18 +33,6 @@ struct Limits {
     uint64_t seconds = 0;  ///< of the processor; 0: no limit
     pid_t parent = 0;      ///< the process ends with this one; 0: with none
 };
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
-#else
-constexpr bool kSanitized = false;
-#endif
 
 void limit(decltype(RLIMIT_AS) what, rlim_t most) {
     rlimit now{};

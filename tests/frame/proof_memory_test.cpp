@@ -7,6 +7,7 @@
 #include "sightline/query/explain/explain.h"
 #include "sightline/query/explain/shadows.h"
 #include "tests/support/made_world.h"
+#include "tests/support/random.h"
 #include "tests/support/targets.h"
 
 namespace sightline::test {
@@ -100,7 +101,7 @@ struct Steps {
 
 TEST(Proofs, KeepWhatIsSeenInRoomsWhoseWallsMove) {
     uint64_t proved = 0, drawn = 0, frames = 0, kept = 0, kept_alone = 0, mounds = 0;
-    for (uint64_t seed = 1; seed <= 6; ++seed) {
+    for (uint64_t seed = 1; seed <= rounds(6, 2); ++seed) {
         Rooms rooms(seed);
         Random random(seed);
         Steps steps(random);
@@ -227,7 +228,8 @@ TEST(Proofs, OfLargeMeshesHoldAllOfTheirClusters) {
 /// Two walls, each of two faces that meet, one behind the other: where their slits cross, neither is a slit any more.
 TEST(Proofs, CloseSlitsThatCross) {
     uint64_t hidden = 0, found = 0;
-    for (uint64_t seed = 1; seed <= 400; ++seed) {
+    const uint64_t seeds = rounds(400, 50);
+    for (uint64_t seed = 1; seed <= seeds; ++seed) {
         Random random(seed);
         MadeWorld made;
         for (int i = 0; i < 9; ++i) made.other.positions.push_back({0.5f * (i % 3), 0.5f * (i / 3), 0});
@@ -260,7 +262,7 @@ TEST(Proofs, CloseSlitsThatCross) {
         const Box3f box = boxOf(eyeBoxes(state.bvh.nodes[slot / 8], state.bvh.origin - of.frustum.eye), int(slot % 8));
         found += memory.seek(of, Pending::Kind::kObject, place, box, true);
     }
-    EXPECT_EQ(hidden, 400u);
+    EXPECT_EQ(hidden, seeds);
     EXPECT_EQ(found, hidden);
 }
 
@@ -321,7 +323,7 @@ TEST(Proofs, AreOffIfNobodyAsksTheFrustum) {
 
 TEST(Proofs, AreToldOfByExplanations) {
     uint64_t told = 0;
-    for (uint64_t seed = 1; seed <= 4; ++seed) {
+    for (uint64_t seed = 1; seed <= rounds(4, 1); ++seed) {
         Rooms rooms(seed);
         Random random(seed);
         Steps steps(random);

@@ -33,7 +33,8 @@ double pixelsOf(const MadeWorld& made, size_t object, const View& view) {
     DrawItem item;
     item.mesh = made.mesh.view();
     item.transform = made.transforms[object];
-    const ZBufferImage image = renderZBuffer({&item, 1}, view, {.samples = kSamples, .want_generated = false});
+    ZBufferImage& image = made.image;
+    renderZBuffer({&item, 1}, view, {.samples = kSamples, .want_generated = false}, image);
     const auto covered =
         image.id.size() - static_cast<size_t>(std::count(image.id.begin(), image.id.end(), ZBufferImage::kNone));
     return static_cast<double>(covered) / (kSamples * kSamples);

@@ -7,6 +7,7 @@
 
 #include "sightline/query/explain/explain.h"
 #include "tests/support/made_world.h"
+#include "tests/support/random.h"
 #include "tests/support/targets.h"
 
 namespace sightline::test {
@@ -32,7 +33,7 @@ struct Walk {
 
 TEST(Turns, KeepWhatIsSeenInAWorldThatChanges) {
     uint64_t unasked = 0, kept = 0, kept_alone = 0;
-    for (uint64_t seed = 1; seed <= 8; ++seed) {
+    for (uint64_t seed = 1; seed <= rounds(8, 2); ++seed) {
         MadeWorld made(seed, 300);
         Random random(seed);
         Walk walk(random);

@@ -7,6 +7,7 @@
 #include "sightline/query/query.h"
 #include "sightline/studies/hidden/zbuffer/zbuffer.h"
 #include "tests/support/meshes.h"
+#include "tests/support/random.h"
 #include "tests/support/views.h"
 
 namespace sightline::test {
@@ -41,7 +42,7 @@ TEST(DepthImages, ClaimNoPixelThatSamplesSeeThrough) {
     constexpr uint32_t kSamples = 6;
     size_t covered = 0, through = 0;
     for (const double share : {0.0, 0.5, 0.8, 1.0})  // of triangles that have two sides
-        for (uint64_t seed = 1; seed <= 30; ++seed) {
+        for (uint64_t seed = 1; seed <= rounds(30, 6); ++seed) {
             Random random(seed);
             const TestMesh mesh = roughSheet(random, seed % 3 == 0 ? 3 : seed % 3 == 1 ? 8 : 15);
             std::vector<uint8_t> double_sided(mesh.indices.size() / 3);

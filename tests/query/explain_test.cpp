@@ -9,6 +9,7 @@
 
 #include "tests/support/explain_laws.h"
 #include "tests/support/made_world.h"
+#include "tests/support/random.h"
 
 namespace sightline::test {
 namespace {
@@ -57,7 +58,8 @@ void fillRooms(MadeWorld& made, uint64_t seed) {
 
 TEST(Explain, IsTrueInRandomWorlds) {
     LawCount sum;
-    for (uint64_t seed = 1; seed <= 32; ++seed) {
+    const uint64_t worlds = rounds(32, 8);
+    for (uint64_t seed = 1; seed <= worlds; ++seed) {
         MadeWorld made;
         made.fill(seed, seed % 2 ? 300 : 60, seed % 6 == 5 ? glm::dvec3(0, 40, 0) : glm::dvec3(0));
         const Snapshot now = made.world.commit();
@@ -71,16 +73,17 @@ TEST(Explain, IsTrueInRandomWorlds) {
             if (HasFailure()) return;
         }
     }
-    EXPECT_GT(sum.planes, 1000u);
-    EXPECT_GT(sum.occluded, 250u);
-    EXPECT_GT(sum.open_pixels, 400u);
-    EXPECT_GT(sum.doubts, 20u);
+    EXPECT_GT(sum.planes, 31 * worlds);
+    EXPECT_GT(sum.occluded, 7 * worlds);
+    EXPECT_GT(sum.open_pixels, 12 * worlds);
+    EXPECT_GT(2 * sum.doubts, worlds);
     sum.record();
 }
 
 TEST(Explain, IsTrueAmongWalls) {
     LawCount sum;
-    for (uint64_t seed = 1; seed <= 20; ++seed) {
+    const uint64_t worlds = rounds(20, 4);
+    for (uint64_t seed = 1; seed <= worlds; ++seed) {
         MadeWorld made;
         fillRooms(made, seed);
         for (int i = 0; i < 20; ++i) EXPECT_TRUE(made.world.remove(made.ids[static_cast<size_t>(i) * 9]));
@@ -99,9 +102,9 @@ TEST(Explain, IsTrueAmongWalls) {
             if (HasFailure()) return;
         }
     }
-    EXPECT_GT(sum.occluded, 700u);
-    EXPECT_GT(sum.hiders, sum.occluded + 50) << "some need more than one";
-    EXPECT_GT(sum.hidden_again, 200u);
+    EXPECT_GT(sum.occluded, 35 * worlds);
+    EXPECT_GT(sum.hiders, sum.occluded + 2 * worlds) << "some need more than one";
+    EXPECT_GT(sum.hidden_again, 10 * worlds);
     sum.record();
 }
 

@@ -28,7 +28,8 @@ struct MadeWorld {
     std::vector<ObjectId> ids;
     World world = World::create(worldDef());
     OccluderId cube;
-    bool shapes = false;  ///< objects are also asked by their triangles
+    bool shapes = false;         ///< objects are also asked by their triangles
+    mutable ZBufferImage image;  ///< the last that was drawn
 
     static WorldDef worldDef() { return {.volumes = true}; }
 
@@ -103,7 +104,8 @@ struct MadeWorld {
             item.id = static_cast<uint32_t>(i);
             items.push_back(item);
         }
-        std::vector<uint8_t> seen = renderZBuffer(items, view, {.samples = samples, .offset = offset}).seen;
+        renderZBuffer(items, view, {.samples = samples, .offset = offset, .want_generated = false}, image);
+        std::vector<uint8_t> seen = image.seen;
         seen.resize(transforms.size(), 0);
         return seen;
     }

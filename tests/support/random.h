@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 
 #include <glm/glm.hpp>
 
 #include "sightline/base/random.h"
+#include "sightline/base/sanitized.h"
 #include "sightline/math/box.h"
 
 namespace sightline::test {
@@ -17,6 +19,9 @@ inline size_t casesToMake(size_t shorter, size_t longer = 10000000) {
     const char* wish = std::getenv("SIGHTLINE_LONG_TESTS");
     return wish && *wish && *wish != '0' ? longer : shorter;
 }
+
+/// How often a test repeats. What sanitizers look for shows in few rounds, and they cost five to a hundred times as much.
+constexpr uint64_t rounds(uint64_t whole, uint64_t sanitized) { return kSanitized ? sanitized : whole; }
 
 /// Each coordinate is between -size and size of its axis.
 inline glm::dvec3 randomVector(Random& random, const glm::dvec3& size) {

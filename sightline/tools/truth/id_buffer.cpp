@@ -54,9 +54,10 @@ uint64_t drawIdBuffer(const SceneFacts& facts, const View& view, const SightLine
     const uint64_t width = uint64_t(view.width) * settings.supersampling;
     const uint64_t height = uint64_t(view.height) * settings.supersampling;
     pass.row_count = static_cast<uint32_t>(std::clamp<uint64_t>(settings.band_samples / width, 1, height));
+    ZBufferImage image;
     for (uint64_t row = 0; row < height; row += pass.row_count) {
         pass.first_row = static_cast<uint32_t>(row);
-        const ZBufferImage image = renderZBuffer(items, view, pass);
+        renderZBuffer(items, view, pass, image);
         for (uint32_t i = 0; i < image.seen.size(); ++i) {
             if (!image.seen[i]) continue;
             const double column = image.seen_at[i] % width + 0.5;

@@ -12,24 +12,11 @@
 #include <fmt/format.h>
 
 #include "gltf_reading.h"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SIGHTLINE_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define SIGHTLINE_SANITIZED 1
-#endif
-#endif
+#include "sightline/base/sanitized.h"
 
 namespace sightline::test {
 using namespace tools;
 namespace {
-
-#ifdef SIGHTLINE_SANITIZED
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
 
 constexpr uint32_t kParts = 99;    // of a level
 constexpr uint32_t kLevels = 100;  // of a building

@@ -18,6 +18,7 @@
 #include "foreign_reading.h"
 #include "scene_stream_samples.h"
 #include "sightline/base/random.h"
+#include "sightline/base/sanitized.h"
 #include "sightline/tools/import/foreign/foreign.h"
 
 namespace sightline {
@@ -205,9 +206,7 @@ TEST_F(SceneWorker, TheProcessorsTimeIsLimitedToo) {
 }
 
 TEST_F(SceneWorker, MemoryIsLimited) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "sanitizers reserve all of the address space";
-#endif
+    if (kSanitized) GTEST_SKIP() << "sanitizers reserve all of the address space";
     std::string text;
     for (int i = 0; i < 300000; ++i) text += "v " + std::to_string(i) + " 0 0\n";
     for (int i = 1; i + 2 <= 300000; ++i)

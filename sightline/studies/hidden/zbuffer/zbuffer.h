@@ -51,4 +51,8 @@ struct ZBufferSettings {
 /// `generated`. A band gives the same bits as the same rows of the whole image.
 ZBufferImage renderZBuffer(std::span<const DrawItem> items, const View& view, const ZBufferSettings& settings = {});
 
+/// The same into an image that was used before, whose memory is used again.
+void renderZBuffer(std::span<const DrawItem> items, const View& view, const ZBufferSettings& settings,
+                   ZBufferImage& image);
+
 }  // namespace sightline::studies
