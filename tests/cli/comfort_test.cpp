@@ -45,7 +45,7 @@ TEST_F(Comfort, ColoursAreForTerminalsAlone) {
 }
 
 TEST_F(Comfort, LongWorkShowsABarOnATerminalAndLinesWhenPiped) {
-    const std::string frames = std::to_string(rounds(60, 8));
+    const std::string frames = std::to_string(test::rounds(60, 8));
     const std::string words = "verify city:1:3000 --frames " + frames + " --size 320x180 --rays 300000 --no-proofs";
     const Outcome piped = run(words);
     EXPECT_NE(piped.err.find("verifying: "), std::string::npos) << piped.err;

@@ -54,7 +54,7 @@ Scene makeStatues(uint64_t seed) {
 
 TEST(InnerOccluders, HideNothingThatIsSeen) {
     uint64_t drawn = 0, drawn_exactly = 0, culled = 0;
-    for (uint64_t seed = 1; seed <= rounds(3, 1); ++seed) {
+    for (uint64_t seed = 1; seed <= test::rounds(3, 1); ++seed) {
         const Scene scene = makeStatues(seed);
         LoadedWorld loaded = loadWorld(scene, {}, loadSettings(false, 1));
         const Snapshot now = loaded.world.commit();
