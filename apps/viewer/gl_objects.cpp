@@ -95,4 +95,18 @@ void ScreenImage::show(uint32_t window_width, uint32_t window_height) const {
                       GL_NEAREST);
 }
 
+Result<tools::Image<tools::Rgb>> ScreenImage::picture() const {
+    tools::Image<tools::Rgb> picture(width_, height_);
+    glBindFramebuffer(GL_FRAMEBUFFER, resolved_.get());
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    std::vector<tools::Rgb> rows(picture.pixels.size());
+    glReadPixels(0, 0, static_cast<GLsizei>(picture.width), static_cast<GLsizei>(picture.height), GL_RGB,
+                 GL_UNSIGNED_BYTE, rows.data());
+    for (uint32_t y = 0; y < picture.height; ++y)
+        std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(size_t{picture.height - 1 - y} * picture.width),
+                    picture.width, picture.pixels.begin() + static_cast<std::ptrdiff_t>(size_t{y} * picture.width));
+    if (const Status done = checkGl("reading a picture"); !done) return done.error();
+    return picture;
+}
+
 }  // namespace sightline::viewer

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "apps/gl/objects.h"
+#include "sightline/tools/report/pictures/png.h"
 
 namespace sightline::viewer {
 
@@ -38,9 +39,10 @@ public:
     void resolve() const;  ///< the samples of each pixel into one
     /// Copies it into the window.
     void show(uint32_t window_width, uint32_t window_height) const;
+    /// What it shows, once it is resolved.  Errors: of the GL.
+    Result<tools::Image<tools::Rgb>> picture() const;
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
-    GLuint resolved() const { return resolved_.get(); }
 
 private:
     uint32_t width_ = 0, height_ = 0;

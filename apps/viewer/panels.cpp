@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "apps/viewer/inks.h"
 #include "apps/viewer/settings_panel.h"
 #include "apps/viewer/ways_panel.h"
 #include "sightline/tools/report/readable.h"
@@ -48,6 +49,7 @@ private:
     void hidesMost();
     void show();
     void cells() const;
+    void legend();
     void paint();
     void clusters();
     void cut();
@@ -102,8 +104,9 @@ PanelWishes Panels::draw() {
         stages();
         hidesMost();
         doors();
-        drawSettings(culler_.settings, places_);
+        drawSettings(culler_.settings, facts_.begun, places_);
         show();
+        legend();
         cut();
         path();
         times();
@@ -253,6 +256,10 @@ void Panels::show() {
     if (culler_.hasCells()) {
         check("portals", state_.portals);
         showTip("Yellow: looked through. Cyan: others. Pink: doors.");
+        if (facts_.knows_cells) {
+            check("cells", state_.cells);
+            showTip("White: the camera's. Green: those that are seen from there, through portals.");
+        }
         check("windows of cells", state_.windows);
         cells();
     }
@@ -262,6 +269,42 @@ void Panels::show() {
     check("ways of culling, side by side", state_.ways);
     showTip("What queries to the graphics card and other ways keep of the same view.");
     paint();
+}
+
+/// Of what is shown just now.
+void Panels::legend() {
+    const bool open = ImGui::CollapsingHeader("what colours mean");
+    note("what colours mean");
+    if (!open) return;
+    const auto say = [](const glm::vec3& ink, const char* words) { ImGui::TextColored(inkOf(ink), "%s", words); };
+    if (state_.colour_by == ColourBy::kAnswer) say(kVisible, "visible");
+    if (state_.colour_by == ColourBy::kLevels)
+        for (size_t level = 0; level < std::size(kLevelColours); ++level)
+            say(kLevelColours[level], fmt::format("level of detail {}{}", level,
+                                                  level == 0                              ? ", the finest"
+                                                  : level + 1 == std::size(kLevelColours) ? " and coarser"
+                                                                                          : "")
+                                          .c_str());
+    const bool boxes = (state_.frozen || state_.x_ray) && state_.culled_as != CulledAs::kNothing;
+    for (int stage = 0; boxes && stage < kStageCount; ++stage)
+        if (culler_.stats().stages[stage].culled > 0)
+            say(stageColour(stage), fmt::format("culled by {}", kStageNames[stage]).c_str());
+    if (state_.chosen) say(kChosen, "the chosen object");
+    if (!state_.hiders.empty()) say(kHider, "hides it, and the shadow that does");
+    if (state_.casters) say(kCaster, "may throw a shadow on what is visible");
+    if (state_.frozen && state_.frustum) say(kFrustum, "the frozen camera's view");
+    if (state_.bounds) say(kBounds, "bounds of what is visible");
+    if (state_.tree_level >= 0) say(kTreeBox, "boxes of the hierarchy");
+    if (state_.portals && culler_.hasCells()) {
+        say(kSeenThrough, "portals that the camera sees through");
+        say(kPortal, "other portals");
+        say(kDoor, "portals of doors");
+    }
+    if (state_.cells) {
+        say(kEyeCell, "the camera's cell");
+        say(kSeenCell, "cells that are seen from there");
+    }
+    ImGui::TextDisabled("all else: materials, or objects");
 }
 
 /// Where the eye is, and how far it sees from there.
@@ -295,11 +338,16 @@ void Panels::cut() {
     note("cut open");
     check("section", state_.section);
     if (!state_.section) return;
-    for (int axis = 0; axis < 3; ++axis) {
-        constexpr const char* kNames[] = {"x", "y", "z"};
+    for (int axis = 0; axis < 4; ++axis) {
+        constexpr const char* kNames[] = {"x", "y", "z", "as I look"};
         if (axis > 0) ImGui::SameLine();
-        if (ImGui::RadioButton(kNames[axis], state_.section_axis == axis)) state_.section_axis = axis;
+        if (ImGui::RadioButton(kNames[axis], state_.section_axis == axis)) {
+            state_.section_axis = axis;
+            state_.section_ahead = facts_.ahead;
+        }
+        note(kNames[axis]);
     }
+    showTip("Across the direction in which the eye looks now. Click again to take a new one.");
     slide("at", state_.section_at, 0, 1);
     check("keep the upper part", state_.section_keeps_upper);
 }

@@ -27,7 +27,9 @@ struct PanelFacts {
     uint64_t triangles = 0;          ///< drawn
     size_t left_out = 0;             ///< boxes or ghosts
     double size = 1;                 ///< of the scene  [world units]
-    glm::dvec3 eye{0.0};
+    glm::dvec3 eye{0.0}, ahead{0, 0, -1};
+    bool knows_cells = false;  ///< where they are
+    const QuerySettings& begun;
     bool times = true;  ///< are shown
     std::span<const float> frame_milliseconds, query_microseconds;
     const SideBySide* ways = nullptr;

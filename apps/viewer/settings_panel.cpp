@@ -47,13 +47,17 @@ bool edit(const char* name, double& value, double least, double most) {
 
 }  // namespace
 
-void drawSettings(QuerySettings& settings, PanelPlaces& places) {
+void drawSettings(QuerySettings& settings, const QuerySettings& begun, PanelPlaces& places) {
     if (!ImGui::CollapsingHeader("settings")) return notePlace(places, "settings");
     notePlace(places, "settings");
+    if (ImGui::Button("all as at the start")) settings = begun;
+    notePlace(places, "all as at the start");
     ImGui::PushItemWidth(90);
     forEachSetting([&](const auto& row) {
         if (isElsewhere(row.name)) return;
-        edit(row.name, settings.*row.member, row.least, row.most);
+        std::string words = row.name;
+        std::replace(words.begin(), words.end(), '_', ' ');
+        edit(words.c_str(), settings.*row.member, row.least, row.most);
         notePlace(places, row.name);
         showTip(fmt::format("{}{}", row.help, *row.unit ? fmt::format(" [{}]", row.unit) : "").c_str());
     });

@@ -9,6 +9,7 @@ namespace sightline::viewer {
 
 /// What is typed stays within the setting's limits. Stages have a panel of their own; a viewer has one thread, always
 /// measures, and fades nothing.
-void drawSettings(QuerySettings& settings, PanelPlaces& places);
+/// @param begun  what a button returns to
+void drawSettings(QuerySettings& settings, const QuerySettings& begun, PanelPlaces& places);
 
 }  // namespace sightline::viewer

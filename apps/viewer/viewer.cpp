@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/viewer/inks.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/pictures/scene_look.h"
 
@@ -14,8 +15,6 @@ namespace sightline::viewer {
 using namespace tools;
 namespace {
 
-constexpr glm::vec3 kBackground(0.10f, 0.115f, 0.14f);
-constexpr glm::vec3 kCaster(0.75f, 0.45f, 1.0f);
 constexpr glm::dvec3 kSun(0.4, 0.8, 0.45);  // as the shading has it
 constexpr size_t kMostBoxes = 40000;        // of culled objects
 constexpr uint32_t kMostGhosts = 4000;      // objects that are drawn see-through
@@ -40,7 +39,7 @@ bool sameInput(const Input& a, const Input& b) {
 }  // namespace
 
 Viewer::Viewer(const Scene& scene, LoadedWorld world, const QuerySettings& settings, ViewerSettings viewer)
-    : scene_(scene), culler_(scene, std::move(world), settings), settings_(std::move(viewer)) {
+    : scene_(scene), culler_(scene, std::move(world), settings), begun_(settings), settings_(std::move(viewer)) {
     bounds_ = finiteBounds(scene);
     size_ = diagonalOf(bounds_);
     if (!settings_.path.frames.empty()) eye.take(settings_.path.frames.front());
@@ -82,12 +81,20 @@ void Viewer::goTo(size_t frame) {
 ViewPlanes Viewer::sections() const {
     ViewPlanes planes = settings_.sections;
     if (!state.section) return planes;
-    const int axis = state.section_axis;
-    const double at = glm::mix(bounds_.min[axis], bounds_.max[axis], static_cast<double>(state.section_at));
-    glm::dvec4 plane(0.0);
-    plane[axis] = state.section_keeps_upper ? 1 : -1;
-    plane.w = state.section_keeps_upper ? -at : at;
-    planes.add(plane);
+    glm::dvec3 up = state.section_ahead;
+    if (state.section_axis < 3) {
+        up = glm::dvec3(0.0);
+        up[state.section_axis] = 1;
+    }
+    double low = 0, high = 0;  // of the scene, along it
+    for (int axis = 0; axis < 3; ++axis) {
+        const double a = up[axis] * bounds_.min[axis], b = up[axis] * bounds_.max[axis];
+        low += std::min(a, b);
+        high += std::max(a, b);
+    }
+    const double at = glm::mix(low, high, static_cast<double>(state.section_at));
+    const double sign = state.section_keeps_upper ? 1 : -1;
+    planes.add(glm::dvec4(sign * up, -sign * at));
     return planes;
 }
 
@@ -181,6 +188,9 @@ void Viewer::drawPanels() {
                            left_out,
                            size_,
                            eye.eye(),
+                           eye.forward(),
+                           settings_.cells.has_value(),
+                           begun_,
                            settings_.times,
                            frame_milliseconds_,
                            query_microseconds_,
@@ -256,7 +266,7 @@ void Viewer::drawObjects() {
             for (int i = 0; i < 3; ++i)
                 paint.tint[i] = 0.25f + 0.6f * static_cast<float>(mixed >> (8 + 16 * i) & 0xff) / 255;
         } else if (state.colour_by == ColourBy::kAnswer) {
-            paint.tint = glm::vec3(0.35f, 0.65f, 0.4f);
+            paint.tint = kVisible;
         } else if (state.colour_by == ColourBy::kLevels) {
             paint.tint = levelColour(culler_.levelOf(object));
         }
@@ -474,20 +484,6 @@ Status Viewer::frame(const Input& input, uint32_t width, uint32_t height) {
     keep(frame_milliseconds_, 1e3 * input.seconds);
     keep(query_microseconds_, answer_changed_ ? 1e-3 * static_cast<double>(culler_.stats().nanoseconds) : 0.0);
     return checkGl("drawing a frame");
-}
-
-Result<Image<Rgb>> Viewer::picture() const {
-    Image<Rgb> picture(image_.width(), image_.height());
-    glBindFramebuffer(GL_FRAMEBUFFER, image_.resolved());
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    std::vector<Rgb> rows(picture.pixels.size());
-    glReadPixels(0, 0, static_cast<GLsizei>(picture.width), static_cast<GLsizei>(picture.height), GL_RGB,
-                 GL_UNSIGNED_BYTE, rows.data());
-    for (uint32_t y = 0; y < picture.height; ++y)
-        std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(size_t{picture.height - 1 - y} * picture.width),
-                    picture.width, picture.pixels.begin() + static_cast<std::ptrdiff_t>(size_t{y} * picture.width));
-    if (const Status done = checkGl("reading a picture"); !done) return done.error();
-    return picture;
 }
 
 }  // namespace sightline::viewer

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/viewer/bsp_painter.h"
+#include "apps/viewer/cell_faces.h"
 #include "apps/viewer/culler.h"
 #include "apps/viewer/fly_camera.h"
 #include "apps/viewer/gui.h"
@@ -29,8 +30,9 @@ struct ViewerSettings {
     std::string path_file = "sightline-path.json";  ///< that a recorded path is written to
     ViewPlanes sections;                            ///< that cut the scene open, beside the user's own
     double jitter = 0.5;                            ///< View::jitter of the culling camera
-    bool times = true;  ///< are shown; else pictures are the same each time, but for the card's queries
-    float scale = 1;    ///< of the panels
+    bool times = true;               ///< are shown; else pictures are the same each time, but for the card's queries
+    float scale = 1;                 ///< of the panels
+    std::optional<CellSpace> cells;  ///< of the attached visibility file: where they are
 };
 
 class Viewer {
@@ -47,7 +49,7 @@ public:
     /// Into the window.
     void show(uint32_t width, uint32_t height) const { image_.show(width, height); }
     /// The last frame.
-    Result<tools::Image<tools::Rgb>> picture() const;
+    Result<tools::Image<tools::Rgb>> picture() const { return image_.picture(); }
 
     ViewerState state;
     FlyCamera eye, culling;
@@ -84,6 +86,7 @@ private:
     void drawCulled(const GlView& view);
     void drawLines(const GlView& view);
     void drawPortals();
+    void drawCells();
     void drawClusters();
     void drawDoors();
     void drawShadows(const Box3d& box);
@@ -102,12 +105,14 @@ private:
 
     const tools::Scene& scene_;
     Culler culler_;
+    const QuerySettings begun_;  ///< as the viewer began
     ViewerSettings settings_;
     std::optional<SceneDrawer> drawer_;
     std::optional<LineDrawer> lines_, culled_lines_;
     std::unique_ptr<SideBySide> ways_;
     std::unique_ptr<BspPainter> painter_;
     std::optional<ObjectClusters> clusters_;  ///< of the chosen object
+    std::optional<CellFaces> cell_faces_;     ///< once they were wanted
     std::string ways_problem_, bsp_problem_;
     uint32_t ways_asked_ = 0;  ///< times, about the view at hand
     Gui gui_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/viewer/inks.h"
 #include "apps/viewer/viewer.h"
 #include "sightline/cells/portal_graph.h"
 #include "sightline/tools/report/pictures/shadow_picture.h"
@@ -11,14 +12,6 @@
 
 namespace sightline::viewer {
 using namespace tools;
-namespace {
-
-constexpr glm::vec3 kFrustumInk(1.0f, 0.95f, 0.6f);
-constexpr glm::vec3 kPortal(0.3f, 0.9f, 0.9f), kDoor(1.0f, 0.6f, 0.9f), kSeenThrough(1.0f, 1.0f, 0.5f);
-constexpr glm::vec3 kShut(0.38f, 0.30f, 0.24f), kAtDoor(1.0f, 0.2f, 1.0f);
-
-}  // namespace
-
 void Viewer::drawLines(const GlView& view) {
     lines_->clear();
     if (state.frozen && state.frustum) {
@@ -34,13 +27,13 @@ void Viewer::drawLines(const GlView& view) {
             corners[i] = isOrthographic(of) ? corners[i] + size_ * culling.forward()
                                             : from + ahead * (0.6 * size_ / std::max(glm::length(ahead), 1e-12));
         }
-        lines_->hexahedron(corners, kFrustumInk);
+        lines_->hexahedron(corners, kFrustum);
     }
     if (state.bounds)
         for (const uint32_t object : culler_.visible())
-            if (culler_.boundsOf(object).finite() && isShown(object))
-                lines_->box(culler_.boundsOf(object), glm::vec3(0.45f, 0.8f, 0.5f));
+            if (culler_.boundsOf(object).finite() && isShown(object)) lines_->box(culler_.boundsOf(object), kBounds);
     if (state.portals && culler_.hasCells()) drawPortals();
+    if (state.cells && settings_.cells) drawCells();
     drawDoors();
     if (state.clusters && state.chosen) drawClusters();
     if (state.tree_level >= 0) {
@@ -56,8 +49,7 @@ void Viewer::drawLines(const GlView& view) {
                 const bool leaf = (children.child[slot] & BvhNode::kLeaf) != 0;
                 if (level == state.tree_level) {
                     const Box3f box = slotBox(children, slot);
-                    lines_->box({tree.origin + glm::dvec3(box.min), tree.origin + glm::dvec3(box.max)},
-                                glm::vec3(0.7f, 0.7f, 1.0f));
+                    lines_->box({tree.origin + glm::dvec3(box.min), tree.origin + glm::dvec3(box.max)}, kTreeBox);
                 } else if (!leaf) {
                     open.emplace_back(children.child[slot], level + 1);
                 }
@@ -95,6 +87,26 @@ void Viewer::drawPortals() {
             const bool through = std::binary_search(seen.begin(), seen.end(), portal.portal);
             lines_->outline(points, through ? kSeenThrough : portal.door == CellPortal::kNone ? kPortal : kDoor);
         }
+}
+
+/// The faces of the cell that the culling camera is in, and of those that are seen from there.
+void Viewer::drawCells() {
+    if (!cell_faces_) {
+        Box3d around = bounds_;
+        around.min -= 0.01 * size_;
+        around.max += 0.01 * size_;
+        cell_faces_.emplace(*settings_.cells, around);
+    }
+    std::vector<uint32_t> eye_cells, seen;
+    for (const SeenWindow& window : culler_.windows())
+        (window.from == SeenWindow::kNone ? eye_cells : seen).push_back(window.cell);
+    for (std::vector<uint32_t>* cells : {&seen, &eye_cells}) {
+        std::sort(cells->begin(), cells->end());
+        cells->erase(std::unique(cells->begin(), cells->end()), cells->end());
+        for (const uint32_t cell : *cells)
+            for (const CellFaces::Outline& face : cell_faces_->of(cell))
+                lines_->outline(face, cells == &seen ? kSeenCell : kEyeCell);
+    }
 }
 
 /// A door that is shut hides what is behind it, wherever its leaf stands: so its portals are filled. The one that the mouse is

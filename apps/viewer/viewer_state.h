@@ -3,14 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
-
-#include "sightline/geom/stage.h"
 
 namespace sightline::viewer {
 
@@ -30,6 +27,7 @@ struct ViewerState {
     CulledAs culled_as = CulledAs::kBoxes;
     bool frustum = true;   ///< of the frozen camera
     bool portals = false;  ///< of the attached cells
+    bool cells = false;    ///< the culling camera's, and those that are seen from there
     bool windows = false;  ///< that cells are seen through, in the image of the culling camera
     bool bounds = false;   ///< of what is visible
     bool casters = false;  ///< what may darken what is visible, under a sun
@@ -42,8 +40,9 @@ struct ViewerState {
     float bsp_part = 1;    ///< of its pieces, the farthest first  [0 to 1]
     bool bsp_plays = false;
     bool section = false;
-    int section_axis = 1;
-    float section_at = 0.5f;  ///< between the ends of the scene  [0 to 1]
+    int section_axis = 1;                ///< 3: along `section_ahead`
+    glm::dvec3 section_ahead{0, 0, -1};  ///< where the eye looked when it was chosen
+    float section_at = 0.5f;             ///< between the ends of the scene  [0 to 1]
     bool section_keeps_upper = false;
     bool recording = false, playing = false;
     float speed = 1;                                ///< of flight, times what suits the scene
@@ -60,26 +59,5 @@ struct ViewerState {
     bool wants_picture = false;                     ///< of the next frame, into a file of the user's
     bool wants_to_close = false;
 };
-
-/// The chosen object, and who hides it.
-inline constexpr glm::vec3 kChosen(0.15f, 0.55f, 1.0f), kHider(1.0f, 0.55f, 0.1f);
-
-/// The colour of what a stage culled.
-inline glm::vec3 stageColour(int stage) {
-    constexpr glm::vec3 kColours[kStageCount] = {{0.34f, 0.70f, 0.91f}, {0.00f, 0.62f, 0.45f}, {0.55f, 0.57f, 0.60f},
-                                                 {0.94f, 0.89f, 0.26f}, {0.80f, 0.47f, 0.65f}, {0.84f, 0.37f, 0.00f},
-                                                 {0.90f, 0.20f, 0.20f}, {0.60f, 0.40f, 0.80f}, {0.70f, 0.70f, 0.30f}};
-    return kColours[stage];
-}
-
-/// The colour of a level of detail: the coarser, the redder.
-inline glm::vec3 levelColour(uint8_t level) {
-    constexpr glm::vec3 kColours[] = {{0.35f, 0.55f, 0.85f},
-                                      {0.30f, 0.75f, 0.45f},
-                                      {0.90f, 0.80f, 0.25f},
-                                      {0.95f, 0.55f, 0.20f},
-                                      {0.85f, 0.25f, 0.20f}};
-    return kColours[level < std::size(kColours) ? level : std::size(kColours) - 1];
-}
 
 }  // namespace sightline::viewer

@@ -82,6 +82,7 @@ Result<Window> Window::open(const std::string& title, uint32_t width, uint32_t h
         return Error{Error::Kind::kInput,
                      "view: no window can be opened here: " + lastError() + "; --headless draws without one"};
     Window made;
+    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
     for (const auto& [major, minor] : {std::pair(4, 5), std::pair(3, 3)}) {
         glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, major);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, minor);
@@ -118,6 +119,7 @@ float Window::scale() const {
 void Window::run(const std::function<Next(const Input& input, uint32_t width, uint32_t height)>& draw) {
     GLFWwindow* const window = of(window_);
     Typed typed;
+    glfwShowWindow(window);
     glfwSetWindowUserPointer(window, &typed);
     // What is pressed and let go between two frames is seen in the next one.
     glfwSetInputMode(window, GLFW_STICKY_KEYS, GLFW_TRUE);

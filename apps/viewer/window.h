@@ -15,6 +15,7 @@ namespace sightline::viewer {
 class Window {
 public:
     /// Errors (kInput): there is no display, or no OpenGL 3.3.
+    /// It is seen from the first frame on.
     static Result<Window> open(const std::string& title, uint32_t width, uint32_t height);
     Window(Window&& other) noexcept;
     Window& operator=(Window&&) = delete;

@@ -57,6 +57,7 @@ TEST_F(ViewVerb, OpensAVisibilityFile) {
     const std::string shut = picture("building:1:1 --frame 0 --frames 2 --seed 3 --visibility house.vis --no-panels");
     if (shut.empty()) GTEST_SKIP() << "no GL here";
     EXPECT_EQ(picture("building:1:1 --frame 0 --frames 2 --seed 3 --no-panels"), shut) << "what is culled is not seen";
+    EXPECT_NE(picture("building:1:1 --frame 0 --frames 2 --seed 3 --visibility house.vis --cells --no-panels"), shut);
 }
 
 TEST_F(ViewVerb, RefusesWhatCannotBe) {
@@ -75,6 +76,7 @@ TEST_F(ViewVerb, RefusesWhatCannotBe) {
     refused("city:1:20 --headless --screenshot v.png --colours red", 2, "--colours");
     refused("city:1:20 --headless --screenshot v.png --bsp 2", 2, "--bsp");
     refused("city:1:20 --headless --screenshot v.png --clusters", 2, "--clusters: of which object?");
+    refused("city:1:20 --headless --screenshot v.png --cells", 2, "--cells: of which file?");
     unsetenv("DISPLAY");
     unsetenv("WAYLAND_DISPLAY");
     refused("city:1:20 --size 64x64", 3, "no window can be opened here");

@@ -49,7 +49,8 @@ public:
         if (with.cells) {
             bake::SceneCellSettings marks;
             marks.trusted = true;
-            EXPECT_TRUE(world.world.attach(bake::sceneToBake(scene, "house", marks).space));
+            settings.cells = bake::sceneToBake(scene, "house", marks).space;
+            EXPECT_TRUE(world.world.attach(*settings.cells));
         }
         Result<std::unique_ptr<Viewer>> made = Viewer::create(scene, std::move(world), query, settings);
         EXPECT_TRUE(made.ok()) << made.error().message;

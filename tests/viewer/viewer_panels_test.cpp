@@ -51,6 +51,12 @@ TEST_F(ViewerPanels, EveryModeCanBeSeen) {
         state.section_axis = 0;
         state.section_keeps_upper = true;
     });
+    shows("section as I look", [&] {
+        state.section = true;
+        state.section_axis = 3;
+        state.section_ahead = viewer->eye.forward();
+        state.section_keeps_upper = true;
+    });
     shows("chosen", [&] { state.chosen = viewer->culler().visible().front(); });
     shows("isolated", [&] {
         state.chosen = viewer->culler().visible().front();
@@ -139,6 +145,9 @@ TEST_F(ViewerPanels, SettingsAreTyped) {
     EXPECT_EQ(settings.hysteresis, 0.25);
     ASSERT_TRUE(viewer.click("masked"));
     EXPECT_TRUE(settings.masked);
+    ASSERT_TRUE(viewer.click("all as at the start"));
+    EXPECT_FALSE(settings.masked);
+    EXPECT_EQ(settings.hysteresis, QuerySettings().hysteresis);
     size_t rows = 0;
     forEachSetting([&](const auto& row) {
         rows += std::string(row.name) != "stages" && viewer->places().contains(row.name);  // a panel has that name
@@ -283,6 +292,32 @@ TEST_F(ViewerPanels, WhoHidesMostIsFound) {
     viewer->goTo(5);
     viewer.frames();
     EXPECT_FALSE(viewer->culler().knowsHidesMost()) << "of another view";
+}
+
+TEST_F(ViewerPanels, CellsAreSeenAndColoursAreNamed) {
+    const Scene house = makeBuilding(1, 1);
+    Driven viewer(*context_, house, seededCameras(house, 4, 2), {.cells = true});
+    size_t in_cells = 0;
+    for (size_t frame = 0; frame < 4; ++frame) {
+        viewer->goTo(frame);
+        viewer.frames(2);
+        if (viewer->culler().windows().empty()) continue;
+        ++in_cells;
+        ASSERT_TRUE(viewer.click("what colours mean"));
+        const Image<Rgb> named = viewer.picture();
+        ASSERT_TRUE(viewer.click("cells"));
+        EXPECT_GT(differing(named, viewer.picture()), 200u) << "frame " << frame;
+        viewer->state.panels = false;
+        const Image<Rgb> cells = viewer.picture();
+        viewer->state.cells = false;
+        EXPECT_GT(differing(cells, viewer.picture()), 100u) << "frame " << frame;
+        viewer->state.panels = true;
+        viewer.frames(2);
+        ASSERT_TRUE(viewer.click("what colours mean"));
+    }
+    EXPECT_GT(in_cells, 0u);
+    Driven without(*context_, house, seededCameras(house, 1, 2));
+    EXPECT_FALSE(without.click("cells"));
 }
 
 TEST_F(ViewerPanels, AShutDoorIsSeen) {

@@ -28,6 +28,15 @@ std::string duration(double seconds) {
     return fmt::format("{} s", whole);
 }
 
+std::mutex g_watch_mutex;
+ProgressWatch g_watch;
+
+void tellWatch(const std::string& what, size_t done, size_t total) {
+    const std::lock_guard lock(g_watch_mutex);
+    if (g_watch)
+        g_watch(what, total == 0 ? 0.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total)));
+}
+
 /// A reader of standard error who has left is no reason to stop.
 void print(const std::string& text) {
     tell(stderr, text);
@@ -36,15 +45,23 @@ void print(const std::string& text) {
 
 }  // namespace
 
+void watchProgress(ProgressWatch watch) {
+    const std::lock_guard lock(g_watch_mutex);
+    g_watch = std::move(watch);
+}
+
 Progress::Progress(const std::string& what, std::string unit, size_t total)
     : what_(oneLine(what)),
       unit_(std::move(unit)),
       total_(total),
       terminal_(isatty(STDERR_FILENO)),
       start_(Clock::now()),
-      next_(start_ + kPatience) {}
+      next_(start_ + kPatience) {
+    tellWatch(what_, 0, total_);
+}
 
 Progress::~Progress() {
+    tellWatch({}, 0, 0);
     if (terminal_ && shown_) print("\r\033[K");
 }
 
@@ -62,6 +79,7 @@ void Progress::set(size_t done, size_t total) {
 }
 
 void Progress::show() {
+    tellWatch(what_, done_, total_);
     const auto now = Clock::now();
     if (now < next_ || total_ == 0) return;
     next_ = now + (terminal_ ? kTerminalPause : kPipedPause);

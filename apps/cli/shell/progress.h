@@ -4,10 +4,19 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <mutex>
 #include <string>
 
 namespace sightline::cli {
+
+/// What somebody else than standard error is told of: all work, quiet or not.
+/// @param what  "culling"; empty: a piece of work has ended
+/// @param part  [0 to 1]
+using ProgressWatch = std::function<void(const std::string& what, double part)>;
+
+/// From here on; empty: nobody is. It is called in the threads that work, one at a time.
+void watchProgress(ProgressWatch watch);
 
 /// Shows how far one piece of work has come, unless quiet. Thread-safe. Work that is done within half a second shows
 /// nothing.

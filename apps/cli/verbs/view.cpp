@@ -1,8 +1,13 @@
 // The verb `view`: a window onto a scene, or a picture of what would be in it.
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <future>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,6 +24,7 @@
 #include "apps/cli/verbs/verbs.h"
 #include "apps/cli/verbs/visibility_choice.h"
 #include "apps/gl/context.h"
+#include "apps/viewer/loading_screen.h"
 #include "apps/viewer/viewer.h"
 #include "apps/viewer/window.h"
 #include "sightline/tools/report/output_file.h"
@@ -34,7 +40,7 @@ struct ViewOptions : RunOptions {
     uint32_t frame = 0;
     std::optional<uint32_t> frozen;
     std::string object, colours = "materials", culled = "boxes";
-    bool x_ray = false, ways = false, clusters = false;
+    bool x_ray = false, ways = false, clusters = false, cells = false;
     int tree_level = -1;
     std::optional<double> bsp;
 };
@@ -54,6 +60,7 @@ Status arrange(const ViewOptions& options, const Scene& scene, viewer::Viewer& v
     state.tree_level = options.tree_level;
     state.ways = options.ways;
     state.clusters = options.clusters;
+    state.cells = options.cells;
     state.bsp = options.bsp.has_value();
     state.bsp_part = static_cast<float>(options.bsp.value_or(1));
     for (const DoorAsked& asked : options.visibility.doors)
@@ -126,6 +133,8 @@ Status checkView(const ViewOptions& options) {
     if (!files.status()) return files.status();
     if (options.screenshot == "-") return usageError("--screenshot -: pictures go into files");
     if (options.clusters && options.object.empty()) return usageError("--clusters: of which object? --object OBJECT");
+    if (options.cells && options.visibility.file.empty())
+        return usageError("--cells: of which file? --visibility FILE");
     if (options.headless && options.screenshot.empty()) return usageError("--headless goes with --screenshot");
     return options.screenshot.empty() ? success() : canWriteFile(options.screenshot);
 }
@@ -140,45 +149,104 @@ LoadedWorld loadForView(const Scene& scene, const ViewOptions& options) {
     return loaded;
 }
 
+/// What takes its time before the first frame.
+struct Loaded {
+    std::unique_ptr<Scene> scene;
+    CameraPath path;
+    std::optional<LoadedWorld> world;
+};
+
+Result<Loaded> load(ViewOptions& options) {
+    Result<Scene> scene = loadScene(options.scene);
+    if (!scene) return scene.error();
+    Loaded loaded;
+    loaded.scene = std::make_unique<Scene>(std::move(*scene));
+    prepareLods(*loaded.scene, options);
+    if (Status opened = openVisibility(*loaded.scene, options); !opened) return opened.error();
+    Result<CameraPath> path = loadPath(*loaded.scene, options);
+    if (!path) return path.error();
+    loaded.path = std::move(*path);
+    const size_t frames = loaded.path.frames.size();
+    if (Status there = checkFrame(options.frame, frames); !there) return there.error();
+    if (options.frozen && *options.frozen >= frames)
+        return usageError(
+            fmt::format("--frozen {}: the path has {}, from 0", *options.frozen, counted(frames, "frame")));
+    loaded.world = loadForView(*loaded.scene, options);
+    return loaded;
+}
+
+/// Loads while the window shows how far that is. What is there at once shows no progress.
+Result<Loaded> loadBeside(viewer::Window& window, ViewOptions& options) {
+    std::mutex mutex;
+    viewer::LoadingPart now;
+    watchProgress([&](const std::string& what, double part) {
+        const std::lock_guard lock(mutex);
+        now = {what, part};
+    });
+    std::future<Result<Loaded>> loading = std::async(std::launch::async, [&] { return load(options); });
+    const auto isThere = [&](int milliseconds) {
+        return loading.wait_for(std::chrono::milliseconds(milliseconds)) == std::future_status::ready;
+    };
+    Status status = success();
+    if (!isThere(300)) {
+        Result<viewer::LoadingScreen> screen = viewer::LoadingScreen::create();
+        if (!screen) status = screen.error();
+        bool closed = true;
+        if (screen)
+            window.run([&](const viewer::Input& input, uint32_t width, uint32_t height) {
+                viewer::LoadingPart part;
+                {
+                    const std::lock_guard lock(mutex);
+                    part = now;
+                }
+                status = screen->frame(input, width, height, window.scale(), options.scene.title(), part);
+                screen->show(width, height);
+                closed = status.ok() && !isThere(15);
+                return closed ? viewer::Window::Next::kFrame : viewer::Window::Next::kEnd;
+            });
+        if (closed && screen) {  // by its user: what loads stops nowhere, and leaves nothing behind
+            (void)std::fflush(nullptr);
+            std::_Exit(kDone);
+        }
+    }
+    Result<Loaded> loaded = loading.get();
+    watchProgress({});
+    return status ? std::move(loaded) : Result<Loaded>(status.error());
+}
+
 Status runView(const CLI::App& verb, ViewOptions& options) {
     if (Status good = finish(verb, options); !good) return good;
     if (Status good = checkView(options); !good) return good;
-    Result<Scene> scene = loadScene(options.scene);
-    if (!scene) return scene.error();
-    prepareLods(*scene, options);
-    if (Status opened = openVisibility(*scene, options); !opened) return opened;
-    const Result<CameraPath> path = loadPath(*scene, options);
-    if (!path) return path.error();
-    if (Status there = checkFrame(options.frame, path->frames.size()); !there) return there;
-    if (options.frozen && *options.frozen >= path->frames.size())
-        return usageError(fmt::format("--frozen {}: the path has {}, from 0", *options.frozen,
-                                      counted(path->frames.size(), "frame")));
-    LoadedWorld world = loadForView(*scene, options);
-    QuerySettings settings = options.settings;
-    settings.stateless = false;
-
-    std::optional<GlContext> context;
-    std::optional<viewer::Window> window;
     viewer::ViewerSettings shown;
-    shown.path = *path;
-    shown.sections = options.sections;
-    shown.jitter = options.jitter;
-    shown.times = !options.headless;
-    if (options.headless) {
-        Result<GlContext> made = GlContext::create(2);
-        if (!made) return made.error();
-        context.emplace(std::move(*made));
-        context->makeCurrent();
-    } else {
+    std::optional<viewer::Window> window;
+    if (!options.headless) {
         Result<viewer::Window> opened =
             viewer::Window::open("Sightline: " + options.scene.title(), options.width, options.height);
         if (!opened) return opened.error();
         window.emplace(std::move(*opened));
         shown.scale = window->scale();
     }
-    Result<std::unique_ptr<viewer::Viewer>> made = viewer::Viewer::create(*scene, std::move(world), settings, shown);
+    Result<Loaded> loaded = window ? loadBeside(*window, options) : load(options);
+    if (!loaded) return loaded.error();
+    const Scene& scene = *loaded->scene;
+    std::optional<GlContext> context;
+    if (!window) {
+        Result<GlContext> made = GlContext::create(2);
+        if (!made) return made.error();
+        context.emplace(std::move(*made));
+        context->makeCurrent();
+    }
+    QuerySettings settings = options.settings;
+    settings.stateless = false;
+    shown.path = loaded->path;
+    shown.sections = options.sections;
+    shown.jitter = options.jitter;
+    shown.times = !options.headless;
+    if (options.opened) shown.cells = options.opened->file.cellSpace();
+    Result<std::unique_ptr<viewer::Viewer>> made =
+        viewer::Viewer::create(scene, std::move(*loaded->world), settings, std::move(shown));
     if (!made) return made.error();
-    if (Status ready = arrange(options, *scene, **made); !ready) return ready;
+    if (Status ready = arrange(options, scene, **made); !ready) return ready;
     stopGently();
     return options.headless ? drawOnce(options, **made) : runWindow(options, *window, **made);
 }
@@ -222,6 +290,8 @@ void addView(CLI::App& tool, int& exit_code) {
         ->type_name("PART");
     verb->add_flag("--ways", options->ways, "show what other ways of culling keep of the same view");
     verb->add_flag("--clusters", options->clusters, "show the clusters of the chosen object's triangles (--object)");
+    verb->add_flag("--cells", options->cells,
+                   "show the camera's cell, and those that are seen from there (--visibility)");
     verb->add_flag("--no-panels", options->no_panels, "without panels");
     verb->callback([verb, options, &exit_code] {
         const Status done = runView(*verb, *options);
