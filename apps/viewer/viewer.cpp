@@ -207,9 +207,10 @@ void Viewer::drawPanels() {
     if (wishes.explain) explainChosen();
     if (wishes.look_at_chosen) lookAtChosen();
     if (wishes.save_path) {
-        const Status written = writeFileAside(settings_.path_file, cameraPathJson(settings_.path));
-        state.said = written ? fmt::format("{} frames in {}", settings_.path.frames.size(), settings_.path_file)
-                             : written.error().message;
+        const std::string name = freeFileName(settings_.path_stem, ".json");
+        const Status written = writeFileAside(name, cameraPathJson(settings_.path));
+        state.said =
+            written ? fmt::format("{} frames in {}", settings_.path.frames.size(), name) : written.error().message;
     }
 }
 

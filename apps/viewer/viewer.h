@@ -26,10 +26,10 @@
 namespace sightline::viewer {
 
 struct ViewerSettings {
-    tools::CameraPath path;                         ///< to begin with: its first frame is where the eye stands
-    std::string path_file = "sightline-path.json";  ///< that a recorded path is written to
-    ViewPlanes sections;                            ///< that cut the scene open, beside the user's own
-    double jitter = 0.5;                            ///< View::jitter of the culling camera
+    tools::CameraPath path;                    ///< to begin with: its first frame is where the eye stands
+    std::string path_stem = "sightline-path";  ///< of the file that a recorded path is written to, ".json"
+    ViewPlanes sections;                       ///< that cut the scene open, beside the user's own
+    double jitter = 0.5;                       ///< View::jitter of the culling camera
     bool times = true;               ///< are shown; else pictures are the same each time, but for the card's queries
     float scale = 1;                 ///< of the panels
     std::optional<CellSpace> cells;  ///< of the attached visibility file: where they are

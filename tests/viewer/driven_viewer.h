@@ -36,7 +36,7 @@ public:
         context.makeCurrent();
         ViewerSettings settings;
         settings.path = path;
-        settings.path_file = path_file_.string();
+        settings.path_stem = path_stem_.string();
         QuerySettings query;
         query.stages = stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion);
         if (with.lod_error > 0) query.stages |= stageBit(Stage::kLod);
@@ -63,7 +63,7 @@ public:
 
     ~Driven() {
         std::error_code ignored;
-        std::filesystem::remove(path_file_, ignored);
+        for (const char* end : {".json", "-2.json"}) std::filesystem::remove(path_stem_.string() + end, ignored);
     }
     void frames(int count = 1) {
         for (int i = 0; i < count; ++i) {
@@ -147,11 +147,11 @@ public:
         EXPECT_TRUE(picture.ok());
         return picture ? *picture : Image<Rgb>();
     }
-    std::string pathFile() const { return path_file_.string(); }
+    std::string pathStem() const { return path_stem_.string(); }
 
 private:
-    const std::filesystem::path path_file_ =
-        std::filesystem::temp_directory_path() / ("sightline-viewer-" + std::to_string(getpid()) + ".json");
+    const std::filesystem::path path_stem_ =
+        std::filesystem::temp_directory_path() / ("sightline-viewer-" + std::to_string(getpid()));
     std::unique_ptr<Viewer> viewer_;
     Input input_;
 };

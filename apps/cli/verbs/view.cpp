@@ -84,15 +84,6 @@ Status writePicture(const viewer::Viewer& viewer, const std::string& file) {
     return writeFileAside(file, encodePng(*picture));
 }
 
-/// A name that no file has.
-std::string freeName() {
-    for (int i = 1;; ++i) {
-        const std::string name = fmt::format("sightline-view-{}.png", i);
-        std::error_code ignored;
-        if (!std::filesystem::exists(name, ignored)) return name;
-    }
-}
-
 /// Panels take their places in the first frames, and other ways of culling find out in some what they show.
 Status drawOnce(const ViewOptions& options, viewer::Viewer& viewer) {
     for (int i = 0; i < 5; ++i)
@@ -110,7 +101,7 @@ Status runWindow(const ViewOptions& options, viewer::Window& window, viewer::Vie
         viewer.show(width, height);
         if (viewer.state.wants_picture) {
             viewer.state.wants_picture = false;
-            const std::string name = freeName();
+            const std::string name = freeFileName("sightline-view", ".png");
             const Status written = writePicture(viewer, name);
             viewer.state.said = written ? name + " written" : written.error().message;
         }

@@ -102,6 +102,14 @@ Status canWriteFile(const std::string& file) {
     return success();
 }
 
+std::string freeFileName(const std::string& stem, const std::string& extension) {
+    for (int i = 1;; ++i) {
+        const std::string name = stem + (i > 1 ? "-" + std::to_string(i) : "") + extension;
+        std::error_code ignored;
+        if (!std::filesystem::exists(name, ignored)) return name;
+    }
+}
+
 Status makeDirectory(const std::string& directory) {
     std::error_code error;
     std::filesystem::create_directories(directory, error);
