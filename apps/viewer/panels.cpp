@@ -304,6 +304,9 @@ void Panels::legend() {
         say(kEyeCell, "the camera's cell");
         say(kSeenCell, "cells that are seen from there");
     }
+    if (state_.clusters && state_.chosen)
+        ImGui::TextUnformatted("clusters: each its own; grey: seen from its back; pink: a culling volume");
+    if (state_.windows && !state_.frozen) ImGui::TextUnformatted("rectangles: windows that cells are seen through");
     ImGui::TextDisabled("all else: materials, or objects");
 }
 

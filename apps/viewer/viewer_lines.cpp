@@ -33,7 +33,7 @@ void Viewer::drawLines(const GlView& view) {
         for (const uint32_t object : culler_.visible())
             if (culler_.boundsOf(object).finite() && isShown(object)) lines_->box(culler_.boundsOf(object), kBounds);
     if (state.portals && culler_.hasCells()) drawPortals();
-    if (state.cells && settings_.cells) drawCells();
+    if (state.cells && settings_.cells && !bounds_.empty()) drawCells();
     drawDoors();
     if (state.clusters && state.chosen) drawClusters();
     if (state.tree_level >= 0) {

@@ -182,7 +182,7 @@ Result<Loaded> loadBeside(viewer::Window& window, ViewOptions& options) {
     if (!isThere(300)) {
         Result<viewer::LoadingScreen> screen = viewer::LoadingScreen::create();
         if (!screen) status = screen.error();
-        bool closed = true;
+        bool waits = true;
         if (screen)
             window.run([&](const viewer::Input& input, uint32_t width, uint32_t height) {
                 viewer::LoadingPart part;
@@ -192,10 +192,10 @@ Result<Loaded> loadBeside(viewer::Window& window, ViewOptions& options) {
                 }
                 status = screen->frame(input, width, height, window.scale(), options.scene.title(), part);
                 screen->show(width, height);
-                closed = status.ok() && !isThere(15);
-                return closed ? viewer::Window::Next::kFrame : viewer::Window::Next::kEnd;
+                waits = status.ok() && !isThere(15);
+                return waits ? viewer::Window::Next::kFrame : viewer::Window::Next::kEnd;
             });
-        if (closed && screen) {  // by its user: what loads stops nowhere, and leaves nothing behind
+        if (waits && screen) {  // its user closed it: a load cannot be stopped halfway, and leaves nothing behind
             (void)std::fflush(nullptr);
             std::_Exit(kDone);
         }
