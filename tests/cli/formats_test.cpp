@@ -118,7 +118,7 @@ TEST_F(Formats, LimitsOfReadersAreOneLine) {
     for (int i = 0; i < 300000; ++i) text.append("v ").append(std::to_string(i)).append(" 0 0\n");
     write("large.obj", text + "f 1 2 3\n");
     expectError("info large.obj --import-time 0.001", 3, "large.obj: took longer than 0.001 s to read (--import-time)");
-    if (!kSanitized)
+    if (!kSanitized)  // sanitizers reserve all of the address space
         expectError("info large.obj --import-memory 40M", 3,
                     "large.obj: needs more memory than 40 MiB (--import-memory)");
     expectError("bench frustum --scene large.obj --import-time 0.001", 3, "took longer");

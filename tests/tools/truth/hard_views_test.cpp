@@ -98,6 +98,7 @@ using HardViews = test::SceneTest;
 
 TEST_P(HardViews, OfARealSceneHideNothingThatIsSeen) {
     expectNothingSeenIsCulled(*scene, 1);
+    // Far off other numbers run through the same code: sanitizers would see it twice.
     if (!kSanitized) expectNothingSeenIsCulled(movedBy(*scene, 1e6), 1);
 }
 
