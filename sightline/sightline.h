@@ -36,11 +36,11 @@
 #include "sightline/visfile/visibility_file.h"  // from a file that was baked
 
 // Understanding an answer.
-#include "sightline/query/explain/credits.h"             // which occluder hides how much
-#include "sightline/query/explain/explain.h"             // why one object is, or is not, in an answer
-#include "sightline/query/explain/shadows.h"             // whose shadows hide an object
-#include "sightline/query/record/occlusion_recording.h"  // a frame's occlusion calls, in a file
-#include "sightline/query/record/occlusion_replay.h"     // the same done again, and timed
+#include "sightline/query/explain/credits.h"        // which occluder hides how much
+#include "sightline/query/explain/explain.h"        // why one object is, or is not, in an answer
+#include "sightline/query/explain/shadows.h"        // whose shadows hide an object
+#include "sightline/query/record/frame_recorder.h"  // an answer as a file
+#include "sightline/query/record/frame_replay.h"    // which is asked again
 
 // The occlusion buffer alone: draw occluders and ask about boxes, without a world.
 #include "sightline/cull/occlusion_buffer.h"

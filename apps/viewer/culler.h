@@ -59,6 +59,8 @@ public:
     /// The level of detail to draw of an object that is visible; 0 is the finest.
     uint8_t levelOf(uint32_t object) const { return object < levels_.size() ? levels_[object] : 0; }
     const QueryStats& stats() const { return stats_; }
+    /// Whose answer it is.
+    const Query& query() const { return query_; }
     /// Per object: 0 visible, 1 + Stage of the stage that culled it.  [size: objects]
     std::span<const uint8_t> reasons();
     /// Objects that may darken what is visible under a sun, those that are visible among them. Asked where it is first

@@ -370,6 +370,8 @@ void Panels::path() {
     if (frames > 0 && press("save path")) wishes_.save_path = true;
     if (frames > 0) ImGui::SameLine();
     if (press("picture (F12)")) state_.wants_picture = true;
+    ImGui::SameLine();
+    if (press("record this frame")) wishes_.save_frame = true;
 }
 
 /// The slider of a door.

@@ -44,7 +44,7 @@ struct PanelFacts {
 struct PanelWishes {
     std::optional<size_t> go_to;     ///< a frame of the path
     std::optional<uint32_t> choose;  ///< an object
-    bool explain = false, look_at_chosen = false, let_go = false, save_path = false;
+    bool explain = false, look_at_chosen = false, let_go = false, save_path = false, save_frame = false;
 };
 
 /// Between Gui::begin() and Gui::draw().

@@ -9,6 +9,7 @@
 
 #include "apps/viewer/inks.h"
 #include "sightline/tools/report/output_file.h"
+#include "sightline/query/record/frame_recorder.h"
 #include "sightline/tools/report/pictures/scene_look.h"
 
 namespace sightline::viewer {
@@ -212,6 +213,21 @@ void Viewer::drawPanels() {
         state.said =
             written ? fmt::format("{} frames in {}", settings_.path.frames.size(), name) : written.error().message;
     }
+    if (wishes.save_frame) saveFrame();
+}
+
+/// The last answer as a file; of a frozen camera what that one was told.
+void Viewer::saveFrame() {
+    const std::string name = freeFileName(settings_.frame_stem, ".frame");
+    const Result<FrameRecording> recording = recordFrame(culler_.query());
+    if (!recording) {
+        state.said = recording.error().message;
+        return;
+    }
+    const Array<char> bytes = recordingBytes(*recording);
+    const Status written = writeFileAside(name, {bytes.data(), bytes.size()});
+    state.said =
+        written ? fmt::format("the frame is in {}: sightline replay {} --verify", name, name) : written.error().message;
 }
 
 void Viewer::lookAtChosen() {

@@ -28,6 +28,7 @@ namespace sightline::viewer {
 struct ViewerSettings {
     tools::CameraPath path;                    ///< to begin with: its first frame is where the eye stands
     std::string path_stem = "sightline-path";  ///< of the file that a recorded path is written to, ".json"
+    std::string frame_stem = "sightline";      ///< of the file that a recorded frame is written to, ".frame"
     ViewPlanes sections;                       ///< that cut the scene open, beside the user's own
     double jitter = 0.5;                       ///< View::jitter of the culling camera
     bool times = true;               ///< are shown; else pictures are the same each time, but for the card's queries
@@ -96,6 +97,7 @@ private:
     void choose(std::optional<uint32_t> object);
     void explainChosen();
     void lookAtChosen();
+    void saveFrame();
     void drawPanels();
     bool isShown(uint32_t object) const;
     bool isCulled(uint32_t object);

@@ -166,6 +166,13 @@ typedef struct slDepthImage {
 } slDepthImage;
 SL_API slStatus slQueryDepthImage(slQuery* query, slDepthImage* image_out);
 
+/** The last answer as the bytes of a file: the view, the settings, the objects that the frustum and the cells left, what they
+ * hide with, and what became of each; of two eyes the left one's. `sightline replay FILE` asks it again on any machine, times
+ * it and judges it: send it with a report of a wrong or a slow frame. Costs a copy of all that, and a query.
+ * Errors: SL_BAD_ARGUMENT: the view could not be used.
+ * @param bytes_out  the query's, until it is recorded again or destroyed  [size: count] */
+SL_API slStatus slQueryRecord(slQuery* query, const void** bytes_out, size_t* count_out);
+
 #ifdef __cplusplus
 }
 #endif

@@ -262,6 +262,11 @@ void Query::reasons(std::span<uint8_t> reasons, uint8_t eye) const {
     else this->reasons(reasons);
 }
 
+Query::Asked Query::asked() const {
+    const detail::Frame& frame = impl_->left.frame();
+    return {frame.snapshot, frame.view, frame.settings};
+}
+
 Explanation Query::explain(const Snapshot& now, const View& view, ObjectId id, const QuerySettings& settings) const {
     Explanation why = Explainer(now, view, settings, impl_->last(), impl_->memory).explain(id);
     why.unasked = impl_->left.wasUnasked(id) || (impl_->stereo && impl_->right->wasUnasked(id));

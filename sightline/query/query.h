@@ -138,6 +138,15 @@ public:
     /// @param eye  kLeftEye or kRightEye; after visible() both are that view
     void reasons(std::span<uint8_t> reasons, uint8_t eye) const;
 
+    /// What the last answer was asked; of visibleStereo(), what the left eye was. Valid until the query's next call.
+    /// Before the first answer the snapshot is null.
+    struct Asked {
+        const Snapshot& snapshot;
+        const View& view;
+        const QuerySettings& settings;
+    };
+    Asked asked() const;
+
     /// The windows that Stage::kPortals saw cells through; none if the stage decided nothing. After visibleStereo()
     /// they are the left eye's.
     std::span<const SeenWindow> windows();

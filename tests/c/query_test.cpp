@@ -1,9 +1,11 @@
 // The C interface gives the library's own answers: queries, two eyes, changes, reasons, explanations, casters, sight.
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <thread>
 
 #include "sightline/geom/clip_space.h"
 #include "sightline/query/explain/explain.h"
+#include "sightline/query/record/frame_replay.h"
 #include "sightline/query/shadow_query.h"
 #include "sightline/query/sight_query.h"
 #include "tests/c/c_twin.h"
@@ -399,6 +401,14 @@ TEST(CDebugDraw, DrawsWhatWasKeptAndCulled) {
     slDepthImage image;
     ASSERT_EQ(slQueryDepthImage(c.query, &image), SL_OK);
     EXPECT_GT(image.width, 0u);
+
+    const void* bytes = nullptr;
+    size_t count = 0;
+    ASSERT_EQ(slQueryRecord(c.query, &bytes, &count), SL_OK);
+    const Result<FrameRecording> recording = parseRecording({static_cast<const char*>(bytes), count}, "frame");
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    EXPECT_EQ(std::count(recording->reasons.begin(), recording->reasons.end(), 0), int(set.count));
+    EXPECT_TRUE(FrameReplay(*recording).run().same());
 }
 
 }  // namespace

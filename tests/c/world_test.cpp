@@ -209,6 +209,7 @@ TEST(CWorld, NullPointersAreAnsweredEverywhere) {
         slQueryGetStats(query.query, nullptr),
         slQueryReasons(query.query, nullptr, 3, &count),
         slQueryDepthImage(query.query, nullptr),
+        slQueryRecord(query.query, nullptr, &count),
         slQueryExplain(query.query, now, &view, nullptr, {}, nullptr),
         slDrawAnswer(query.query, now, &view, 7, nullptr),
         slFindCasters(shadows, now, &view, nullptr, nullptr, nullptr, nullptr),

@@ -92,6 +92,15 @@ class Answers(unittest.TestCase):
             made.world.remove(made.ids[hidden:hidden + 1])
         self.assertEqual(raised.exception.status, "SL_STALE_ID")
 
+    def test_records(self):
+        made, query = Made(), sightline.Query()
+        query.visible(made.now, VIEW)
+        recorded = query.record()
+        self.assertEqual(recorded[:16], b"sightline frame\n")
+        self.assertEqual(query.record(), recorded)
+        query.visible(made.now, VIEW, stages=["frustum"])
+        self.assertNotEqual(query.record(), recorded)
+
     def test_explains(self):
         made = Made()
         query = sightline.Query()

@@ -1,4 +1,4 @@
-// Recordings of frames of made worlds, for their tests and for the seeds of their fuzzer.
+// Frames of made worlds and their recordings, for their tests and for the seeds of their fuzzer.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "sightline/base/bytes.h"
-#include "sightline/query/record/occlusion_recording.h"
-#include "sightline/query/record/occlusion_replay.h"
+#include "sightline/query/record/frame_recorder.h"
+#include "sightline/query/record/frame_replay.h"
 #include "tests/support/made_world.h"
 
 namespace sightline::test {
@@ -40,46 +40,58 @@ inline OccluderId addSheet(World& world, uint32_t side) {
     return world.addOccluder(prepareOccluder(mesh.view(), {}, both));
 }
 
+/// A unit cube, for which a smaller one may stand in.
+inline OccluderId addChest(World& world) {
+    TestMesh within = boxMesh();
+    for (glm::vec3& position : within.positions) position = glm::vec3(0.1f) + 0.8f * position;
+    InnerOccluder inner;
+    inner.occluder = prepareOccluder(within.view());
+    inner.outside = {glm::vec3(0.0f), glm::vec3(1.0f)};
+    inner.error = 0.1f;
+    return world.addOccluder(prepareOccluder(boxMesh().view()), {&inner, 1});
+}
+
 /// @param boxes   of walls, floors and clutter
-/// @param sheets  bent ones, of side * side quads
+/// @param sheets  bent ones, of side * side quads; and as many chests, which have levels of detail or limits
 inline MadeWorld someWorld(uint64_t seed, int boxes = 300, int sheets = 20, uint32_t side = 20) {
-    MadeWorld made(seed, boxes);
-    const OccluderId sheet = addSheet(made.world, side);
+    MadeWorld made;
+    made.shapes = seed % 2 == 0;
+    made.fill(seed, boxes, {0, 0, 0});
     Random random(seed + 1);
-    for (int i = 0; i < sheets; ++i) {
-        ObjectDef def;
+    const auto add = [&](ObjectDef def, int i) {
         def.bounds = {glm::dvec3(0.0), glm::dvec3(1.0)};
         for (int axis = 0; axis < 3; ++axis) def.transform[axis][axis] = random.uniform(2, 9);
         def.transform[3] = glm::dvec4(random.uniform(-15, 10), random.uniform(-4, 0), random.uniform(-15, 15), 1);
         def.key = 1000 + static_cast<uint64_t>(i);
-        def.occluder = sheet;
         made.world.add(def);
+    };
+    if (sheets == 0) return made;
+    const OccluderId sheet = addSheet(made.world, side), chest = addChest(made.world);
+    const LodLevel levels[] = {{0, 12, 8}, {0.05, 4, 4}};
+    const LodsId lods = made.world.addLods(levels);
+    for (int i = 0; i < sheets; ++i) {
+        ObjectDef def;
+        def.occluder = sheet;
+        add(def, i);
+    }
+    for (int i = 0; i < sheets; ++i) {
+        ObjectDef def;
+        def.occluder = chest;
+        def.layers = static_cast<uint32_t>(i % 3 + 1);
+        if (i % 2) def.lods = lods;
+        def.hides_in_lods = i % 4 == 1;
+        if (i % 5 == 0) def.limits = {.always = i % 10 == 0, .max_distance = 12, .factor = 2};
+        add(def, sheets + i);
     }
     return made;
 }
 
-inline OcclusionRecording recordOf(uint64_t seed) {
+inline FrameRecording recordOf(uint64_t seed) {
     MadeWorld made = someWorld(seed);
-    return std::move(*recordOcclusion(made.world.commit(), someView(seed), someSettings(seed)));
+    QuerySettings settings = someSettings(seed);
+    if (seed % 2) settings.max_distance = 25;
+    return std::move(*recordFrame(made.world.commit(), someView(seed), settings));
 }
-
-/// With two tests of tiles beside those that the walk made, and the answers that they get.
-inline OcclusionRecording withTiles(OcclusionRecording recording) {
-    OcclusionReplay replay(recording);
-    replay.run();
-    replay.tiles().log = &recording.asked;
-    for (uint32_t tile : {replay.tiles().stride + 1, 2 * replay.tiles().stride + 3}) {
-        float nearest[64];
-        for (int i = 0; i < 64; ++i) nearest[i] = 0.01f * static_cast<float>(i);
-        openPixels(replay.tiles(), tile, 0x00ffff0012345678u, nearest);
-        uint32_t& noted = recording.asked.tiles.back().tile;
-        noted = noted / replay.tiles().stride * replay.tiles().columns + noted % replay.tiles().stride;
-    }
-    replay.tiles().log = nullptr;
-    return recording;
-}
-
-inline OcclusionRecording recordWithTiles(uint64_t seed) { return withTiles(recordOf(seed)); }
 
 /// Makes the hash of a file right again, so that what lies deeper is looked at.
 inline void seal(Array<char>& bytes) {

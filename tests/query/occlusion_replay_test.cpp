@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "tests/query/made_recording.h"
 #include "tests/support/targets.h"
@@ -12,13 +14,34 @@
 namespace sightline::test {
 namespace {
 
+OcclusionRecording callsOf(uint64_t seed) {
+    MadeWorld made = someWorld(seed);
+    return std::move(*recordOcclusion(made.world.commit(), someView(seed), someSettings(seed)));
+}
+
+/// With two tests of tiles beside those that the walk made, and the answers that they get.
+OcclusionRecording withTiles(OcclusionRecording recording) {
+    OcclusionReplay replay(recording);
+    replay.run();
+    replay.tiles().log = &recording.asked;
+    for (uint32_t tile : {replay.tiles().stride + 1, 2 * replay.tiles().stride + 3}) {
+        float nearest[64];
+        for (int i = 0; i < 64; ++i) nearest[i] = 0.01f * static_cast<float>(i);
+        openPixels(replay.tiles(), tile, 0x00ffff0012345678u, nearest);
+        uint32_t& noted = recording.asked.tiles.back().tile;
+        noted = noted / replay.tiles().stride * replay.tiles().columns + noted % replay.tiles().stride;
+    }
+    replay.tiles().log = nullptr;
+    return recording;
+}
+
 TEST(OcclusionReplay, GivesTheSameAnswersOnEveryInstructionSet) {
     size_t draws = 0, instances = 0;
     for (uint64_t seed = 1; seed <= 6; ++seed) {
-        const OcclusionRecording recording = recordOf(seed);
+        const OcclusionRecording recording = callsOf(seed);
         draws += recording.draws.size();
         instances += recording.instances.size();
-        EXPECT_LE(recording.occluders.size(), 2u);
+        EXPECT_LE(recording.occluders.size(), 4u);
         const auto hidden = std::count_if(recording.asked.rects.begin(), recording.asked.rects.end(),
                                           [](const TileLog::RectTest& test) { return test.hidden; });
         EXPECT_GT(hidden, 5);
@@ -60,7 +83,7 @@ TEST(OcclusionReplay, IsOfTheFrameThatAQuerySees) {
 }
 
 TEST(OcclusionReplay, NoticesAnAnswerThatIsNotTheSame) {
-    OcclusionRecording recording = recordWithTiles(2);
+    OcclusionRecording recording = withTiles(callsOf(2));
     EXPECT_TRUE(OcclusionReplay(recording).run().same());
     recording.asked.tiles.back().open ^= 0x10;
     ReplayAnswer answer = OcclusionReplay(recording).run();
@@ -72,6 +95,15 @@ TEST(OcclusionReplay, NoticesAnAnswerThatIsNotTheSame) {
     answer = OcclusionReplay(recording).run();
     EXPECT_EQ(answer.differences, 2u);
     EXPECT_NE(describeTest(recording, answer.different).find("rectangle"), std::string::npos);
+}
+
+TEST(OcclusionReplay, IsOfUsableViewsWithAnOcclusionStage) {
+    World world;
+    EXPECT_TRUE(recordOcclusion(world.commit(), View()).ok());
+    EXPECT_FALSE(recordOcclusion(world.commit(), View(), {.stages = stageBit(Stage::kFrustum)}).ok());
+    View view;
+    view.projection[0][0] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(recordOcclusion(world.commit(), view).ok());
 }
 
 }  // namespace

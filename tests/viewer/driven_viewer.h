@@ -37,6 +37,7 @@ public:
         ViewerSettings settings;
         settings.path = path;
         settings.path_stem = path_stem_.string();
+        settings.frame_stem = path_stem_.string();
         QuerySettings query;
         query.stages = stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion);
         if (with.lod_error > 0) query.stages |= stageBit(Stage::kLod);
@@ -63,7 +64,8 @@ public:
 
     ~Driven() {
         std::error_code ignored;
-        for (const char* end : {".json", "-2.json"}) std::filesystem::remove(path_stem_.string() + end, ignored);
+        for (const char* end : {".json", "-2.json", ".frame"})
+            std::filesystem::remove(path_stem_.string() + end, ignored);
     }
     void frames(int count = 1) {
         for (int i = 0; i < count; ++i) {

@@ -8,10 +8,12 @@
 #include <tuple>
 #include <vector>
 
+#include "sightline/query/record/frame_recording.h"
 #include "sightline/tools/load/mesh_lods.h"
 #include "sightline/tools/load/seeded_cameras.h"
 #include "sightline/tools/scene/building/building.h"
 #include "sightline/tools/scene/terrain/terrain.h"
+#include "tests/support/files.h"
 #include "tests/viewer/driven_viewer.h"
 
 namespace sightline::viewer {
@@ -126,6 +128,12 @@ TEST_F(ViewerPanels, PanelsDoWhatTheySay) {
     }
     ASSERT_TRUE(viewer.click("picture (F12)"));
     EXPECT_TRUE(viewer->state.wants_picture);
+    ASSERT_TRUE(viewer.click("record this frame"));
+    const std::string frame = test::readBytes(viewer.pathStem() + ".frame");
+    const Result<FrameRecording> recording = parseRecording(frame, "the frame");
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    EXPECT_EQ(std::count(recording->reasons.begin(), recording->reasons.end(), 0),
+              static_cast<long>(viewer->culler().visible().size()));
     EXPECT_FALSE(viewer.click("what no panel has"));
 }
 

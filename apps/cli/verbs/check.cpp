@@ -1,10 +1,14 @@
-// The verb `check`: the certificates of a run, held to exact arithmetic by somebody who has not culled.
+// The verb `check`: the certificates of a run or a frame, held to exact arithmetic by somebody who has not culled.
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -19,9 +23,12 @@
 #include "apps/cli/verbs/cull_path.h"
 #include "apps/cli/verbs/verbs.h"
 #include "sightline/bake/objects/scene_hash.h"
+#include "sightline/query/record/frame_recording.h"
+#include "sightline/tools/load/recorded_scene.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/run/run_reader.h"
 #include "sightline/tools/scene/one_line.h"
+#include "sightline/tools/scene/text_file.h"
 #include "sightline/tools/truth/cull_proof.h"
 
 namespace sightline::cli {
@@ -49,10 +56,20 @@ struct CheckedFrame {
     bool done = false;
 };
 
-CheckedFrame checkFrameOf(const SceneFacts& facts, const CullRun& run, uint32_t number) {
+/// What is to be checked: a scene, and frames of it.
+struct Checked {
+    struct Frame {
+        View view;
+        std::vector<CertificateRow> certificates;
+    };
+    Scene scene;
+    std::string title;  ///< of the scene
+    std::vector<Frame> frames;
+};
+
+CheckedFrame checkFrameOf(const SceneFacts& facts, const Checked::Frame& frame, uint32_t number) {
     CheckedFrame out;
-    const FrameResult& frame = run.frames[number];
-    CullProver prover(facts, viewOf(frame.camera, run));
+    CullProver prover(facts, frame.view);
     for (const CertificateRow& row : frame.certificates) {
         ++out.certificates;
         out.named += row.hiders.size();
@@ -96,11 +113,11 @@ Sums sumsOf(const std::vector<CheckedFrame>& frames) {
     return sums;
 }
 
-std::string textOf(const Sums& sums, const CheckOptions& options, const CullRun& run) {
-    const auto frames_with = std::count_if(run.frames.begin(), run.frames.end(),
-                                           [](const FrameResult& frame) { return !frame.certificates.empty(); });
+std::string textOf(const Sums& sums, const CheckOptions& options, const Checked& of) {
+    const auto frames_with = std::count_if(of.frames.begin(), of.frames.end(),
+                                           [](const Checked::Frame& frame) { return !frame.certificates.empty(); });
     std::string text = fmt::format("{}: {} frames, {} of them with certificates\n", oneLine(options.file),
-                                   run.frames.size(), frames_with);
+                                   of.frames.size(), frames_with);
     text += fmt::format("certificates {:>10}  naming {:.1f} objects each\n", grouped(sums.certificates),
                         sums.certificates > 0 ? double(sums.named) / double(sums.certificates) : 0.0);
     text += fmt::format("proved       {:>10}  culls: whom their certificates name suffice, exactly\n",
@@ -113,13 +130,13 @@ std::string textOf(const Sums& sums, const CheckOptions& options, const CullRun&
     return text;
 }
 
-std::string jsonOf(const Sums& sums, const CheckOptions& options, const CullRun& run, const Scene& scene) {
+std::string jsonOf(const Sums& sums, const CheckOptions& options, const Checked& of) {
     nlohmann::ordered_json json;
     json["schema"] = "sightline.check/1";
     json["file"] = options.file;
-    json["scene"] = options.scene.title();
+    json["scene"] = of.title;
     json["frames"] = sums.frames;
-    json["of"] = run.frames.size();
+    json["of"] = of.frames.size();
     json["certificates"] = sums.certificates;
     json["proved"] = sums.proved;
     json["undecided"] = sums.undecided;
@@ -127,7 +144,7 @@ std::string jsonOf(const Sums& sums, const CheckOptions& options, const CullRun&
     for (const Unshown& cull : sums.unshown)
         json["not_shown"].push_back({{"frame", cull.frame},
                                      {"object", cull.object},
-                                     {"path", objectPath(scene, scene.objects[cull.object])},
+                                     {"path", objectPath(of.scene, of.scene.objects[cull.object])},
                                      {"pixel", {cull.x, cull.y}},
                                      {"visible", cull.visible}});
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
@@ -148,13 +165,9 @@ void tellUnshown(const Sums& sums, const Scene& scene) {
     }
 }
 
-/// The whole verb. Returns the exit code.
-Result<int> runCheck(CheckOptions& options) {
-    ApartFiles files;
-    files.read("FILE", options.file);
-    for (const std::string& name : options.scene.names) files.read("SCENE", name);
-    files.write("--json", options.json);
-    if (!files.status()) return files.status().error();
+/// The certificates of a run as JSON, and the scene that was culled.
+Result<Checked> readRunToCheck(const CheckOptions& options) {
+    if (options.scene.names.empty()) return usageError("SCENE is required: the one that was culled");
     const Result<RunFile> read = readRun(options.file);
     if (!read) return read.error();
     const CullRun& run = read->run;
@@ -163,50 +176,94 @@ Result<int> runCheck(CheckOptions& options) {
                      read->file +
                          ": holds no certificates: `sightline cull SCENE --remember --certificates --json FILE`"
                          " writes them"};
-    const Result<Scene> scene = loadScene(options.scene);
+    Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
     if (run.scene_hash != fmt::format("{:016x}", bake::hashOf(*scene)) || run.instances != scene->objects.size())
         return Error{Error::Kind::kInput, fmt::format("{}: scene.hash: of another scene than {}", read->file,
                                                       oneLine(options.scene.title()))};
+    Checked out{std::move(*scene), options.scene.title(), {}};
+    for (size_t i = 0; i < run.frames.size(); ++i) {
+        out.frames.push_back({viewOf(run.frames[i].camera, run), run.frames[i].certificates});
+        if (!isUsable(out.frames.back().view))
+            return Error{Error::Kind::kInput, fmt::format("{}: frames[{}].camera: no view", read->file, i)};
+    }
+    return out;
+}
+
+/// The certificates of a recorded frame, which has its own objects.
+Result<Checked> readRecordingToCheck(const CheckOptions& options, const std::string& bytes) {
+    if (!options.scene.names.empty()) return usageError("a recording holds its objects: there is no SCENE to name");
+    const Result<FrameRecording> recording = parseRecording(bytes, options.file);
+    if (!recording) return recording.error();
+    Checked out{recordedScene(*recording), options.file, {{recording->view, {}}}};
+    std::map<std::vector<uint32_t>, std::vector<uint32_t>> hidden_by;
+    for (const FrameRecording::Certificate& certificate : recording->certificates) {
+        const std::span<const uint32_t> named = recording->namedBy(certificate);
+        hidden_by[{named.begin(), named.end()}].push_back(certificate.hidden);
+    }
+    for (auto& [hiders, hidden] : hidden_by) out.frames[0].certificates.push_back({hiders, std::move(hidden)});
+    return out;
+}
+
+Result<Checked> readToCheck(const CheckOptions& options) {
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(options.file, ignored)) {
+        const Result<std::string> bytes = readTextFile(options.file);
+        if (!bytes) return bytes.error();
+        if (isRecording(*bytes)) return readRecordingToCheck(options, *bytes);
+    }
+    return readRunToCheck(options);
+}
+
+/// The whole verb. Returns the exit code.
+Result<int> runCheck(CheckOptions& options) {
+    ApartFiles files;
+    files.read("FILE", options.file);
+    for (const std::string& name : options.scene.names) files.read("SCENE", name);
+    files.write("--json", options.json);
+    if (!files.status()) return files.status().error();
+    const Result<Checked> of = readToCheck(options);
+    if (!of) return of.error();
     if (!options.json.empty() && options.json != "-")
         if (Status writable = canWriteFile(options.json); !writable) return writable.error();
-    for (size_t i = 0; i < run.frames.size(); ++i)
-        if (!isUsable(viewOf(run.frames[i].camera, run)))
-            return Error{Error::Kind::kInput, fmt::format("{}: frames[{}].camera: no view", read->file, i)};
 
     stopGently();
-    const SceneFacts facts(*scene);
-    std::vector<CheckedFrame> checked(run.frames.size());
+    const SceneFacts facts(of->scene);
+    std::vector<CheckedFrame> checked(of->frames.size());
     {
-        Progress progress("checking", "frames", run.frames.size());
+        Progress progress("checking", "frames", of->frames.size());
         const uint32_t threads =
             options.threads > 0 ? options.threads : std::max(std::thread::hardware_concurrency(), 1u);
-        forEach(run.frames.size(), threads, [&](size_t i) {
+        forEach(of->frames.size(), threads, [&](size_t i) {
             if (interrupted()) return;
-            checked[i] = checkFrameOf(facts, run, static_cast<uint32_t>(i));
+            checked[i] = checkFrameOf(facts, of->frames[i], static_cast<uint32_t>(i));
             progress.step();
         });
     }
     const Sums sums = sumsOf(checked);
-    const bool whole = sums.frames == run.frames.size();
+    const bool whole = sums.frames == of->frames.size();
     if (sums.frames == 0 && !whole) return reportInterruption("no frame", false);
-    tell(options.json == "-" ? stderr : stdout, textOf(sums, options, run));
-    tellUnshown(sums, *scene);
+    tell(options.json == "-" ? stderr : stdout, textOf(sums, options, *of));
+    tellUnshown(sums, of->scene);
     if (!options.json.empty())
-        if (Status written = writeText(options.json, jsonOf(sums, options, run, *scene)); !written)
-            return written.error();
+        if (Status written = writeText(options.json, jsonOf(sums, options, *of)); !written) return written.error();
     if (!sums.unshown.empty()) return kAnswerIsNo;
-    return whole ? kDone : reportInterruption(fmt::format("{} of {} frames", sums.frames, run.frames.size()), true);
+    return whole ? kDone : reportInterruption(fmt::format("{} of {} frames", sums.frames, of->frames.size()), true);
 }
 
 }  // namespace
 
 void addCheck(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("check", "the certificates of a run, each held to exact arithmetic");
+    CLI::App* verb =
+        tool.add_subcommand("check", "the certificates of a run or a recorded frame, each held to exact arithmetic");
     const auto options = std::make_shared<CheckOptions>();
-    verb->add_option("FILE", options->file, "of cull --remember --certificates --json, or the report's directory")
+    verb->add_option("FILE", options->file,
+                     "of cull --remember --certificates --json, or the report's directory; or of cull --remember "
+                     "--record, which "
+                     "needs no SCENE")
         ->required();
     addSceneChoice(*verb, options->scene);
+    verb->get_option("SCENE")->required(false)->expected(0, 1000);
     verb->add_option("--threads", options->threads, "share the frames among so many (default: all cores)")
         ->check(CLI::Range(1u, kMostThreads))
         ->type_name("N");

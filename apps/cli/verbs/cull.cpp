@@ -26,7 +26,7 @@
 #include "apps/cli/verbs/visibility_choice.h"
 #include "sightline/cells/portals.h"
 #include "sightline/query/query.h"
-#include "sightline/query/record/occlusion_recording.h"
+#include "sightline/query/record/frame_recorder.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/page/cull_page.h"
 #include "sightline/tools/report/pictures/canvas.h"
@@ -117,7 +117,7 @@ std::vector<CellWindow> WindowOverlay::windows(const View& view, PortalWindows k
     return out;
 }
 
-// What `cull` writes of the occlusion buffer: pictures of it, and a recording of what one frame asked of it.
+// What `cull` writes besides: pictures of the occlusion buffer, and the recording of a frame.
 
 /// The picture of the buffer that a frame's query leaves, all shared pixels resolved.
 Image<Rgb> bufferPicture(const Snapshot& now, const View& view, const QuerySettings& settings) {
@@ -145,9 +145,7 @@ Status writeDepthImages(const Snapshot& now, const CullRun& run, const RunOption
     return all;
 }
 
-/// Writes what a frame asks of its occlusion buffer, for `sightline replay`.
-Status writeRecordingOf(const Snapshot& now, const View& view, const QuerySettings& settings, const std::string& file) {
-    const Result<OcclusionRecording> recording = recordOcclusion(now, view, settings);
+Status writeRecording(const Result<FrameRecording>& recording, const std::string& file) {
     if (!recording) return recording.error();
     const Array<char> bytes = recordingBytes(*recording);
     return writeFileAside(file, {bytes.data(), bytes.size()});
@@ -170,7 +168,7 @@ Status checkCullApart(const CullOptions& options) {
     files.read("--calibration", options.calibration);
     files.write("--json", options.json);
     files.write("--trace", options.trace);
-    files.write("--record-occlusion", options.recording);
+    files.write("--record", options.recording);
     if (!options.depth_images.empty())
         files.write("--depth-images", std::filesystem::path(options.depth_images) / "occlusion-0000.png");
     if (options.report.empty()) return files.status();
@@ -259,11 +257,6 @@ Status writeCullOutputs(const Scene& scene, const Snapshot& now, const CullRun& 
         if (Status written = writeText(options.json, json); !written) return written;
     if (!options.trace.empty())
         if (Status written = writeFileAside(options.trace, traceJson(run)); !written) return written;
-    if (!options.recording.empty() && options.frame < run.frames.size())  // else interrupted before
-        if (Status written = writeRecordingOf(now, viewOf(run.frames[options.frame].camera, options), options.settings,
-                                              options.recording);
-            !written)
-            return written;
     if (!options.depth_images.empty())
         if (Status written = writeDepthImages(now, run, options, options.depth_images); !written) return written;
     if (options.report.empty()) return success();
@@ -272,10 +265,9 @@ Status writeCullOutputs(const Scene& scene, const Snapshot& now, const CullRun& 
     return writeCullPage(scene, now, run, options);
 }
 
-/// What --record-occlusion and --depth-images need of the other options.
+/// What --record, --certificates and --depth-images need of the other options.
 Status checkOcclusion(const CLI::App& verb, const CullOptions& options) {
-    if (verb.count("--frame") > 0 && options.recording.empty())
-        return usageError("--frame goes with --record-occlusion");
+    if (verb.count("--frame") > 0 && options.recording.empty()) return usageError("--frame goes with --record");
     if (options.certificates) {
         if (options.settings.stateless)
             return usageError("--certificates: only a query that remembers has some; see --remember");
@@ -286,7 +278,6 @@ Status checkOcclusion(const CLI::App& verb, const CullOptions& options) {
             return usageError("--certificates: not of levels of detail, which the check does not draw");
     }
     if (options.settings.stages & stageBit(Stage::kOcclusion)) return success();
-    if (!options.recording.empty()) return usageError("--record-occlusion needs the occlusion stage");
     if (!options.depth_images.empty()) return usageError("--depth-images needs the occlusion stage");
     return success();
 }
@@ -308,8 +299,14 @@ Result<int> runCull(const CLI::App& verb, CullOptions& options) {
     options.credits = !options.report.empty();
     // Whoever explains the frames asks the world that was culled; without need of that its memory is given back.
     std::optional<LoadedWorld> world;
-    const bool asked_again = !options.report.empty() || !options.recording.empty() || !options.depth_images.empty();
-    CullRun run = cullPath(*scene, *path, options, asked_again ? &world : nullptr);
+    const bool asked_again = !options.report.empty() || !options.depth_images.empty();
+    std::optional<Result<FrameRecording>> recording;
+    FrameHook record;
+    if (!options.recording.empty())
+        record = [&](size_t frame, const Query& query) {
+            if (frame == options.frame) recording.emplace(recordFrame(query));
+        };
+    CullRun run = cullPath(*scene, *path, options, asked_again ? &world : nullptr, record);
     if (run.frames.empty()) return exitCodeOf(run, path->frames.size(), options.verify);
     run.command = replayOfRun(options, options.verify);
     const Snapshot now = world ? world->world.commit() : Snapshot();
@@ -320,6 +317,8 @@ Result<int> runCull(const CLI::App& verb, CullOptions& options) {
     printSummary(options.json == "-" ? stderr : stdout, run);
     if (Status explained = explainFalseCulls(*scene, options, run); !explained) return explained.error();
     if (Status written = writeCullOutputs(*scene, now, run, options); !written) return written.error();
+    if (recording)
+        if (Status written = writeRecording(*recording, options.recording); !written) return written.error();
     if (!options.report.empty()) tellPage(options.json == "-" ? stderr : stdout, options.report);
     return exitCodeOf(run, path->frames.size(), options.verify);
 }
@@ -339,8 +338,8 @@ void addCull(CLI::App& tool, int& exit_code) {
         ->type_name("DIR");
     verb->add_option("--trace", options->trace, "write a timeline for chrome://tracing and Perfetto")
         ->type_name("FILE");
-    verb->add_option("--record-occlusion", options->recording,
-                     "write what one frame asks of its occlusion buffer, for `sightline replay`")
+    verb->add_option("--record", options->recording,
+                     "write one frame with its objects, what they hide with and the answer, for `sightline replay`")
         ->type_name("FILE");
     verb->add_flag(
         "--certificates", options->certificates,

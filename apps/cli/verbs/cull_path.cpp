@@ -191,7 +191,7 @@ void prepareLods(Scene& scene, const RunOptions& options) {
 }
 
 CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options,
-                 std::optional<LoadedWorld>* world) {
+                 std::optional<LoadedWorld>* world, const FrameHook& answered) {
     CullRun run;
     const std::vector<uint32_t> key_order = orderByKey(scene);
     run.scene = options.scene.title();
@@ -245,6 +245,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
             frame.camera = path.frames[i];
             cullFrame(now, run, i > 0 ? &path.frames[i - 1] : nullptr, answerer->query, frame);
             countByKey(scene, key_order, run.settings.stages, frame);
+            if (answered) answered(i, answerer->query);
             if (options.certificates) frame.certificates = certificatesOf(answerer->query, loaded.ids, frame.reasons);
             frame.end_microseconds = since();
             if (answerer->proposer)

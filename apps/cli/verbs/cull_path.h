@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/cli/verbs/common.h"
+#include "sightline/query/query.h"
 #include "sightline/tools/load/load_world.h"
 #include "sightline/tools/report/run/cull_run.h"
 
@@ -16,12 +17,16 @@ using namespace tools;
 /// Gives the scene levels of detail, if the run asks for some: before any path is culled.
 void prepareLods(Scene& scene, const RunOptions& options);
 
+/// Called on the thread that has answered a frame, while its query still knows the answer.
+using FrameHook = std::function<void(size_t frame, const Query& query)>;
+
 /// The visible set of each frame, with times and counts; one Query a thread. The same for any number of threads,
 /// but for the times. Interrupted, it hands out no more frames and finishes those begun, so that the run holds the first
 /// frames of the path; CullRun::interrupted says so, and there may be none.
-/// @param world  takes the world that was asked, for those who have more to ask of it; null: it is dropped
+/// @param world     takes the world that was asked, for those who have more to ask of it; null: it is dropped
+/// @param answered  may be empty
 CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options,
-                 std::optional<LoadedWorld>* world = nullptr);
+                 std::optional<LoadedWorld>* world = nullptr, const FrameHook& answered = {});
 
 /// Judges every frame of a run. Fills FrameResult::verification; interrupted, of the first frames only.
 void verifyPath(const Scene& scene, const RunOptions& options, CullRun& run);

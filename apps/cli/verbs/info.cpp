@@ -112,6 +112,10 @@ std::vector<FileFacts> countFiles(const Scene& scene) {
             std::error_code error;
             facts.bytes = std::filesystem::file_size(splitMapName(file.name).file, error);
             facts.map = reportMap(file.name);
+        } else if (isRecordedFrame(file.name)) {
+            facts.format = "recorded frame";
+            std::error_code error;
+            facts.bytes = std::filesystem::file_size(file.name, error);
         }
         out.push_back(facts);
     }

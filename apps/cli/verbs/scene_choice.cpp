@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -17,8 +18,11 @@
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/quoted.h"
 #include "apps/cli/shell/session.h"
+#include "sightline/query/record/frame_recording.h"
 #include "sightline/tools/import/scene_file.h"
+#include "sightline/tools/load/recorded_scene.h"
 #include "sightline/tools/scene/procedural.h"
+#include "sightline/tools/scene/text_file.h"
 
 namespace sightline::cli {
 using namespace tools;
@@ -118,9 +122,22 @@ bool isBegun(const std::string& word) {
     return isProcedural(word + ":") && !std::filesystem::exists(word, ignored);
 }
 
+Result<Scene> loadRecordedFrame(const std::string& name, const ImportSettings& settings) {
+    const Result<std::string> bytes = readTextFile(name);
+    if (!bytes) return bytes.error();
+    const Result<FrameRecording> recording = parseRecording(*bytes, name);
+    if (!recording) return recording.error();
+    Scene scene = recordedScene(*recording);
+    scene.name = name;
+    scene.files = {{name, 0}};
+    placeScene(scene, settings);
+    return scene;
+}
+
 Result<Scene> loadOne(const std::string& name, ImportSettings settings) {
     if (isProcedural(name)) return makeProcedural(name);
     if (isBegun(name)) return makeProcedural(name);  // which says what there is
+    if (isRecordedFrame(name)) return loadRecordedFrame(name, settings);
     Progress progress("reading " + std::filesystem::path(name).filename().string(), "parts", 0);
     settings.progress = [&](size_t done, size_t total) { progress.set(done, total); };
     settings.note = [](const std::string& text) { note(text); };
@@ -147,6 +164,12 @@ void tellOfWideObjects(const Scene& scene) {
 }
 
 }  // namespace
+
+bool isRecordedFrame(const std::string& name) {
+    char head[sizeof recording_file::kMagic] = {};
+    std::ifstream file(name, std::ios::binary);
+    return file.read(head, sizeof head) && isRecording(head);
+}
 
 std::string SceneChoice::title() const { return fmt::format("{}", fmt::join(names, " + ")); }
 

@@ -37,6 +37,9 @@ void addSceneChoice(CLI::App& verb, SceneChoice& choice);
 /// The options of importing alone.
 void addImportOptions(CLI::App& verb, SceneChoice& choice);
 
+/// Whether a file is a recorded frame; what cannot be read is none.
+bool isRecordedFrame(const std::string& name);
+
 /// Files by their formats, procedural scenes by their specifications; shows progress and notes. Errors name the file
 /// and say what is wrong.
 Result<Scene> loadScene(const SceneChoice& choice);

@@ -380,6 +380,12 @@ class Query:
         _check(_lib.slQueryDepthImage(self._handle, image))
         return _images(image, self)
 
+    def record(self):
+        """The last answer as the bytes of a file that `sightline replay` asks again, times and judges."""
+        data, count = _ffi.new("void const**"), _ffi.new("size_t*")
+        _check(_lib.slQueryRecord(self._handle, data, count))
+        return bytes(_ffi.buffer(data[0], count[0]))
+
 
 def _images(image, owner):
     shape = image.height, image.width

@@ -8,6 +8,7 @@
 #include "sightline/c/impl/convert.h"
 #include "sightline/c/impl/query_handle.h"
 #include "sightline/c/impl/world_handles.h"
+#include "sightline/query/record/frame_recorder.h"
 
 using namespace sightline;
 using c::fail;
@@ -188,5 +189,15 @@ slStatus slQueryDepthImage(slQuery* query, slDepthImage* image_out) {
     if (!query || !image_out) return failNull(query, __func__);
     const Query::DepthImage image = query->query.depthImage();
     *image_out = {image.width, image.height, image.perspective, image.nearness.data(), image.covered.data()};
+    return SL_OK;
+}
+
+slStatus slQueryRecord(slQuery* query, const void** bytes_out, size_t* count_out) {
+    if (!query || !bytes_out || !count_out) return failNull(query, __func__);
+    const Result<FrameRecording> recording = recordFrame(query->query, query->hooks->memory());
+    if (!recording) return fail(query->log(), SL_BAD_ARGUMENT, __func__, recording.error().message.c_str());
+    query->recorded = recordingBytes(*recording, query->hooks->memory());
+    *bytes_out = query->recorded.data();
+    *count_out = query->recorded.size();
     return SL_OK;
 }

@@ -13,6 +13,7 @@ struct slQuery {
     uint32_t objects = 0;          ///< of the last answer's snapshot
     sightline::ViewProblem problem = sightline::ViewProblem::kNone;
     mutable sightline::Array<uint8_t> reasons{hooks->memory()};
+    sightline::Array<char> recorded{hooks->memory()};
 
     const slLog& log() const { return hooks->log(); }
 };

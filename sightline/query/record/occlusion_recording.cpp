@@ -1,4 +1,4 @@
-// Records what one frame asked of its occlusion buffer, and writes it as bytes.
+// Records what one frame asked of its occlusion buffer.
 // SPDX-License-Identifier: MIT
 #include "sightline/query/record/occlusion_recording.h"
 
@@ -6,7 +6,6 @@
 #include <compare>
 #include <unordered_map>
 
-#include "sightline/base/bytes.h"
 #include "sightline/query/recorded_traversal.h"
 
 namespace sightline {
@@ -85,70 +84,6 @@ private:
     Array<uint32_t> first_;  ///< per occluder of the recording: into drawn_
 };
 
-void put(ByteWriter& out, const glm::dmat4& matrix) {
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row) out.put(matrix[column][row]);
-}
-
-void put(ByteWriter& out, const Box3f& box) {
-    for (const glm::vec3& corner : {box.min, box.max})
-        for (int axis = 0; axis < 3; ++axis) out.put(corner[axis]);
-}
-
-void putOccluders(Array<char> (&sections)[recording_file::kSectionCount], const OcclusionRecording& recording) {
-    using namespace recording_file;
-    ByteWriter heads(sections[kOccluders]), clusters(sections[kClusters]), vertices(sections[kVertices]),
-        polygons(sections[kPolygons]), edges(sections[kEdges]);
-    for (const Occluder& occluder : recording.occluders) {
-        put(heads, occluder.bounds);
-        for (const size_t count :
-             {occluder.clusters.size(), occluder.x.size(), occluder.polygons.size(), occluder.edges.size()})
-            heads.put(static_cast<uint32_t>(count));
-        for (const OccluderCluster& c : occluder.clusters) {
-            put(clusters, c.bounds);
-            for (const uint32_t value : {c.first_vertex, c.vertex_count, c.first_polygon, c.polygon_count, c.ring_count,
-                                         c.first_edge, c.edge_count})
-                clusters.put(value);
-        }
-        for (size_t i = 0; i < occluder.x.size(); ++i)
-            for (const float value : {occluder.x[i], occluder.y[i], occluder.z[i]}) vertices.put(value);
-        for (const OccluderPolygon& polygon : occluder.polygons) {
-            for (const uint8_t vertex : polygon.vertex) polygons.put(vertex);
-            polygons.put(static_cast<uint8_t>(polygon.double_sided));
-        }
-        for (const OccluderEdge& e : occluder.edges)
-            for (const uint8_t value : {e.from, e.to, e.left, e.right}) edges.put(value);
-    }
-}
-
-void putAsked(Array<char> (&sections)[recording_file::kSectionCount], const TileLog& asked) {
-    using namespace recording_file;
-    ByteWriter calls(sections[kCalls]), rects(sections[kRects]), tiles(sections[kTiles]), nearest(sections[kNearest]),
-        boxes(sections[kBoxes]);
-    for (const TileLog::Call call : asked.calls) calls.put(static_cast<uint8_t>(call));
-    const auto flags = [](Seams seams, bool hidden) {
-        return static_cast<uint8_t>((seams == Seams::kLeave ? 1 : 0) | (hidden ? 2 : 0));
-    };
-    for (const TileLog::RectTest& test : asked.rects) {
-        for (const int32_t value : {test.rect.x0, test.rect.y0, test.rect.x1, test.rect.y1})
-            rects.put(static_cast<uint16_t>(value));
-        rects.put(test.rect.nearness);
-        rects.put(test.box);
-        rects.put(flags(test.seams, test.hidden));
-    }
-    for (const TileLog::TileTest& test : asked.tiles) {
-        tiles.put(test.tile);
-        tiles.put(test.window);
-        tiles.put(test.open);
-        tiles.put(test.box);
-        tiles.put(flags(test.seams, false));
-    }
-    for (const float value : asked.nearest) nearest.put(value);
-    for (const OccludeeBox::Image& box : asked.boxes)
-        for (const double(*row)[4] : {&box.row[0], &box.row[1], &box.row[2], &box.row[3], &box.error})
-            for (const double value : *row) boxes.put(value);
-}
-
 }  // namespace
 
 Result<OcclusionRecording> recordOcclusion(const Snapshot& now, const View& view, const QuerySettings& settings,
@@ -173,44 +108,6 @@ Result<OcclusionRecording> recordOcclusion(const Snapshot& now, const View& view
         test.tile =
             test.tile / done.state.tiles.stride * done.state.tiles.columns + test.tile % done.state.tiles.stride;
     return out;
-}
-
-Array<char> recordingBytes(const OcclusionRecording& recording, Memory* memory) {
-    using namespace recording_file;
-    Array<char> sections[kSectionCount] = {
-        Array<char>(memory), Array<char>(memory), Array<char>(memory), Array<char>(memory), Array<char>(memory),
-        Array<char>(memory), Array<char>(memory), Array<char>(memory), Array<char>(memory), Array<char>(memory),
-        Array<char>(memory), Array<char>(memory), Array<char>(memory)};
-    ByteWriter view(sections[kView]), instances(sections[kInstances]), draws(sections[kDraws]);
-    put(view, recording.view.view);
-    put(view, recording.view.projection);
-    view.put(recording.view.width);
-    view.put(recording.view.height);
-    view.put(recording.view.jitter);
-    view.put(recording.settings.occlusion_size);
-    view.put(static_cast<uint32_t>(recording.settings.masked ? OcclusionDetail::kMasked : OcclusionDetail::kFull) |
-             static_cast<uint32_t>(recording.settings.close_gaps * kGapSteps) << 8);
-    putOccluders(sections, recording);
-    for (const auto& instance : recording.instances) {
-        instances.put(instance.occluder);
-        put(instances, instance.transform);
-    }
-    for (const auto& draw : recording.draws) {
-        draws.put(draw.instance);
-        draws.put(draw.cluster);
-    }
-    putAsked(sections, recording.asked);
-
-    Array<char> hashed(memory), file(memory);
-    ByteWriter sizes(hashed), head(file);
-    for (const Array<char>& section : sections) sizes.put(uint64_t{section.size()});
-    for (const Array<char>& section : sections) hashed.insert(hashed.end(), section.begin(), section.end());
-    for (const char letter : kMagic) head.put(letter);
-    head.put(kVersion);
-    head.put(uint32_t{kSectionCount});
-    head.put(contentHash(hashed));
-    file.insert(file.end(), hashed.begin(), hashed.end());
-    return file;
 }
 
 }  // namespace sightline

@@ -26,7 +26,7 @@ struct ReplayAnswer {
 /// The buffer of one recording, and all that its calls need. Allocates while it is made, and in the first replay.
 class OcclusionReplay {
 public:
-    /// @param recording  parseRecording() has read it, or recordOcclusion() made it; it outlives the replay
+    /// @param recording  outlives the replay
     explicit OcclusionReplay(const OcclusionRecording& recording, Memory* memory = defaultMemory());
 
     /// All calls in their order, into an empty buffer.
