@@ -20,7 +20,7 @@ Array<char> bytesOf(uint64_t seed, int boxes, int sheets, uint32_t side) {
 
 template <class Seed>
 void makeAll(Seed seed) {
-    const Array<char> boxes = bytesOf(2, 8, 0, 1), parallel = bytesOf(1, 2, 1, 1), sheet = bytesOf(3, 1, 1, 2);
+    const Array<char> boxes = bytesOf(2, 8, 0, 1), parallel = bytesOf(1, 1, 1, 1), sheet = bytesOf(3, 1, 1, 2);
     Array<char> cut = boxes, damaged = boxes, long_section = sheet, all_ones = parallel;
     cut.resize(cut.size() / 2);
     damaged[damaged.size() / 2] ^= 1;
