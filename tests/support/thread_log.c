@@ -27,6 +27,13 @@ __attribute__((constructor)) static void findTest(void) {
             setenv("SIGHTLINE_TEST", words + at + sizeof kFilter - 1, 1);
 }
 
+// Whether code of ours starts a thread, itself or by std::thread, and not a library for its own work: Embree, Mesa.
+static bool isOurs(const void* from) {
+    Dl_info caller;
+    if (dladdr(from, &caller) == 0 || !caller.dli_fname) return true;
+    return !strstr(caller.dli_fname, "/lib/") || strstr(caller.dli_fname, "libstdc++");
+}
+
 static void note(void) {
     static bool noted = false;
     const char *const test = getenv("SIGHTLINE_TEST"), *const log = getenv("SIGHTLINE_THREAD_LOG");
@@ -42,6 +49,6 @@ static void note(void) {
 int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*run)(void*), void* argument) {
     int (*create)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
     *(void**)&create = dlsym(RTLD_NEXT, "pthread_create");
-    note();
+    if (isOurs(__builtin_return_address(0))) note();
     return create(thread, attributes, run, argument);
 }
