@@ -13,7 +13,7 @@
 namespace sightline {
 namespace {
 
-/// Whether a stage that a replay has not, or that the whole world is not needed for, culled an object.
+/// Whether an object is no part of a recording, by what became of it.
 bool isLeftOut(uint8_t reason) {
     const auto by = [&](Stage stage) { return reason == 1 + static_cast<uint8_t>(stage); };
     return reason == 255 || by(Stage::kFrustum) || by(Stage::kPvs) || by(Stage::kPortals);
