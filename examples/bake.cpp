@@ -19,7 +19,7 @@ int fail(const std::string& message) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 3) return fail("usage: example_bake SCENE OUT, as in example_bake building:1:2 house.vis");
+    if (argc != 3) return fail("usage: bake SCENE OUT, as in bake building:1:2 house.vis");
     // A scene of your own has objects, cells and portals; this one is made up.
     const sightline::Result<sightline::tools::Scene> scene = sightline::tools::makeProcedural(argv[1]);
     if (!scene) return fail(scene.error().message);

@@ -43,6 +43,17 @@ Culler::Culler(const Scene& scene, LoadedWorld world, const QuerySettings& asked
     if (scene.objects.size() <= kMostNamed)
         for (const SceneObject& object : scene.objects) ++names_[{object.name, object.node}];
     if (hasCells()) listDoors();
+    listClusters();
+}
+
+void Culler::listClusters() {
+    cluster_orders_.resize(scene_.meshes.size());
+    for (uint32_t object = 0; object < scene_.objects.size(); ++object) {
+        const ClustersId clusters = now_.state().object(object).clusters;
+        if (clusters.index == 0) continue;
+        cluster_orders_[scene_.objects[object].mesh] = now_.state().clusters[clusters.index]->triangles;
+        has_clusters_ = true;
+    }
 }
 
 /// The bake names a door after the object that shuts it; of several of one name, with the object's key behind it.
@@ -104,10 +115,26 @@ bool Culler::ask(const View& view) {
     for (const Visible& object : set.objects) visible_.push_back(objectOf(object.id));
     levels_.assign(set.lods.empty() ? 0 : scene_.objects.size(), 0);
     for (size_t i = 0; i < set.lods.size(); ++i) levels_[visible_[i]] = set.lods[i].level;
+    takeRanges(set);
     std::sort(visible_.begin(), visible_.end());
     fresh_ = true;
     has_reasons_ = false;
     return true;
+}
+
+/// Before `visible_` is sorted.
+void Culler::takeRanges(const VisibleSet& set) {
+    ranges_.assign(set.ranges.begin(), set.ranges.end());
+    for (DrawRange& range : ranges_) range.object = visible_[range.object];
+    std::stable_sort(ranges_.begin(), ranges_.end(),
+                     [](const DrawRange& a, const DrawRange& b) { return a.object < b.object; });
+}
+
+std::span<const DrawRange> Culler::rangesOf(uint32_t object) const {
+    const auto before = [](const DrawRange& range, uint32_t of) { return range.object < of; };
+    const auto first = std::lower_bound(ranges_.begin(), ranges_.end(), object, before);
+    const auto end = std::lower_bound(first, ranges_.end(), object + 1, before);
+    return {first, end};
 }
 
 std::span<const uint8_t> Culler::reasons() {

@@ -58,6 +58,11 @@ public:
     std::span<const uint32_t> visible() const { return visible_; }
     /// The level of detail to draw of an object that is visible; 0 is the finest.
     uint8_t levelOf(uint32_t object) const { return object < levels_.size() ? levels_[object] : 0; }
+    /// Of an object that is visible and has clusters, what the stage of clusters left: `object` is the scene's. Empty: all of it.
+    std::span<const DrawRange> rangesOf(uint32_t object) const;
+    /// The order of a mesh's triangles that ranges are of; empty: no clusters were prepared for it.
+    std::span<const uint32_t> clusterOrder(uint32_t mesh) const { return cluster_orders_[mesh]; }
+    bool hasClusters() const { return has_clusters_; }
     const QueryStats& stats() const { return stats_; }
     /// Whose answer it is.
     const Query& query() const { return query_; }
@@ -89,7 +94,9 @@ public:
 
 private:
     void listDoors();
+    void listClusters();
     void moveDoors();
+    void takeRanges(const VisibleSet& set);
 
     const tools::Scene& scene_;
     tools::LoadedWorld world_;
@@ -105,7 +112,10 @@ private:
     std::vector<HidesMost> hides_;
     std::map<std::pair<std::string, uint32_t>, uint32_t> names_;  ///< objects of one name below one node
     std::vector<uint32_t> visible_, casters_;
-    std::vector<uint8_t> levels_;  ///< by object; empty: no levels were chosen
+    std::vector<uint8_t> levels_;                            ///< by object; empty: no levels were chosen
+    std::vector<std::span<const uint32_t>> cluster_orders_;  ///< by mesh
+    bool has_clusters_ = false;
+    std::vector<DrawRange> ranges_;  ///< by object, rising
     std::vector<Visible> receivers_;
     ShadowQuery shadow_query_;
     CasterStats caster_stats_;

@@ -45,6 +45,7 @@ public:
 private:
     void answer();
     void stages();
+    void clusterCounts();
     void certificates();
     void hidesMost();
     void show();
@@ -165,7 +166,7 @@ void Panels::stages() {
     for (int stage = 0; stage < kStageCount; ++stage) {
         const uint32_t bit = 1u << stage;
         if ((bit & kCellStages) != 0 && !culler_.hasCells()) continue;
-        if (bit == stageBit(Stage::kClusters)) continue;  // nothing is prepared for it
+        if (bit == stageBit(Stage::kClusters) && !culler_.hasClusters()) continue;
         const bool chooses_levels = culler_.settings.lod_error > 0 || culler_.settings.budget > 0;
         if (bit == stageBit(Stage::kLod) && !chooses_levels) continue;
         ImGui::TableNextRow();
@@ -194,7 +195,19 @@ void Panels::stages() {
     if (ImGui::SliderInt("buffer width", &width, 64, 1280))
         culler_.settings.occlusion_size = static_cast<uint32_t>(width);
     note("buffer width");
+    clusterCounts();
     certificates();
+}
+
+/// What the stage of clusters left of the objects that were kept.
+void Panels::clusterCounts() {
+    if (!culler_.hasClusters() || (culler_.settings.stages & stageBit(Stage::kClusters)) == 0) return;
+    const QueryStats& stats = culler_.stats();
+    ImGui::Text("%s of %s triangles left by clusters", grouped(stats.drawn_triangles).c_str(),
+                grouped(stats.cluster_triangles).c_str());
+    ImGui::Text("of %s: %s from the back, %s outside, %s hidden", grouped(stats.clusters_tested).c_str(),
+                grouped(stats.clusters_back).c_str(), grouped(stats.clusters_outside).c_str(),
+                grouped(stats.clusters_hidden).c_str());
 }
 
 /// Whether what hid a thing before is held against it first, and how far that goes.

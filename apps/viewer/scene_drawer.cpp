@@ -88,7 +88,7 @@ glm::dmat4 toClipOf(const GlView& view, const glm::dmat4& transform) {
     return to_clip;
 }
 
-Result<SceneDrawer> SceneDrawer::create(const Scene& scene) {
+Result<SceneDrawer> SceneDrawer::create(const Scene& scene, const ClusterOrder& clusters) {
     SceneDrawer drawer;
     drawer.scene_ = &scene;
     Result<GlName> program = makeGlProgram(kVertexShader, kFragmentShader);
@@ -124,6 +124,10 @@ Result<SceneDrawer> SceneDrawer::create(const Scene& scene) {
         };
         addLevel(mesh.primitives, mesh.indices);
         for (const MeshLod& lod : mesh.lods) addLevel(lod.primitives, lod.indices);
+        held.clusters = static_cast<uint32_t>(indices.size());
+        for (const uint32_t triangle : clusters(static_cast<uint32_t>(drawer.meshes_.size())))
+            indices.insert(indices.end(), mesh.indices.begin() + 3 * std::ptrdiff_t{triangle},
+                           mesh.indices.begin() + 3 * std::ptrdiff_t{triangle} + 3);
         positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
         drawer.meshes_.push_back(std::move(held));
     }
@@ -178,12 +182,26 @@ void SceneDrawer::drawRange(const Held& mesh, const Range& range) const {
                              static_cast<GLint>(mesh.base_vertex));
 }
 
-void SceneDrawer::draw(uint32_t object, const Paint& paint, uint8_t level) {
+/// What of an object is drawn.
+std::span<const SceneDrawer::Range> SceneDrawer::rangesOf(uint32_t object, uint8_t level,
+                                                          std::span<const DrawRange> runs) {
+    const uint32_t mesh = scene_->objects[object].mesh;
+    if (runs.empty()) return meshes_[mesh].rangesOf(level);
+    runs_.clear();
+    for (const DrawRange& run : runs) {
+        const uint32_t material = scene_->meshes[mesh].primitives[run.part].material;
+        runs_.push_back({meshes_[mesh].clusters + 3 * run.first, 3 * run.count,
+                         scene_->materials[material].double_sided, material});
+    }
+    return runs_;
+}
+
+void SceneDrawer::draw(uint32_t object, const Paint& paint, uint8_t level, std::span<const DrawRange> runs) {
     const SceneObject& of = scene_->objects[object];
     const Held& mesh = meshes_[of.mesh];
     place(object);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    for (const Range& range : mesh.rangesOf(level)) {
+    for (const Range& range : rangesOf(object, level, runs)) {
         const bool solid = isSolid(scene_->materials[range.material]);
         const float opacity = solid ? paint.opacity : std::min(paint.opacity, kGlass);
         if (opacity < 1) glEnable(GL_BLEND);
@@ -198,11 +216,10 @@ void SceneDrawer::draw(uint32_t object, const Paint& paint, uint8_t level) {
     }
 }
 
-void SceneDrawer::drawNumber(uint32_t object, uint8_t level) {
-    const Held& mesh = meshes_[scene_->objects[object].mesh];
+void SceneDrawer::drawNumber(uint32_t object, uint8_t level, std::span<const DrawRange> runs) {
     place(object);
     glUniform1ui(number_, object);
-    for (const Range& range : mesh.rangesOf(level)) drawRange(mesh, range);
+    for (const Range& range : rangesOf(object, level, runs)) drawRange(meshes_[scene_->objects[object].mesh], range);
 }
 
 }  // namespace sightline::viewer

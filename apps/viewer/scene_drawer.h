@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 
 #include "apps/gl/gl_view.h"
 #include "apps/viewer/gl_objects.h"
+#include "sightline/frame/draw_range.h"
 #include "sightline/tools/scene/scene.h"
 
 namespace sightline::viewer {
@@ -25,16 +27,20 @@ struct Paint {
 /// every scene looks alike.
 class SceneDrawer {
 public:
+    /// The order of a mesh's triangles that its clusters are runs of; empty: it has none.
+    using ClusterOrder = std::function<std::span<const uint32_t>(uint32_t mesh)>;
+
     /// @param scene  must outlive it
-    static Result<SceneDrawer> create(const tools::Scene& scene);
+    static Result<SceneDrawer> create(const tools::Scene& scene, const ClusterOrder& clusters);
 
     /// @param sections  of the world: what is outside of one is cut away  [size: <= ViewPlanes::kMost]
     void begin(const GlView& view, std::span<const glm::dvec4> sections);
     /// @param level  of detail: 0 is the finest, and stands in for what the mesh has not
-    void draw(uint32_t object, const Paint& paint, uint8_t level = 0);
-    /// Instead of begin() and draw(): colours that are numbers, readNumber() of which gives them back.
+    /// @param runs   of its clusters; none: all of it
+    void draw(uint32_t object, const Paint& paint, uint8_t level = 0, std::span<const DrawRange> runs = {});
+    /// Instead of begin() and draw(): colours that are the numbers of objects, plus 1.
     void beginNumbers(const GlView& view, std::span<const glm::dvec4> sections);
-    void drawNumber(uint32_t object, uint8_t level = 0);
+    void drawNumber(uint32_t object, uint8_t level = 0, std::span<const DrawRange> runs = {});
     uint64_t triangles() const { return triangles_; }  ///< drawn since begin()
 
 private:
@@ -46,11 +52,13 @@ private:
     struct Held {
         std::vector<std::vector<Range>> levels;  ///< finest first
         uint32_t base_vertex = 0;
+        uint32_t clusters = 0;  ///< where the indices begin in their order
 
         const std::vector<Range>& rangesOf(uint8_t level) const { return levels[level < levels.size() ? level : 0]; }
     };
 
     void place(uint32_t object);
+    std::span<const Range> rangesOf(uint32_t object, uint8_t level, std::span<const DrawRange> runs);
     void drawRange(const Held& mesh, const Range& range) const;
 
     const tools::Scene* scene_ = nullptr;
@@ -59,6 +67,7 @@ private:
     GlView view_;
     GLint to_clip_ = -1, to_world_ = -1, base_ = -1, opacity_ = -1, sections_ = -1, number_ = -1;
     GLint number_to_clip_ = -1, number_to_world_ = -1, number_sections_ = -1;
+    std::vector<Range> runs_;  ///< of the object that is drawn
     bool numbers_ = false;
     uint64_t triangles_ = 0;
 };

@@ -57,7 +57,8 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const Scene& scene, LoadedWorld w
 }
 
 Status Viewer::prepare() {
-    Result<SceneDrawer> drawer = SceneDrawer::create(scene_);
+    Result<SceneDrawer> drawer =
+        SceneDrawer::create(scene_, [this](uint32_t mesh) { return culler_.clusterOrder(mesh); });
     if (!drawer) return drawer.error();
     drawer_.emplace(std::move(*drawer));
     for (std::optional<LineDrawer>* lines : {&lines_, &culled_lines_}) {
@@ -296,7 +297,7 @@ void Viewer::drawObjects() {
             paint.tint = kHider;
             paint.tinted = 0.8f;
         }
-        drawer_->draw(object, paint, culler_.levelOf(object));
+        drawer_->draw(object, paint, culler_.levelOf(object), culler_.rangesOf(object));
     }
 }
 
@@ -392,7 +393,7 @@ std::optional<uint32_t> Viewer::nearestAt(std::span<const uint32_t> objects, int
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     for (const uint32_t object : objects)
         if (std::find(picked_.begin(), picked_.end(), object) == picked_.end())
-            drawer_->drawNumber(object, culler_.levelOf(object));
+            drawer_->drawNumber(object, culler_.levelOf(object), culler_.rangesOf(object));
     uint8_t bytes[4] = {};
     glReadPixels(column, row, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, bytes);
     const uint32_t number = bytes[0] | bytes[1] << 8 | bytes[2] << 16 | static_cast<uint32_t>(bytes[3]) << 24;

@@ -65,6 +65,8 @@ public:
     /// Null: nobody wanted it, or the scene is too large.
     const BspPainter* painter() const { return painter_.get(); }
 
+    uint64_t triangles() const { return triangles_; }  ///< in the last picture
+
     const PanelPlaces& places() const { return places_; }  ///< of the last frame
     /// Whether the next frame would be the same, were nothing done meanwhile.
     bool rests() const { return rests_; }

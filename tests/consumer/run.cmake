@@ -23,7 +23,7 @@ step("configure" ${CMAKE_COMMAND} -S ${project} -B ${WORK}/build -G Ninja -D CMA
   -D CMAKE_BUILD_TYPE=${CONFIG} -D CONSUMER_TOOLS=${TOOLS} -D CONSUMER_EVERY_HEADER=${every_header}
   -D CONSUMER_EXAMPLES=${EXAMPLES})
 step("build" ${CMAKE_COMMAND} --build ${WORK}/build)
-foreach(program consumer first_query portals_and_doors shadow_casters occlusion_buffer hello occluder_buffer hello_static)
+foreach(program consumer hello portals_and_doors shadow_casters occlusion_buffer hello_c occluder_buffer_c hello_c_static)
   step("run ${program}" ${WORK}/build/${program})
 endforeach()
 # By components: what a game is built with, and the tool.
@@ -69,12 +69,12 @@ if(TOOLS)
   expect(python TRUE lib/python3/dist-packages/sightline/_cdef.py)
 endif()
 # Games are compiled without exceptions and without types at run time.
-foreach(example first_query portals_and_doors shadow_casters occlusion_buffer)
+foreach(example hello portals_and_doors shadow_casters occlusion_buffer)
   step("compile ${example} without exceptions" ${COMPILER} -std=c++20 -fno-exceptions -fno-rtti -fsyntax-only
     -I ${prefix}/include ${EXAMPLES}/${example}.cpp)
 endforeach()
 # An older language is refused in one line.
-execute_process(COMMAND ${COMPILER} -std=c++17 -fsyntax-only -I ${prefix}/include ${EXAMPLES}/first_query.cpp
+execute_process(COMMAND ${COMPILER} -std=c++17 -fsyntax-only -I ${prefix}/include ${EXAMPLES}/hello.cpp
   RESULT_VARIABLE code ERROR_VARIABLE said)
 if(code EQUAL 0 OR NOT said MATCHES "Sightline needs C\\+\\+20")
   message(FATAL_ERROR "C++17 is not refused:\n${said}")
@@ -100,7 +100,7 @@ if(pkg_config AND NOT SANITIZE)
     step("build with ${package}.pc" ${COMPILER} -std=c++20 ${source} ${flags} -o ${WORK}/build/by_pkg_config)
     step("run with ${package}.pc" ${WORK}/build/by_pkg_config)
   endfunction()
-  by_pkg_config(sightline ${EXAMPLES}/first_query.cpp)
+  by_pkg_config(sightline ${EXAMPLES}/hello.cpp)
   by_pkg_config(sightline-studies ${project}/main.cpp)
   # A C compiler alone, as strict as there is.
   set(ENV{LD_LIBRARY_PATH} ${prefix}/${LIBDIR})

@@ -25,8 +25,9 @@ using namespace tools;
 inline constexpr uint32_t kWidth = 640, kHeight = 1000;  // high enough for all panels
 
 struct DrivenSettings {
-    double lod_error = 0;  ///< levels of detail are chosen by it
-    bool cells = false;    ///< those that the scene marks are attached, without rows
+    double lod_error = 0;   ///< levels of detail are chosen by it
+    bool cells = false;     ///< those that the scene marks are attached, without rows
+    bool clusters = false;  ///< are prepared, and left out of the picture where they are not seen
 };
 
 /// A viewer with a mouse and keys.
@@ -42,10 +43,12 @@ public:
         query.stages = stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion);
         if (with.lod_error > 0) query.stages |= stageBit(Stage::kLod);
         if (with.cells) query.stages |= stageBit(Stage::kPortals);
+        if (with.clusters) query.stages |= stageBit(Stage::kClusters);
         query.lod_error = with.lod_error;
         LoadSettings load;
         load.volumes = true;
         load.lods = with.lod_error > 0;
+        load.clusters = with.clusters;
         LoadedWorld world = loadWorld(scene, {}, load);
         if (with.cells) {
             bake::SceneCellSettings marks;

@@ -283,6 +283,41 @@ TEST_F(ViewerPanels, LevelsOfDetailAreDrawn) {
     EXPECT_EQ(coarsest(), 0) << "its switch";
 }
 
+TEST_F(ViewerPanels, ClustersThatAreNotSeenAreNotDrawn) {
+    const Scene scene = makeTerrain(1, 64);
+    const CameraPath path = seededCameras(scene, 7, 6);
+    Driven viewer(*context_, scene, path, {.clusters = true});
+    uint64_t whole = 0, left = 0;
+    for (size_t frame = 0; frame < path.frames.size(); ++frame) {
+        viewer->goTo(frame);
+        viewer.frames(2);
+        const QueryStats with = viewer->culler().stats();
+        EXPECT_EQ(viewer->triangles(), with.drawn_triangles) << "every mesh has clusters";
+        viewer->state.panels = false;
+        const Image<Rgb> culled = viewer.picture();
+        viewer->culler().settings.stages ^= stageBit(Stage::kClusters);
+        EXPECT_EQ(differing(culled, viewer.picture()), 0u) << "frame " << frame;
+        EXPECT_GE(viewer->triangles(), with.drawn_triangles);
+        whole += viewer->triangles();
+        left += with.drawn_triangles;
+        viewer->state.panels = true;
+        viewer.frames(2);
+        ASSERT_TRUE(viewer.click("clusters")) << "its switch";
+        EXPECT_NE(viewer->culler().settings.stages & stageBit(Stage::kClusters), 0u);
+    }
+    EXPECT_LT(left, whole * 9 / 10);
+
+    // Its back is not there: whoever leaves the camera sees through.
+    viewer->goTo(0);
+    viewer->state.panels = false;
+    viewer->state.culled_as = CulledAs::kNothing;
+    viewer.press('F');
+    viewer.press(kHome);
+    const Image<Rgb> left_over = viewer.picture();
+    viewer->culler().settings.stages ^= stageBit(Stage::kClusters);
+    EXPECT_GT(differing(left_over, viewer.picture()), 20u);
+}
+
 TEST_F(ViewerPanels, WhoHidesMostIsFound) {
     Driven viewer(*context_, city_, path_);
     ASSERT_TRUE(viewer.click("who hides most"));

@@ -25,5 +25,5 @@ class SightlineTest(ConanFile):
 
     def test(self):
         if can_run(self):
-            for program in ("first_query", "hello", "hello_static"):
+            for program in ("hello", "hello_c", "hello_c_static"):
                 self.run(os.path.join(self.cpp.build.bindir, program), env="conanrun")

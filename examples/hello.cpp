@@ -1,4 +1,4 @@
-// A first query: which of three objects can be seen, and why one of them cannot.
+// The smallest program: which of three objects can be seen, and why one of them cannot.
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 #include <vector>
