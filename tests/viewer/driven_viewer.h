@@ -24,6 +24,10 @@ using namespace tools;
 
 inline constexpr uint32_t kWidth = 640, kHeight = 1000;  // high enough for all panels
 
+/// Pixels of a picture that may differ by clusters: their order is another one where two triangles have one depth, and a GL
+/// that rounds corners draws some triangles from the front that are seen from the back, edge-on.
+inline constexpr size_t kByClusters = 3;
+
 struct DrivenSettings {
     double lod_error = 0;   ///< levels of detail are chosen by it
     bool cells = false;     ///< those that the scene marks are attached, without rows
