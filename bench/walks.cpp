@@ -26,6 +26,11 @@ struct Costs {
     double kept = 0;            ///< objects, of all frames
     size_t undrawn = 0;         ///< frames in which nothing was drawn
 
+    void add(const VisibleSet& seen, double start) {
+        times.push_back(threadTime() - start);
+        kept += static_cast<double>(seen.objects.size());
+        undrawn += seen.stats.occluder_triangles == 0;
+    }
     double mean() const {
         double sum = 0;
         for (const double time : times) sum += time;
@@ -39,6 +44,21 @@ struct Costs {
     double keptAFrame() const { return kept / static_cast<double>(times.size()); }
 };
 
+/// A query that learns from another one, which is asked for the same view after it, as on another thread.
+struct Taught {
+    Query query, teacher;
+    Costs of_query, of_teacher;
+
+    void ask(const Snapshot& now, const View& view) {
+        const double start = threadTime();
+        query.learn(teacher);
+        of_query.add(query.visible(now, view), start);
+        const double then = threadTime();
+        of_teacher.add(teacher.visible(now, view), then);
+    }
+    void begin() { query = Query(), teacher = Query(); }
+};
+
 /// Each frame once and in order, each way by a query of its own; the ways take turns.
 void measureWalks(const Scene& scene, Table& table) {
     LoadedWorld loaded = loadWorld(scene, {}, loadSettings(true, 0));
@@ -49,20 +69,20 @@ void measureWalks(const Scene& scene, Table& table) {
                                   {.proofs = false},
                                   {}};
     Costs costs[std::size(ways)];
+    Taught taught;
     size_t still = 0;
     for (const uint64_t seed : kSeeds) {
         Query queries[std::size(ways)];
+        taught.begin();
         const std::vector<CameraFrame> frames = walkThrough(scene, {.seed = seed}).frames;
         for (size_t i = 0; i < frames.size(); ++i) {
             const View view = makeView(frames[i], 1280, 720);
             still += i > 0 && frames[i].eye == frames[i - 1].eye;
             for (size_t way = 0; way < std::size(ways); ++way) {
                 const double start = threadTime();
-                const VisibleSet seen = queries[way].visible(now, view, ways[way]);
-                costs[way].times.push_back(threadTime() - start);
-                costs[way].kept += static_cast<double>(seen.objects.size());
-                costs[way].undrawn += seen.stats.occluder_triangles == 0;
+                costs[way].add(queries[way].visible(now, view, ways[way]), start);
             }
+            taught.ask(now, view);
         }
     }
     const Costs &frustum = costs[0], &stateless = costs[1], &asking = costs[2], &drawing = costs[3], &query = costs[4];
@@ -78,6 +98,11 @@ void measureWalks(const Scene& scene, Table& table) {
     row("asking each time, kept", asking.keptAFrame(), "objects", "stateless", stateless.keptAFrame());
     row("drawing, kept", drawing.keptAFrame(), "objects", "stateless", stateless.keptAFrame());
     row("query, kept", query.keptAFrame(), "objects", "stateless", stateless.keptAFrame());
+    row("taught, mean of a frame", taught.of_query.mean(), "us", "stateless", stateless.mean(),
+        fmt::format("nothing drawn in {} of {} frames", taught.of_query.undrawn, taught.of_query.times.size()));
+    row("taught, 99 of 100 frames", taught.of_query.percentile(0.99), "us", "stateless", stateless.percentile(0.99));
+    row("taught, kept", taught.of_query.keptAFrame(), "objects", "stateless", stateless.keptAFrame());
+    row("its teacher, mean of a frame", taught.of_teacher.mean(), "us", "stateless", stateless.mean());
 }
 
 }  // namespace

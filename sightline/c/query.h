@@ -143,6 +143,12 @@ SL_API slStatus slQueryStereo(slQuery* query, const slSnapshot* snapshot, const 
  * @param ids  may be null if count is 0 */
 SL_API slStatus slQueryPropose(slQuery* query, const slObjectId* ids, size_t count);
 
+/** Takes over what another query found out for its last view: who hides whom. From then on the teacher draws each of its answers and
+ * seeks certificates of all that it finds hidden; this one, for 128 answers, seeks none, and draws nothing but where much comes into
+ * sight at once. So ask the teacher for the same view on another thread, while you draw the frame. Nothing that was learned is
+ * believed. Neither query is used by another thread meanwhile. */
+SL_API slStatus slQueryLearn(slQuery* query, slQuery* teacher);
+
 /** What came into the answer and what left it, since the answer before. */
 typedef struct slChanges {
     const slVisible *appeared, *disappeared; /**< the query's, until it is asked again */

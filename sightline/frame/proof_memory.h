@@ -69,16 +69,26 @@ public:
           places_(memory),
           hidden(memory),
           culled(memory),
-          proposed_(memory) {}
+          proposed_(memory),
+          found_nodes_(memory),
+          found_places_(memory) {}
 
     /// Takes up a view, and decides how it is answered.
     /// @param proposed  objects that somebody else takes to be hidden; others are passed over
     void begin(const Frame& frame, std::span<const ObjectId> proposed = {});
     Way way() const { return way_; }
-    /// No certificate is sought any more for something in this view, which is kept. If that happens too often, it is
+    /// Takes over what another memory found for its last view: who hides what has no certificate here. From then on the
+    /// other one is a teacher: it draws each view, and seeks certificates for all that it finds hidden. This one is taught:
+    /// for some answers it seeks nothing, and draws nothing but at a cut. O(what was found).
+    void learn(ProofMemory& teacher);
+    /// Whether another memory draws for this one.
+    bool taught() const { return static_cast<int32_t>(taught_until_ - answer_) > 0; }
+    /// No certificate is sought, or no more, for something in this view, which is kept. If that happens too often, it is
     /// answered by drawing.
     void passOver(size_t visible) {
-        if (++passed_over_ > 16 + visible / 8) way_ = Way::kTilesAndSeek;
+        ++passed_over_;
+        if (taught() && passed_over_ > 64 + visible / 2) way_ = Way::kTiles;
+        if (!taught() && passed_over_ > 16 + visible / 8) way_ = Way::kTilesAndSeek;
     }
     /// What was found to be hidden by drawing, where certificates are sought.
     struct Hidden {
@@ -152,6 +162,7 @@ private:
     static constexpr uint32_t kShortestRest = 16, kLongestRest = 256;
     static constexpr uint32_t kFailed = 1u << 31;   ///< with the answer in which nothing was found
     static constexpr uint32_t kClosely = 1u << 30;  ///< with kFailed: polygon by polygon
+    static constexpr uint32_t kTaught = 128;        ///< answers for which what was learned may do
 
     struct Proposal {
         uint32_t answer = 0;  ///< the last for which the object was proposed
@@ -200,12 +211,13 @@ private:
     }
     void forget(Pending::Kind kind, uint32_t index);
     void note(const Frame& frame, std::span<const ObjectId> proposed);
+    void makeRoom(Pending::Kind kind, size_t size);
     void makeRoom(const Frame& frame, Pending::Kind kind, uint32_t index);
     Array<uint32_t>& seen(Pending::Kind kind) { return kind == Pending::Kind::kNode ? seen_node_ : seen_place_; }
     bool isStillSeen(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box);
     bool noteFailed(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, bool closely);
     bool hasFailed(Pending::Kind kind, uint32_t index) const;
-    void write(const Frame& frame, Pending::Kind kind, uint32_t index, const Certificate& certificate);
+    void write(Pending::Kind kind, uint32_t index, const Certificate& certificate);
     uint32_t numberOf(const HidingPart& part);
     const Shadow* shadowOf(const Frame& frame, uint32_t hider);
     bool makeVolumeOf(const Frame& frame, const HidingPart& part, OccluderVolume& volume);
@@ -276,7 +288,10 @@ public:
     Array<Culled> culled;
 
 private:
-    Array<Proposal> proposed_;  ///< by place; empty: nothing was ever proposed
+    Array<Proposal> proposed_;                    ///< by place; empty: nothing was ever proposed
+    Array<uint32_t> found_nodes_, found_places_;  ///< of a teacher: what has a certificate that held for its last view
+    bool teaches_ = false;
+    uint32_t taught_until_ = 0;  ///< the answer from which on nobody draws for this one
 };
 
 }  // namespace sightline::detail

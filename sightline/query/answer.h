@@ -27,6 +27,8 @@ public:
     void begin(const Snapshot& now, const View& view, const QuerySettings& settings,
                std::span<const uint32_t> shown = {}, std::span<const ObjectId> proposed = {});
     uint32_t parts() const { return count_; }
+    /// As Query::learn().
+    void learn(Answer& teacher) { parts_[0]->proofs.learn(teacher.parts_[0]->proofs); }
     /// Lets go of the snapshot that was asked last.
     void forget() {
         frame_.snapshot = {};

@@ -85,6 +85,12 @@ void Query::Impl::ask(std::span<detail::Answer* const> eyes_asked, const Snapsho
 
 void Query::propose(std::span<const ObjectId> hidden) { impl_->proposed.assign(hidden.begin(), hidden.end()); }
 
+void Query::learn(Query& teacher) {
+    if (&teacher == this) return;
+    impl_->left.learn(teacher.impl_->left);
+    if (impl_->right && teacher.impl_->right) impl_->right->learn(*teacher.impl_->right);
+}
+
 VisibleSet Query::visible(const Snapshot& now, const View& view, const QuerySettings& settings) {
     Impl& impl = *impl_;
     impl.takeUp(false);

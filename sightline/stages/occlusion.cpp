@@ -23,7 +23,9 @@ OccludeeBox boxAt(const Screen& screen, const Box3f& box) {
 }
 
 TurnAnswer keepUnasked(const Frame&, TraversalState& state, const Pending& entry) {
-    const bool still = state.turns.mayStand(entry);
+    // Who hides it may have been learned since it was asked.
+    const bool is_known = state.proofs.taught() && state.proofs.hasCertificate(entry.kind, entry.index);
+    const bool still = !is_known && state.turns.mayStand(entry);
     state.stats.unasked += still;
     return {.settled = still};
 }

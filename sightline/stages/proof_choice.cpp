@@ -16,6 +16,8 @@ constexpr double kMostExpected = 0.7;                    // the same, of what is
 constexpr double kWorkOfProof = 1, kWorkOfHider = 0.75;  // about, of a certificate in an answer
 constexpr uint32_t kFewAnswers = 4;                      // that are given before the work is compared
 constexpr uint64_t kMostCuts = 600;                      // polygons cut for one view that is drawn
+constexpr uint32_t kTeachersShare = 32;                  // times as much may be sought where it is done for others
+constexpr uint32_t kTeacherWaits = 16;                   // answers, until what was sought in vain is sought again
 constexpr uint32_t kMostDrawn = 16;     // views, one after the other, for which certificates are sought
 constexpr double kMostLoose = 0.12;     // of what is visible: that certificates may keep although it is hidden
 constexpr double kLeastUnasked = 0.25;  // of what is visible, where a view follows another
@@ -32,6 +34,8 @@ void ProofMemory::begin(const Frame& frame, std::span<const ObjectId> proposed) 
     shadows_.clear();
     hidden.clear();
     culled.clear();
+    found_nodes_.clear();
+    found_places_.clear();
     proposals_tried_ = 0;
     rays_of_proposals_ = cuts_of_proposals_ = 0;
     cuts_before_ = rest_.cuts();
@@ -51,6 +55,10 @@ void ProofMemory::begin(const Frame& frame, std::span<const ObjectId> proposed) 
     if (hiders_.size() > kMostHiders) clear();
     if (places_.empty()) places_.resize(kPlaces);
     note(frame, proposed);
+    if (teaches_ || taught()) {
+        way_ = teaches_ ? Way::kTilesAndSeek : Way::kProofs;
+        return;
+    }
     if (frame.view.layers != layers_ || frame.stages != stages_) next_by_proofs_ = false;
     layers_ = frame.view.layers;
     stages_ = frame.stages;
@@ -66,23 +74,26 @@ void ProofMemory::begin(const Frame& frame, std::span<const ObjectId> proposed) 
 bool ProofMemory::hasFailed(Pending::Kind kind, uint32_t index) const {
     const Array<uint32_t>& of = numbers(kind);
     return index < of.size() && (of[index] & kFailed) && (of[index] & kClosely) &&
-           ((answer_ - of[index]) & (kClosely - 1)) < kMostAnswers;
+           ((answer_ - of[index]) & (kClosely - 1)) < (teaches_ ? kTeacherWaits : kMostAnswers);
 }
 
 /// Looks for certificates for a node or an object that is hidden, or else for what is below it.
 /// @returns how many objects are left without
 uint32_t ProofMemory::seekBelow(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box) {
-    if (cuts() - cuts_of_proposals_ >= kMostCuts) {
+    const uint32_t share = teaches_ ? kTeachersShare : 1;
+    if (cuts() - cuts_of_proposals_ >= share * kMostCuts) {
         spent_ = true;
         return 0;
     }
     const auto count = [&] {  // it is held against a view once answers rest on it
         expected_work_ += kWorkOfProof + kWorkOfHider * certificateOf(kind, index).count;
+        if (teaches_) (kind == Pending::Kind::kNode ? found_nodes_ : found_places_).push_back(index);
         return 0u;
     };
-    if (hasCertificate(kind, index)) return count();
+    // A teacher hands on what holds now.
+    if (teaches_ ? holds(frame, kind, index, box) : hasCertificate(kind, index)) return count();
     if (!hasFailed(kind, index)) {
-        if (sought >= kMostSought) {
+        if (sought >= share * kMostSought) {
             spent_ = true;
             return 0;
         }
@@ -107,11 +118,13 @@ uint32_t ProofMemory::seekBelow(const Frame& frame, Pending::Kind kind, uint32_t
 
 void ProofMemory::seekAll(const Frame& frame, const QueryStats& stats, size_t visible) {
     const double unasked = static_cast<double>(stats.unasked);
-    if (frame.settings.unasked_answers > 0 && unasked < kLeastUnasked * static_cast<double>(visible)) return;
+    const bool follows = unasked >= kLeastUnasked * static_cast<double>(visible);
+    if (frame.settings.unasked_answers > 0 && !follows && !teaches_) return;
     uint64_t loose = 0;
     spent_ = false;
     expected_work_ = 0;
     for (const Hidden& one : hidden) loose += seekBelow(frame, one.kind, one.index, one.box);
+    if (teaches_) return;
     if (static_cast<double>(loose) > kMostLoose * static_cast<double>(visible) + 1) return rest();
     if (drawn_work_ > 0 && expected_work_ > kMostExpected * drawn_work_) return rest();
     if (!spent_) next_by_proofs_ = true, drawn_ = 0;
@@ -127,6 +140,7 @@ void ProofMemory::rest() {
 }
 
 void ProofMemory::noteAnswered(const QueryStats& stats, size_t visible) {
+    if (teaches_ || taught()) return;
     const auto n = [](uint64_t count) { return static_cast<double>(count); };
     // What each unit took on several scenes, about. Time itself must not decide: answers would differ.
     if (way_ != Way::kProofs) {

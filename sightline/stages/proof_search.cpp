@@ -221,7 +221,8 @@ bool ProofMemory::seek(const Frame& frame, Pending::Kind kind, uint32_t index, c
             return seekBody(frame, kind, index, box, body, out);
         }))
         return noteFailed(frame, kind, index, box, closely);
-    write(frame, kind, index, out);
+    makeRoom(frame, kind, index);
+    write(kind, index, out);
     latest_ = out;
     if (out.count > 0) {
         std::copy_backward(last_, last_ + kLast - 1, last_ + kLast);

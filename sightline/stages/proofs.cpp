@@ -39,15 +39,21 @@ void ProofMemory::forget(Pending::Kind kind, uint32_t index) {
     of[index] = 0;
 }
 
-void ProofMemory::makeRoom(const Frame& frame, Pending::Kind kind, uint32_t index) {
+void ProofMemory::makeRoom(Pending::Kind kind, size_t size) {
     Array<uint32_t>& of = numbers(kind);
-    if (index >= of.size())
-        of.resize(kind == Pending::Kind::kNode ? frame.world->bvh.nodes.size() : frame.world->placed.size(), 0);
+    if (of.size() < size) of.resize(size, 0);
     if (seen(kind).size() < of.size()) seen(kind).resize(of.size(), 0);
 }
 
-void ProofMemory::write(const Frame& frame, Pending::Kind kind, uint32_t index, const Certificate& certificate) {
-    makeRoom(frame, kind, index);
+void ProofMemory::makeRoom(const Frame& frame, Pending::Kind kind, uint32_t index) {
+    const bool has_room = index < numbers(kind).size();
+    makeRoom(kind, has_room                       ? 0
+                   : kind == Pending::Kind::kNode ? frame.world->bvh.nodes.size()
+                                                  : frame.world->placed.size());
+}
+
+/// There is room for it.
+void ProofMemory::write(Pending::Kind kind, uint32_t index, const Certificate& certificate) {
     Array<uint32_t>& of = numbers(kind);
     if (!hasCertificate(kind, index)) {
         if (free_.empty()) {
@@ -61,13 +67,29 @@ void ProofMemory::write(const Frame& frame, Pending::Kind kind, uint32_t index, 
     certificates_[of[index] - 1] = certificate;
 }
 
+void ProofMemory::learn(ProofMemory& teacher) {
+    taught_until_ = answer_ + kTaught;
+    teacher.teaches_ = true;
+    for (const Pending::Kind kind : {Pending::Kind::kNode, Pending::Kind::kObject})
+        for (const uint32_t index : kind == Pending::Kind::kNode ? teacher.found_nodes_ : teacher.found_places_) {
+            // What is known here already has held for a later view.
+            if (hasCertificate(kind, index) || !teacher.hasCertificate(kind, index)) continue;
+            Certificate certificate = teacher.certificateOf(kind, index);
+            for (uint32_t i = 0; i < certificate.count; ++i)
+                certificate.hiders[i] = numberOf(teacher.hider(certificate.hiders[i]));
+            makeRoom(kind, teacher.numbers(kind).size());
+            write(kind, index, certificate);
+        }
+}
+
 void ProofMemory::propose(const Frame& frame, Pending::Kind kind, uint32_t index, std::span<const HidingPart> parts,
                           bool closely) {
     Certificate certificate;
     certificate.closely = closely;
     for (const HidingPart& part : parts)
         if (certificate.count < Certificate::kMost) certificate.hiders[certificate.count++] = numberOf(part);
-    write(frame, kind, index, certificate);
+    makeRoom(frame, kind, index);
+    write(kind, index, certificate);
 }
 
 uint32_t ProofMemory::numberOf(const HidingPart& part) {
@@ -236,6 +258,10 @@ TurnAnswer cullProved(const Frame& frame, TraversalState& state, const Pending& 
     const bool before = proofs.hasCertificate(entry.kind, entry.index);
     const bool proved = proofs.holds(frame, entry.kind, entry.index, entry.box);
     state.stats.proved += proved;
+    if (!proved && proofs.taught()) {
+        proofs.passOver(state.visible.size());
+        return {};
+    }
     if (!proved && proofs.sought >= ProofMemory::kMostSought) {
         proofs.passOver(state.visible.size());
         return {.settled = true};

@@ -76,6 +76,32 @@ TEST(CQuery, TakesProposals) {
     EXPECT_EQ(slQueryPropose(c.query, nullptr, 0), SL_OK);
 }
 
+TEST(CQuery, LearnsFromAnother) {
+    MadeWorld made(11, 300);
+    const CWorld world(made);
+    const CQuery c(world), c_teacher(world);
+    const Snapshot now = made.world.commit();
+    Query query, teacher;
+    Random random(11);
+    uint64_t proved = 0;
+    View view = randomView(random);
+    for (int frame = 0; frame < 12; ++frame) {
+        view.view[3] += glm::dvec4(0.01, 0, 0.01, 0);
+        query.learn(teacher);
+        ASSERT_EQ(slQueryLearn(c.query, c_teacher.query), SL_OK);
+        const VisibleSet set = query.visible(now, view);
+        EXPECT_EQ(keysOf(c.ask(viewOf(view))), keysOf(set)) << frame;
+        slQueryStats stats;
+        ASSERT_EQ(slQueryGetStats(c.query, &stats), SL_OK);
+        EXPECT_EQ(stats.proved, set.stats.proved) << frame;
+        EXPECT_EQ(stats.occluder_triangles, set.stats.occluder_triangles) << frame;
+        proved += stats.proved;
+        teacher.visible(now, view);
+        c_teacher.ask(viewOf(view));
+    }
+    EXPECT_GT(proved, 0u);
+}
+
 TEST(CQuery, TakesSettings) {
     const MadeWorld made(7, 300);
     const CWorld world(made);

@@ -205,6 +205,7 @@ TEST(CWorld, NullPointersAreAnsweredEverywhere) {
         slQueryKeys(query.query, nullptr, 3, &count),
         slQueryStereo(query.query, now, &view, nullptr, nullptr, &set, nullptr),
         slQueryPropose(query.query, nullptr, 1),
+        slQueryLearn(query.query, nullptr),
         slQueryChanges(query.query, nullptr),
         slQueryGetStats(query.query, nullptr),
         slQueryReasons(query.query, nullptr, 3, &count),

@@ -114,6 +114,8 @@ TEST_F(Check, ErrorsAreOneLineAndAnExitCode) {
     expectError("check blind.json city:1:50", 3, "blind.json: frames[1].camera: no view");
     expectError("cull city:1:50 --certificates --json a.json", 2, "--remember");
     expectError("cull city:1:50 --propose", 2, "--remember");
+    expectError("cull city:1:50 --taught", 2, "--remember");
+    expectError("cull city:1:50 --remember --taught --stereo 0.06", 2, "two eyes");
     expectError("cull city:1:50 --remember --propose --stereo 0.06", 2, "two eyes");
     expectError("cull city:1:50 --remember --certificates", 2, "--json or --report");
     expectError("cull city:1:50 --remember --certificates --stereo 0.06 --json a.json", 2, "two eyes");

@@ -166,6 +166,19 @@ TEST_F(MemoryOptions, WhatAnImageDoesNotShowIsProposedAndProved) {
     EXPECT_EQ(proposed["frames"][0]["visible"], plain["frames"][0]["visible"]) << "nothing was proposed yet";
 }
 
+TEST_F(MemoryOptions, AQueryIsTaughtByAnotherAndItsCullsAreProved) {
+    const std::string walk = "building:1:1 --path walk --frames 60 --seed 3 --remember ";
+    const json plain = cull(walk), taught = cull(walk + "--taught --verify --rays 2000");
+    EXPECT_EQ(taught["verification"]["false_culls"], 0);
+    const auto drawn = [](const json& run) {
+        uint64_t frames = 0;
+        for (const json& frame : run["frames"]) frames += frame.value("occluder_triangles", 0u) > 0;
+        return frames;
+    };
+    EXPECT_LT(drawn(taught), drawn(plain));
+    EXPECT_EQ(taught["frames"][0]["visible"], plain["frames"][0]["visible"]) << "nothing was taught yet";
+}
+
 TEST_F(LodOptions, LevelsSaveTrianglesAndTellThePixelsThatTheyChange) {
     const std::string arguments = "terrain:1:64 --path scatter --frames 3 --seed 1";
     const json plain = cull(arguments), run = cull(arguments + " --lod-error 2 --verify --rays 5000");

@@ -130,6 +130,19 @@ class Answers(unittest.TestCase):
         with self.assertRaises(TypeError):
             query.propose([1, 2])
 
+    def test_another_query_teaches(self):
+        made = Made()
+        query, teacher = sightline.Query(), sightline.Query()
+        proved = 0
+        for step in range(12):
+            view = sightline.View.look_at((0.01 * step, 0, 10), (0, 0, 0), fov_y=1.2)
+            query.learn(teacher)
+            seen = query.visible(made.now, view)
+            proved += seen.proved
+            self.assertIn(1000, seen.keys)
+            teacher.visible(made.now, view)
+        self.assertGreater(proved, 0)
+
     def test_settings_and_conventions(self):
         made = Made()
         query = sightline.Query()

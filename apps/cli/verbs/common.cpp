@@ -187,6 +187,11 @@ void addQueryOptions(CLI::App& verb, RunOptions& options) {
             "tell the query what an id-buffer of the frame before, one sample a pixel, does not show, as a renderer "
             "that asks its GPU can; it culls what it can prove of that; needs --remember")
         ->group("Culling");
+    verb.add_flag(
+            "--taught", options.taught,
+            "learn from another query, which is asked for each frame after this one, as on another thread; its time "
+            "does not count; needs --remember")
+        ->group("Culling");
     verb.add_option("--query-threads", options.query_threads, "share the bins of each query among so many threads")
         ->check(CLI::Range(1u, kMostThreads))
         ->type_name("N")
@@ -231,6 +236,9 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     if (options.propose && settings.stateless)
         return usageError("--propose: only a query that remembers takes proposals; see --remember");
     if (options.propose && options.stereo > 0) return usageError("--propose: not for two eyes");
+    if (options.taught && settings.stateless)
+        return usageError("--taught: only a query that remembers can learn; see --remember");
+    if (options.taught && options.stereo > 0) return usageError("--taught: not for two eyes");
     if (options.query_threads > 1 && settings.bins == 1 && options.stereo == 0)
         return usageError("--query-threads: one bin has nothing to share; see --bins");
     const Result<uint32_t> use = readStages("--use", options.use), skip = readStages("--skip", options.skip);

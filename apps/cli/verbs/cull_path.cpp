@@ -50,6 +50,7 @@ struct Answerer {
     Query of_frustum;  ///< for what that stage alone would leave: it remembers nothing of `query`'s frames
     std::optional<CreditBook> book;    ///< if credits were asked for
     std::optional<Proposer> proposer;  ///< if it is to propose
+    std::optional<Query> teacher;      ///< that `query` learns from, if it does
 };
 
 void creditFrame(const CullRun& run, CreditBook& book, FrameResult& frame) {
@@ -151,6 +152,7 @@ std::string replayCommand(const RunOptions& options, const CullRun& run, const s
     if (run.stereo > 0) command += fmt::format(" --stereo {}", run.stereo);
     if (!run.settings.stateless) command += " --remember";
     if (options.propose) command += " --propose";
+    if (options.taught) command += " --taught";
     if (options.no_proofs) command += " --no-proofs";
     QuerySettings asked;
     asked.max_distance = run.settings.max_distance;
@@ -237,6 +239,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
         const auto answerer = std::make_shared<Answerer>(options.query_threads);
         if (options.credits) answerer->book.emplace(now, weights);
         if (options.propose) answerer->proposer.emplace(scene, loaded.ids);
+        if (options.taught) answerer->teacher.emplace();
         return [&, thread, answerer](size_t i) {
             FrameResult& frame = run.frames[i];
             frame = FrameResult();
@@ -250,6 +253,10 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
             frame.end_microseconds = since();
             if (answerer->proposer)
                 answerer->proposer->propose(viewOf(frame.camera, run), frame.reasons, answerer->query);
+            if (answerer->teacher) {
+                answerer->teacher->visible(now, viewOf(frame.camera, run), run.settings);
+                answerer->query.learn(*answerer->teacher);
+            }
             FrameResult alone;
             alone.reasons = reasonsOfFrustum(now, run, frame.camera, answerer->of_frustum);
             countByKey(scene, key_order, stageBit(Stage::kFrustum), alone);

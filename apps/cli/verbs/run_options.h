@@ -43,6 +43,7 @@ struct RunOptions {
     std::string json;           ///< file, `-`, or empty
     std::string report;         ///< directory, or empty
     bool propose = false;       ///< tell the query what an image does not show: Proposer
+    bool taught = false;        ///< another query draws each frame after this one, which learns from it
     bool certificates = false;  ///< fill FrameResult::certificates
     bool credits = false;       ///< fill FrameResult::credits: costs some tens of queries a frame
 };

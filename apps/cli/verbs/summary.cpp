@@ -347,6 +347,7 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     if (options.stereo > 0) command += fmt::format(" --stereo {}", options.stereo);
     if (!options.settings.stateless) command += " --remember";
     if (options.propose) command += " --propose";
+    if (options.taught) command += " --taught";
     if (verify) command += fmt::format(" --verify --rays {}{}", options.rays, options.no_proofs ? " --no-proofs" : "");
     return command;
 }

@@ -358,6 +358,11 @@ class Query:
         ids = _ids(ids)
         _check(_lib.slQueryPropose(self._handle, _at(ids, "slObjectId*"), len(ids)))
 
+    def learn(self, teacher):
+        """Takes over what another query found out for its last view: who hides whom. From then on the teacher draws and seeks, and this one
+        rests on what it was taught. Ask the teacher for the same view on another thread meanwhile; not while this is called."""
+        _check(_lib.slQueryLearn(self._handle, teacher._handle))
+
     def reasons(self):
         """For each object of the last answer's snapshot, as they were added: 0 visible, 1 + index into STAGES of what culled it,
         255 outside of the view's layers."""

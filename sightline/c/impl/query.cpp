@@ -149,6 +149,12 @@ slStatus slQueryPropose(slQuery* query, const slObjectId* ids, size_t count) {
     return SL_OK;
 }
 
+slStatus slQueryLearn(slQuery* query, slQuery* teacher) {
+    if (!query || !teacher) return failNull(query, __func__);
+    query->query.learn(teacher->query);
+    return SL_OK;
+}
+
 slStatus slQueryChanges(slQuery* query, slChanges* changes_out) {
     if (!query || !changes_out) return failNull(query, __func__);
     const VisibleChanges changes = query->query.changes();

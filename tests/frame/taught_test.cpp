@@ -1,0 +1,178 @@
+// Queries that learn from another one: what they cull is hidden, whatever they were taught, and they draw next to nothing.
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "sightline/query/query.h"
+#include "tests/support/rooms.h"
+#include "tests/support/targets.h"
+
+namespace sightline::test {
+namespace {
+
+TEST(Taught, KeepWhatIsSeenInRoomsWhoseWallsMove) {
+    uint64_t proved = 0, drawn = 0, frames = 0, kept = 0, kept_alone = 0, alone_drawn = 0;
+    for (uint64_t seed = 11; seed <= 10 + rounds(6, 2); ++seed) {
+        Rooms rooms(seed);
+        Random random(seed);
+        Steps steps(random);
+        Query query, teacher, alone;
+        for (int frame = 0; frame < 160; ++frame) {
+            if (frame % 40 == 39) steps.jump(random);
+            if (frame % 10 == 9) {
+                rooms.moveTo(rooms.walls[random.below(rooms.walls.size())],
+                             {random.uniform(-1, 1), 0, random.uniform(-1, 1)});
+                rooms.moveTo(rooms.things[random.below(rooms.things.size())],
+                             {random.uniform(-2, 2), 0, random.uniform(-2, 2)});
+            }
+            const View view = steps.next(frame / 20 % 3 == 2 ? 140 : 70, frame / 16 % 4 == 3 ? 0.8 : 0.05);
+            const Snapshot now = rooms.world.commit();
+            const std::string what = "seed " + std::to_string(seed) + " frame " + std::to_string(frame);
+            const VisibleSet set = expectSound(rooms, query, now, view, {}, what, 2);
+            proved += set.stats.proved;
+            drawn += set.stats.occluder_triangles > 0;
+            kept += set.objects.size();
+            alone_drawn += alone.visible(now, view).stats.occluder_triangles > 0;
+            kept_alone += Query().visible(now, view, {.stateless = true}).objects.size();
+            ++frames;
+            // It is a frame behind, or some, and answers for its own view are as good as any.
+            if (random.below(3) == 0) continue;
+            expectSound(rooms, teacher, now, view, {}, what + ", teacher", 1);
+            query.learn(teacher);
+        }
+    }
+    EXPECT_GT(proved, 10 * frames);
+    EXPECT_LT(drawn, alone_drawn);
+    EXPECT_LT(10 * drawn, frames) << "but at cuts";
+    EXPECT_LT(100 * kept, 125 * kept_alone);
+    RecordProperty("drawn", std::to_string(drawn) + " of " + std::to_string(frames));
+    RecordProperty("kept", std::to_string(kept) + " beside " + std::to_string(kept_alone));
+}
+
+/// What a teacher says is not believed: of another world, another view, another scale.
+TEST(Taught, ByWhoeverNothingThatIsSeenIsCulled) {
+    uint64_t proved = 0;
+    for (uint64_t seed = 1; seed <= rounds(4, 2); ++seed) {
+        Rooms rooms(seed), others(seed + 1);
+        Random random(seed);
+        Steps steps(random), elsewhere(random);
+        Query query, teacher;
+        for (int frame = 0; frame < 60; ++frame) {
+            const Snapshot now = rooms.world.commit();
+            const View view = steps.next();
+            const std::string what = "seed " + std::to_string(seed) + " frame " + std::to_string(frame);
+            proved += expectSound(rooms, query, now, view, {}, what, 2).stats.proved;
+            if (random.below(4) == 0) elsewhere.jump(random);
+            const bool other = random.below(2) == 0;
+            teacher.visible(other ? others.world.commit() : now, elsewhere.next(20 + 100 * double(random.below(2))),
+                            {.stateless = random.below(8) == 0});
+            query.learn(teacher);
+            query.learn(query);
+            if (random.below(4) == 0) teacher.learn(query);
+        }
+    }
+    EXPECT_GT(proved, 30u);
+}
+
+TEST(Taught, AnswerTheSameAgainAndWithEveryInstructionSet) {
+    std::vector<std::vector<uint64_t>> first;
+    forEachTarget([&](const std::string& target) {
+        Rooms rooms(3);
+        Random random(3);
+        Steps steps(random);
+        Query query, teacher;
+        const Snapshot now = rooms.world.commit();
+        for (size_t frame = 0; frame < 40; ++frame) {
+            const View view = steps.next();
+            query.learn(teacher);
+            const VisibleSet set = query.visible(now, view);
+            std::vector<uint64_t> keys = keysOf(set);
+            keys.push_back(set.stats.proved);
+            if (frame >= first.size()) first.push_back(keys);
+            EXPECT_EQ(keys, first[frame]) << target << ", frame " << frame;
+            teacher.visible(now, view);
+        }
+    });
+}
+
+TEST(Taught, DrawAgainWhereNobodyTeachesAnyLonger) {
+    Rooms rooms(2);
+    Random random(2);
+    Steps steps(random);
+    steps.step = {};
+    steps.speed = 0;
+    const Snapshot now = rooms.world.commit();
+    const View view = steps.next();
+    Query query, teacher;
+    for (int frame = 0; frame < 4; ++frame) {
+        query.visible(now, view);
+        teacher.visible(now, view);
+        query.learn(teacher);
+    }
+    uint64_t until = 0;
+    while (until < 1000 && query.visible(now, view).stats.occluder_triangles == 0) ++until;
+    EXPECT_GE(until, 100u);
+    EXPECT_LT(until, 300u);
+}
+
+/// The teacher answers on another thread while this one asks, and things move.
+TEST(Taught, ByAnotherThread) {
+    Rooms rooms(5);
+    Random random(5);
+    Steps steps(random);
+    Query query, teacher;
+    std::optional<std::thread> other;
+    uint64_t drawn = 0;
+    for (int frame = 0; frame < 80; ++frame) {
+        if (frame % 8 == 7)
+            rooms.moveTo(rooms.things[random.below(rooms.things.size())],
+                         {random.uniform(-2, 2), 0, random.uniform(-2, 2)});
+        const Snapshot now = rooms.world.commit();
+        const View view = steps.next();
+        if (other) {
+            other->join();
+            query.learn(teacher);
+        }
+        other.emplace([&teacher, now, view] { teacher.visible(now, view); });
+        drawn +=
+            expectSound(rooms, query, now, view, {}, "frame " + std::to_string(frame), 1).stats.occluder_triangles > 0;
+    }
+    other->join();
+    EXPECT_LT(drawn, 20u);
+}
+
+/// Each eye learns from the same eye of the teacher.
+TEST(Taught, WithTwoEyes) {
+    Rooms rooms(4);
+    Random random(4);
+    Steps steps(random);
+    Query query, teacher;
+    uint64_t drawn = 0, frames = 0;
+    for (int frame = 0; frame < 60; ++frame) {
+        const Snapshot now = rooms.world.commit();
+        const View left = steps.next();
+        View right = left;
+        right.view[3][0] -= 0.065;
+        query.learn(teacher);
+        const StereoSet set = query.visibleStereo(now, left, right);
+        drawn += (set.left.occluder_triangles > 0) + (set.right.occluder_triangles > 0);
+        ++frames;
+        std::vector<uint8_t> kept(rooms.ids.size(), 0);
+        for (const Visible& v : set.objects) kept[v.key] = 1;
+        for (const View& view : {left, right}) {
+            const std::vector<uint8_t> seen = rooms.seen(view, 1);
+            for (size_t i = 0; i < kept.size(); ++i)
+                EXPECT_GE(kept[i], seen[i]) << "frame " << frame << " object " << i;
+        }
+        teacher.visibleStereo(now, left, right);
+    }
+    EXPECT_LT(drawn, frames / 2);
+}
+
+}  // namespace
+}  // namespace sightline::test
