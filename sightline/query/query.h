@@ -126,18 +126,18 @@ public:
 
     /// Takes over what another query found out for its last view: who hides whom. From then on the two share the work. The
     /// teacher draws each of its answers, and looks for a certificate of all that it finds hidden, whatever that takes.
-    /// This one is spared both: its next 128 answers rest on certificates, and keep what has none; at a cut, or where
-    /// much comes into sight at once, it draws. So on another thread the teacher may be asked for the last frame's view while this
-    /// frame is drawn:
+    /// This one is spared both: its next 128 answers rest on certificates, and keep what has none. At a cut, and where
+    /// much comes into sight at once, it draws; where it keeps much more than the teacher, it goes on by itself for some
+    /// answers. So the teacher can work on another thread, while the frame is drawn:
     ///
-    ///     query.learn(teacher);                            // once the teacher has answered, and until it is asked again
-    ///     VisibleSet set = query.visible(now, view);       // here
-    ///     teacher.visible(now, view);                      // meanwhile, on a thread of yours
+    ///     query.learn(teacher);                       // once the teacher has answered
+    ///     VisibleSet set = query.visible(now, view);  // here
+    ///     teacher.visible(now, view);                 // meanwhile, on a thread of yours
     ///
-    /// Nothing that was learned is believed: each certificate is proved anew for each view, as one of its own. The teacher may
-    /// have been asked about another snapshot, view, or settings. Neither query is used by another thread meanwhile. It does nothing
-    /// where answers rest on no certificates, as propose() says. After visibleStereo() left eyes learn from left ones,
-    /// right from right. O(what the teacher found).
+    /// Nothing that was learned is believed: each certificate is proved anew for each view, as one of the query's own. The
+    /// teacher may have been asked about another snapshot or view. No other thread uses either query during the call. It
+    /// does nothing where answers rest on no certificates, as propose() says. After visibleStereo() left eyes learn from
+    /// left ones, right from right. O(what the teacher found).
     void learn(Query& teacher);
 
     /// What the last answer changed against the one before. All objects of the first answer have appeared. Snapshot and

@@ -18,9 +18,11 @@ constexpr uint32_t kFewAnswers = 4;                      // that are given befor
 constexpr uint64_t kMostCuts = 600;                      // polygons cut for one view that is drawn
 constexpr uint32_t kTeachersShare = 32;                  // times as much may be sought where it is done for others
 constexpr uint32_t kTeacherWaits = 16;                   // answers, until what was sought in vain is sought again
-constexpr uint32_t kMostDrawn = 16;     // views, one after the other, for which certificates are sought
-constexpr double kMostLoose = 0.12;     // of what is visible: that certificates may keep although it is hidden
-constexpr double kLeastUnasked = 0.25;  // of what is visible, where a view follows another
+constexpr uint32_t kMostDrawn = 16;        // views, one after the other, for which certificates are sought
+constexpr double kMostLoose = 0.12;        // of what is visible: that certificates may keep although it is hidden
+constexpr double kMostLooseTaught = 0.25;  // the same, of what a teacher keeps
+constexpr double kFewTaught = 8;           // answers that this is an average of
+constexpr double kLeastUnasked = 0.25;     // of what is visible, where a view follows another
 constexpr size_t kMostHiders = 1u << 16;
 
 }  // namespace
@@ -139,8 +141,26 @@ void ProofMemory::rest() {
     rest_until_ = answer_ + rest_for_;
 }
 
+/// Draws by itself for some answers, if certificates keep much more than the teacher does, who draws.
+void ProofMemory::noteTaught(size_t visible) {
+    if (way_ != Way::kProofs || expected_ == 0) return;
+    const double share = taught_ > 0 ? 1.0 / kFewTaught : 1;
+    kept_here_ += share * (static_cast<double>(visible) - kept_here_);
+    kept_there_ += share * (static_cast<double>(expected_) - kept_there_);
+    if (++taught_ == kShortRest) rest_for_ = 0;
+    if (taught_ < 2 * kFewTaught || kept_here_ <= (1 + kMostLooseTaught) * kept_there_ + 6) return;
+    rest();
+    taught_ = 0;
+    taught_until_ = answer_;
+    alone_until_ = rest_until_;
+}
+
 void ProofMemory::noteAnswered(const QueryStats& stats, size_t visible) {
-    if (teaches_ || taught()) return;
+    if (taught()) return noteTaught(visible);
+    if (teaches_) {
+        drawn_visible_ = visible;
+        return;
+    }
     const auto n = [](uint64_t count) { return static_cast<double>(count); };
     // What each unit took on several scenes, about. Time itself must not decide: answers would differ.
     if (way_ != Way::kProofs) {

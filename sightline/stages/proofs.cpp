@@ -68,8 +68,10 @@ void ProofMemory::write(Pending::Kind kind, uint32_t index, const Certificate& c
 }
 
 void ProofMemory::learn(ProofMemory& teacher) {
-    taught_until_ = answer_ + kTaught;
     teacher.teaches_ = true;
+    if (static_cast<int32_t>(alone_until_ - answer_) > 0) return;
+    taught_until_ = answer_ + kTaught;
+    expected_ = teacher.drawn_visible_;
     for (const Pending::Kind kind : {Pending::Kind::kNode, Pending::Kind::kObject})
         for (const uint32_t index : kind == Pending::Kind::kNode ? teacher.found_nodes_ : teacher.found_places_) {
             // What is known here already has held for a later view.

@@ -48,8 +48,8 @@ TEST(Taught, KeepWhatIsSeenInRoomsWhoseWallsMove) {
     }
     EXPECT_GT(proved, 10 * frames);
     EXPECT_LT(drawn, alone_drawn);
-    EXPECT_LT(10 * drawn, frames) << "but at cuts";
-    EXPECT_LT(100 * kept, 125 * kept_alone);
+    EXPECT_LT(2 * drawn, frames) << "but at cuts, and where it would keep too much";
+    EXPECT_LT(100 * kept, 120 * kept_alone);
     RecordProperty("drawn", std::to_string(drawn) + " of " + std::to_string(frames));
     RecordProperty("kept", std::to_string(kept) + " beside " + std::to_string(kept_alone));
 }
