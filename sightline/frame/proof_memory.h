@@ -292,11 +292,12 @@ private:
     Array<Proposal> proposed_;                    ///< by place; empty: nothing was ever proposed
     Array<uint32_t> found_nodes_, found_places_;  ///< of a teacher: what has a certificate that held for its last view
     bool teaches_ = false;
-    uint32_t taught_until_ = 0;              ///< the answer from which on nobody draws for this one
-    uint32_t alone_until_ = 0;               ///< and up to which it does so by itself: what it was taught did not do
-    uint32_t taught_ = 0;                    ///< answers since then that rest on what was taught
-    uint64_t expected_ = 0;                  ///< what the teacher kept for its last view
-    double kept_here_ = 0, kept_there_ = 0;  ///< of an answer, about: by this one, and by the teacher
+    uint32_t taught_until_ = 0;  ///< the answer from which on nobody draws for this one
+    uint32_t alone_until_ = 0;   ///< and up to which it goes on by itself: what it was taught did not do
+    uint32_t taught_ = 0;        ///< answers since then that rest on what was taught
+    uint64_t expected_ = 0;      ///< what the teacher kept for its last view
+    /// Of an answer, about: what was kept by this one and by the teacher, and whether this one drew.
+    double kept_here_ = 0, kept_there_ = 0, drew_here_ = 0;
 };
 
 }  // namespace sightline::detail

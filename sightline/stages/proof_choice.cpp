@@ -21,7 +21,8 @@ constexpr uint32_t kTeacherWaits = 16;                   // answers, until what 
 constexpr uint32_t kMostDrawn = 16;        // views, one after the other, for which certificates are sought
 constexpr double kMostLoose = 0.12;        // of what is visible: that certificates may keep although it is hidden
 constexpr double kMostLooseTaught = 0.25;  // the same, of what a teacher keeps
-constexpr double kFewTaught = 8;           // answers that this is an average of
+constexpr double kMostDrawnTaught = 0.6;   // of answers
+constexpr double kFewTaught = 8;           // answers that these are averages of
 constexpr double kLeastUnasked = 0.25;     // of what is visible, where a view follows another
 constexpr size_t kMostHiders = 1u << 16;
 
@@ -141,14 +142,17 @@ void ProofMemory::rest() {
     rest_until_ = answer_ + rest_for_;
 }
 
-/// Draws by itself for some answers, if certificates keep much more than the teacher does, who draws.
+/// Goes on by itself for some answers, if it keeps much more than the teacher does, or must draw all the same.
 void ProofMemory::noteTaught(size_t visible) {
-    if (way_ != Way::kProofs || expected_ == 0) return;
     const double share = taught_ > 0 ? 1.0 / kFewTaught : 1;
-    kept_here_ += share * (static_cast<double>(visible) - kept_here_);
-    kept_there_ += share * (static_cast<double>(expected_) - kept_there_);
+    const auto note = [&](double& average, double value) { average += share * (value - average); };
+    note(drew_here_, way_ == Way::kProofs ? 0 : 1);
+    note(kept_here_, static_cast<double>(visible));
+    note(kept_there_, static_cast<double>(way_ == Way::kProofs ? expected_ : visible));
     if (++taught_ == kShortRest) rest_for_ = 0;
-    if (taught_ < 2 * kFewTaught || kept_here_ <= (1 + kMostLooseTaught) * kept_there_ + 6) return;
+    const bool loose = taught_ >= 2 * kFewTaught && kept_here_ > (1 + kMostLooseTaught) * kept_there_ + 6;
+    const bool often = taught_ >= kFewTaught && drew_here_ > kMostDrawnTaught;
+    if (!loose && !often) return;
     rest();
     taught_ = 0;
     taught_until_ = answer_;
