@@ -82,7 +82,7 @@ public:
     /// for some answers it seeks nothing, and draws nothing but at a cut. O(what was found).
     void learn(ProofMemory& teacher);
     /// Whether another memory draws for this one.
-    bool taught() const { return static_cast<int32_t>(taught_until_ - answer_) > 0; }
+    bool taught() const { return isBefore(taught_until_); }
     /// No certificate is sought, or no more, for something in this view, which is kept. If that happens too often, it is
     /// answered by drawing.
     void passOver(size_t visible) {
@@ -153,6 +153,9 @@ public:
     uint64_t polygons = 0;  ///< of occludees that were turned towards the eye or away from it
 
 private:
+    bool teaches() const { return isBefore(teaches_until_); }
+    bool isBefore(uint32_t answer) const { return static_cast<int32_t>(answer - answer_) > 0; }
+
     static constexpr uint32_t kNone = ~0u;
     static constexpr uint32_t kPlaces = 256;  ///< objects whose place in the view is remembered
     static constexpr uint32_t kLast = 4;
@@ -291,11 +294,11 @@ public:
 private:
     Array<Proposal> proposed_;                    ///< by place; empty: nothing was ever proposed
     Array<uint32_t> found_nodes_, found_places_;  ///< of a teacher: what has a certificate that held for its last view
-    bool teaches_ = false;
-    uint32_t taught_until_ = 0;  ///< the answer from which on nobody draws for this one
-    uint32_t alone_until_ = 0;   ///< and up to which it goes on by itself: what it was taught did not do
-    uint32_t taught_ = 0;        ///< answers since then that rest on what was taught
-    uint64_t expected_ = 0;      ///< what the teacher kept for its last view
+    uint32_t teaches_until_ = 0;                  ///< the answer from which on nobody learns from it any more
+    uint32_t taught_until_ = 0;                   ///< the answer from which on nobody draws for this one
+    uint32_t alone_until_ = 0;  ///< and up to which it goes on by itself: what it was taught did not do
+    uint32_t taught_ = 0;       ///< answers since then that rest on what was taught
+    uint64_t expected_ = 0;     ///< what the teacher kept for its last view
     /// Of an answer, about: what was kept by this one and by the teacher, and whether this one drew.
     double kept_here_ = 0, kept_there_ = 0, drew_here_ = 0;
 };

@@ -124,9 +124,9 @@ public:
     /// QuerySettings::proofs, with ::stateless or ::bins, with Stage::kClusters, in parallel views.
     void propose(std::span<const ObjectId> hidden);
 
-    /// Takes over what another query found out for its last view: who hides whom. From then on the two share the work. The
-    /// teacher draws each of its answers, and looks for a certificate of all that it finds hidden, whatever that takes.
-    /// This one is spared both: its next 128 answers rest on certificates, and keep what has none. At a cut, and where
+    /// Takes over what another query found out for its last view: who hides whom. For their next 128 answers the two share
+    /// the work. The teacher draws, and looks for a certificate of all that it finds hidden, whatever that takes. This one
+    /// is spared both: its answers rest on certificates, and keep what has none. At a cut, and where
     /// much comes into sight at once, it draws; where it keeps much more than the teacher, it goes on by itself for some
     /// answers. So the teacher can work on another thread, while the frame is drawn:
     ///

@@ -58,8 +58,8 @@ void ProofMemory::begin(const Frame& frame, std::span<const ObjectId> proposed) 
     if (hiders_.size() > kMostHiders) clear();
     if (places_.empty()) places_.resize(kPlaces);
     note(frame, proposed);
-    if (teaches_ || taught()) {
-        way_ = teaches_ ? Way::kTilesAndSeek : Way::kProofs;
+    if (teaches() || taught()) {
+        way_ = teaches() ? Way::kTilesAndSeek : Way::kProofs;
         return;
     }
     if (frame.view.layers != layers_ || frame.stages != stages_) next_by_proofs_ = false;
@@ -77,24 +77,24 @@ void ProofMemory::begin(const Frame& frame, std::span<const ObjectId> proposed) 
 bool ProofMemory::hasFailed(Pending::Kind kind, uint32_t index) const {
     const Array<uint32_t>& of = numbers(kind);
     return index < of.size() && (of[index] & kFailed) && (of[index] & kClosely) &&
-           ((answer_ - of[index]) & (kClosely - 1)) < (teaches_ ? kTeacherWaits : kMostAnswers);
+           ((answer_ - of[index]) & (kClosely - 1)) < (teaches() ? kTeacherWaits : kMostAnswers);
 }
 
 /// Looks for certificates for a node or an object that is hidden, or else for what is below it.
 /// @returns how many objects are left without
 uint32_t ProofMemory::seekBelow(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box) {
-    const uint32_t share = teaches_ ? kTeachersShare : 1;
+    const uint32_t share = teaches() ? kTeachersShare : 1;
     if (cuts() - cuts_of_proposals_ >= share * kMostCuts) {
         spent_ = true;
         return 0;
     }
     const auto count = [&] {  // it is held against a view once answers rest on it
         expected_work_ += kWorkOfProof + kWorkOfHider * certificateOf(kind, index).count;
-        if (teaches_) (kind == Pending::Kind::kNode ? found_nodes_ : found_places_).push_back(index);
+        if (teaches()) (kind == Pending::Kind::kNode ? found_nodes_ : found_places_).push_back(index);
         return 0u;
     };
     // A teacher hands on what holds now.
-    if (teaches_ ? holds(frame, kind, index, box) : hasCertificate(kind, index)) return count();
+    if (teaches() ? holds(frame, kind, index, box) : hasCertificate(kind, index)) return count();
     if (!hasFailed(kind, index)) {
         if (sought >= share * kMostSought) {
             spent_ = true;
@@ -122,12 +122,12 @@ uint32_t ProofMemory::seekBelow(const Frame& frame, Pending::Kind kind, uint32_t
 void ProofMemory::seekAll(const Frame& frame, const QueryStats& stats, size_t visible) {
     const double unasked = static_cast<double>(stats.unasked);
     const bool follows = unasked >= kLeastUnasked * static_cast<double>(visible);
-    if (frame.settings.unasked_answers > 0 && !follows && !teaches_) return;
+    if (frame.settings.unasked_answers > 0 && !follows && !teaches()) return;
     uint64_t loose = 0;
     spent_ = false;
     expected_work_ = 0;
     for (const Hidden& one : hidden) loose += seekBelow(frame, one.kind, one.index, one.box);
-    if (teaches_) return;
+    if (teaches()) return;
     if (static_cast<double>(loose) > kMostLoose * static_cast<double>(visible) + 1) return rest();
     if (drawn_work_ > 0 && expected_work_ > kMostExpected * drawn_work_) return rest();
     if (!spent_) next_by_proofs_ = true, drawn_ = 0;
@@ -161,7 +161,7 @@ void ProofMemory::noteTaught(size_t visible) {
 
 void ProofMemory::noteAnswered(const QueryStats& stats, size_t visible) {
     if (taught()) return noteTaught(visible);
-    if (teaches_) {
+    if (teaches()) {
         drawn_visible_ = visible;
         return;
     }

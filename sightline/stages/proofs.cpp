@@ -68,8 +68,9 @@ void ProofMemory::write(Pending::Kind kind, uint32_t index, const Certificate& c
 }
 
 void ProofMemory::learn(ProofMemory& teacher) {
-    teacher.teaches_ = static_cast<int32_t>(alone_until_ - answer_) <= 0;
-    if (!teacher.teaches_) return;
+    const bool alone = isBefore(alone_until_);
+    teacher.teaches_until_ = teacher.answer_ + (alone ? 0 : kTaught);
+    if (alone) return;
     taught_until_ = answer_ + kTaught;
     expected_ = teacher.drawn_visible_;
     for (const Pending::Kind kind : {Pending::Kind::kNode, Pending::Kind::kObject})

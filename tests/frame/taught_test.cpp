@@ -101,23 +101,43 @@ TEST(Taught, AnswerTheSameAgainAndWithEveryInstructionSet) {
 }
 
 TEST(Taught, DrawAgainWhereNobodyTeachesAnyLonger) {
-    Rooms rooms(2);
-    Random random(2);
-    Steps steps(random);
-    steps.step = {};
-    steps.speed = 0;
-    const Snapshot now = rooms.world.commit();
-    const View view = steps.next();
+    MadeWorld made;
+    made.add({-6, -6, -10}, {6, 6, -9});
+    for (int i = 0; i < 40; ++i) made.add({i % 8 - 4.0, i / 8 - 2.0, -20}, {i % 8 - 3.7, i / 8 - 1.7, -19.5});
+    const Snapshot now = made.world.commit();
+    const View view = viewFrom({0, 0, 0}, {0, 0, -1});
     Query query, teacher;
-    for (int frame = 0; frame < 4; ++frame) {
-        query.visible(now, view);
-        teacher.visible(now, view);
+    const auto draws = [&](Query& asked) { return asked.visible(now, view).stats.occluder_triangles > 0; };
+    for (int frame = 0; frame < 200; ++frame) {
+        EXPECT_EQ(draws(query), frame == 0) << frame;
+        EXPECT_TRUE(draws(teacher)) << frame;
         query.learn(teacher);
     }
-    uint64_t until = 0;
-    while (until < 1000 && query.visible(now, view).stats.occluder_triangles == 0) ++until;
-    EXPECT_GE(until, 100u);
-    EXPECT_LT(until, 300u);
+    int taught = 0;
+    while (taught < 1000 && !draws(query)) ++taught;
+    EXPECT_GE(taught, 127);
+    EXPECT_LT(taught, 300);
+}
+
+/// From whom nobody learns is a query like any other again, that draws where it must.
+TEST(Taught, TeachersStopWhereNobodyLearns) {
+    Rooms rooms(1);
+    Random random(1);
+    Steps steps(random);
+    const Snapshot now = rooms.world.commit();
+    Query query, teacher;
+    int teaches = 0, later = 0;
+    for (int frame = 0; frame < 600; ++frame) {
+        if (frame % 100 == 99) steps.jump(random);
+        const View view = steps.next();
+        if (frame < 100) query.visible(now, view);
+        const bool drawn = teacher.visible(now, view).stats.occluder_triangles > 0;
+        if (frame < 100) query.learn(teacher);
+        teaches += drawn && frame < 200;
+        later += drawn && frame >= 400;
+    }
+    EXPECT_EQ(teaches, 200);
+    EXPECT_LT(later, 150);
 }
 
 /// The teacher answers on another thread while this one asks, and things move.
