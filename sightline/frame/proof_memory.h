@@ -244,7 +244,8 @@ private:
                   Certificate& out);
     uint32_t seekBelow(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box);
     void rest();
-    void noteTaught(size_t visible);
+    double workOf(const QueryStats& stats) const;
+    void noteTaught(const QueryStats& stats, size_t visible);
     void shoot(const Frame& frame, const glm::dvec3& direction, double far);
     void meet(const Frame& frame, uint32_t place, const glm::dvec3& direction, double far);
     void clear();
@@ -297,8 +298,8 @@ private:
     uint32_t teaches_until_ = 0;                  ///< the answer from which on nobody learns from it any more
     uint32_t taught_until_ = 0;                   ///< the answer from which on nobody draws for this one
     uint32_t alone_until_ = 0;  ///< and up to which it goes on by itself: what it was taught did not do
+    uint32_t alone_for_ = 0;    ///< how long that is
     uint32_t taught_ = 0;       ///< answers since then that rest on what was taught
-    uint64_t expected_ = 0;     ///< what the teacher kept for its last view
     /// Of an answer, about: what was kept by this one and by the teacher, and whether this one drew.
     double kept_here_ = 0, kept_there_ = 0, drew_here_ = 0;
 };

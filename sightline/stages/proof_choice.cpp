@@ -22,6 +22,7 @@ constexpr uint32_t kMostDrawn = 16;        // views, one after the other, for wh
 constexpr double kMostLoose = 0.12;        // of what is visible: that certificates may keep although it is hidden
 constexpr double kMostLooseTaught = 0.25;  // the same, of what a teacher keeps
 constexpr double kMostDrawnTaught = 0.6;   // of answers
+constexpr double kMostWorkAlone = 0.6;     // of that of drawing: certificates with more are not sought
 constexpr double kFewTaught = 8;           // answers that these are averages of
 constexpr double kLeastUnasked = 0.25;     // of what is visible, where a view follows another
 constexpr size_t kMostHiders = 1u << 16;
@@ -142,42 +143,49 @@ void ProofMemory::rest() {
     rest_until_ = answer_ + rest_for_;
 }
 
+/// That of the last answer, about. What each unit took on several scenes; time itself must not decide, for answers would
+/// differ.  [microseconds]
+double ProofMemory::workOf(const QueryStats& stats) const {
+    const auto n = [](uint64_t count) { return static_cast<double>(count); };
+    if (way_ != Way::kProofs)
+        return 0.18 * n(stats.occluder_triangles) + 0.4 * n(stats.second_look_polygons) + 6 * n(stats.nodes_visited);
+    return 0.55 * n(stats.proof_cuts - cuts_of_proposals_) + 0.03 * n(polygons) +
+           6 * n(stats.proof_rays - rays_of_proposals_) + n(stats.proved) + 3 * n(stats.nodes_visited);
+}
+
 /// Goes on by itself for some answers, if it keeps much more than the teacher does, or must draw all the same.
-void ProofMemory::noteTaught(size_t visible) {
-    const double share = taught_ > 0 ? 1.0 / kFewTaught : 1;
+void ProofMemory::noteTaught(const QueryStats& stats, size_t visible) {
+    const bool drew = way_ != Way::kProofs;
+    const double kept = static_cast<double>(visible), share = taught_ > 0 ? 1.0 / kFewTaught : 1;
     const auto note = [&](double& average, double value) { average += share * (value - average); };
-    note(drew_here_, way_ == Way::kProofs ? 0 : 1);
-    note(kept_here_, static_cast<double>(visible));
-    note(kept_there_, static_cast<double>(way_ == Way::kProofs ? expected_ : visible));
-    if (++taught_ == kShortRest) rest_for_ = 0;
+    note(drew_here_, drew ? 1 : 0);
+    note(kept_here_, kept);
+    note(kept_there_, drew ? kept : static_cast<double>(drawn_visible_));
+    if (!drew) note(proof_work_, workOf(stats));
+    if (++taught_ == kShortRest) alone_for_ = rest_for_ = 0;
     const bool loose = taught_ >= 2 * kFewTaught && kept_here_ > (1 + kMostLooseTaught) * kept_there_ + 6;
     const bool often = taught_ >= kFewTaught && drew_here_ > kMostDrawnTaught;
     if (!loose && !often) return;
-    rest();
     taught_ = 0;
     taught_until_ = answer_;
-    alone_until_ = rest_until_;
+    alone_for_ = std::clamp(2 * alone_for_, kShortRest, kLongRest);
+    alone_until_ = answer_ + alone_for_;
+    answers_ = 0;
+    next_by_proofs_ = !often && proof_work_ < kMostWorkAlone * drawn_work_;  // it seeks what it was not taught
+    if (!next_by_proofs_) rest();
 }
 
 void ProofMemory::noteAnswered(const QueryStats& stats, size_t visible) {
-    if (taught()) return noteTaught(visible);
-    if (teaches()) {
-        drawn_visible_ = visible;
-        return;
-    }
-    const auto n = [](uint64_t count) { return static_cast<double>(count); };
-    // What each unit took on several scenes, about. Time itself must not decide: answers would differ.
+    if (taught()) return noteTaught(stats, visible);
+    const double work = workOf(stats);
     if (way_ != Way::kProofs) {
-        const double work =
-            0.18 * n(stats.occluder_triangles) + 0.4 * n(stats.second_look_polygons) + 6 * n(stats.nodes_visited);
         drawn_work_ += (work - drawn_work_) / (drawn_work_ > 0 ? 4 : 1);
         drawn_visible_ = visible;
         return;
     }
-    const double work = 0.55 * n(stats.proof_cuts - cuts_of_proposals_) + 0.03 * n(polygons) +
-                        6 * n(stats.proof_rays - rays_of_proposals_) + n(stats.proved) + 3 * n(stats.nodes_visited);
     // More is kept: it is seen, or not proved to be hidden. Drawing tells.
-    if (n(visible) > (1 + kMostLoose) * n(drawn_visible_) + 3) next_by_proofs_ = false;
+    if (static_cast<double>(visible) > (1 + kMostLoose) * static_cast<double>(drawn_visible_) + 3)
+        next_by_proofs_ = false;
     proof_work_ += (work - proof_work_) / (answers_ > 0 ? 8 : 1);
     if (++answers_ == kShortRest) rest_for_ = 0;
     // The first of them have much to find.

@@ -72,7 +72,10 @@ void ProofMemory::learn(ProofMemory& teacher) {
     teacher.teaches_until_ = teacher.answer_ + (alone ? 0 : kTaught);
     if (alone) return;
     taught_until_ = answer_ + kTaught;
-    expected_ = teacher.drawn_visible_;
+    if (teacher.drawn_work_ > 0) {
+        drawn_work_ = teacher.drawn_work_;
+        drawn_visible_ = teacher.drawn_visible_;
+    }
     for (const Pending::Kind kind : {Pending::Kind::kNode, Pending::Kind::kObject})
         for (const uint32_t index : kind == Pending::Kind::kNode ? teacher.found_nodes_ : teacher.found_places_) {
             // What is known here already has held for a later view.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <thread>
@@ -119,25 +120,25 @@ TEST(Taught, DrawAgainWhereNobodyTeachesAnyLonger) {
     EXPECT_LT(taught, 300);
 }
 
-/// From whom nobody learns is a query like any other again, that draws where it must.
+/// From whom nobody learns is a query like any other again, that seeks no more than it may.
 TEST(Taught, TeachersStopWhereNobodyLearns) {
     Rooms rooms(1);
     Random random(1);
     Steps steps(random);
     const Snapshot now = rooms.world.commit();
     Query query, teacher;
-    int teaches = 0, later = 0;
-    for (int frame = 0; frame < 600; ++frame) {
-        if (frame % 100 == 99) steps.jump(random);
+    uint64_t taught = 0, later = 0;
+    for (int frame = 0; frame < 400; ++frame) {
+        if (frame % 40 == 39) steps.jump(random);
         const View view = steps.next();
-        if (frame < 100) query.visible(now, view);
-        const bool drawn = teacher.visible(now, view).stats.occluder_triangles > 0;
-        if (frame < 100) query.learn(teacher);
-        teaches += drawn && frame < 200;
-        later += drawn && frame >= 400;
+        const QueryStats stats = teacher.visible(now, view).stats;
+        if (frame < 200) query.learn(teacher);
+        if (frame < 200) EXPECT_GT(stats.occluder_triangles, 0u) << frame;
+        if (frame < 200) taught = std::max(taught, stats.proofs_sought);
+        if (frame >= 328) later = std::max(later, stats.proofs_sought);
     }
-    EXPECT_EQ(teaches, 200);
-    EXPECT_LT(later, 150);
+    EXPECT_GT(taught, 64u);
+    EXPECT_LE(later, 33u);
 }
 
 /// The teacher answers on another thread while this one asks, and things move.
