@@ -13,7 +13,7 @@ namespace {
 TEST(AssertDeathTest, StopsTheProgramOnceTheHookHasHeard) {
     const int two = 2;
     SIGHTLINE_ASSERT(two == 2);
-    EXPECT_DEATH(SIGHTLINE_ASSERT(two == 3), "assert_test.cpp:[0-9]+: assertion failed: two == 3");
+    EXPECT_DEATH(SIGHTLINE_ASSERT(two == 3), "assert_test.cpp:.*: assertion failed: two == 3");
     const auto hook = [](const char* expression, const char*, int line) {
         std::fprintf(stderr, "heard of %s in line %d\n", expression, line);
     };
@@ -22,7 +22,7 @@ TEST(AssertDeathTest, StopsTheProgramOnceTheHookHasHeard) {
             setAssertHook(hook);
             SIGHTLINE_ASSERT(two == 4);
         },
-        "heard of two == 4 in line [0-9]+");
+        "heard of two == 4 in line .*");
     EXPECT_DEATH(
         {
             setAssertHook(hook);
