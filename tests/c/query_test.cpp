@@ -77,16 +77,16 @@ TEST(CQuery, TakesProposals) {
 }
 
 TEST(CQuery, LearnsFromAnother) {
-    MadeWorld made(11, 300);
+    MadeWorld made;
+    made.add({-6, -6, -10}, {6, 6, -9});
+    for (int i = 0; i < 40; ++i) made.add({i % 8 - 4.0, i / 8 - 2.0, -20}, {i % 8 - 3.7, i / 8 - 1.7, -19.5});
     const CWorld world(made);
     const CQuery c(world), c_teacher(world);
     const Snapshot now = made.world.commit();
     Query query, teacher;
-    Random random(11);
     uint64_t proved = 0;
-    View view = randomView(random);
     for (int frame = 0; frame < 12; ++frame) {
-        view.view[3] += glm::dvec4(0.01, 0, 0.01, 0);
+        const View view = viewFrom({0.01 * frame, 0, 0}, {0, 0, -1});
         query.learn(teacher);
         ASSERT_EQ(slQueryLearn(c.query, c_teacher.query), SL_OK);
         const VisibleSet set = query.visible(now, view);
