@@ -28,12 +28,7 @@ TEST(Proofs, KeepWhatIsSeenInRoomsWhoseWallsMove) {
         Query query;
         for (int frame = 0; frame < 160; ++frame) {
             if (frame % 40 == 39) steps.jump(random);
-            if (frame % 10 == 9) {
-                rooms.moveTo(rooms.walls[random.below(rooms.walls.size())],
-                             {random.uniform(-1, 1), 0, random.uniform(-1, 1)});
-                rooms.moveTo(rooms.things[random.below(rooms.things.size())],
-                             {random.uniform(-2, 2), 0, random.uniform(-2, 2)});
-            }
+            if (frame % 10 == 9) rooms.disturb(random);
             View view = steps.next(frame / 20 % 3 == 2 ? 140 : 70, frame / 16 % 4 == 3 ? 0.8 : 0.05);
             if (frame % 50 > 44) view.layers = 1;
             const Snapshot now = rooms.world.commit();

@@ -25,12 +25,7 @@ TEST(Taught, KeepWhatIsSeenInRoomsWhoseWallsMove) {
         Query query, teacher, alone;
         for (int frame = 0; frame < 160; ++frame) {
             if (frame % 40 == 39) steps.jump(random);
-            if (frame % 10 == 9) {
-                rooms.moveTo(rooms.walls[random.below(rooms.walls.size())],
-                             {random.uniform(-1, 1), 0, random.uniform(-1, 1)});
-                rooms.moveTo(rooms.things[random.below(rooms.things.size())],
-                             {random.uniform(-2, 2), 0, random.uniform(-2, 2)});
-            }
+            if (frame % 10 == 9) rooms.disturb(random);
             const View view = steps.next(frame / 20 % 3 == 2 ? 140 : 70, frame / 16 % 4 == 3 ? 0.8 : 0.05);
             const Snapshot now = rooms.world.commit();
             const std::string what = "seed " + std::to_string(seed) + " frame " + std::to_string(frame);

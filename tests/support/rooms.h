@@ -66,6 +66,11 @@ struct Rooms : MadeWorld {
             add(t, random.below(2) == 0, 1, mound);
         }
     }
+    /// Moves a wall and a thing.
+    void disturb(Random& random) {
+        moveTo(walls[random.below(walls.size())], {random.uniform(-1, 1), 0, random.uniform(-1, 1)});
+        moveTo(things[random.below(things.size())], {random.uniform(-2, 2), 0, random.uniform(-2, 2)});
+    }
     void moveTo(size_t object, const glm::dvec3& by) {
         transforms[object][3] += glm::dvec4(by, 0);
         world.move(ids[object], transforms[object]);
