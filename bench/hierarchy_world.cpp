@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "bench/cases.h"
 
+#include <algorithm>
+
 #include "bench/stopwatch.h"
 #include "bench/swarm.h"
 #include "sightline/query/query.h"
@@ -67,17 +69,16 @@ void addWorld(Table& table, const std::string& world, uint32_t count, int repeat
     Living living(count, 4);
     const double first = millisecondsOf([&] { living.commit(); });
     const auto frames = [&](const std::string& what, const std::function<void()>& change) {
-        std::vector<double> times;
+        std::vector<double> times, commits;
         for (int frame = 0; frame < kWorldFrames; ++frame) {
-            times.push_back(millisecondsOf([&] {
-                change();
-                living.commit();
-            }));
+            const double changes = millisecondsOf(change);
+            commits.push_back(millisecondsOf([&] { living.commit(); }));
+            times.push_back(changes + commits.back());
         }
-        double worst = 0;
-        for (const double time : times) worst = std::max(worst, time);
-        table.rows.push_back({world + ", " + what, "changes and commit", medianOf(times), "ms/frame", "first commit",
-                              first, "longest " + std::to_string(worst)});
+        const double worst = *std::max_element(times.begin(), times.end());
+        table.rows.push_back(
+            {world + ", " + what, "changes and commit", medianOf(times), "ms/frame", "first commit", first,
+             "the commit alone " + std::to_string(medianOf(commits)) + ", longest " + std::to_string(worst)});
     };
     Random random(5);
     const auto any = [&] { return static_cast<uint32_t>(random.below(count)); };
@@ -88,6 +89,17 @@ void addWorld(Table& table, const std::string& world, uint32_t count, int repeat
     frames("one moves", [&] { nudge(any()); });
     frames("1,000 move", [&] {
         for (int i = 0; i < 1000; ++i) nudge(any());
+    });
+    frames("every hundredth moves", [&] {
+        for (uint32_t i = 0; i < count; i += 100) nudge(i);
+    });
+    frames("every hundredth goes anywhere", [&] {
+        for (uint32_t i = 0; i < count; i += 100) {
+            const Box3d box = living.swarm.boxes[i];
+            const glm::dvec3 to = living.begun[any()].min;
+            living.swarm.boxes[i] = {to, to + box.size()};
+            living.move(i);
+        }
     });
     frames("every tenth moves", [&] {
         living.swarm.step();

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "sightline/math/curves.h"
 #include "sightline/prepare/occluder/occluder.h"
 
 namespace sightline::bench {
@@ -34,16 +35,6 @@ std::vector<Box3d> inOrder(const OcclusionScene& scene, std::span<const uint32_t
     return inDouble(boxes);
 }
 
-/// Each of the lowest 21 bits three places from the next.
-uint64_t spread(uint64_t bits) {
-    bits &= 0x1fffff;
-    bits = (bits | bits << 32) & 0x1f00000000ffffull;
-    bits = (bits | bits << 16) & 0x1f0000ff0000ffull;
-    bits = (bits | bits << 8) & 0x100f00f00f00f00full;
-    bits = (bits | bits << 4) & 0x10c30c30c30c30c3ull;
-    return (bits | bits << 2) & 0x1249249249249249ull;
-}
-
 /// Boxes eight by eight; unused places stay inverted.
 std::vector<BvhNode> inEights(std::span<const Box3f> boxes) {
     std::vector<BvhNode> nodes((boxes.size() + 7) / 8);
@@ -66,17 +57,13 @@ std::vector<BvhNode> inEights(std::span<const Box3f> boxes) {
 }  // namespace
 
 std::vector<uint32_t> mortonOrder(std::span<const Box3f> boxes) {
-    Box3f all;
-    for (const Box3f& box : boxes) all.grow(box);
-    const glm::vec3 size = glm::max(all.size(), glm::vec3(1e-30f));
-    const float side = std::max({size.x, size.y, size.z});
+    Box3d all;
+    for (const Box3f& box : boxes) all.grow({glm::dvec3(box.min), glm::dvec3(box.max)});
+    const glm::dvec3 size = all.size();
+    all.max = all.min + std::max({size.x, size.y, size.z});
     std::vector<uint64_t> codes;
     codes.reserve(boxes.size());
-    for (const Box3f& box : boxes) {
-        const glm::vec3 place = (box.center() - all.min) * (2097151.0f / side);
-        codes.push_back(spread(static_cast<uint64_t>(place.x)) | spread(static_cast<uint64_t>(place.y)) << 1 |
-                        spread(static_cast<uint64_t>(place.z)) << 2);
-    }
+    for (const Box3f& box : boxes) codes.push_back(mortonCode(glm::dvec3(box.center()), all));
     std::vector<uint32_t> order(boxes.size());
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return codes[a] < codes[b]; });

@@ -26,7 +26,6 @@ Bvh buildBvh(std::span<const Box3d> boxes, Memory* memory) {
     bvh.origin = world.center();
     bvh.order.resize(count);
     BvhSplitter builder(bvh.order, memory);
-    builder.full_nodes = true;
     builder.boxes.resize(count);
     builder.centers.resize(count);
     for (uint32_t i = 0; i < count; ++i) {

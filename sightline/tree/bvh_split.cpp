@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: MIT
 //
 // Ingo Wald. On fast Construction of SAH-based Bounding Volume Hierarchies. 2007.
+// Ibrahim Kamel, Christos Faloutsos. On Packing R-trees. 1993.
 #include "sightline/tree/bvh_split.h"
 
 #include <algorithm>
 #include <limits>
 
+#include "sightline/math/curves.h"
 #include "sightline/tree/bvh_node.h"
 
 namespace sightline {
@@ -49,7 +51,8 @@ uint32_t BvhSplitter::middleOf(const BvhRange& range) const {
 void BvhSplitter::split(const BvhRange& range, BvhRange& left, BvhRange& right) {
     Box3f extent;
     for (uint32_t i = range.first; i < range.last; ++i) extent.grow(centers[order[i]]);
-    const uint32_t middle = range.count() <= 64 ? splitAtMedian(range, extent) : splitByBins(range, extent);
+    if (range.count() > 64 && splitByBins(range, extent, left, right)) return;
+    const uint32_t middle = splitAtMedian(range, extent);
     left = {range.first, middle, boundsOf(range.first, middle)};
     right = {middle, range.last, boundsOf(middle, range.last)};
 }
@@ -66,51 +69,64 @@ uint32_t BvhSplitter::splitAtMedian(const BvhRange& range, const Box3f& extent) 
     return middle;
 }
 
-uint32_t BvhSplitter::splitByBins(const BvhRange& range, const Box3f& extent) {
+/// False: no bins divide the range.
+bool BvhSplitter::splitByBins(const BvhRange& range, const Box3f& extent, BvhRange& left, BvhRange& right) {
+    struct Bins {
+        Box3f boxes[kBins];
+        uint32_t counts[kBins] = {};
+    };
+    Bins bins[3];
+    const glm::vec3 size = extent.size();
+    const glm::vec3 scale(kBins / size.x, kBins / size.y, kBins / size.z);
+    for (uint32_t i = range.first; i < range.last; ++i) {
+        const Box3f& box = boxes[order[i]];
+        const glm::vec3& center = centers[order[i]];
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!(size[axis] > 0.0f)) continue;
+            const int bin = binOf(center[axis], extent.min[axis], scale[axis]);
+            bins[axis].boxes[bin].grow(box);
+            ++bins[axis].counts[bin];
+        }
+    }
     float best_cost = std::numeric_limits<float>::infinity();
     int best_axis = -1, best_bin = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        const float low = extent.min[axis], width = extent.max[axis] - low;
-        if (!(width > 0.0f)) continue;
-        const float scale = kBins / width;
-        Box3f bins[kBins];
-        uint32_t counts[kBins] = {};
-        for (uint32_t i = range.first; i < range.last; ++i) {
-            const int bin = binOf(centers[order[i]][axis], low, scale);
-            bins[bin].grow(boxes[order[i]]);
-            ++counts[bin];
-        }
+        if (!(size[axis] > 0.0f)) continue;
+        Box3f behind[kBins], box;  // of the bins from one on
         float right_cost[kBins];
-        Box3f box;
         uint32_t count = 0;
         for (int bin = kBins - 1; bin > 0; --bin) {
-            box.grow(bins[bin]);
-            count += counts[bin];
+            box.grow(bins[axis].boxes[bin]);
+            behind[bin] = box;
+            count += bins[axis].counts[bin];
             right_cost[bin] = halfArea(box) * static_cast<float>(count);
         }
         box = Box3f();
         count = 0;
         for (int bin = 0; bin + 1 < kBins; ++bin) {
-            box.grow(bins[bin]);
-            count += counts[bin];
+            box.grow(bins[axis].boxes[bin]);
+            count += bins[axis].counts[bin];
             const float cost = halfArea(box) * static_cast<float>(count) + right_cost[bin + 1];
-            if (count > 0 && count < range.count() && cost < best_cost) {
-                best_cost = cost;
-                best_axis = axis;
-                best_bin = bin;
-            }
+            if (count == 0 || count == range.count() || !(cost < best_cost)) continue;
+            best_cost = cost;
+            best_axis = axis;
+            best_bin = bin;
+            left.bounds = box;
+            right.bounds = behind[bin + 1];
         }
     }
-    if (best_axis < 0) return splitAtMedian(range, extent);
-    const float low = extent.min[best_axis], scale = kBins / (extent.max[best_axis] - low);
+    if (best_axis < 0) return false;
     const auto middle = std::partition(order.begin() + range.first, order.begin() + range.last, [&](uint32_t i) {
-        return binOf(centers[i][best_axis], low, scale) <= best_bin;
+        return binOf(centers[i][best_axis], extent.min[best_axis], scale[best_axis]) <= best_bin;
     });
-    return static_cast<uint32_t>(middle - order.begin());
+    left.first = range.first;
+    left.last = right.first = static_cast<uint32_t>(middle - order.begin());
+    right.last = range.last;
+    return true;
 }
 
 int BvhSplitter::splitToEight(const BvhRange& range, BvhRange (&parts)[kWidth]) {
-    const uint32_t whole = full_nodes && range.count() > kWidth ? kWidth : 1;
+    const uint32_t whole = range.count() > kWidth ? kWidth : 1;
     int count = 1;
     parts[0] = range;
     while (count < kWidth) {
@@ -129,6 +145,35 @@ int BvhSplitter::splitToEight(const BvhRange& range, BvhRange (&parts)[kWidth]) 
         split(parts[widest], left, right);
         parts[widest] = left;
         parts[count++] = right;
+    }
+    return count;
+}
+
+void BvhSplitter::sortAlongCurve() {
+    Box3f around;
+    for (const uint32_t item : order) around.grow(centers[item]);
+    const glm::vec3 size = around.size();
+    const float side = std::max({size.x, size.y, size.z}), scale = side > 0 ? 1023.0f / side : 0.0f;
+    Array<uint64_t> coded(order.get_allocator().resource());
+    coded.reserve(order.size());
+    const auto cell = [](float at) { return static_cast<uint32_t>(std::clamp(at, 0.0f, 1023.0f)); };
+    for (const uint32_t item : order) {
+        const glm::vec3 at = (centers[item] - around.min) * scale;
+        coded.push_back(uint64_t{hilbertCode(cell(at.x), cell(at.y), cell(at.z))} << 32 | item);
+    }
+    std::sort(coded.begin(), coded.end());
+    for (size_t i = 0; i < coded.size(); ++i) order[i] = static_cast<uint32_t>(coded[i]);
+}
+
+int BvhSplitter::cutToEight(const BvhRange& range, BvhRange (&parts)[kWidth]) const {
+    constexpr uint32_t kFill = 6;
+    uint32_t size = range.count() <= kFill ? 1 : kFill;
+    while (range.count() > kWidth * uint64_t{size}) size *= kWidth;
+    int count = 0;
+    for (uint32_t first = range.first; first < range.last; ++count) {
+        const uint32_t last = first + std::min(size, range.last - first);
+        parts[count] = {first, last, boundsOf(first, last)};
+        first = last;
     }
     return count;
 }

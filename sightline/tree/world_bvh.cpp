@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sightline/base/assert.h"
 #include "sightline/tree/bvh_node.h"
@@ -159,11 +160,10 @@ uint32_t WorldBvh::placesOf(size_t tree) const {
 /// @param root    the node that becomes its root; it is new
 /// @param parent  slot that it hangs in, or kNone
 /// @param spare   places that nodes may have besides those of their items
-void WorldBvh::growTree(uint32_t root, uint32_t parent, uint32_t first, uint32_t spare) {
+void WorldBvh::growTree(uint32_t root, uint32_t parent, uint32_t first, uint32_t spare, Growth growth) {
     const uint32_t count = static_cast<uint32_t>(items_.size());
     sorted_.resize(count);
     BvhSplitter splitter(sorted_, memory_);
-    splitter.full_nodes = true;
     splitter.boxes.assign(boxes_.begin(), boxes_.end());
     splitter.centers.resize(count);
     for (uint32_t i = 0; i < count; ++i) {
@@ -171,6 +171,7 @@ void WorldBvh::growTree(uint32_t root, uint32_t parent, uint32_t first, uint32_t
         splitter.centers[i] = splitCenter(boxes_[i]);
         farthest_ = std::max(farthest_, reachOf(boxes_[i]));
     }
+    if (growth == Growth::kQuick) splitter.sortAlongCurve();
     struct Job {
         BvhRange range;
         uint32_t index, parent;
@@ -187,7 +188,8 @@ void WorldBvh::growTree(uint32_t root, uint32_t parent, uint32_t first, uint32_t
         fresh_[job.index] = halfArea(job.range.bounds);
         if (job.parent != parent) now_.nodes.change(job.parent / 8).child[job.parent % 8] = job.index;
         BvhRange parts[8];
-        const uint32_t used = static_cast<uint32_t>(splitter.splitToEight(job.range, parts));
+        const uint32_t used = static_cast<uint32_t>(growth == Growth::kQuick ? splitter.cutToEight(job.range, parts)
+                                                                             : splitter.splitToEight(job.range, parts));
         BvhNode& node = now_.nodes.change(job.index);
         for (uint32_t part = used; part-- > 0;) {
             setSlot(node, static_cast<int>(part), parts[part].bounds);
@@ -235,10 +237,12 @@ void WorldBvh::setSlotOf(uint32_t item, uint32_t slot) {
     now_.slot.set(item, slot);
 }
 
-/// Hangs a tree over items_ and boxes_ into a slot of the root, with places from `first` on, which are the last.
-void WorldBvh::hangTree(uint32_t slot, uint32_t first) {
+/// Hangs a tree over items_ and boxes_ into the next slot of the root, with places behind all others.
+/// @returns the first of them
+uint32_t WorldBvh::hangTree(Growth growth) {
+    const uint32_t slot = static_cast<uint32_t>(trees_.size()), first = now_.order.size();
     const uint32_t count = static_cast<uint32_t>(items_.size()), spare = count > 1 ? count / kItemsToSpare : 0;
-    now_.order.resize(first);
+    trees_.push_back({first});
     for (uint32_t i = 0; i < count + spare; ++i) now_.order.push_back(kNone);
     Box3f bounds;
     for (const Box3f& box : boxes_) bounds.grow(box);
@@ -251,13 +255,14 @@ void WorldBvh::hangTree(uint32_t slot, uint32_t first) {
     if (count > 1) {
         const uint32_t index = newNode();
         now_.nodes.change(0).child[slot] = index;
-        growTree(index, slot, first, spare);
+        growTree(index, slot, first, spare, growth);
     } else {
         now_.order.set(first, items_[0]);
         now_.nodes.change(0).child[slot] = BvhNode::kLeaf | first;
         setSlotOf(items_[0], slot);
         farthest_ = std::max(farthest_, reachOf(bounds));
     }
+    return first;
 }
 
 void WorldBvh::build(std::span<const Box3d> boxes, std::span<const uint32_t> items) {
@@ -274,17 +279,16 @@ void WorldBvh::build(std::span<const Box3d> boxes, std::span<const uint32_t> ite
     const uint32_t count = static_cast<uint32_t>(boxes.size()), spare = count / kItemsToSpare;
     for (uint32_t i = 0; i < count + spare; ++i) now_.order.push_back(kNone);
     living_ = count;
-    growTree(newNode(), kNone, 0, spare);
+    growTree(newNode(), kNone, 0, spare, Growth::kGood);
     reach_ = farthest_;
 }
 
-/// Takes all items below a child into items_ and boxes_, in the order of their places, and gives its nodes back.
+/// Takes all items below a child into items_ and boxes_, in the order of their places, and gives its nodes back. A tree
+/// over them must be built at once: till then their slots are wrong.
 void WorldBvh::gather(uint32_t child, const Box3f& box) {
     if (isLeaf(child)) {
-        const uint32_t item = now_.order[child & ~BvhNode::kLeaf];
-        items_.push_back(item);
+        items_.push_back(now_.order[child & ~BvhNode::kLeaf]);
         boxes_.push_back(box);
-        now_.slot.set(item, kNone);
         return;
     }
     const BvhNode node = now_.nodes[child];
@@ -304,20 +308,40 @@ uint32_t WorldBvh::append(std::span<const Box3d> boxes, std::span<const uint32_t
     boxes_.clear();
     for (const Box3d& box : boxes) boxes_.push_back(roundOutward(box, now_.origin));
     if (trees_.size() == 1) openRoot();
-    while (trees_.size() > 1 && (trees_.size() == kTrees || placesOf(trees_.size() - 1) <= 2 * items_.size())) {
-        const uint32_t slot = static_cast<uint32_t>(trees_.size() - 1), first = trees_.back().first;
-        const uint32_t before = static_cast<uint32_t>(items_.size());
-        BvhNode& root = now_.nodes.change(0);
-        if (root.count[slot] > 0) gather(root.child[slot], slotBox(root, static_cast<int>(slot)));
-        vacate(now_.nodes.change(0), slot, kNone);
-        living_ -= static_cast<uint32_t>(items_.size()) - before;
-        now_.order.resize(first);
-        trees_.pop_back();
+    while (trees_.size() > 1 && (trees_.size() == kTrees || placesOf(trees_.size() - 1) <= 2 * items_.size()))
+        takeInLast();
+    return hangTree(Growth::kGood);
+}
+
+/// Takes all items of the last batch into items_ and boxes_, and its places away.
+void WorldBvh::takeInLast() {
+    const uint32_t slot = static_cast<uint32_t>(trees_.size() - 1), before = static_cast<uint32_t>(items_.size());
+    const BvhNode root = now_.nodes[0];
+    if (root.count[slot] > 0) gather(root.child[slot], slotBox(root, static_cast<int>(slot)));
+    vacate(now_.nodes.change(0), slot, kNone);
+    living_ -= static_cast<uint32_t>(items_.size()) - before;
+    now_.order.resize(trees_.back().first);
+    trees_.pop_back();
+}
+
+uint32_t WorldBvh::inBatches() const {
+    uint32_t items = 0;
+    for (size_t slot = 1; slot < trees_.size(); ++slot) items += now_.nodes[0].count[slot] - now_.nodes[0].empty[slot];
+    return items;
+}
+
+uint32_t WorldBvh::renewBatches(std::span<const Box3d> boxes, std::span<const uint32_t> items) {
+    SIGHTLINE_ASSERT(boxes.size() == items.size());
+    if (items.empty()) return now_.order.size();
+    for (size_t i = 0; i < items.size(); ++i) {
+        SIGHTLINE_ASSERT(isInBatch(items[i]));
+        const uint32_t at = now_.slot[items[i]];
+        setSlot(now_.nodes.change(at / 8), static_cast<int>(at % 8), roundOutward(boxes[i], now_.origin));
     }
-    const uint32_t first = now_.order.size();
-    trees_.push_back({first});
-    hangTree(static_cast<uint32_t>(trees_.size() - 1), first);
-    return first;
+    items_.clear();
+    boxes_.clear();
+    while (trees_.size() > 1) takeInLast();
+    return hangTree(Growth::kQuick);
 }
 
 /// Makes the bounds above a node tight again, and takes it away if nothing is below it.
@@ -353,18 +377,19 @@ void WorldBvh::countEmpty(uint32_t index, uint32_t more) {
         now_.nodes.change(above / 8).empty[above % 8] += more;
 }
 
-uint32_t WorldBvh::insert(uint32_t item, const Box3d& box) {
+uint32_t WorldBvh::insert(uint32_t item, const Box3d& box, Among among) {
     SIGHTLINE_ASSERT(!contains(item));
-    if (trees_.empty()) return kNone;
+    if (trees_.empty() || (among == Among::kBatches && trees_.size() == 1)) return kNone;
     const Box3f bounds = roundOutward(box, now_.origin);
     uint32_t index = 0, found = kNone;
+    int from = among == Among::kBatches ? 1 : 0;  // the root's first slot has the tree that was built
     for (bool deeper = true; deeper;) {
         const BvhNode& node = now_.nodes[index];
         if (spareSlot(node) < 8) found = index;
         deeper = false;
         float least = 0;
         uint32_t best = kNone;
-        for (int slot = 0; slot < 8; ++slot) {
+        for (int slot = std::exchange(from, 0); slot < 8; ++slot) {
             if (node.count[slot] == 0 || isLeaf(node.child[slot])) continue;
             Box3f grown = slotBox(node, slot);
             const float before = halfArea(grown);
@@ -405,7 +430,7 @@ void WorldBvh::rebuildBelow(uint32_t index) {
         if (node.count[slot] > 0) gather(node.child[slot], slotBox(node, slot));
     for (uint32_t place = first; place < first + count; ++place) now_.order.set(place, kNone);
     now_.nodes.set(index, nodeWithoutPlaces());
-    growTree(index, above, first, count - static_cast<uint32_t>(items_.size()));
+    growTree(index, above, first, count - static_cast<uint32_t>(items_.size()), Growth::kGood);
     given_anew_.push_back({first, first + count});
 }
 

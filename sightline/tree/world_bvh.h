@@ -3,6 +3,7 @@
 //
 // Jon Louis Bentley, James B. Saxe. Decomposable Searching Problems I: Static-to-Dynamic Transformation. 1980.
 // Ingo Wald. On fast Construction of SAH-based Bounding Volume Hierarchies. 2007.
+// Ibrahim Kamel, Christos Faloutsos. On Packing R-trees. 1993.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +42,8 @@ struct PlacedBvh {
 /// Items are named by numbers that the caller gives out. Nodes have spare places, which insert() gives to new items.
 /// Items that find no spare place nearby come in batches: append(). Each batch gets a tree of its own below the common
 /// root, beside the tree that was built. A batch takes in earlier batches that are not much larger, so that there are
-/// at most seven, and an item costs O(log² items) over time.
+/// at most seven, and an item costs O(log² items) over time. The caller may keep items that move often in batches: then
+/// the tree that was built stays as it is.
 ///
 /// Boxes are as tight as can be after every call. The same calls give the same tree.
 class WorldBvh {
@@ -57,13 +59,29 @@ public:
     /// @param boxes  of the items, world space, finite and not empty
     void build(std::span<const Box3d> boxes, std::span<const uint32_t> items);
 
+    /// The trees that an item may go to.
+    enum class Among : uint8_t { kAll, kBatches };
+
     /// Puts an item where the bounds grow least, if there is a place to spare on the way there.  O(depth).
     /// @returns its place, or kNone: then it is not here
     /// @pre it is not here
-    uint32_t insert(uint32_t item, const Box3d& box);
+    uint32_t insert(uint32_t item, const Box3d& box, Among among = Among::kAll);
 
     /// Adds items as a batch. Places from the one returned on are given anew.
     uint32_t append(std::span<const Box3d> boxes, std::span<const uint32_t> items);
+
+    /// True if an item is in a batch, and false if it is in the tree that was built.
+    /// @pre it is here
+    bool isInBatch(uint32_t item) const {
+        return trees_.size() > 1 && now_.nodes[slotOf(item) / 8].first[slotOf(item) % 8] >= trees_[1].first;
+    }
+    /// Items in batches.
+    uint32_t inBatches() const;
+
+    /// Gives items new boxes, wherever these are, and builds all batches anew as one. Places from the one returned on are
+    /// given anew.  O(b log b) for b items in batches.
+    /// @pre they are in batches
+    uint32_t renewBatches(std::span<const Box3d> boxes, std::span<const uint32_t> items);
 
     /// Gives an item a new box. False, and nothing has changed, if it has strayed so far from its neighbours that the
     /// caller should remove it and insert it again.  O(depth).
@@ -106,8 +124,11 @@ private:
     void freeNode(uint32_t index);
     void hang(uint32_t parent, uint32_t child);
     void openRoot();
-    void growTree(uint32_t root, uint32_t parent, uint32_t first, uint32_t spare);
-    void hangTree(uint32_t slot, uint32_t first);
+    /// By surface area, or along a curve: see BvhSplitter.
+    enum class Growth : uint8_t { kGood, kQuick };
+    void growTree(uint32_t root, uint32_t parent, uint32_t first, uint32_t spare, Growth growth);
+    void takeInLast();
+    uint32_t hangTree(Growth growth);
     void setSlotOf(uint32_t item, uint32_t slot);
     void countEmpty(uint32_t index, uint32_t more);
     void noteDecay(uint32_t index, uint32_t places, const Box3f& box);

@@ -14,13 +14,17 @@ void setBit(Array<uint64_t>& bits, uint32_t i) {
     bits[i / 64] |= uint64_t{1} << i % 64;
 }
 
-bool hasBit(const Array<uint64_t>& bits, uint32_t i) { return i / 64 < bits.size() && (bits[i / 64] >> i % 64 & 1); }
-
 /// Records are fetched so many ahead of their turn.
 constexpr uint32_t kAhead = 8;
 
 /// A commit moves at most this many objects to new places for each object that was changed.
 constexpr size_t kMendedToChanged = 2;
+
+/// An object is restless that moves again within so many commits.
+constexpr uint32_t kRestless = 16;
+/// Restless objects have trees of their own unless more than one of so many objects would be there: where most of a node
+/// moves, it may as well move in place.
+constexpr uint32_t kToMover = 4;
 
 void clearBit(Array<uint64_t>& bits, uint32_t i) { bits[i / 64] &= ~(uint64_t{1} << i % 64); }
 
@@ -32,10 +36,7 @@ WorldState::WorldState(Memory* from) : memory(from) {
     lods.push_back(nullptr);
 }
 
-void WorldState::reserve(uint32_t objects) {
-    living_.reserve(objects / 64 + 1);
-    moved_bits_.reserve(objects / 64 + 1);
-}
+void WorldState::reserve(uint32_t objects) { living_.reserve(objects / 64 + 1); }
 
 /// The row of an object, or IdSlot::kNowhere.
 uint32_t WorldState::find(ObjectId id) const {
@@ -97,12 +98,21 @@ bool WorldState::move(ObjectId id, const glm::dmat4& transform) {
     ObjectRecord& object = objects_.change(row);
     object.moved |= object.transform != transform;
     object.transform = transform;
-    if (row < committed_ && !hasBit(moved_bits_, row)) {
-        setBit(moved_bits_, row);
-        moved_.push_back(row);
-    }
+    if (row < committed_) noteMove(row, object);
     changed_ = true;
     return true;
+}
+
+void WorldState::noteMove(uint32_t row, ObjectRecord& object) {
+    const Box3d box = worldBounds(object);
+    if (object.moved_in == commit_) {
+        moved_[object.moved_number].box = box;
+        return;
+    }
+    const bool restless = object.moved_in != 0 && commit_ - object.moved_in <= kRestless;
+    object.moved_in = commit_;
+    object.moved_number = static_cast<uint32_t>(moved_.size());
+    moved_.push_back({row, restless, box});
 }
 
 bool WorldState::remove(ObjectId id) {
@@ -124,6 +134,7 @@ void WorldState::compact() {
     if (gaps_ < size() + 1024) return;
     ObjectTable packed(memory);
     living_.clear();
+    moved_.clear();
     for (uint32_t row = 0; row < objects_.size(); ++row) {
         const ObjectRecord& object = objects_[row];
         if (object.id.index == 0) continue;
@@ -149,11 +160,12 @@ void WorldState::takeOut(uint32_t row) {
 }
 
 /// Notes an object for the hierarchy, or puts it among the unbounded.
-void WorldState::putIn(uint32_t row) {
-    const Box3d box = worldBounds(objects_[row]);
+/// @param box  its bounds in the world
+void WorldState::putIn(uint32_t row, const Box3d& box, bool restless) {
     if (box.finite()) {
         boxes_.push_back(box);
         rows_.push_back(row);
+        restless_.push_back(restless);
     } else {
         unbounded_.insert(std::lower_bound(unbounded_.begin(), unbounded_.end(), row), row);
     }
@@ -169,6 +181,13 @@ void WorldState::place(uint32_t first, uint32_t end) {
         placed_.set(at, row == PlacedBvh::kNone ? PlacedObject() : placedObject(objects_[row]));
         if (at < limits_.objects.size()) limits_.objects.set(at, limitsAt(row));
     }
+}
+
+/// The same for all places from one on, which are given anew.
+void WorldState::placeFrom(uint32_t first) {
+    placed_.resize(bvh_.now().order.size());
+    if (!limits_.empty()) limits_.objects.resize(std::min(first, limits_.objects.size()));
+    place(first, placed_.size());
 }
 
 PlacedLimits::One WorldState::limitsAt(uint32_t row) const {
@@ -189,11 +208,12 @@ void WorldState::build() {
     unbounded_.clear();
     boxes_.clear();
     rows_.clear();
+    restless_.clear();
     common_layers_ = ~0u;
     for (uint32_t row = 0; row < objects_.size(); ++row) {
         if (!lives(row)) continue;
         common_layers_ &= objects_[row].layers;
-        putIn(row);
+        putIn(row, worldBounds(objects_[row]));
     }
     bvh_.build(boxes_, rows_);
     limits_.clear();
@@ -206,36 +226,47 @@ void WorldState::build() {
 /// Puts what has moved into the order of the hierarchy: neighbours share nodes, which are then at hand.
 void WorldState::sortMoved() {
     places_.clear();
-    for (const uint32_t row : moved_) places_.push_back(uint64_t{bvh_.slotOf(row)} << 32 | row);
+    for (uint32_t i = 0; i < moved_.size(); ++i) places_.push_back(uint64_t{bvh_.slotOf(moved_[i].row)} << 32 | i);
     std::sort(places_.begin(), places_.end());
-    for (size_t i = 0; i < moved_.size(); ++i) moved_[i] = static_cast<uint32_t>(places_[i]);
 }
 
-/// Brings the hierarchy up to date, or builds it anew where that is better.
-void WorldState::update() {
-    boxes_.clear();
-    rows_.clear();
-    for (const uint32_t row : removed_) takeOut(row);
+/// Gives what has moved its new bounds. What must find a new place is taken out, and waits in rows_ and boxes_; of the
+/// trees of movers it stays, and waits in strays_.
+void WorldState::moveAll() {
     sortMoved();
-    for (size_t i = 0; i < moved_.size(); ++i) {
-        if (i + kAhead < moved_.size()) objects_.prefetch(moved_[i + kAhead]);
-        const uint32_t row = moved_[i];
+    for (const uint64_t place : places_) {
+        const auto& [row, restless, box] = moved_[static_cast<uint32_t>(place)];
         if (!lives(row)) continue;
-        const Box3d box = bvh_.contains(row) ? worldBounds(objects_[row]) : Box3d();
-        if (box.finite() && bvh_.move(row, box)) continue;
+        if (box.finite() && bvh_.contains(row)) {
+            const bool with_movers = bvh_.isInBatch(row);
+            if ((with_movers || !movers_apart_ || !restless) && bvh_.move(row, box)) continue;
+            if (with_movers) {
+                strays_.push_back(row);
+                stray_boxes_.push_back(box);
+                continue;
+            }
+        }
         takeOut(row);
-        putIn(row);
+        putIn(row, box, restless);
     }
-    for (uint32_t row = committed_; row < objects_.size(); ++row) {
-        if (!lives(row)) continue;
-        common_layers_ &= objects_[row].layers;
-        putIn(row);
+}
+
+/// Finds places for what has strayed in the trees of movers: where that is most of them, these are built anew.
+void WorldState::renewMovers() {
+    if (!strays_.empty() && 2 * strays_.size() >= bvh_.inBatches())
+        return placeFrom(bvh_.renewBatches(stray_boxes_, strays_));
+    for (size_t i = 0; i < strays_.size(); ++i) {
+        takeOut(strays_[i]);
+        putIn(strays_[i], stray_boxes_[i], true);
     }
-    if (bvh_.isWorn()) return build();
-    const bool came = !rows_.empty();
+}
+
+/// Puts what waits in rows_ and boxes_ into the hierarchy. False: building it anew is better.
+bool WorldState::enterAll() {
     size_t left = 0;
     for (size_t i = 0; i < rows_.size(); ++i) {
-        const uint32_t at = bvh_.insert(rows_[i], boxes_[i]);
+        const bool apart = movers_apart_ && restless_[i];
+        const uint32_t at = bvh_.insert(rows_[i], boxes_[i], apart ? WorldBvh::Among::kBatches : WorldBvh::Among::kAll);
         if (at == PlacedBvh::kNone) {
             rows_[left] = rows_[i];
             boxes_[left++] = boxes_[i];
@@ -245,13 +276,29 @@ void WorldState::update() {
     }
     rows_.resize(left);
     boxes_.resize(left);
-    if (bvh_.isWorn(static_cast<uint32_t>(left))) return build();
-    if (left > 0) {
-        const uint32_t first = bvh_.append(boxes_, rows_);
-        placed_.resize(bvh_.now().order.size());
-        if (!limits_.empty()) limits_.objects.resize(std::min(first, limits_.objects.size()));
-        place(first, placed_.size());
+    if (bvh_.isWorn(static_cast<uint32_t>(left))) return false;
+    if (left > 0) placeFrom(bvh_.append(boxes_, rows_));
+    return true;
+}
+
+/// Brings the hierarchy up to date, or builds it anew where that is better.
+void WorldState::update() {
+    boxes_.clear();
+    rows_.clear();
+    restless_.clear();
+    strays_.clear();
+    stray_boxes_.clear();
+    for (const uint32_t row : removed_) takeOut(row);
+    movers_apart_ = uint64_t{kToMover} * (bvh_.inBatches() + moved_.size()) <= size();
+    moveAll();
+    renewMovers();
+    for (uint32_t row = committed_; row < objects_.size(); ++row) {
+        if (!lives(row)) continue;
+        common_layers_ &= objects_[row].layers;
+        putIn(row, worldBounds(objects_[row]));
     }
+    const bool came = !rows_.empty() || !strays_.empty();
+    if (bvh_.isWorn() || !enterAll()) return build();
     const size_t changes = moved_.size() + removed_.size() + (objects_.size() - committed_);
     const std::span<const WorldBvh::Places> mended = bvh_.mend(static_cast<uint32_t>(kMendedToChanged * changes));
     for (const WorldBvh::Places& places : mended) place(places.first, places.end);
@@ -277,8 +324,8 @@ void WorldState::updateCells() {
             if (lives(row)) cells_.put(row, objects_[row]);
     } else {
         for (const uint32_t row : removed_) cells_.take(row);
-        for (const uint32_t row : moved_)
-            if (lives(row)) cells_.put(row, objects_[row]);
+        for (const Moved& moved : moved_)
+            if (lives(moved.row)) cells_.put(moved.row, objects_[moved.row]);
         for (uint32_t row = committed_; row < objects_.size(); ++row)
             if (lives(row)) cells_.put(row, objects_[row]);
     }
@@ -290,7 +337,7 @@ std::shared_ptr<const SnapshotState> WorldState::commit() {
     if (last_) update();
     else build();
     if (cells_.attached()) updateCells();
-    for (const uint32_t row : moved_) clearBit(moved_bits_, row);
+    ++commit_;
     moved_.clear();
     removed_.clear();
     committed_ = objects_.size();

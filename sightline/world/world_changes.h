@@ -37,6 +37,12 @@ public:
     uint32_t size() const { return objects_.size() - gaps_; }
 
 private:
+    struct Moved {
+        uint32_t row;
+        bool restless;  ///< it has moved in another commit not long ago
+        Box3d box;      ///< its bounds in the world now; not finite if they cannot be trusted
+    };
+
     uint32_t find(ObjectId id) const;
     ObjectId newId();
     bool lives(uint32_t row) const { return living_[row / 64] >> row % 64 & 1; }
@@ -44,9 +50,14 @@ private:
     void build();
     void sortMoved();
     void update();
+    void moveAll();
+    void renewMovers();
+    bool enterAll();
+    void noteMove(uint32_t row, ObjectRecord& object);
     void takeOut(uint32_t row);
-    void putIn(uint32_t row);
+    void putIn(uint32_t row, const Box3d& box, bool restless = false);
     void place(uint32_t first, uint32_t end);
+    void placeFrom(uint32_t first);
     PlacedLimits::One limitsAt(uint32_t row) const;
     void noteLimits();
     void updateCells();
@@ -59,19 +70,23 @@ private:
     uint32_t limited_ = 0;              ///< objects with limits of their own
     uint32_t common_layers_ = ~0u;      ///< of the objects in the last snapshot and of those that have left since
 
-    bool changed_ = true;                 ///< since the last commit
-    uint32_t committed_ = 0;              ///< rows of the last commit: those behind them are new
-    Array<uint32_t> moved_{memory};       ///< rows, each once
-    Array<uint64_t> moved_bits_{memory};  ///< a bit per row
-    Array<uint32_t> removed_{memory};     ///< rows
+    bool changed_ = true;              ///< since the last commit
+    uint32_t commit_ = 1;              ///< the number of the next one
+    uint32_t committed_ = 0;           ///< rows of the last commit: those behind them are new
+    Array<Moved> moved_{memory};       ///< each object once
+    Array<uint32_t> removed_{memory};  ///< rows
 
     WorldBvh bvh_{memory};
+    bool movers_apart_ = false;  ///< this commit puts restless objects into trees of their own
     PlacedObjectTable placed_{memory};
     PlacedLimits limits_{memory};
     Array<uint32_t> unbounded_{memory};  ///< rows, rising
     WorldCells cells_{memory};
     Array<Box3d> boxes_{memory};  ///< scratch: what comes into the hierarchy
     Array<uint32_t> rows_{memory};
+    Array<uint8_t> restless_{memory};   ///< of rows_
+    Array<Box3d> stray_boxes_{memory};  ///< scratch: what has strayed in a tree of movers
+    Array<uint32_t> strays_{memory};
     Array<uint64_t> places_{memory};  ///< scratch of sortMoved()
     std::shared_ptr<const SnapshotState> last_;
 };

@@ -37,6 +37,10 @@ struct ObjectRecord {
     LodsId lods;
     bool hides_in_lods = false;
     bool moved = false;  ///< it does not stand where it was added
+
+    // Of WorldState alone, beside what it changes then:
+    uint32_t moved_in = 0;      ///< the last commit that it moved in; 0: none
+    uint32_t moved_number = 0;  ///< among those that moved then
 };
 
 /// Objects by row; rows are given in the order of World::add. Snapshots share its pages.

@@ -134,7 +134,7 @@ struct Both {
     Truth truth;
     uint32_t next = 0;
     uint64_t placed = 0;  ///< places given out since the tree was built
-    uint64_t inserted = 0, mended = 0;
+    uint64_t inserted = 0, mended = 0, renewed = 0, in_batch = 0;
 
     void build() {
         std::vector<Box3d> boxes;
@@ -178,6 +178,40 @@ struct Both {
         ASSERT_EQ(tree.now().placeOf(item), place);
         ASSERT_EQ(tree.now().order[place], item);
     }
+    /// Of the items in batches, gives some new boxes and builds all anew.
+    void renew(Random& random) {
+        std::vector<Box3d> boxes;
+        std::vector<uint32_t> items;
+        uint32_t in_batches = 0;
+        const uint64_t one_of = 1 + random.below(3);
+        for (auto& [item, box] : truth) {
+            if (!tree.isInBatch(item)) continue;
+            ++in_batches;
+            if (random.below(one_of) > 0) continue;
+            items.push_back(item);
+            boxes.push_back(box = randomBox(random, randomPoint(random, kWorld), 0.1 * kWorld));
+        }
+        ASSERT_EQ(tree.inBatches(), in_batches);
+        const std::vector<uint32_t> before = order();
+        const uint32_t first = tree.renewBatches(boxes, items);
+        const std::vector<uint32_t> after = order();
+        ASSERT_LE(first, after.size());
+        ASSERT_TRUE(std::equal(before.begin(), before.begin() + first, after.begin()));
+        ASSERT_EQ(tree.inBatches(), in_batches);
+        for (const auto& [item, box] : truth)
+            if (!items.empty()) ASSERT_EQ(tree.isInBatch(item), tree.now().placeOf(item) >= first);
+        renewed += items.size();
+    }
+    /// Puts an item in again, if it finds a place in a batch.
+    void enterBatch(uint32_t item) {
+        const Box3d box = truth[item];
+        remove(item);
+        truth[item] = box;
+        const uint32_t place = tree.insert(item, box, WorldBvh::Among::kBatches);
+        if (place == WorldBvh::kNone) return append({box}, {item});
+        ASSERT_TRUE(tree.isInBatch(item));
+        ++in_batch;
+    }
     void mend(bool check) {
         if (!check) {
             for (const WorldBvh::Places& places : tree.mend(1000)) mended += places.end - places.first;
@@ -206,7 +240,7 @@ struct Both {
 };
 
 TEST(WorldBvh, HoldsEveryItemOnceWhateverComesMovesAndGoes) {
-    uint64_t strayed = 0, built = 0, inserted = 0, mended = 0;
+    uint64_t strayed = 0, built = 0, inserted = 0, mended = 0, renewed = 0, in_batch = 0;
     for (uint64_t seed = 1; seed <= 30; ++seed) {
         SCOPED_TRACE(seed);
         Random random(seed);
@@ -231,6 +265,8 @@ TEST(WorldBvh, HoldsEveryItemOnceWhateverComesMovesAndGoes) {
                 const glm::dvec3 by = randomPoint(random, way);
                 strayed += !both.move(item, {both.truth[item].min + by, both.truth[item].max + by});
             }
+            if (random.below(60) == 0) both.renew(random);
+            if (random.below(30) == 0 && !both.truth.empty()) both.enterBatch(both.any(random));
             if (step % 7 == 0) both.mend(step % std::max(check / 50, 1u) == 0);
             if (both.tree.isWorn()) {
                 both.build();
@@ -247,10 +283,14 @@ TEST(WorldBvh, HoldsEveryItemOnceWhateverComesMovesAndGoes) {
         expectSound(both.tree.share(), both.truth);
         inserted += both.inserted;
         mended += both.mended;
+        renewed += both.renewed;
+        in_batch += both.in_batch;
     }
     EXPECT_GT(strayed, 100u);
     EXPECT_GT(inserted, 1000u);
     EXPECT_GT(mended, 1000u);
+    EXPECT_GT(renewed, 1000u);
+    EXPECT_GT(in_batch, 100u);
     EXPECT_GT(built, 30u);
 }
 
@@ -382,6 +422,27 @@ double surfaceOf(const PlacedBvh& tree) {
             if (node.count[slot] > 0 && !(node.child[slot] & BvhNode::kLeaf)) stack.push_back(node.child[slot]);
     }
     return sum;
+}
+
+TEST(WorldBvh, BatchesThatAreBuiltQuicklyAreNotMuchWorse) {
+    constexpr uint32_t kCount = 3000;
+    Random random(23);
+    Both both;
+    both.append(std::vector<Box3d>(kCount, {glm::dvec3(0.0), glm::dvec3(1.0)}));
+    std::vector<Box3d> boxes;
+    std::vector<uint32_t> items;
+    for (uint32_t i = 0; i < kCount; ++i) {
+        const glm::dvec3 at = randomPoint(random, kWorld);
+        boxes.push_back({at, at + 1.0});
+        items.push_back(kCount + i);
+    }
+    both.append(boxes);
+    const double well = surfaceOf(both.tree.now());
+    ASSERT_EQ(both.tree.inBatches(), kCount);
+    both.tree.renewBatches(boxes, items);
+    expectSound(both.tree.share(), both.truth);
+    EXPECT_LT(surfaceOf(both.tree.now()), 1.5 * well);
+    EXPECT_NE(surfaceOf(both.tree.now()), well);
 }
 
 TEST(WorldBvh, StaysAboutAsGoodAsFreshWhenAllGoAstray) {

@@ -203,6 +203,61 @@ TEST(World, ThatHasLivedAnswersAsOneThatIsMadeAnew) {
     }
 }
 
+TEST(World, WhoseMoversCreepRestAndJumpAnswersAsOneThatIsMadeAnew) {
+    for (uint64_t seed = 1; seed <= 6; ++seed) {
+        Random random(seed);
+        Lived lived;
+        for (int i = 0; i < 1500; ++i) lived.add(random);
+        const uint64_t movers = seed % 3 ? 200 : 20;
+        Query query;
+        for (int step = 0; step < 40; ++step) {
+            const bool jump = step % 8 >= 6;
+            for (uint64_t key = 1; key <= movers && step % 10 < 8; ++key) {
+                auto& [id, def] = lived.there[key];
+                const double way = jump && random.below(3) ? 50 : 0.3;
+                def.transform[3] += glm::dvec4(random.uniform(-way, way), 0, 0, 0);
+                if (std::abs(def.transform[3].x) > 60) def.transform[3].x = random.uniform(-50, 50);
+                ASSERT_TRUE(lived.world.move(id, def.transform));
+                if (key % 7 == 0) { ASSERT_TRUE(lived.world.move(id, def.transform)); }
+            }
+            if (step % 5 == 0) lived.add(random);
+            const Snapshot now = lived.world.commit();
+            World anew;
+            for (const auto& [key, object] : lived.there) anew.add(object.second);
+            const View view = viewAt({random.uniform(-50, 50), 1, random.uniform(-50, 50)}, {0, 1, 0});
+            const QuerySettings settings{.stages = stageBit(Stage::kFrustum)};
+            const auto reasons = reasonsIn(query, now, view, settings);
+            EXPECT_EQ(reasons, reasonsIn(query, anew.commit(), view, settings)) << "seed " << seed << " step " << step;
+        }
+    }
+}
+
+TEST(World, WhatMovesAgainAndAgainCopiesLittle) {
+    CountingMemory memory;
+    WorldDef def{.memory = &memory};
+    World world = World::create(def);
+    Random random(13);
+    std::vector<ObjectId> ids;
+    for (int i = 0; i < 40000; ++i) {
+        const double x = random.uniform(-500, 500), z = random.uniform(-500, 500);
+        ids.push_back(world.add(boxAt({x, 0, z}, 1)));
+    }
+    Snapshot held = world.commit();
+    std::vector<uint64_t> grown;
+    for (int frame = 0; frame < 12; ++frame) {
+        const uint64_t before = memory.bytes;
+        for (size_t i = 0; i < ids.size(); i += 100) {
+            glm::dmat4 transform(1.0);
+            transform[3].y = 0.01 * (frame + 1);
+            world.move(ids[i], transform);
+        }
+        const Snapshot next = world.commit();
+        grown.push_back(memory.bytes - before);
+        held = next;
+    }
+    EXPECT_LT(grown.back(), grown.front() / 2) << "nodes of movers are few";
+}
+
 TEST(World, ACommitCopiesNoMoreThanWhatChanged) {
     CountingMemory memory;
     WorldDef def{.memory = &memory};

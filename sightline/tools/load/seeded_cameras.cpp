@@ -9,32 +9,13 @@
 #include <vector>
 
 #include "sightline/base/random.h"
+#include "sightline/math/curves.h"
 
 namespace sightline::tools {
 namespace {
 
 constexpr uint32_t kLeafSize = 4;
 constexpr double kNever = std::numeric_limits<double>::infinity();
-
-/// Spreads 21 bits to every third bit.
-uint64_t spread(uint64_t v) {
-    v = (v | v << 32) & 0x1f00000000ffffull;
-    v = (v | v << 16) & 0x1f0000ff0000ffull;
-    v = (v | v << 8) & 0x100f00f00f00f00full;
-    v = (v | v << 4) & 0x10c30c30c30c30c3ull;
-    v = (v | v << 2) & 0x1249249249249249ull;
-    return v;
-}
-
-uint64_t mortonCode(const glm::dvec3& point, const Box3d& around) {
-    uint64_t code = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double size = around.max[axis] - around.min[axis];
-        const double share = size > 0 ? (point[axis] - around.min[axis]) / size : 0;
-        code |= spread(static_cast<uint64_t>(std::clamp(share, 0.0, 1.0) * 0x1fffff)) << axis;
-    }
-    return code;
-}
 
 /// Where the ray enters a box, or infinity if it misses it or enters beyond the limit.
 double enterBox(const Box3d& box, const glm::dvec3& origin, const glm::dvec3& inverse, double limit) {

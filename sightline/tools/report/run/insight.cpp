@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "sightline/base/random.h"
+#include "sightline/math/curves.h"
 
 namespace sightline::tools {
 namespace {
@@ -40,24 +41,6 @@ std::vector<KeptIn> keptIn(const CullRun& run, size_t objects) {
         }
     }
     return kept;
-}
-
-/// Spreads the low 21 bits of a number to every third bit.
-uint64_t everyThirdBit(uint64_t bits) {
-    uint64_t out = 0;
-    for (int bit = 0; bit < 21; ++bit) out |= (bits >> bit & 1) << (3 * bit);
-    return out;
-}
-
-/// What is near in this order is near in space, mostly.
-uint64_t mortonCode(const glm::dvec3& point, const Box3d& world) {
-    uint64_t code = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double size = world.max[axis] - world.min[axis];
-        const double at = size > 0 ? (point[axis] - world.min[axis]) / size : 0.0;
-        code |= everyThirdBit(static_cast<uint64_t>(std::clamp(at, 0.0, 1.0) * 0x1fffff)) << axis;
-    }
-    return code;
 }
 
 /// A small object, and what it must share with its neighbours in the list to be merged with them.
