@@ -41,6 +41,7 @@ constexpr Case kCases[] = {
     {"queries", benchQueries},
     {"rows", benchRows},
     {"shadow", benchShadow},
+    {"view-cells", benchViewCells},
 #ifdef SIGHTLINE_VIEWER
     {"viewer", benchViewer},
 #endif

@@ -26,6 +26,7 @@
 #include "test_scenes.h"
 #include "tests/support/answers.h"
 #include "tests/tools/truth/scene_views.h"
+#include "tests/tools/truth/strange_eyes.h"
 
 namespace sightline {
 using namespace bake;
@@ -64,19 +65,6 @@ BakedScene bakeScene(const Scene& scene, bool trusted) {
     return baked;
 }
 
-/// On a portal, in its plane or a little beside it, or anywhere in a cell.
-glm::dvec3 strangeEye(const CellSpace& space, Random& random) {
-    const CellGraph& graph = space.graph;
-    const CellPortal& portal = graph.portals[random.below(graph.portals.size())];
-    const auto outline = graph.outline(portal);
-    const size_t i = 1 + random.below(outline.size() - 2);
-    const double u = random.uniform(), v = random.uniform() * (1 - u);
-    const glm::dvec3 on = outline[0] + u * (outline[i] - outline[0]) + v * (outline[i + 1] - outline[0]);
-    constexpr double kAway[] = {0.0, 1e-9, 1e-4, 0.02, 0.5};
-    const double side = random.below(2) ? 1 : -1;
-    return on + side * kAway[random.below(5)] * glm::dvec3(portal.plane);
-}
-
 struct Totals {
     uint64_t by_cells = 0, by_portals = 0, kept = 0, frames = 0, known = 0;
 };
@@ -108,7 +96,7 @@ Totals expectNothingSeenIsCulled(const Scene& scene, const BakedScene& baked, bo
         const Witness witness(changed);
         for (int frame = 0; frame < frames; ++frame) {
             CameraFrame camera;
-            camera.eye = strangeEye(space, random);
+            camera.eye = eyeAtPortal(space.graph, random);
             camera.target =
                 camera.eye + glm::dvec3{random.uniform(-1, 1), random.uniform(-0.4, 0.4), random.uniform(-1, 1)};
             constexpr double kNear[] = {0.001, 0.05, 0.3, 2.0};
@@ -157,7 +145,7 @@ TEST(IndoorScenes, ShutDoorsHideMore) {
         Random random(7);
         for (int frame = 0; frame < 64; ++frame) {
             CameraFrame camera;
-            camera.eye = strangeEye(baked.cells.space, random);
+            camera.eye = eyeAtPortal(baked.cells.space.graph, random);
             camera.target = camera.eye + glm::dvec3(random.uniform(-1, 1), 0, random.uniform(-1, 1));
             camera.z_near = 0.01;
             View view = makeView(camera, 320, 180);
