@@ -88,8 +88,9 @@ Table benchRows(const Options& options);
 /// that the reference renderer lights otherwise without the rest.
 Table benchShadow(const Options& options);
 
-/// View cells of a building or of a scene, 512 and 2,048: the objects of their rows beside those that rays see from the same
-/// cells, all around and aimed at each object of the row. What rays see is a lower bound of what is visible.
+/// View cells of a building or of a scene, 512 and 2,048, with cells of its walls: the objects of their rows, by shadows alone and
+/// by portals too, beside those that rays see from the same cells, all around and aimed at each object of the row. What rays see is
+/// a lower bound of what is visible.
 Table benchViewCells(const Options& options);
 
 #ifdef SIGHTLINE_VIEWER

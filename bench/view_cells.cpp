@@ -9,49 +9,22 @@
 
 #include "bench/cases.h"
 #include "bench/stopwatch.h"
-#include "sightline/bake/view_cells/view_cells.h"
+#include "sightline/bake/bake.h"
 #include "sightline/base/random.h"
+#include "sightline/geom/leaf_tree.h"
+#include "sightline/tools/import/quake/quake_bsp.h"
 #include "sightline/tools/load/seeded_cameras.h"
 #include "sightline/tools/scene/building/building.h"
 #include "sightline/tools/scene/camera_path.h"
+#include "sightline/tools/truth/scene_facts.h"
 
 namespace sightline::bench {
 using namespace bake;
 using namespace tools;
 namespace {
 
-constexpr size_t kCellsLookedFrom = 64;
+constexpr uint32_t kCellsLookedFrom = 64;  // those in which so many seeded cameras stand
 constexpr int kRaysAround = 50000, kRaysAtObject = 256;
-
-/// The leaves of a tree as boxes, cut by its planes, which lie across axes.
-std::vector<Box3d> boxesOf(const LeafTree& tree) {
-    std::vector<Box3d> boxes(tree.contents.size());
-    struct Part {
-        uint32_t child;
-        Box3d box;
-    };
-    std::vector<Part> parts{{tree.nodes.empty() ? LeafTreeNode::kLeaf : 0, tree.bounds}};
-    while (!parts.empty()) {
-        const Part part = parts.back();
-        parts.pop_back();
-        if (part.child & LeafTreeNode::kLeaf) {
-            boxes[part.child & ~LeafTreeNode::kLeaf] = part.box;
-            continue;
-        }
-        const LeafTreeNode& node = tree.nodes[part.child];
-        for (int axis = 0; axis < 3; ++axis) {
-            if (node.plane[axis] == 0) continue;
-            const double at = -node.plane.w / node.plane[axis];
-            Box3d below = part.box, above = part.box;
-            below.max[axis] = std::min(below.max[axis], at);
-            above.min[axis] = std::max(above.min[axis], at);
-            const bool up = node.plane[axis] > 0;
-            parts.push_back({node.child[up ? 0 : 1], below});
-            parts.push_back({node.child[up ? 1 : 0], above});
-        }
-    }
-    return boxes;
-}
 
 glm::dvec3 pointIn(const Box3d& box, Random& random) {
     const double x = random.uniform(), y = random.uniform();
@@ -68,52 +41,89 @@ glm::dvec3 pointOn(const Scene& scene, uint32_t object, Random& random) {
     return glm::dvec3(scene.objects[object].transform * glm::dvec4(local, 1));
 }
 
-/// Objects that rays from a box see first: all around, and at each object of its row.
-size_t seenFrom(const RayProbe& probe, const Scene& scene, const Box3d& box, std::span<const uint32_t> row,
-                Random& random) {
-    std::vector<uint8_t> seen(scene.objects.size(), 0);
-    for (int ray = 0; ray < kRaysAround; ++ray) {
-        const glm::dvec3 from = pointIn(box, random), towards = pointIn({glm::dvec3(-1), glm::dvec3(1)}, random);
-        if (const auto hit = probe.nearest({from, towards})) seen[hit->object] = 1;
-    }
-    for (const uint32_t object : row) {
-        if (scene.meshes[scene.objects[object].mesh].triangles() == 0) continue;
-        for (int ray = 0; ray < kRaysAtObject && !seen[object]; ++ray) {
+/// What rays from a box see.
+class Looker {
+public:
+    explicit Looker(const Scene& scene) : scene_(scene), facts_(scene), probe_(scene), seen_(scene.objects.size()) {}
+
+    /// Looks all around, and at each object of the box's row.
+    size_t seenFrom(const Box3d& box, std::span<const uint32_t> row, Random& random) {
+        std::fill(seen_.begin(), seen_.end(), uint8_t{0});
+        for (int ray = 0; ray < kRaysAround; ++ray) {
             const glm::dvec3 from = pointIn(box, random);
-            if (const auto hit = probe.nearest({from, pointOn(scene, object, random) - from})) seen[hit->object] = 1;
+            look({from, pointIn({glm::dvec3(-1), glm::dvec3(1)}, random)});
+        }
+        for (const uint32_t object : row) {
+            if (scene_.meshes[scene_.objects[object].mesh].triangles() == 0) continue;
+            for (int ray = 0; ray < kRaysAtObject && !seen_[object]; ++ray) {
+                const glm::dvec3 from = pointIn(box, random);
+                look({from, pointOn(scene_, object, random) - from});
+            }
+        }
+        return static_cast<size_t>(std::count(seen_.begin(), seen_.end(), 1));
+    }
+
+private:
+    /// The backs of faces with one side are not there.
+    void look(const ProbeRay& ray) {
+        double from = 0;
+        for (int met = 0; met < 256; ++met) {
+            const auto hit = probe_.nearest(ray, from);
+            if (!hit) return;
+            const MeshFacts& facts = facts_.facts(hit->object);
+            const bool drawn = hit->front || facts.double_sided[hit->triangle];
+            if (drawn) seen_[hit->object] = 1;
+            if (drawn && facts.hides[hit->triangle]) return;
+            from = hit->t;
         }
     }
-    return static_cast<size_t>(std::count(seen.begin(), seen.end(), 1));
-}
+
+    const Scene& scene_;
+    const SceneFacts facts_;
+    const RayProbe probe_;
+    std::vector<uint8_t> seen_;
+};
 
 void measure(const Scene& scene, uint32_t most_cells, Table& table) {
+    SoupCellSettings walls;
+    for (const CameraFrame& frame : seededCameras(scene, 32, 1).frames) walls.eyes.push_back(frame.eye);
     ViewCellSettings settings;
     settings.most_cells = most_cells;
     settings.least_hidden = 0;
-    ViewCells cells;
-    const double baked = millisecondsOf([&] { cells = viewCellsOf(scene, settings); });
+    Result<Baked> baked = Error{Error::Kind::kInput, "not baked"};
+    const double milliseconds = millisecondsOf([&] {
+        BakeCells cells = soupToBake(scene, scene.name, walls);
+        addViewCells(cells, scene, settings);
+        baked = bake::bake(std::move(cells), scene, {});
+    });
+    if (!baked || !baked->cells.views || baked->cells.views->tree.contents.empty()) return;
+    const ViewCells& cells = *baked->cells.views;
     const std::string where = fmt::format("{}, {} view cells", scene.name, cells.tree.contents.size());
-    if (cells.tree.contents.empty()) return;
-    const RayProbe probe(scene);
-    const std::vector<Box3d> boxes = boxesOf(cells.tree);
+    Looker looker(scene);
+    const std::vector<Box3d> boxes = leafBoxes(cells.tree);
     Random random(1);
-    double held = 0, seen = 0;
+    double by_shadows = 0, held = 0, seen = 0;
     std::vector<double> ratios;
-    for (size_t i = 0; i < kCellsLookedFrom; ++i) {
-        const size_t cell = random.below(boxes.size());
+    for (const CameraFrame& camera : seededCameras(scene, kCellsLookedFrom, 2).frames) {
+        const uint32_t cell = leafAt(cells.tree, camera.eye);
         if (boxes[cell].empty()) continue;
         std::vector<uint32_t> row;
-        for (uint32_t object = 0; object < scene.objects.size(); ++object)
-            if (cells.visible.at(cell, object)) row.push_back(object);
-        const size_t by_rays = seenFrom(probe, scene, boxes[cell], row, random);
+        for (size_t place = 0; place < baked->objects.object_of.size(); ++place) {
+            const uint32_t object = baked->objects.object_of[place];
+            by_shadows += cells.visible.at(cell, object);
+            if (baked->view_rows.at(cell, place)) row.push_back(object);
+        }
+        const size_t by_rays = looker.seenFrom(boxes[cell], row, random);
         held += static_cast<double>(row.size());
         seen += static_cast<double>(by_rays);
         if (by_rays > 0) ratios.push_back(static_cast<double>(row.size()) / static_cast<double>(by_rays));
     }
     const double count = static_cast<double>(std::max<size_t>(ratios.size(), 1));
-    table.rows.push_back({where, "objects of a row", held / count, "", "seen by rays", seen / count,
-                          fmt::format("median ratio {:.2f} of {} cells, of {} objects; baked in {:.1f} s",
-                                      medianOf(ratios), ratios.size(), scene.objects.size(), 1e-3 * baked)});
+    const Rows rows{table, where};
+    rows("objects of a row, by shadows alone", by_shadows / count, "", "seen by rays", seen / count);
+    rows("by shadows and portals", held / count, "", "seen by rays", seen / count,
+         fmt::format("median ratio {:.2f} of {} cells, of {} objects; baked in {:.1f} s", medianOf(ratios),
+                     ratios.size(), scene.objects.size(), 1e-3 * milliseconds));
 }
 
 }  // namespace
@@ -124,6 +134,8 @@ Table benchViewCells(const Options& options) {
     if (!options.scene) {
         building = makeBuilding(1, 1);
         building.name = "building:1:1 without its marks";
+        building.cells.clear();
+        building.portals.clear();
     }
     for (const uint32_t most : {512u, 2048u}) measure(options.scene ? *options.scene : building, most, table);
     return table;

@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "sightline/bake/flow/bake_state.h"
+#include "sightline/bake/flow/region_flow.h"
 #include "sightline/bake/objects/scene_hash.h"
+#include "sightline/geom/leaf_tree.h"
 
 namespace sightline::bake {
 using namespace tools;
@@ -69,7 +71,10 @@ Result<Baked> bake(BakeCells cells, const Scene& objects, const BakeSettings& se
         seeAllObjects(open_rows, out.object_rows->visible);
     }
     const bool has_views = has_places && out.cells.views && !out.cells.views->tree.contents.empty();
-    if (has_views) out.view_rows = rowsOfPlaced(out.cells.views->visible, out.objects.object_of);
+    if (has_views) {
+        out.view_rows = rowsOfPlaced(out.cells.views->visible, out.objects.object_of);
+        out.view_counts = narrowViewRows(out.cells, out.objects, settings, out.view_rows);
+    }
     out.interrupted = asksToStop(settings);
     if (out.interrupted) return out;
     out.objects_seconds = secondsSince(objects_begin);
@@ -191,6 +196,55 @@ ObjectCells placeObjects(const BakeCells& cells, const Scene& scene, const BakeS
             settings.progress({"places", static_cast<double>(done) / static_cast<double>(total)});
         };
     return cellsOfObjects(scene, cells.space, placing);
+}
+
+ViewRowCounts narrowViewRows(const BakeCells& cells, const ObjectCells& objects, const BakeSettings& settings,
+                             BitMatrix& rows) {
+    ViewRowCounts counts;
+    if (!cells.space.ofTree() || cells.space.graph.portals.empty()) return counts;
+    const ObjectPlaces& places = objects.places;
+    struct Piece {
+        uint32_t object;
+        Box3d box;
+    };
+    std::vector<std::vector<Piece>> pieces(cells.space.graph.cells);
+    for (uint32_t object = 0; object < places.size(); ++object)
+        for (uint64_t at = places.first_cell[object]; at < places.first_cell[object + 1]; ++at)
+            pieces[places.cells[at]].push_back({object, objects.pieces[at]});
+    const std::vector<Box3d> boxes = leafBoxes(cells.views->tree);
+    const auto count = static_cast<uint32_t>(boxes.size());
+    std::vector<std::vector<uint32_t>> hidden(count);
+    std::vector<RegionFlow::End> ends(count, RegionFlow::End::kDone);
+    constexpr uint32_t kTogether = 16, kTasks = 16;  // cells of a task, and tasks between two questions whether to stop
+    const uint32_t tasks = (count + kTogether - 1) / kTogether;
+    for (uint32_t begin = 0; begin < tasks && !asksToStop(settings); begin += kTasks) {
+        runJobs(settings.jobs, std::min(kTasks, tasks - begin), [&](uint32_t task) {
+            RegionFlow flow(cells.space);
+            std::vector<uint8_t> seen;
+            const uint32_t first = (begin + task) * kTogether;
+            for (uint32_t leaf = std::max(first, 1u); leaf < std::min(count, first + kTogether); ++leaf) {
+                if (boxes[leaf].empty()) continue;  // the first is all that is outside
+                seen.assign(places.size(), 0);
+                ends[leaf] = flow.from(boxes[leaf], [&](uint32_t cell, const Penumbra* through) {
+                    for (const Piece& piece : pieces[cell])
+                        if (!seen[piece.object] && (!through || through->touches(piece.box))) seen[piece.object] = 1;
+                });
+                if (ends[leaf] != RegionFlow::End::kDone) continue;
+                for (uint32_t object = 0; object < places.size(); ++object)
+                    if (rows.at(leaf, object) && !seen[object] && !places.everywhere[object])
+                        hidden[leaf].push_back(object);
+            }
+        });
+        if (settings.progress)
+            settings.progress({"view cells", std::min(1.0, double(begin + kTasks) / static_cast<double>(tasks))});
+    }
+    for (uint32_t leaf = 0; leaf < count; ++leaf) {
+        for (const uint32_t object : hidden[leaf]) rows.clear(leaf, object);
+        counts.hidden += hidden[leaf].size();
+        counts.over_budget += ends[leaf] == RegionFlow::End::kOverBudget;
+        counts.out_of_bounds += ends[leaf] == RegionFlow::End::kOutOfBounds;
+    }
+    return counts;
 }
 
 BoxVisibility bakeObjectRows(const CellGraph& rows, const CellVisibility& visibility, const CellBoxes& boxes,

@@ -54,7 +54,8 @@ struct BakeSettings {
 
     /// Asked between pieces of work, on the thread of the caller; true ends the bake without a file.
     std::function<bool()> stop;
-    /// Told between pieces of work how far the step is: "base", "rays", "flow", "places", "objects".
+    /// Told between pieces of work how far the step is: "base", "rays", "flow", "places", "view cells",
+    /// "objects".
     std::function<void(const BakeProgress&)> progress;
 
     /// Gets the bytes that a bake of the same cells and budget can go on from. It is called every so many seconds, and
@@ -63,6 +64,13 @@ struct BakeSettings {
     double checkpoint_seconds = 10;  ///< between two checkpoints  [s] [>= 0]
     /// What readBakeState() made of the bytes of a checkpoint, or null. The bake takes it apart.
     CellVisibilityState* resume = nullptr;
+};
+
+/// What portals did to the rows of view cells.
+struct ViewRowCounts {
+    uint64_t hidden = 0;         ///< pairs that they took away
+    uint64_t over_budget = 0;    ///< cells whose flow ended by its work limit: they keep what they had
+    uint64_t out_of_bounds = 0;  ///< cells that reach out of the space that has portals: they, too
 };
 
 /// What is baked.
@@ -116,6 +124,12 @@ Result<CellVisibility> bakeRows(const CellGraph& rows, const BakeSettings& setti
 /// Step 5: the cells of each object that stands still, by cellsOfObjects().
 ObjectCells placeObjects(const BakeCells& cells, const Scene& scene, const BakeSettings& settings);
 
+/// Step 5, where there are view cells and portals: takes out of their rows what no way through the portals leads to, by
+/// RegionFlow. Doors count as open. Objects that are in no cell stay in all rows.
+/// @param rows  [leaves of the view cells x placed objects]
+ViewRowCounts narrowViewRows(const BakeCells& cells, const ObjectCells& objects, const BakeSettings& settings,
+                             BitMatrix& rows);
+
 /// Step 6: which boxes each row sees, by bakeBoxVisibility().
 /// @param visibility  bakeRows() of the same rows, with BakeSettings::object_rows
 BoxVisibility bakeObjectRows(const CellGraph& rows, const CellVisibility& visibility, const CellBoxes& boxes,
@@ -145,6 +159,7 @@ struct Baked {
     ObjectCells objects;
     std::optional<BoxVisibility> object_rows;  ///< if they were asked for
     BitMatrix view_rows;                       ///< [leaves of the view cells x placed objects], if there are view cells
+    ViewRowCounts view_counts;                 ///< of these
     BakedFile file;
     bool interrupted = false;                      ///< by BakeSettings::stop: there is no file
     double rows_seconds = 0, objects_seconds = 0;  ///< of Steps 3 and 4, and of Steps 5 and 6

@@ -34,4 +34,8 @@ struct LeafTree {
     Box3d bounds;                        ///< of what the map holds; beyond it nothing is looked at
 };
 
+/// A box for each leaf that holds what of the tree's bounds is in it; empty if nothing is. Exact where planes lie across axes;
+/// others do not cut. A leaf that several children name gets one box around all of it.
+std::vector<Box3d> leafBoxes(const LeafTree& tree);
+
 }  // namespace sightline

@@ -180,7 +180,8 @@ std::string withoutProgress(const std::string& said) {
     std::istringstream lines(said);
     std::string left;
     for (std::string line; std::getline(lines, line);)
-        if (!line.starts_with("culling: ") && !line.starts_with("verifying: ")) left += line + '\n';
+        if (!line.starts_with("preparing: ") && !line.starts_with("culling: ") && !line.starts_with("verifying: "))
+            left += line + '\n';
     return left;
 }
 

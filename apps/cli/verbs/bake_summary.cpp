@@ -73,6 +73,10 @@ void printViews(std::FILE* out, const Baked& baked) {
     tell(out,
          fmt::format("  a cell sees {:.1f} of {} objects in the mean\n",
                      ratio(baked.view_rows.count(), baked.view_rows.rows()), grouped(baked.objects.places.size())));
+    if (baked.view_counts.hidden)
+        tell(out,
+             fmt::format("  of those that flat parts leave, portals hide {:.3g} %\n",
+                         100 * ratio(baked.view_counts.hidden, baked.view_rows.count() + baked.view_counts.hidden)));
     if (views.over_budget)
         tell(out,
              fmt::format("  cells over budget {}: what was not asked counts as visible\n", grouped(views.over_budget)));
@@ -245,7 +249,10 @@ std::string bakeJson(const BakeSource& source, const Baked& baked, const BakeSum
                              {"smallest_cell", baked.cells.views->smallest_cell},
                              {"hidden", baked.cells.views->hidden},
                              {"over_budget", baked.cells.views->over_budget},
-                             {"visible_pairs", baked.view_rows.count()}};
+                             {"visible_pairs", baked.view_rows.count()},
+                             {"hidden_by_portals", baked.view_counts.hidden},
+                             {"flows_over_budget", baked.view_counts.over_budget},
+                             {"flows_out_of_bounds", baked.view_counts.out_of_bounds}};
     out["bytes"] = s.pvs_bytes;
     out["resident_bytes"] = s.resident_bytes;
     out["in_place_bytes"] = summary.in_place_bytes;

@@ -38,6 +38,30 @@ void clip(const Polygon& in, const glm::dvec4& plane, double depth, Polygon& out
     }
 }
 
+Box3d boundsOf(const Polygon& polygon, double margin) {
+    Box3d box;
+    for (const glm::dvec3& point : polygon) box.grow(point);
+    return {box.min - margin, box.max + margin};
+}
+
+/// What of an object is in a cell.
+struct Piece {
+    uint32_t cell;
+    Box3d box;
+};
+using Pieces = std::vector<Piece>;
+
+/// In the order of cells, one for each.
+void mergePieces(Pieces& pieces) {
+    std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.cell < b.cell; });
+    size_t kept = 0;
+    for (const Piece& piece : pieces) {
+        if (kept > 0 && pieces[kept - 1].cell == piece.cell) pieces[kept - 1].box.grow(piece.box);
+        else pieces[kept++] = piece;
+    }
+    pieces.resize(kept);
+}
+
 /// One object in the world: its triangles, or its box if it deforms or has no triangles.
 struct Body {
     Box3d box;
@@ -64,37 +88,32 @@ public:
     }
 
     /// @returns whether it may be somewhere in no cell
-    bool place(const Body& body, std::vector<uint32_t>& cells) const {
+    bool place(const Body& body, Pieces& pieces) const {
         double far = reach_;
         for (const glm::dvec3& corner : {body.box.min, body.box.max}) far = std::max(far, largest(corner));
         const double depth = margin_ + 0x1p-40 * far;
-        if (space_.ofTree()) {
-            if (body.corners.empty()) placeBox(body.box, depth, cells);
-            else placeTriangles(body, depth, cells);
-        } else {
-            const bool inside = placeInRegions(body, depth, cells);
-            std::sort(cells.begin(), cells.end());
-            return !inside;
-        }
-        std::sort(cells.begin(), cells.end());
-        cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-        return cells.empty();
+        bool in_no_cell = false;
+        if (!space_.ofTree()) in_no_cell = !placeInRegions(body, depth, pieces);
+        else if (body.corners.empty()) placeBox(body.box, depth, pieces);
+        else placeTriangles(body, depth, pieces);
+        mergePieces(pieces);
+        return in_no_cell || (space_.ofTree() && pieces.empty());
     }
 
 private:
-    void arrive(uint32_t child, std::vector<uint32_t>& cells) const {
+    void arrive(uint32_t child, const Box3d& box, Pieces& pieces) const {
         const uint32_t cell = space_.graph.cell_of_leaf[child ^ LeafTreeNode::kLeaf];
-        if (cell != kNoCell) cells.push_back(cell);
+        if (cell != kNoCell) pieces.push_back({cell, box});
     }
     uint32_t root() const { return space_.tree.nodes.empty() ? LeafTreeNode::kLeaf : 0; }
 
-    void placeBox(const Box3d& box, double depth, std::vector<uint32_t>& cells) const {
+    void placeBox(const Box3d& box, double depth, Pieces& pieces) const {
         std::vector<uint32_t> stack = {root()};
         while (!stack.empty()) {
             const uint32_t at = stack.back();
             stack.pop_back();
             if ((at & LeafTreeNode::kLeaf) != 0) {
-                arrive(at, cells);
+                arrive(at, {box.min - depth, box.max + depth}, pieces);
                 continue;
             }
             const glm::dvec2 heights = heightsOf(planes_[at], box);
@@ -103,17 +122,17 @@ private:
         }
     }
 
-    void placeTriangles(const Body& body, double depth, std::vector<uint32_t>& cells) const {
-        struct Piece {
+    void placeTriangles(const Body& body, double depth, Pieces& pieces) const {
+        struct Part {
             uint32_t child;
             Polygon polygon;
         };
-        std::vector<Piece> stack;
+        std::vector<Part> stack;
         for (size_t i = 0; i < body.corners.size(); i += 3) {
             stack.push_back({root(), Polygon(body.corners.begin() + static_cast<std::ptrdiff_t>(i),
                                              body.corners.begin() + static_cast<std::ptrdiff_t>(i + 3))});
             while (!stack.empty()) {
-                Piece at = std::move(stack.back());
+                Part at = std::move(stack.back());
                 stack.pop_back();
                 while ((at.child & LeafTreeNode::kLeaf) == 0) {
                     const LeafTreeNode& node = space_.tree.nodes[at.child];
@@ -136,7 +155,7 @@ private:
                     at.child = node.child[0];
                     if (at.polygon.empty()) break;
                 }
-                if (!at.polygon.empty()) arrive(at.child, cells);
+                if (!at.polygon.empty()) arrive(at.child, boundsOf(at.polygon, depth), pieces);
             }
         }
     }
@@ -169,7 +188,7 @@ private:
     }
 
     /// @returns whether it is wholly inside of cells, triangle for triangle
-    bool placeInRegions(const Body& body, double depth, std::vector<uint32_t>& cells) const {
+    bool placeInRegions(const Body& body, double depth, Pieces& pieces) const {
         std::vector<uint32_t> met;
         visitRegions({body.box.min - depth, body.box.max + depth}, [&](uint32_t cell) { met.push_back(cell); });
         bool inside = false;
@@ -182,13 +201,14 @@ private:
             }
             if (most < -depth) continue;
             inside = inside || least > depth;
-            if (least >= -depth || body.corners.empty() || meets(body, cell, depth)) cells.push_back(cell);
+            if (least >= -depth || body.corners.empty() || meets(body, cell, depth))
+                pieces.push_back({cell, {body.box.min - depth, body.box.max + depth}});
         }
-        if (inside || space_.outside == kNoCell) return inside || !cells.empty();
+        if (inside || space_.outside == kNoCell) return inside || !pieces.empty();
         for (size_t i = 0; i < body.corners.size(); i += 3) {
             const std::span<const glm::dvec3> triangle(body.corners.data() + i, 3);
-            if (std::none_of(cells.begin(), cells.end(), [&](uint32_t cell) {
-                    return isInside(space_.planesOf(space_.regions[cell]), triangle, depth);
+            if (std::none_of(pieces.begin(), pieces.end(), [&](const Piece& piece) {
+                    return isInside(space_.planesOf(space_.regions[piece.cell]), triangle, depth);
                 }))
                 return false;
         }
@@ -246,7 +266,7 @@ ObjectCells cellsOfObjects(const Scene& scene, const CellSpace& space, const Obj
     std::stable_sort(placed.begin(), placed.end(),
                      [&](uint32_t a, uint32_t b) { return scene.objects[a].key < scene.objects[b].key; });
     struct Place {
-        std::vector<uint32_t> cells;
+        Pieces pieces;
         bool in_no_cell = false;
     };
     std::vector<Place> found(placed.size());
@@ -258,7 +278,7 @@ ObjectCells cellsOfObjects(const Scene& scene, const CellSpace& space, const Obj
             const size_t first = size_t{begin + task} * kTogether;
             for (size_t i = first; i < std::min(first + kTogether, placed.size()); ++i) {
                 const Body body = bodyOf(scene, scene.objects[placed[i]], boxes[placed[i]]);
-                found[i].in_no_cell = placer.place(body, found[i].cells);
+                found[i].in_no_cell = placer.place(body, found[i].pieces);
             }
         });
         if (settings.progress)
@@ -266,18 +286,24 @@ ObjectCells cellsOfObjects(const Scene& scene, const CellSpace& space, const Obj
     }
     std::vector<bool> is_wall(scene.objects.size(), false);
     for (const uint32_t wall : settings.walls) is_wall[wall] = true;
+    std::vector<uint32_t> cells;
     for (size_t i = 0; i < placed.size(); ++i) {
         Place& place = found[i];
         const SceneObject& object = scene.objects[placed[i]];
         if (place.in_no_cell && space.outside != kNoCell) {
-            place.cells.push_back(space.outside);
-            std::sort(place.cells.begin(), place.cells.end());
+            place.pieces.push_back({space.outside, boxes[placed[i]]});
+            mergePieces(place.pieces);
             ++out.outside;
         }
-        const bool everywhere = place.cells.empty();
+        cells.clear();
+        for (const Piece& piece : place.pieces) {
+            cells.push_back(piece.cell);
+            out.pieces.push_back(piece.box);
+        }
+        const bool everywhere = cells.empty();
         out.everywhere += everywhere;
         out.by_box += scene.meshes[object.mesh].deforms || scene.meshes[object.mesh].indices.empty();
-        out.places.add(object.key, boxes[placed[i]], place.cells, everywhere, is_wall[placed[i]]);
+        out.places.add(object.key, boxes[placed[i]], cells, everywhere, is_wall[placed[i]]);
     }
     return out;
 }

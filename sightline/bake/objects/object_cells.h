@@ -29,6 +29,7 @@ struct ObjectCellSettings {
 struct ObjectCells {
     ObjectPlaces places;
     std::vector<uint32_t> object_of;  ///< per place the scene's object
+    std::vector<Box3d> pieces;        ///< per entry of places.cells: it holds what of the object is in the cell
 
     uint64_t everywhere = 0;  ///< in no cell, so that they are seen from everywhere
     uint64_t outside = 0;     ///< in the outside, perhaps in cells too

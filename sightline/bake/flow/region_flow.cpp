@@ -1,0 +1,238 @@
+// Follows light from a region through portals, each clipped by planes between the region and the portal before it.
+// SPDX-License-Identifier: MIT
+#include "sightline/bake/flow/region_flow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "sightline/base/assert.h"
+
+namespace sightline::bake {
+namespace {
+
+double heightOf(const glm::dvec4& plane, const glm::dvec3& p) { return glm::dot(glm::dvec3(plane), p) + plane.w; }
+
+using Polygon = std::vector<glm::dvec3>;
+
+/// Whether a convex polygon holds another one of the same plane, or all but so much of its width.
+bool holds(const Polygon& window, const Polygon& part, const glm::dvec3& normal, double but) {
+    const glm::dvec3 middle = std::accumulate(window.begin(), window.end(), glm::dvec3(0.0)) / double(window.size());
+    for (size_t i = 0; i < window.size(); ++i) {
+        const glm::dvec3 &a = window[i], &b = window[i + 1 == window.size() ? 0 : i + 1];
+        glm::dvec3 inward = glm::cross(normal, b - a);
+        const double length = glm::length(inward);
+        if (!(length > 0)) continue;
+        inward /= glm::dot(inward, middle - a) < 0 ? -length : length;
+        for (const glm::dvec3& point : part)
+            if (glm::dot(inward, point - a) < -but) return false;
+    }
+    return true;
+}
+
+/// The convex hull of two polygons of one plane. What is left out of it by rounding is as narrow as that.
+/// A. M. Andrew. Another efficient algorithm for convex hulls in two dimensions. 1979.
+Polygon hullOf(const Polygon& a, const Polygon& b, const glm::dvec3& normal) {
+    const glm::dvec3 size = glm::abs(normal);
+    const int drop = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const int u = (drop + 1) % 3, v = (drop + 2) % 3;
+    Polygon points = a;
+    points.insert(points.end(), b.begin(), b.end());
+    std::sort(points.begin(), points.end(),
+              [&](const glm::dvec3& p, const glm::dvec3& q) { return p[u] != q[u] ? p[u] < q[u] : p[v] < q[v]; });
+    Polygon hull;
+    const auto turn = [&](const glm::dvec3& o, const glm::dvec3& p, const glm::dvec3& q) {
+        return (p[u] - o[u]) * (q[v] - o[v]) - (p[v] - o[v]) * (q[u] - o[u]);
+    };
+    for (const int half : {0, 1}) {
+        const size_t begin = hull.size();
+        for (size_t i = 0; i < points.size(); ++i) {
+            const glm::dvec3& point = points[half ? points.size() - 1 - i : i];
+            while (hull.size() >= begin + 2 && turn(hull[hull.size() - 2], hull.back(), point) <= 0) hull.pop_back();
+            hull.push_back(point);
+        }
+        hull.pop_back();
+    }
+    return hull;
+}
+
+double farthest(const Box3d& box) {
+    const glm::dvec3 most = glm::max(glm::abs(box.min), glm::abs(box.max));
+    return std::max({most.x, most.y, most.z});
+}
+
+}  // namespace
+
+Penumbra::Penumbra(const Box3d& region, std::span<const glm::dvec3> window, const glm::dvec4& beyond, double slack) {
+    // A polygon of which less than three corners are left has no point as close as the slack.
+    const auto take = [&](const glm::dvec4& plane) { planes_[count_++] = plane + glm::dvec4(0, 0, 0, 2 * slack); };
+    take(beyond);
+    glm::dvec3 middle(0.0);
+    for (const glm::dvec3& corner : window) middle += corner / static_cast<double>(window.size());
+    const glm::dvec3 center = region.center(), half = 0.5 * region.size();
+    for (size_t i = 0; i < window.size() && count_ < kMost; ++i) {
+        const glm::dvec3 &a = window[i], along = window[i + 1 == window.size() ? 0 : i + 1] - a;
+        glm::dvec3 outward = glm::cross(along, glm::dvec3(beyond));
+        if (glm::dot(outward, middle - a) > 0) outward = -outward;
+        const double length = glm::length(outward);
+        if (!(length > 0)) continue;
+        // The plane through the edge, moved outward a little, and the corner of the region that leaves the window the most.
+        // Where it is steep to the window's plane, more is needed to be as far from the window as the slack.
+        bool found = false;
+        for (double away = 2 * slack; away < 2000 * slack && !found; away *= 8) {
+            const glm::dvec3 from = a + away / length * outward;
+            for (uint32_t corner = 0; corner < 8 && !found; ++corner) {
+                glm::dvec3 normal = glm::cross(along, region.corner(corner) - from);
+                const double size = glm::length(normal);
+                if (!(size > 0)) continue;
+                normal /= glm::dot(normal, middle - from) < 0 ? -size : size;
+                const double highest = glm::dot(normal, center) + glm::dot(glm::abs(normal), half);
+                const glm::dvec4 plane(normal, -highest - 0.125 * slack);
+                double lowest = heightOf(plane, window[0]);
+                for (const glm::dvec3& point : window) lowest = std::min(lowest, heightOf(plane, point));
+                found = lowest >= 1.375 * slack;
+                if (found) take(plane);
+            }
+        }
+    }
+}
+
+void Penumbra::clip(std::vector<glm::dvec3>& polygon, std::vector<glm::dvec3>& scratch) const {
+    for (const glm::dvec4& plane : planes()) {
+        scratch.clear();
+        for (size_t i = 0; i < polygon.size(); ++i) {
+            const glm::dvec3 &a = polygon[i], &b = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+            const double above_a = heightOf(plane, a), above_b = heightOf(plane, b);
+            if (above_a >= 0) scratch.push_back(a);
+            if ((above_a >= 0) != (above_b >= 0)) scratch.push_back(a + above_a / (above_a - above_b) * (b - a));
+        }
+        polygon.swap(scratch);
+        if (polygon.size() < 3) return polygon.clear();
+    }
+}
+
+RegionFlow::RegionFlow(const CellSpace& space, const RegionFlowSettings& settings)
+    : space_(space), settings_(settings) {
+    SIGHTLINE_ASSERT(space.ofTree());
+    const CellGraph& graph = space.graph;
+    double reach = farthest(space.tree.bounds), thickest = 0;
+    for (const glm::dvec3& point : graph.points) reach = std::max(reach, farthest({point, point}));
+    for (const CellPortal& portal : graph.portals) thickest = std::max(thickest, portal.thickness);
+    slack_ = 2 * space.tolerance + thickest + 1e-9 * reach;
+    first_way_.assign(graph.cells + 1, 0);
+    const auto forEachWay = [&](const auto& visit) {
+        for (uint32_t portal = 0; portal < graph.portals.size(); ++portal) {
+            const CellPortal& of = graph.portals[portal];
+            visit(Way{portal, of.cells[0], of.cells[1], false});
+            if (!of.one_way) visit(Way{portal, of.cells[1], of.cells[0], true});
+        }
+    };
+    forEachWay([&](const Way& way) { ++first_way_[way.from + 1]; });
+    for (uint32_t cell = 0; cell < graph.cells; ++cell) first_way_[cell + 1] += first_way_[cell];
+    ways_.resize(first_way_.back());
+    std::vector<uint32_t> next = first_way_;
+    forEachWay([&](const Way& way) { ways_[next[way.from]++] = way; });
+    arrived_.resize(ways_.size());
+}
+
+/// The plane of a portal, its normal into the cell that the way leads to.
+glm::dvec4 RegionFlow::planeOf(const Way& way) const {
+    const glm::dvec4& plane = space_.graph.portals[way.portal].plane;  // points into cells[0]
+    return way.reversed ? plane : -plane;
+}
+
+/// Whether all of a region lies where a way leads to.
+bool RegionFlow::isBeyond(const Box3d& region, const Way& way) const {
+    const glm::dvec4 plane = planeOf(way);
+    return heightOf(plane, region.center()) - 0.5 * glm::dot(glm::abs(glm::dvec3(plane)), region.size()) > slack_;
+}
+
+RegionFlow::Polygon RegionFlow::outlineOf(uint32_t way) const {
+    const auto outline = space_.graph.outline(space_.graph.portals[ways_[way].portal]);
+    return {outline.begin(), outline.end()};
+}
+
+void RegionFlow::findStarts(const Box3d& region) {
+    starts_.clear();
+    const LeafTree& tree = space_.tree;
+    std::vector<uint32_t> stack{tree.nodes.empty() ? LeafTreeNode::kLeaf : 0};
+    while (!stack.empty()) {
+        const uint32_t at = stack.back();
+        stack.pop_back();
+        if (at & LeafTreeNode::kLeaf) {
+            const uint32_t cell = space_.graph.cell_of_leaf[at & ~LeafTreeNode::kLeaf];
+            if (cell != CellGraph::kNoCell) starts_.push_back(cell);
+            continue;
+        }
+        const LeafTreeNode& node = tree.nodes[at];
+        const glm::dvec4 plane = node.plane / glm::length(glm::dvec3(node.plane));
+        const double middle = heightOf(plane, region.center());
+        const double reach = 0.5 * glm::dot(glm::abs(glm::dvec3(plane)), region.size()) + slack_;
+        if (middle <= reach) stack.push_back(node.child[0]);
+        if (middle >= -reach) stack.push_back(node.child[1]);
+    }
+    std::sort(starts_.begin(), starts_.end());
+    starts_.erase(std::unique(starts_.begin(), starts_.end()), starts_.end());
+}
+
+/// Notes that light comes to a part of a way's portal.
+void RegionFlow::arrive(uint32_t way, const Polygon& part) {
+    Arrived& at = arrived_[way];
+    if (at.window.empty()) {
+        touched_.push_back(way);
+        at.window = part;
+    } else {
+        const glm::dvec3 normal(space_.graph.portals[ways_[way].portal].plane);
+        if (holds(at.window, part, normal, 0.125 * slack_)) return;
+        if (at.turns < settings_.turns) at.window = hullOf(at.window, part, normal);
+        else at.window = outlineOf(way);
+    }
+    if (std::exchange(at.waits, true)) return;
+    const Polygon& window = at.window;
+    const glm::dvec3 middle = std::accumulate(window.begin(), window.end(), glm::dvec3(0.0)) / double(window.size());
+    queue_.emplace_back(-glm::distance(middle, middle_), way);
+    std::push_heap(queue_.begin(), queue_.end());
+}
+
+RegionFlow::End RegionFlow::from(const Box3d& region, const std::function<void(uint32_t, const Penumbra*)>& reach) {
+    const Box3d& bounds = space_.tree.bounds;
+    if (glm::any(glm::lessThan(region.min, bounds.min)) || glm::any(glm::greaterThan(region.max, bounds.max)))
+        return End::kOutOfBounds;
+    const uint64_t end = clipped_ + settings_.budget;
+    const Box3d grown{region.min - space_.tolerance, region.max + space_.tolerance};
+    middle_ = region.center();
+    findStarts(grown);
+    for (const uint32_t start : starts_) {
+        reach(start, nullptr);
+        for (uint32_t way = first_way_[start]; way < first_way_[start + 1]; ++way)
+            if (!isBeyond(grown, ways_[way])) arrive(way, outlineOf(way));
+    }
+    Polygon part, scratch;
+    while (!queue_.empty() && clipped_ <= end) {
+        std::pop_heap(queue_.begin(), queue_.end());
+        const uint32_t number = queue_.back().second;
+        queue_.pop_back();
+        const Way& way = ways_[number];
+        Arrived& at = arrived_[number];
+        at.waits = false;
+        ++at.turns;
+        const Penumbra penumbra(grown, at.window, planeOf(way), slack_);
+        reach(way.to, &penumbra);
+        for (uint32_t next = first_way_[way.to]; next < first_way_[way.to + 1]; ++next) {
+            // Cells are convex: no line comes back into the one that it has left. Nor does one from beyond a portal pass it.
+            if (ways_[next].to == way.from || isBeyond(grown, ways_[next])) continue;
+            ++clipped_;
+            part = outlineOf(next);
+            penumbra.clip(part, scratch);
+            if (!part.empty()) arrive(next, part);
+        }
+    }
+    const End ended = queue_.empty() ? End::kDone : End::kOverBudget;
+    queue_.clear();
+    for (const uint32_t way : touched_) arrived_[way] = {};
+    touched_.clear();
+    return ended;
+}
+
+}  // namespace sightline::bake
