@@ -224,15 +224,24 @@ ViewRowCounts narrowViewRows(const BakeCells& cells, const ObjectCells& objects,
             const uint32_t first = (begin + task) * kTogether;
             for (uint32_t leaf = std::max(first, 1u); leaf < std::min(count, first + kTogether); ++leaf) {
                 if (boxes[leaf].empty()) continue;  // the first is all that is outside
+                // Seen, or not asked for.
                 seen.assign(places.size(), 0);
+                size_t left = 0;
+                for (uint32_t object = 0; object < places.size(); ++object) {
+                    seen[object] = !rows.at(leaf, object) || places.everywhere[object];
+                    left += !seen[object];
+                }
                 ends[leaf] = flow.from(boxes[leaf], [&](uint32_t cell, const Penumbra* through) {
                     for (const Piece& piece : pieces[cell])
-                        if (!seen[piece.object] && (!through || through->touches(piece.box))) seen[piece.object] = 1;
+                        if (!seen[piece.object] && (!through || through->touches(piece.box))) {
+                            seen[piece.object] = 1;
+                            --left;
+                        }
+                    return left > 0;
                 });
                 if (ends[leaf] != RegionFlow::End::kDone) continue;
                 for (uint32_t object = 0; object < places.size(); ++object)
-                    if (rows.at(leaf, object) && !seen[object] && !places.everywhere[object])
-                        hidden[leaf].push_back(object);
+                    if (!seen[object]) hidden[leaf].push_back(object);
             }
         });
         if (settings.progress)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -77,23 +78,39 @@ Penumbra::Penumbra(const Box3d& region, std::span<const glm::dvec3> window, cons
         if (glm::dot(outward, middle - a) > 0) outward = -outward;
         const double length = glm::length(outward);
         if (!(length > 0)) continue;
-        // The plane through the edge, moved outward a little, and the corner of the region that leaves the window the most.
-        // Where it is steep to the window's plane, more is needed to be as far from the window as the slack.
-        bool found = false;
-        for (double away = 2 * slack; away < 2000 * slack && !found; away *= 8) {
-            const glm::dvec3 from = a + away / length * outward;
-            for (uint32_t corner = 0; corner < 8 && !found; ++corner) {
-                glm::dvec3 normal = glm::cross(along, region.corner(corner) - from);
-                const double size = glm::length(normal);
-                if (!(size > 0)) continue;
-                normal /= glm::dot(normal, middle - from) < 0 ? -size : size;
-                const double highest = glm::dot(normal, center) + glm::dot(glm::abs(normal), half);
-                const glm::dvec4 plane(normal, -highest - 0.125 * slack);
-                double lowest = heightOf(plane, window[0]);
-                for (const glm::dvec3& point : window) lowest = std::min(lowest, heightOf(plane, point));
-                found = lowest >= 1.375 * slack;
-                if (found) take(plane);
-            }
+        outward /= length;
+        outward /= length;
+        // Across the edge: how far the region's corners stand out over it, and how high before the window's plane.
+        glm::dvec2 corners[8], farthest_in(0.0, 0.0);
+        uint32_t best = 8;
+        for (uint32_t corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 to = region.corner(corner) - a;
+            const glm::dvec2 at(glm::dot(outward, to), -glm::dot(glm::dvec3(beyond), to));
+            corners[corner] = at;
+            if (!(at.y > 0) || (best < 8 && at.x * farthest_in.y >= farthest_in.x * at.y)) continue;
+            best = corner;
+            farthest_in = at;
+        }
+        if (best == 8) continue;
+        // The plane through the edge and this corner must have all others on the one side, where the window is not.
+        const bool divides = std::all_of(std::begin(corners), std::end(corners), [&](const glm::dvec2& at) {
+            return farthest_in.x * at.y - farthest_in.y * at.x <= slack * glm::length(farthest_in);
+        });
+        if (!divides) continue;
+        // Moved outward a little, it leaves room for the slack; where it is steep to the window's plane, that takes more.
+        for (double away = 2 * slack; away < 2000 * slack; away *= 8) {
+            const glm::dvec3 from = a + away * outward;
+            glm::dvec3 normal = glm::cross(along, region.corner(best) - from);
+            const double size = glm::length(normal);
+            if (!(size > 0)) break;
+            normal /= glm::dot(normal, middle - from) < 0 ? -size : size;
+            const double highest = glm::dot(normal, center) + glm::dot(glm::abs(normal), half);
+            const glm::dvec4 plane(normal, -highest - 0.125 * slack);
+            double lowest = heightOf(plane, window[0]);
+            for (const glm::dvec3& point : window) lowest = std::min(lowest, heightOf(plane, point));
+            if (lowest < 1.375 * slack) continue;
+            take(plane);
+            break;
         }
     }
 }
@@ -195,21 +212,30 @@ void RegionFlow::arrive(uint32_t way, const Polygon& part) {
     std::push_heap(queue_.begin(), queue_.end());
 }
 
-RegionFlow::End RegionFlow::from(const Box3d& region, const std::function<void(uint32_t, const Penumbra*)>& reach) {
+RegionFlow::End RegionFlow::from(const Box3d& region, const Reach& reach) {
     const Box3d& bounds = space_.tree.bounds;
     if (glm::any(glm::lessThan(region.min, bounds.min)) || glm::any(glm::greaterThan(region.max, bounds.max)))
         return End::kOutOfBounds;
-    const uint64_t end = clipped_ + settings_.budget;
     const Box3d grown{region.min - space_.tolerance, region.max + space_.tolerance};
+    const End ended = flow(grown, reach);
+    queue_.clear();
+    for (const uint32_t way : touched_) arrived_[way] = {};
+    touched_.clear();
+    return ended;
+}
+
+RegionFlow::End RegionFlow::flow(const Box3d& region, const Reach& reach) {
+    const uint64_t end = clipped_ + settings_.budget;
     middle_ = region.center();
-    findStarts(grown);
+    findStarts(region);
     for (const uint32_t start : starts_) {
-        reach(start, nullptr);
+        if (!reach(start, nullptr)) return End::kStopped;
         for (uint32_t way = first_way_[start]; way < first_way_[start + 1]; ++way)
-            if (!isBeyond(grown, ways_[way])) arrive(way, outlineOf(way));
+            if (!isBeyond(region, ways_[way])) arrive(way, outlineOf(way));
     }
     Polygon part, scratch;
-    while (!queue_.empty() && clipped_ <= end) {
+    while (!queue_.empty()) {
+        if (clipped_ > end) return End::kOverBudget;
         std::pop_heap(queue_.begin(), queue_.end());
         const uint32_t number = queue_.back().second;
         queue_.pop_back();
@@ -217,22 +243,18 @@ RegionFlow::End RegionFlow::from(const Box3d& region, const std::function<void(u
         Arrived& at = arrived_[number];
         at.waits = false;
         ++at.turns;
-        const Penumbra penumbra(grown, at.window, planeOf(way), slack_);
-        reach(way.to, &penumbra);
+        const Penumbra penumbra(region, at.window, planeOf(way), slack_);
+        if (!reach(way.to, &penumbra)) return End::kStopped;
         for (uint32_t next = first_way_[way.to]; next < first_way_[way.to + 1]; ++next) {
             // Cells are convex: no line comes back into the one that it has left. Nor does one from beyond a portal pass it.
-            if (ways_[next].to == way.from || isBeyond(grown, ways_[next])) continue;
+            if (ways_[next].to == way.from || isBeyond(region, ways_[next])) continue;
             ++clipped_;
             part = outlineOf(next);
             penumbra.clip(part, scratch);
             if (!part.empty()) arrive(next, part);
         }
     }
-    const End ended = queue_.empty() ? End::kDone : End::kOverBudget;
-    queue_.clear();
-    for (const uint32_t way : touched_) arrived_[way] = {};
-    touched_.clear();
-    return ended;
+    return End::kDone;
 }
 
 }  // namespace sightline::bake

@@ -74,12 +74,14 @@ public:
         kDone,
         kOverBudget,   ///< the work limit was met
         kOutOfBounds,  ///< the region reaches out of the tree's bounds, where there are no portals
+        kStopped,      ///< reach() said so
     };
+    /// Told of a way into a cell, within a penumbra, or anywhere in the cell if that is null. False ends the flow.
+    using Reach = std::function<bool(uint32_t cell, const Penumbra* through)>;
 
-    /// Calls reach(cell, through) for ways into cells: where a segment from the region is on before it meets a wall, it is
-    /// in a cell that is reached, within one of its penumbras `through`, or anywhere in the cell if that is null. Doors count
-    /// as open.
-    End from(const Box3d& region, const std::function<void(uint32_t cell, const Penumbra* through)>& reach);
+    /// Calls reach() for ways into cells: where a segment from the region is on before it meets a wall, it is in a cell that
+    /// is reached, within one of the penumbras. Doors count as open.
+    End from(const Box3d& region, const Reach& reach);
 
     uint64_t clipped() const { return clipped_; }  ///< portals so far, of all regions
 
@@ -98,6 +100,7 @@ private:
         bool waits = false;
     };
 
+    End flow(const Box3d& region, const Reach& reach);
     void findStarts(const Box3d& region);
     void arrive(uint32_t way, const Polygon& part);
     Polygon outlineOf(uint32_t way) const;

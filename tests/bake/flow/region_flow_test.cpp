@@ -118,6 +118,7 @@ void lookFrom(const Scene& scene, const SoupCells& cells, int regions, Random& r
         const RegionFlow::End end = flow.from(region, [&](uint32_t cell, const Penumbra* through) {
             if (through) within[cell].push_back(*through);
             else anywhere[cell] = 1;
+            return true;
         });
         ASSERT_EQ(end, RegionFlow::End::kDone);
         const auto isReached = [&](const glm::dvec3& point) {
@@ -206,8 +207,11 @@ TEST(RegionFlow, LeavesOutMostOfABuilding) {
     for (const CameraFrame& camera : seededCameras(scene, 12, 3).frames) {
         std::vector<uint8_t> cell_is(cells.space.graph.cells, 0);
         const Box3d region{camera.eye - 0.1, camera.eye + 0.1};
-        if (flow.from(region, [&](uint32_t cell, const Penumbra*) { cell_is[cell] = 1; }) != RegionFlow::End::kDone)
-            continue;
+        const RegionFlow::End end = flow.from(region, [&](uint32_t cell, const Penumbra*) {
+            cell_is[cell] = 1;
+            return true;
+        });
+        if (end != RegionFlow::End::kDone) continue;
         reached += static_cast<uint64_t>(std::count(cell_is.begin(), cell_is.end(), 1));
         all += cell_is.size();
     }
@@ -220,13 +224,14 @@ TEST(RegionFlow, SaysWhenItsWorkLimitIsMet) {
     const MarkedRooms rooms = randomRooms(random, 0);
     const SoupCells cells = cellsOfSoup(rooms.scene);
     const Box3d bounds = cells.space.tree.bounds;
-    const auto nothing = [](uint32_t, const Penumbra*) {};
+    const auto nothing = [](uint32_t, const Penumbra*) { return true; };
     RegionFlow little(cells.space, {.budget = 3});
     EXPECT_EQ(little.from(bounds, nothing), RegionFlow::End::kOverBudget);
     EXPECT_LE(little.clipped(), 64u);
     RegionFlow enough(cells.space);
     EXPECT_EQ(enough.from(bounds, nothing), RegionFlow::End::kDone);
     EXPECT_EQ(enough.from({bounds.min - 0.1, bounds.max}, nothing), RegionFlow::End::kOutOfBounds);
+    EXPECT_EQ(enough.from(bounds, [](uint32_t, const Penumbra*) { return false; }), RegionFlow::End::kStopped);
     // What one region leaves behind does not touch the next.
     const uint64_t before = enough.clipped();
     EXPECT_EQ(enough.from(bounds, nothing), RegionFlow::End::kDone);
