@@ -104,7 +104,7 @@ struct CellTotals {
 CellTotals expectSoupHidesNothing(const Scene& scene, uint64_t frames) {
     CellTotals totals;
     const bool full = std::getenv("SIGHTLINE_FULL") != nullptr;
-    const Baked baked = bakeSoup(scene, full ? 2048 : 128);
+    const Baked baked = bakeSoup(scene, full ? 2048 : 64);
     const Result<VisibilityFile> file = VisibilityFile::open(baked.file.bytes(VisibilityForm::kInPlace), "baked");
     EXPECT_TRUE(file.ok()) << file.error().message;
     LoadedWorld loaded = loadWorld(scene);
