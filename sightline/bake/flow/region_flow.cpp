@@ -32,7 +32,8 @@ bool holds(const Polygon& window, const Polygon& part, const glm::dvec3& normal,
     return true;
 }
 
-/// The convex hull of two polygons of one plane. What is left out of it by rounding is as narrow as that.
+/// The convex hull of two polygons of one plane; less than three corners if they are that thin. What is left out of it by
+/// rounding is as narrow as that.
 /// A. M. Andrew. Another efficient algorithm for convex hulls in two dimensions. 1979.
 Polygon hullOf(const Polygon& a, const Polygon& b, const glm::dvec3& normal) {
     const glm::dvec3 size = glm::abs(normal);
@@ -78,7 +79,6 @@ Penumbra::Penumbra(const Box3d& region, std::span<const glm::dvec3> window, cons
         if (glm::dot(outward, middle - a) > 0) outward = -outward;
         const double length = glm::length(outward);
         if (!(length > 0)) continue;
-        outward /= length;
         outward /= length;
         // Across the edge: how far the region's corners stand out over it, and how high before the window's plane.
         glm::dvec2 corners[8], farthest_in(0.0, 0.0);
@@ -202,8 +202,8 @@ void RegionFlow::arrive(uint32_t way, const Polygon& part) {
     } else {
         const glm::dvec3 normal(space_.graph.portals[ways_[way].portal].plane);
         if (holds(at.window, part, normal, 0.125 * slack_)) return;
-        if (at.turns < settings_.turns) at.window = hullOf(at.window, part, normal);
-        else at.window = outlineOf(way);
+        at.window = at.turns < settings_.turns ? hullOf(at.window, part, normal) : Polygon();
+        if (at.window.size() < 3) at.window = outlineOf(way);
     }
     if (std::exchange(at.waits, true)) return;
     const Polygon& window = at.window;

@@ -44,7 +44,7 @@ public:
     }
     /// Cuts off of a polygon what no segment comes near to, as close as the slack.
     /// @param polygon  convex; it is empty if nothing is left
-    /// @param scratch  room for as many corners
+    /// @param scratch  is written over
     void clip(std::vector<glm::dvec3>& polygon, std::vector<glm::dvec3>& scratch) const;
 
     std::span<const glm::dvec4> planes() const { return {planes_.data(), count_}; }
@@ -57,8 +57,8 @@ private:
 };
 
 struct RegionFlowSettings {
-    uint32_t turns =
-        6;  ///< that a portal may have, each with a wider window, before it counts as open from edge to edge
+    /// That a portal may have, each with a wider window, before it counts as open from edge to edge.
+    uint32_t turns = 6;
     uint64_t budget = uint64_t{1} << 18;  ///< portals that are clipped for one region
 };
 
@@ -66,7 +66,7 @@ struct RegionFlowSettings {
 /// convex window; the portals that are nearest to the region come first, so that most have their turn once.
 class RegionFlow {
 public:
-    /// @param space  of a tree; must outlive this
+    /// @param space  of a tree, each leaf a cell of its own; must outlive this
     explicit RegionFlow(const CellSpace& space, const RegionFlowSettings& settings = {});
 
     /// How a flow ended. If it was not done, anything may be seen from the region.
