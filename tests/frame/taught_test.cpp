@@ -128,7 +128,7 @@ TEST(Taught, TeachersStopWhereNobodyLearns) {
         const View view = steps.next();
         const QueryStats stats = teacher.visible(now, view).stats;
         if (frame < 200) query.learn(teacher);
-        if (frame < 200) EXPECT_GT(stats.occluder_triangles, 0u) << frame;
+        if (frame < 200) { EXPECT_GT(stats.occluder_triangles, 0u) << frame; }
         if (frame < 200) taught = std::max(taught, stats.proofs_sought);
         if (frame >= 328) later = std::max(later, stats.proofs_sought);
     }
