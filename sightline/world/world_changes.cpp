@@ -21,7 +21,7 @@ constexpr uint32_t kAhead = 8;
 constexpr size_t kMendedToChanged = 2;
 
 /// An object is restless that moves again within so many commits.
-constexpr uint32_t kRestless = 16;
+constexpr uint32_t kRestless = 4;
 /// Restless objects have trees of their own unless more than one of so many objects would be there: where most of a node
 /// moves, it may as well move in place.
 constexpr uint32_t kToMover = 4;

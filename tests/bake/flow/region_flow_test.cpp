@@ -14,6 +14,7 @@
 #include "sightline/tools/load/seeded_cameras.h"
 #include "sightline/tools/scene/building/building.h"
 #include "tests/bake/aimed_points.h"
+#include "tests/bake/any_triangles.h"
 #include "tests/bake/marked/random_rooms.h"
 #include "tests/bake/opaque_triangles.h"
 #include "tests/support/random.h"
@@ -24,11 +25,6 @@ using namespace tools;
 namespace {
 
 using namespace test;
-
-glm::dvec3 pointIn(const Box3d& box, Random& random) {
-    const double x = random.uniform(), y = random.uniform();
-    return box.min + glm::dvec3(x, y, random.uniform()) * box.size();
-}
 
 TEST(Penumbra, HoldsWhatSegmentsThroughTheWindowReach) {
     Random random(3);
@@ -80,12 +76,7 @@ TEST(Penumbra, HoldsWhatSegmentsThroughTheWindowReach) {
 }
 
 uint32_t cellAt(const CellSpace& space, const glm::dvec3& point) {
-    uint32_t at = space.tree.nodes.empty() ? LeafTreeNode::kLeaf : 0;
-    while ((at & LeafTreeNode::kLeaf) == 0) {
-        const LeafTreeNode& node = space.tree.nodes[at];
-        at = node.child[glm::dot(glm::dvec3(node.plane), point) + node.plane.w >= 0];
-    }
-    return space.graph.cell_of_leaf[at & ~LeafTreeNode::kLeaf];
+    return space.graph.cell_of_leaf[leafOf(space.tree, point)];
 }
 
 double nearestPlane(const LeafTree& tree, const glm::dvec3& point) {
@@ -93,10 +84,6 @@ double nearestPlane(const LeafTree& tree, const glm::dvec3& point) {
     for (const LeafTreeNode& node : tree.nodes)
         nearest = std::min(nearest, std::abs(glm::dot(glm::dvec3(node.plane), point) + node.plane.w));
     return nearest;
-}
-
-bool contains(const Box3d& box, const glm::dvec3& point) {
-    return glm::all(glm::lessThanEqual(box.min, point)) && glm::all(glm::lessThanEqual(point, box.max));
 }
 
 struct FlowCounts {
@@ -174,20 +161,7 @@ TEST(RegionFlow, HoldsAmongAnyTriangles) {
     const int made = static_cast<int>(rounds(30, 6));
     for (int round = 0; round < made; ++round) {
         SCOPED_TRACE("round " + std::to_string(round));
-        MarkedRooms any;
-        any.scene.materials.emplace_back().double_sided = true;
-        for (uint64_t i = 4 + random.below(40); i > 0; --i) {
-            Mesh mesh;
-            const double size = std::pow(10, random.uniform(-1, 1));
-            const glm::dvec3 middle = randomVector(random, 4);
-            for (int corner = 0; corner < 3; ++corner) {
-                glm::dvec3 point = middle + randomVector(random, size);
-                if (i % 3 == 0) point.x = std::round(middle.x);  // many share a plane
-                mesh.positions.emplace_back(point);
-            }
-            mesh.indices = {0, 1, 2};
-            any.add(std::move(mesh), uint32_t(random.below(2)));
-        }
+        const MarkedRooms any = anyTriangles(random);
         SoupCellSettings settings;
         settings.smallest_occluder = std::pow(10, random.uniform(-2, 0.5));
         const SoupCells cells = cellsOfSoup(any.scene, settings);

@@ -16,6 +16,7 @@
 #include "sightline/tools/scene/procedural.h"
 #include "sightline/tools/truth/rays.h"
 #include "tests/bake/aimed_points.h"
+#include "tests/bake/any_triangles.h"
 #include "tests/bake/marked/random_rooms.h"
 #include "tests/bake/opaque_triangles.h"
 
@@ -110,10 +111,6 @@ double secondPlane(const LeafTree& tree, const glm::dvec3& point) {
     return second;
 }
 
-bool contains(const Box3d& box, const glm::dvec3& point) {
-    return glm::all(glm::lessThanEqual(box.min, point)) && glm::all(glm::lessThanEqual(point, box.max));
-}
-
 struct Counts {
     uint64_t lines = 0, crossings = 0, walls = 0;
 };
@@ -204,23 +201,7 @@ TEST(SoupCells, HoldsOfAnyTriangles) {
     Counts counts;
     for (int round = 0; round < 40; ++round) {
         SCOPED_TRACE("round " + std::to_string(round));
-        MarkedRooms made;
-        made.scene.materials.emplace_back().double_sided = true;
-        const auto count = 4 + random.below(40);
-        for (uint64_t i = 0; i < count; ++i) {
-            Mesh mesh;
-            const double size = std::pow(10, random.uniform(-1, 1));
-            glm::dvec3 middle;
-            for (int axis = 0; axis < 3; ++axis) middle[axis] = random.uniform(-4, 4);
-            for (int corner = 0; corner < 3; ++corner) {
-                glm::dvec3 point = middle;
-                for (int axis = 0; axis < 3; ++axis) point[axis] += random.uniform(-size, size);
-                if (i % 3 == 0) point[int(i) % 3] = std::round(middle[int(i) % 3]);  // many share a plane
-                mesh.positions.emplace_back(point);
-            }
-            mesh.indices = {0, 1, 2};
-            made.add(std::move(mesh), uint32_t(random.below(2)));
-        }
+        const MarkedRooms made = anyTriangles(random);
         SoupCellSettings settings;
         settings.smallest_occluder = std::pow(10, random.uniform(-2, 0.5));
         const SoupCells cells = cellsOfSoup(made.scene, settings);

@@ -13,6 +13,7 @@
 #include "sightline/base/random.h"
 #include "sightline/base/thread_pool.h"
 #include "sightline/tools/scene/procedural.h"
+#include "tests/bake/aimed_points.h"
 #include "tests/bake/marked/random_rooms.h"
 #include "tests/bake/opaque_triangles.h"
 
@@ -22,21 +23,6 @@ using namespace tools;
 namespace {
 
 using namespace test;
-
-uint32_t leafAt(const LeafTree& tree, const glm::dvec3& point) {
-    uint32_t at = 0;
-    while ((at & LeafTreeNode::kLeaf) == 0) {
-        const LeafTreeNode& node = tree.nodes[at];
-        at = node.child[glm::dot(glm::dvec3(node.plane), point) + node.plane.w >= 0];
-    }
-    return at & ~LeafTreeNode::kLeaf;
-}
-
-glm::dvec3 pointIn(const Box3d& box, Random& random) {
-    glm::dvec3 point;
-    for (int axis = 0; axis < 3; ++axis) point[axis] = random.uniform(box.min[axis], box.max[axis]);
-    return point;
-}
 
 /// A point on one of an object's triangles, often at its edge.
 glm::dvec3 pointOn(const Scene& scene, const SceneObject& object, Random& random) {
@@ -60,7 +46,7 @@ void judge(const Scene& scene, const ViewCells& cells, int lines, Random& random
     const SoupScale scale = *soupScaleOf(scene, -1);
     for (int i = 0; i < lines; ++i) {
         const glm::dvec3 eye = pointIn(cells.tree.bounds, random);
-        const uint32_t leaf = leafAt(cells.tree, eye);
+        const uint32_t leaf = leafOf(cells.tree, eye);
         for (int k = 0; k < 4; ++k) {
             const auto object = static_cast<uint32_t>(random.below(scene.objects.size()));
             ++judged.pairs;
@@ -107,7 +93,7 @@ TEST(ViewCells, HoldInABuildingAndACity) {
         EXPECT_FALSE(cells.walls.empty());
         // From outside of the scene all is seen.
         for (size_t object = 0; object < scene.objects.size(); ++object) EXPECT_TRUE(cells.visible.at(0, object));
-        EXPECT_EQ(leafAt(cells.tree, glm::dvec3(1e9, 0, 0)), 0u);
+        EXPECT_EQ(leafOf(cells.tree, glm::dvec3(1e9, 0, 0)), 0u);
     }
 }
 
