@@ -66,14 +66,15 @@ public:
 private:
     /// The backs of faces with one side are not there.
     void look(const ProbeRay& ray) {
+        const auto isDrawn = [&](const ProbeHit& hit) {
+            return hit.front || facts_.facts(hit.object).double_sided[hit.triangle];
+        };
         double from = 0;
         for (int met = 0; met < 256; ++met) {
-            const auto hit = probe_.nearest(ray, from);
+            const auto hit = probe_.nearest(ray, from, isDrawn);
             if (!hit) return;
-            const MeshFacts& facts = facts_.facts(hit->object);
-            const bool drawn = hit->front || facts.double_sided[hit->triangle];
-            if (drawn) seen_[hit->object] = 1;
-            if (drawn && facts.hides[hit->triangle]) return;
+            seen_[hit->object] = 1;
+            if (facts_.facts(hit->object).hides[hit->triangle]) return;
             from = hit->t;
         }
     }

@@ -73,7 +73,7 @@ Result<Baked> bake(BakeCells cells, const Scene& objects, const BakeSettings& se
     const bool has_views = has_places && out.cells.views && !out.cells.views->tree.contents.empty();
     if (has_views) {
         out.view_rows = rowsOfPlaced(out.cells.views->visible, out.objects.object_of);
-        out.view_counts = narrowViewRows(out.cells, out.objects, settings, out.view_rows);
+        out.view_counts = narrowViewRows(out.cells, objects, out.objects.object_of, settings, out.view_rows);
     }
     out.interrupted = asksToStop(settings);
     if (out.interrupted) return out;
@@ -136,8 +136,16 @@ BakeCells openToBake(const Scene& scene, const std::string& name) {
 
 void addViewCells(BakeCells& cells, const Scene& scene, const ViewCellSettings& settings) {
     cells.views = viewCellsOf(scene, settings);
+    if (cells.views->tree.contents.empty()) return;
+    SoupCellSettings dividing;
+    dividing.smallest_hole = settings.smallest_hole;
+    dividing.movable = settings.movable;
+    dividing.jobs = settings.jobs;
+    SoupCells own = cellsOfSoup(scene, dividing);
+    cells.view_space = std::move(own.space);
     std::vector<uint32_t>& walls = cells.placing.walls;
     walls.insert(walls.end(), cells.views->walls.begin(), cells.views->walls.end());
+    walls.insert(walls.end(), own.report.walls.begin(), own.report.walls.end());
     std::sort(walls.begin(), walls.end());
     walls.erase(std::unique(walls.begin(), walls.end()), walls.end());
 }
@@ -198,19 +206,32 @@ ObjectCells placeObjects(const BakeCells& cells, const Scene& scene, const BakeS
     return cellsOfObjects(scene, cells.space, placing);
 }
 
-ViewRowCounts narrowViewRows(const BakeCells& cells, const ObjectCells& objects, const BakeSettings& settings,
-                             BitMatrix& rows) {
+ViewRowCounts narrowViewRows(const BakeCells& cells, const Scene& scene, std::span<const uint32_t> object_of,
+                             const BakeSettings& settings, BitMatrix& rows) {
     ViewRowCounts counts;
-    if (!cells.space.ofTree() || cells.space.graph.portals.empty()) return counts;
+    const CellSpace& space = cells.view_space;
+    if (!space.ofTree() || space.graph.portals.empty()) return counts;
+    ObjectCellSettings placing;
+    placing.moves = cells.placing.moves;
+    placing.jobs = settings.jobs;
+    const ObjectCells objects = cellsOfObjects(scene, space, placing);
     const ObjectPlaces& places = objects.places;
+    constexpr uint32_t kNone = ~0u;
+    std::vector<uint32_t> column_of(scene.objects.size(), kNone);
+    for (uint32_t column = 0; column < object_of.size(); ++column) column_of[object_of[column]] = column;
     struct Piece {
-        uint32_t object;
+        uint32_t column;
         Box3d box;
     };
-    std::vector<std::vector<Piece>> pieces(cells.space.graph.cells);
-    for (uint32_t object = 0; object < places.size(); ++object)
-        for (uint64_t at = places.first_cell[object]; at < places.first_cell[object + 1]; ++at)
-            pieces[places.cells[at]].push_back({object, objects.pieces[at]});
+    std::vector<std::vector<Piece>> pieces(space.graph.cells);
+    std::vector<uint32_t> asked;  // columns
+    for (uint32_t place = 0; place < places.size(); ++place) {
+        const uint32_t column = column_of[objects.object_of[place]];
+        if (column == kNone || places.everywhere[place]) continue;
+        asked.push_back(column);
+        for (uint64_t at = places.first_cell[place]; at < places.first_cell[place + 1]; ++at)
+            pieces[places.cells[at]].push_back({column, objects.pieces[at]});
+    }
     const std::vector<Box3d> boxes = leafBoxes(cells.views->tree);
     const auto count = static_cast<uint32_t>(boxes.size());
     std::vector<std::vector<uint32_t>> hidden(count);
@@ -219,36 +240,37 @@ ViewRowCounts narrowViewRows(const BakeCells& cells, const ObjectCells& objects,
     const uint32_t tasks = (count + kTogether - 1) / kTogether;
     for (uint32_t begin = 0; begin < tasks && !asksToStop(settings); begin += kTasks) {
         runJobs(settings.jobs, std::min(kTasks, tasks - begin), [&](uint32_t task) {
-            RegionFlow flow(cells.space);
+            RegionFlow flow(space);
             std::vector<uint8_t> seen;
             const uint32_t first = (begin + task) * kTogether;
             for (uint32_t leaf = std::max(first, 1u); leaf < std::min(count, first + kTogether); ++leaf) {
                 if (boxes[leaf].empty()) continue;  // the first is all that is outside
                 // Seen, or not asked for.
-                seen.assign(places.size(), 0);
+                seen.assign(rows.columns(), 1);
                 size_t left = 0;
-                for (uint32_t object = 0; object < places.size(); ++object) {
-                    seen[object] = !rows.at(leaf, object) || places.everywhere[object];
-                    left += !seen[object];
-                }
+                for (const uint32_t column : asked)
+                    if (rows.at(leaf, column)) {
+                        seen[column] = 0;
+                        ++left;
+                    }
                 ends[leaf] = flow.from(boxes[leaf], [&](uint32_t cell, const Penumbra* through) {
                     for (const Piece& piece : pieces[cell])
-                        if (!seen[piece.object] && (!through || through->touches(piece.box))) {
-                            seen[piece.object] = 1;
+                        if (!seen[piece.column] && (!through || through->touches(piece.box))) {
+                            seen[piece.column] = 1;
                             --left;
                         }
                     return left > 0;
                 });
                 if (ends[leaf] != RegionFlow::End::kDone) continue;
-                for (uint32_t object = 0; object < places.size(); ++object)
-                    if (!seen[object]) hidden[leaf].push_back(object);
+                for (const uint32_t column : asked)
+                    if (!seen[column]) hidden[leaf].push_back(column);
             }
         });
         if (settings.progress)
             settings.progress({"view cells", std::min(1.0, double(begin + kTasks) / static_cast<double>(tasks))});
     }
     for (uint32_t leaf = 0; leaf < count; ++leaf) {
-        for (const uint32_t object : hidden[leaf]) rows.clear(leaf, object);
+        for (const uint32_t column : hidden[leaf]) rows.clear(leaf, column);
         counts.hidden += hidden[leaf].size();
         counts.over_budget += ends[leaf] == RegionFlow::End::kOverBudget;
         counts.out_of_bounds += ends[leaf] == RegionFlow::End::kOutOfBounds;

@@ -85,6 +85,8 @@ struct BakeCells {
     ObjectCellSettings placing;             ///< how objects are placed in the cells of `space`
     std::optional<SceneCellReport> report;  ///< of marked cells: what is odd about them
     std::optional<ViewCells> views;         ///< of the scene whose objects are placed
+    CellSpace
+        view_space;  ///< with view cells: cells of the scene's own walls, which rows are narrowed by; may have none
 };
 
 /// Step 1, of a scene: its marked cells, checked against its walls. Doors count as open, and hide nothing.
@@ -101,7 +103,8 @@ BakeCells soupToBake(const Scene& scene, const std::string& name, const SoupCell
 /// @param name  BakeCells::name
 BakeCells openToBake(const Scene& scene, const std::string& name);
 
-/// After Step 1, of a scene: view cells, by viewCellsOf(). What they rest on becomes a wall, too.
+/// After Step 1, of a scene: view cells, by viewCellsOf(), and cells of its own walls, by cellsOfSoup(), however space is
+/// divided for the query. What these rest on becomes a wall, too.
 /// @param scene  whose objects are placed
 void addViewCells(BakeCells& cells, const Scene& scene, const ViewCellSettings& settings = {});
 
@@ -124,11 +127,13 @@ Result<CellVisibility> bakeRows(const CellGraph& rows, const BakeSettings& setti
 /// Step 5: the cells of each object that stands still, by cellsOfObjects().
 ObjectCells placeObjects(const BakeCells& cells, const Scene& scene, const BakeSettings& settings);
 
-/// Step 5, where there are view cells and portals: takes out of their rows what no way through the portals leads to, by
-/// RegionFlow. Doors count as open. Objects that are in no cell stay in all rows.
-/// @param rows  [leaves of the view cells x placed objects]
-ViewRowCounts narrowViewRows(const BakeCells& cells, const ObjectCells& objects, const BakeSettings& settings,
-                             BitMatrix& rows);
+/// Step 5, where there are view cells: takes out of their rows what no way through the portals of BakeCells::view_space leads
+/// to, by RegionFlow. Doors count as open. Objects that are in none of its cells stay in all rows.
+/// @param scene      whose objects are placed
+/// @param object_of  per column of the rows the scene's object
+/// @param rows       [leaves of the view cells x placed objects]
+ViewRowCounts narrowViewRows(const BakeCells& cells, const Scene& scene, std::span<const uint32_t> object_of,
+                             const BakeSettings& settings, BitMatrix& rows);
 
 /// Step 6: which boxes each row sees, by bakeBoxVisibility().
 /// @param visibility  bakeRows() of the same rows, with BakeSettings::object_rows

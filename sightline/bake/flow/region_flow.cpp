@@ -98,7 +98,8 @@ Penumbra::Penumbra(const Box3d& region, std::span<const glm::dvec3> window, cons
         });
         if (!divides) continue;
         // Moved outward a little, it leaves room for the slack; where it is steep to the window's plane, that takes more.
-        for (double away = 2 * slack; away < 2000 * slack; away *= 8) {
+        double away = std::max(2.0, 1.6 * glm::length(farthest_in) / farthest_in.y) * slack;
+        for (int more = 0; more < 3; ++more, away *= 4) {
             const glm::dvec3 from = a + away * outward;
             glm::dvec3 normal = glm::cross(along, region.corner(best) - from);
             const double size = glm::length(normal);

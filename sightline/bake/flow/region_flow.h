@@ -58,7 +58,7 @@ private:
 
 struct RegionFlowSettings {
     /// That a portal may have, each with a wider window, before it counts as open from edge to edge.
-    uint32_t turns = 6;
+    uint32_t turns = 20;
     uint64_t budget = uint64_t{1} << 18;  ///< portals that are clipped for one region
 };
 

@@ -169,7 +169,7 @@ struct Cell {
 class Division {
 public:
     Division(const Hiding& hiding, const ViewCellSettings& settings, double smallest)
-        : hiding_(hiding), settings_(settings), smallest_(smallest), margin_(3 * hiding.bend) {
+        : hiding_(hiding), settings_(settings), smallest_(smallest), margin_(kMargin * hiding.bend) {
         constexpr double kAlong = 1 - 1e-12;
         for (const FlatHider& hider : hiding.covers.hiders())
             for (int axis = 0; axis < 3; ++axis) {
@@ -205,6 +205,9 @@ public:
     }
 
 private:
+    /// Of holes, how far before a wall a cell ends. A flow through portals takes an eye that is as near to a plane as its slack,
+    /// seven holes, for one on both sides of it: so a cell that came as near to a wall would see what is behind.
+    static constexpr double kMargin = 16;
     static constexpr size_t kBatch = 16;           // cells that are halved before rows are found
     static constexpr double kLeastGain = 1. / 16;  // that every halving may have
 

@@ -271,10 +271,10 @@ RayProbe::RayProbe(const Scene& scene) : scene_(&scene), meshes_(scene.meshes.si
     objects_ = std::make_unique<ProbeTree>(boxes);
 }
 
-std::optional<ProbeHit> RayProbe::nearest(const ProbeRay& ray, double from) const {
+std::optional<ProbeHit> RayProbe::nearest(const ProbeRay& ray, double from, const Counts& counts) const {
     if (scene_->objects.empty()) return std::nullopt;
     ProbeHit best;
-    walk(*objects_, ray, best.t, [&](uint32_t object) { meet(object, ray, from, best); });
+    walk(*objects_, ray, best.t, [&](uint32_t object) { meet(object, ray, from, counts, best); });
     if (best.t == kNever) return std::nullopt;
     return best;
 }
@@ -290,7 +290,7 @@ glm::dvec3 RayProbe::normal(const ProbeHit& hit) const {
     return length > 0 ? mapped * ((glm::determinant(linear) < 0 ? -1 : 1) / length) : glm::dvec3(0);
 }
 
-void RayProbe::meet(uint32_t object, const ProbeRay& ray, double from, ProbeHit& best) const {
+void RayProbe::meet(uint32_t object, const ProbeRay& ray, double from, const Counts& counts, ProbeHit& best) const {
     const SceneObject& placed = scene_->objects[object];
     if (!meshes_[placed.mesh]) return;
     const glm::dmat3 linear(placed.transform);
@@ -311,7 +311,8 @@ void RayProbe::meet(uint32_t object, const ProbeRay& ray, double from, ProbeHit&
         const double t = glm::dot(ac, q) / determinant;
         if (!(t > from && t <= best.t)) return;
         if (t == best.t && std::tie(object, triangle) > std::tie(best.object, best.triangle)) return;
-        best = {t, object, triangle, determinant > 0};
+        const ProbeHit hit{t, object, triangle, determinant > 0};
+        if (!counts || counts(hit)) best = hit;
     });
 }
 

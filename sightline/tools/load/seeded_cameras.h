@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -62,19 +63,24 @@ private:
 };
 
 /// Rays against all the triangles of a scene, which must outlive it. Every surface stops a ray, from both sides and
-/// of any material. Deterministic; const calls are thread-safe.
+/// of any material, unless the caller says what does. Deterministic; const calls are thread-safe.
 class RayProbe {
 public:
     explicit RayProbe(const Scene& scene);
 
+    /// Whether a hit counts.
+    using Counts = std::function<bool(const ProbeHit&)>;
+
     /// The nearest hit with t > from, or none.
-    std::optional<ProbeHit> nearest(const ProbeRay& ray, double from = 0) const;
+    /// @param counts  null: all do. Where two surfaces lie in one place, one of them stops a ray that asks for what is behind
+    ///                the other only if this is said here
+    std::optional<ProbeHit> nearest(const ProbeRay& ray, double from = 0, const Counts& counts = {}) const;
 
     /// The unit normal of the triangle that was hit, on its front; zero if it has no area.
     glm::dvec3 normal(const ProbeHit& hit) const;
 
 private:
-    void meet(uint32_t object, const ProbeRay& ray, double from, ProbeHit& best) const;
+    void meet(uint32_t object, const ProbeRay& ray, double from, const Counts& counts, ProbeHit& best) const;
 
     const Scene* scene_;
     std::vector<std::unique_ptr<ProbeTree>> meshes_;  ///< null for meshes that no object uses

@@ -75,6 +75,14 @@ TEST(Penumbra, HoldsWhatSegmentsThroughTheWindowReach) {
     EXPECT_GT(left_out, beside / 2) << "of " << beside;
 }
 
+// Close to the window's plane a plane is found, too: all of the region is less than a millionth before it.
+TEST(Penumbra, OfAGrazingRegionIsNarrow) {
+    const std::vector<glm::dvec3> window = {{0, 5, 0}, {0, 6, 0}, {0, 6, 1}, {0, 5, 1}};
+    const Penumbra penumbra({{-1e-6, 0, 0}, {1e-6, 1, 1}}, window, {1, 0, 0, 0}, 1e-9);
+    EXPECT_FALSE(penumbra.touches({{2, 6, 0.4}, {2, 1e5, 0.6}}));
+    EXPECT_TRUE(penumbra.touches({{2, 1e7, 0.5}, {2, 1e7, 0.5}}));
+}
+
 uint32_t cellAt(const CellSpace& space, const glm::dvec3& point) {
     return space.graph.cell_of_leaf[leafOf(space.tree, point)];
 }

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sightline/bake/bake.h"
 #include "sightline/bake/soup/soup_scale.h"
 #include "sightline/bake/view_cells/flat_hiders.h"
 #include "sightline/base/random.h"
@@ -95,6 +96,76 @@ TEST(ViewCells, HoldInABuildingAndACity) {
         for (size_t object = 0; object < scene.objects.size(); ++object) EXPECT_TRUE(cells.visible.at(0, object));
         EXPECT_EQ(leafOf(cells.tree, glm::dvec3(1e9, 0, 0)), 0u);
     }
+}
+
+/// View cells whose rows portals have narrowed, as a bake makes them.
+ViewCells narrowed(const Scene& scene, const ViewCellSettings& settings) {
+    BakeCells cells = openToBake(scene, "narrowed");
+    addViewCells(cells, scene, settings);
+    Result<Baked> baked = bake::bake(std::move(cells), scene);
+    EXPECT_TRUE(baked.ok());
+    if (!baked) return {};
+    ViewCells out = std::move(*baked->cells.views);
+    for (size_t row = 0; row < out.visible.rows(); ++row)
+        for (size_t place = 0; place < baked->objects.object_of.size(); ++place)
+            if (!baked->view_rows.at(row, place)) out.visible.clear(row, baked->objects.object_of[place]);
+    return out;
+}
+
+TEST(ViewCells, NarrowedByPortalsLeaveOutNothingThatALineComesTo) {
+    Random random(6);
+    Judged by_shadows, by_both;
+    for (int round = 0; round < 16; ++round) {
+        SCOPED_TRACE("round " + std::to_string(round));
+        const MarkedRooms made = randomRooms(random, round);
+        ViewCellSettings settings;
+        settings.most_cells = 64;
+        settings.least_hidden = 0;
+        const ViewCells shadows = viewCellsOf(made.scene, settings), both = narrowed(made.scene, settings);
+        ASSERT_EQ(both.visible.rows(), shadows.visible.rows());
+        for (size_t row = 0; row < both.visible.rows(); ++row)
+            for (size_t object = 0; object < both.visible.columns(); ++object) {
+                by_shadows.hidden += !shadows.visible.at(row, object);
+                by_both.hidden += !both.visible.at(row, object);
+            }
+        Judged judged;
+        judge(made.scene, both, 4000, random, judged);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(by_both.hidden, by_shadows.hidden + by_shadows.hidden / 25);
+}
+
+/// A cell before a wall sees through its window alone, and not what is behind the wall.
+TEST(ViewCells, OfARoomSeeLittleThroughASmallWindow) {
+    MarkedRooms made;
+    const FlatRect section{{0, 0}, {3, 4}}, window{{1.4, 1.9}, {1.6, 2.1}};
+    made.room({{0, 0, 0}, {4, 3, 4}}, 2);
+    made.wall(0, 4, section, -1, {window});
+    made.room({{4, window.min.x, window.min.y}, {4.25, window.max.x, window.max.y}}, 3);
+    made.wall(0, 4.25, section, 1, {window});
+    made.room({{4.25, 0, 0}, {8.25, 3, 4}}, 1);
+    const auto first = static_cast<uint32_t>(made.scene.objects.size());
+    Random random(7);
+    for (int i = 0; i < 60; ++i) {
+        const double y = random.uniform(0.1, 2.8), z = random.uniform(0.1, 3.8);
+        made.wall(0, random.uniform(4.5, 8), {{y, z}, {y + 0.1, z + 0.1}}, -1);
+    }
+    ViewCellSettings settings;
+    settings.most_cells = 256;
+    settings.least_hidden = 0;
+    const ViewCells cells = narrowed(made.scene, settings);
+    const std::vector<Box3d> boxes = leafBoxes(cells.tree);
+    double seen = 0, asked = 0;
+    for (uint32_t leaf = 1; leaf < boxes.size(); ++leaf) {
+        const glm::dvec3 middle = boxes[leaf].center();
+        if (!contains({{0, 0, 0}, {4, 3, 4}}, middle) || boxes[leaf].size().x < 0.1) continue;
+        for (uint32_t object = first; object < made.scene.objects.size(); ++object, ++asked)
+            seen += cells.visible.at(leaf, object);
+    }
+    EXPECT_GT(asked, 1000);
+    EXPECT_GT(seen, 0);
+    EXPECT_LT(seen, 0.3 * asked);
+    RecordProperty("share", std::to_string(seen / asked));
 }
 
 TEST(ViewCells, AreTheSameWithAnyThreads) {

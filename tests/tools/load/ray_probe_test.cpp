@@ -85,6 +85,33 @@ TEST(RayProbe, FindsWhatTryingAllFinds) {
     EXPECT_GT(hits, 200);
 }
 
+TEST(RayProbe, StopsAtWhatCounts) {
+    // Two faces in one place, back to back, and a third one behind them.
+    Scene scene;
+    scene.materials.resize(1);
+    for (const double z : {-1.0, -2.0}) {
+        Mesh& mesh = scene.meshes.emplace_back();
+        for (const glm::vec3& corner : {glm::vec3(-3, -3, 0), glm::vec3(3, -3, 0), glm::vec3(0, 3, 0)})
+            mesh.positions.push_back(corner + glm::vec3(0, 0, z));
+        mesh.indices = {0, 2, 1, 0, 1, 2};
+        for (const glm::vec3& corner : mesh.positions) mesh.bounds.grow(glm::dvec3(corner));
+        mesh.primitives.push_back({0, 2, 0});
+        SceneObject& object = scene.objects.emplace_back();
+        object.mesh = static_cast<uint32_t>(scene.meshes.size() - 1);
+    }
+    const RayProbe probe(scene);
+    const ProbeRay ray{{0.1, 0.2, 0}, {0, 0, -1}};
+    const auto isFront = [](const ProbeHit& hit) { return hit.front; };
+    const std::optional<ProbeHit> front = probe.nearest(ray, 0, isFront);
+    ASSERT_TRUE(front && front->front);
+    EXPECT_DOUBLE_EQ(front->t, 1);
+    EXPECT_EQ(front->object, 0u);
+    const std::optional<ProbeHit> next = probe.nearest(ray, front->t, isFront);
+    ASSERT_TRUE(next && next->front);
+    EXPECT_EQ(next->object, 1u);
+    EXPECT_FALSE(probe.nearest(ray, 0, [](const ProbeHit&) { return false; }));
+}
+
 TEST(RayProbe, SeesFrontsOfMirroredInstances) {
     const Scene scene = makeCity(4, 2000);
     const RayProbe probe(scene);
