@@ -48,6 +48,7 @@ constexpr Case kCases[] = {
     {"vis", benchVis},
     {"volumes", benchVolumes},
     {"walks", benchWalks},
+    {"ways", benchWays},
 };
 
 }  // namespace

@@ -111,6 +111,10 @@ Table benchVolumes(const Options& options);
 /// keeps, beside the frustum alone and a query without a memory.
 Table benchWalks(const Options& options);
 
+/// Buildings by their marks and by their own walls, or a scene by its walls: ways from place to place, beside a search of all cells
+/// by the middles of portals, which are longer.
+Table benchWays(const Options& options);
+
 // Parts of these cases that have a file of their own.
 
 /// Two eyes, four cascades, the six faces of a cube, from the middle of a world, in one walk of its tree and in a walk for each.

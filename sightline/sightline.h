@@ -10,10 +10,11 @@
 #endif
 
 // Asking: a World, its Snapshots, a View, and a Query, which answers with a VisibleSet.
-#include "sightline/geom/clip_space.h"   // a View from the matrices of Vulkan, Direct3D, reversed depth, either hand
-#include "sightline/geom/mirror.h"       // a View of what a flat mirror shows
-#include "sightline/geom/view.h"         // a View: camera, viewport, and what is declared of the frame
-#include "sightline/geom/view_limits.h"  // sections and windows of a view, from boxes and rectangles
+#include "sightline/geom/clip_space.h"     // a View from the matrices of Vulkan, Direct3D, reversed depth, either hand
+#include "sightline/geom/mirror.h"         // a View of what a flat mirror shows
+#include "sightline/geom/view.h"           // a View: camera, viewport, and what is declared of the frame
+#include "sightline/geom/view_limits.h"    // sections and windows of a view, from boxes and rectangles
+#include "sightline/query/connectivity.h"  // ConnectivityQuery: by which way one comes from place to place
 #include "sightline/query/object_queries.h"  // ObjectQueries: a world drawn by a graphics interface's occlusion queries
 #include "sightline/query/query.h"           // Query: what can be seen
 #include "sightline/query/shadow_query.h"    // ShadowQuery: which objects can darken what a view shows

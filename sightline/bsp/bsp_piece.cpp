@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sightline/math/exact_product.h"
+#include "sightline/math/finite.h"
 
 namespace sightline {
 namespace {
@@ -14,8 +15,6 @@ glm::dvec3 accurateCross(const glm::dvec3& a, const glm::dvec3& b) {
     return {differenceOfProducts(a.y, b.z, a.z, b.y), differenceOfProducts(a.z, b.x, a.x, b.z),
             differenceOfProducts(a.x, b.y, a.y, b.x)};
 }
-
-bool isFinite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 /// From the back end to the front one, whatever the direction of the edge.
 /// @param uncertainty  grows to how far the crossing may be off

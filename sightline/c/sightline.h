@@ -22,6 +22,7 @@
 #include "sightline/c/shadows.h"     // shadow casters
 #include "sightline/c/sight.h"       // lines of sight, and what a region sees
 #include "sightline/c/view.h"        // the eye
+#include "sightline/c/ways.h"        // ways from place to place, and how long they are
 #include "sightline/c/world.h"       // objects, occluders, baked visibility, snapshots
 
 #endif

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sightline/geom/convex_region.h"
+#include "sightline/math/finite.h"
 
 namespace sightline {
 namespace {
@@ -21,17 +22,13 @@ Error fault(std::string_view kind, std::string_view name, std::string_view what)
     return Error{Error::Kind::kUsage, std::move(message)};
 }
 
-bool finite(const glm::dvec3& point) {
-    return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
-}
-
 }  // namespace
 
 Result<uint32_t> CellSpaceBuilder::addCell(std::string name, std::span<const glm::dvec4> planes) {
     std::vector<glm::dvec4> unit(planes.begin(), planes.end());
     for (glm::dvec4& plane : unit) {
         const double length = glm::length(glm::dvec3(plane));
-        if (!finite(plane) || !std::isfinite(plane.w) || !(length > 0) || !std::isfinite(length))
+        if (!isFinite(plane) || !std::isfinite(plane.w) || !(length > 0) || !std::isfinite(length))
             return fault("cell", name, "a plane is not finite or has no normal");
         plane /= length;
     }
@@ -65,7 +62,7 @@ Result<uint32_t> CellSpaceBuilder::addCell(std::string name, const Box3d& box) {
 Result<uint32_t> CellSpaceBuilder::addHull(std::string name, std::span<const glm::dvec3> points) {
     if (points.size() < 4 || points.size() > 64) return fault("cell", name, "needs 4 to 64 points");
     for (const glm::dvec3& point : points)
-        if (!finite(point)) return fault("cell", name, "a point is not finite");
+        if (!isFinite(point)) return fault("cell", name, "a point is not finite");
     const std::vector<glm::dvec4> planes = planesAround(points);
     if (planes.empty()) return fault("cell", name, "its points lie in one plane");
     return addCell(std::move(name), planes);
@@ -80,7 +77,7 @@ uint32_t CellSpaceBuilder::outside() {
 }
 
 Result<uint32_t> CellSpaceBuilder::addDoor(std::string name, uint64_t key, const glm::dvec3& slide) {
-    if (!finite(slide)) return fault("door", name, "its slide is not finite");
+    if (!isFinite(slide)) return fault("door", name, "its slide is not finite");
     space_.doors.push_back({std::move(name), key, slide});
     return static_cast<uint32_t>(space_.doors.size() - 1);
 }
@@ -92,7 +89,7 @@ Status CellSpaceBuilder::addPortal(std::string_view name, uint32_t a, uint32_t b
     if (door != CellPortal::kNone && door >= space_.doors.size()) return fault("portal", name, "there is no such door");
     if (outline.size() < 3) return fault("portal", name, "has fewer than 3 points");
     for (const glm::dvec3& point : outline)
-        if (!finite(point)) return fault("portal", name, "a point is not finite");
+        if (!isFinite(point)) return fault("portal", name, "a point is not finite");
     const size_t before = space_.graph.portals.size();
     if (!space_.graph.addPortal(a, b, outline, door)) return fault("portal", name, "has no area");
     // An outline that runs the other way round is the same hole seen from b.

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/cells/portal_eye.h"
 
+#include "sightline/math/finite.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace sightline {
 namespace {
-
-bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 glm::dmat3 matrixOfRows(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     return glm::transpose(glm::dmat3(a, b, c));

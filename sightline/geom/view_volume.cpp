@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/geom/view_volume.h"
 
+#include "sightline/math/finite.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,10 +11,6 @@
 namespace sightline {
 
 namespace {
-
-bool isFinite(const glm::dvec4& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
-}
 
 /// What clip space asks of a row sum: the rows and the sign of the second; the first may be missing.
 struct RowSum {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/images/portal_frame.h"
 
+#include "sightline/math/finite.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,8 +12,6 @@ namespace sightline::images {
 namespace {
 
 constexpr double kFlat = 1e-3, kInPlaneShare = 1e-6;
-
-bool isFinite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     const glm::dvec2 ab = b - a, ac = c - a;

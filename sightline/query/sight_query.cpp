@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sightline/cells/pvs.h"
+#include "sightline/math/finite.h"
 #include "sightline/tree/descend.h"
 #include "sightline/world/seen_objects.h"
 #include "sightline/world/world_state.h"
@@ -16,8 +17,6 @@ namespace {
 
 using detail::ObjectRecord;
 using detail::SnapshotState;
-
-bool isFinite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 double farOf(const glm::dvec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
 
@@ -165,13 +164,13 @@ SightLine SightQuery::look(const Snapshot& now, const glm::dvec3& from, const gl
 /// Finds the rows that tell what is seen from a region; false if nothing does.
 bool SightQuery::Impl::findCells(const SnapshotState& now, const Box3d& region, uint32_t layers) {
     const detail::CellState& state = now.cell_state;
-    if (!state.cells || !region.finite() || region.empty()) return false;
-    if (!state.walls_stand || (state.has_walls && !(now.common_layers & layers))) return false;
     if (rows_of != state.cells) {
         by_cells.clear();
         by_objects.clear();
     }
-    rows_of = state.cells;
+    rows_of = state.cells;  // or none: what is kept of another world goes, whose memory may
+    if (!state.cells || !region.finite() || region.empty()) return false;
+    if (!state.walls_stand || (state.has_walls && !(now.common_layers & layers))) return false;
     const auto& views = state.cells->views;
     if (!views && !state.cells->hasRows()) return false;
     glm::dvec3 corners[8];

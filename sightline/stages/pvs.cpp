@@ -11,14 +11,14 @@
 namespace sightline::detail {
 
 void CellMemory::findRows(const Frame& frame) {
-    if (!uses(Stage::kPvs)) return;
     const CellState& cells = frame.world->cell_state;
     if (pvs_of_ != cells.cells) {
         pvs_.clear();
         seen_objects_.clear();
         rows_filled_ = false;
     }
-    pvs_of_ = cells.cells;
+    pvs_of_ = cells.cells;  // of another world, or none: what is kept of the last one goes, whose memory may
+    if (!uses(Stage::kPvs)) return;
     const auto& views = cells.cells->views;
     bool changed = cells.cells->hasRows() && pvs_.update(cells.cells->graph, cells.cells->rows, start_);
     if (views) {

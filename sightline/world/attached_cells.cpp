@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/world/attached_cells.h"
 
+#include "sightline/math/finite.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -10,11 +12,6 @@ namespace sightline::detail {
 namespace {
 
 constexpr uint32_t kNoCell = CellGraph::kNoCell;
-
-bool isFinite(const glm::dvec4& plane) {
-    return std::isfinite(plane.x) && std::isfinite(plane.y) && std::isfinite(plane.z) && std::isfinite(plane.w);
-}
-bool isFinite(const glm::dvec3& point) { return isFinite(glm::dvec4(point, 0)); }
 
 Error wrong(std::string what) { return {Error::Kind::kUsage, "the cells cannot be attached: " + std::move(what)}; }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/query/connectivity.h"
 #include "sightline/visfile/visibility_file.h"
 #include "tests/c/c_twin.h"
 #include "tests/support/made_rooms.h"
@@ -172,6 +173,9 @@ TEST(CWorld, NullPointersAreAnsweredEverywhere) {
     slBuffer* buffer = nullptr;
     slSight* sight = nullptr;
     slShadows* shadows = nullptr;
+    slWays* ways = nullptr;
+    slWay way;
+    bool known = false;
     slVisibility* file = nullptr;
     const double point[3] = {0, 0, 0};
     slSightLine line;
@@ -184,12 +188,14 @@ TEST(CWorld, NullPointersAreAnsweredEverywhere) {
     ASSERT_EQ(slCreateBuffer(64, &hooks, &buffer), SL_OK);
     ASSERT_EQ(slCreateSight(&hooks, &sight), SL_OK);
     ASSERT_EQ(slCreateShadows(&hooks, &shadows), SL_OK);
+    ASSERT_EQ(slCreateWays(&hooks, &ways), SL_OK);
     const slStatus statuses[] = {
         slCreateQuery(&hooks, nullptr),
         slCreateBuffer(64, &hooks, nullptr),
         slCreateBuffer(0, &hooks, &buffer),
         slCreateSight(&hooks, nullptr),
         slCreateShadows(&hooks, nullptr),
+        slCreateWays(&hooks, nullptr),
         slAddOccluder(world.world, nullptr, nullptr),
         slAddClusters(world.world, nullptr, nullptr),
         slAddLods(world.world, nullptr, 1, nullptr),
@@ -217,6 +223,9 @@ TEST(CWorld, NullPointersAreAnsweredEverywhere) {
         slFindCasters(shadows, now, &view, &none_there, &sun, nullptr, &casters),
         slSightLook(sight, now, point, nullptr, nullptr, &line),
         slSightFrom(sight, now, nullptr, 1, nullptr),
+        slBeginWays(ways, now, point, nullptr, nullptr),
+        slBeginWays(ways, nullptr, point, nullptr, &known),
+        slWayTo(ways, nullptr, &way),
         slBufferBegin(buffer, nullptr),
         slBufferDraw(buffer, nullptr, nullptr, nullptr),
         slBufferAsk(buffer, nullptr, 1, nullptr),
@@ -230,6 +239,9 @@ TEST(CWorld, NullPointersAreAnsweredEverywhere) {
     slDestroyBuffer(buffer);
     slDestroySight(sight);
     slDestroyShadows(shadows);
+    const slWaySettings no_defaults{};
+    EXPECT_EQ(slBeginWays(ways, now, point, &no_defaults, &known), SL_NO_DEFAULTS);
+    slDestroyWays(ways);
     // What is null is gone already.
     slDestroyWorld(nullptr);
     slDestroyQuery(nullptr);
@@ -426,7 +438,7 @@ TEST(CVisibility, AttachesBakedCellsWithDoors) {
         ASSERT_NE(door.index, 0u);
         Random random(6);
         uint64_t by_portals = 0;
-        int with_scissors = 0;
+        int with_scissors = 0, bent = 0;
         for (const double open : {1.0, 0.0}) {
             ASSERT_EQ(slSetDoor(world.world, door, open), SL_OK);
             baked.rooms.world.setPortal(baked.rooms.world.findPortal("door 0"), open);
@@ -452,7 +464,32 @@ TEST(CVisibility, AttachesBakedCellsWithDoors) {
             ASSERT_EQ(slSightFrom(sight, c.now, &region, ~0u, &seen), SL_OK);
             EXPECT_TRUE(seen.known);
             slDestroySight(sight);
+            slWays* ways = nullptr;
+            ASSERT_EQ(slCreateWays(nullptr, &ways), SL_OK);
+            ConnectivityQuery same;
+            slWaySettings settings = slDefaultWaySettings();
+            settings.narrowest = 0.5;
+            for (int i = 0; i < 30; ++i) {
+                const glm::dvec3 from = baked.rooms.pointInside(random), to = baked.rooms.pointInside(random);
+                bool known = false;
+                ASSERT_EQ(slBeginWays(ways, c.now, &from.x, i % 2 ? &settings : nullptr, &known), SL_OK);
+                EXPECT_EQ(known, same.begin(now, from, {.narrowest = i % 2 ? 0.5 : 0}));
+                slWay way;
+                ASSERT_EQ(slWayTo(ways, &to.x, &way), SL_OK);
+                const Way expected = same.to(to);
+                EXPECT_EQ(way.known, expected.known);
+                EXPECT_EQ(way.connected, expected.connected);
+                EXPECT_EQ(way.distance, expected.distance);
+                EXPECT_EQ(way.narrowest, expected.narrowest);
+                ASSERT_EQ(way.point_count, expected.points.size());
+                ASSERT_EQ(way.cell_count, expected.cells.size());
+                EXPECT_TRUE(way.cell_count == 0 || way.cells[way.cell_count - 1] == expected.cells.back());
+                if (way.point_count > 0) { EXPECT_EQ(way.points[3 * way.point_count - 1], to.z); }
+                bent += way.point_count > 2;
+            }
+            slDestroyWays(ways);
         }
+        EXPECT_GT(bent, 10);
         EXPECT_GT(by_portals, 100u);
         EXPECT_GT(with_scissors, 20);
         slDetach(world.world);

@@ -229,6 +229,11 @@ class Answers(unittest.TestCase):
         world.add([[[0, 0, 0], [1, 1, 1]]])
         self.assertEqual(len(world.commit()), 1)
         world.attach(baked.read_bytes())
+        ways = sightline.Ways()
+        self.assertFalse(ways.begin(world.commit(), (1e9, 0, 0)))
+        way = ways.to((0, 0, 0))
+        self.assertEqual((way.known, way.connected), (False, True))
+        self.assertEqual(way.points.shape, (0, 3))
 
 
 if __name__ == "__main__":

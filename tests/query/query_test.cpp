@@ -9,11 +9,14 @@
 #include <numeric>
 #include <thread>
 
+#include "sightline/query/connectivity.h"
 #include "sightline/query/explain/credits.h"
 #include "sightline/query/explain/explain.h"
 #include "sightline/query/shadow_query.h"
 #include "sightline/query/sight_query.h"
+#include "tests/support/furnished_rooms.h"
 #include "tests/support/made_world.h"
+#include "tests/support/memory.h"
 #include "tests/support/targets.h"
 
 namespace sightline::test {
@@ -248,6 +251,43 @@ TEST(Query, AndItsKinMoveWithAllTheyRemember) {
         EXPECT_EQ(book_of.credits(view).size(), credits);
         other_book = std::move(book_of);
         EXPECT_EQ(other_book.credits(view).size(), credits);
+    }
+}
+
+/// What was asked of one world and then of another keeps nothing of the first one.
+TEST(Query, AndItsKinLetTheMemoryOfAWorldGo) {
+    RoomsWithRows made(3);
+    Random random(3);
+    furnish(made.rooms, random, 50);
+    CountingMemory arena;
+    MadeWorld other(4, 50);
+    const Snapshot there = other.world.commit();
+    Query query;
+    SightQuery sight;
+    ShadowQuery shadow;
+    ConnectivityQuery ways;
+    const glm::dvec3 eye = made.rooms.pointInside(random);
+    const View view = viewAt(eye, made.rooms.pointInside(random), kRoomCamera);
+    const Light sun{.direction = {0.3, -1, 0.2}};
+    const auto askAll = [&](const Snapshot& now) {
+        const VisibleSet seen = query.visible(now, view, {.stages = kAllStages});
+        const std::vector<Visible> receivers(seen.objects.begin(), seen.objects.end());
+        shadow.casters(now, view, receivers, sun);
+        sight.look(now, eye, eye + 1.0);
+        sight.seenFrom(now, {eye - 0.1, eye + 0.1});
+        ways.begin(now, eye);
+        return ways.to(eye + 0.01).known;
+    };
+    for (int round = 0; round < 2; ++round) {
+        {
+            World world = World::create({.memory = &arena});
+            for (size_t i = 0; i < made.rooms.boxes.size(); ++i) world.add(MadeRooms::objectOf(made.rooms.boxes[i], i));
+            ASSERT_TRUE(world.attach(made.rooms.space, &made.rows));
+            const Snapshot here = world.commit();
+            EXPECT_TRUE(askAll(here));
+            EXPECT_FALSE(askAll(there)) << "it has no cells";
+        }
+        EXPECT_EQ(arena.bytes, 0u);
     }
 }
 

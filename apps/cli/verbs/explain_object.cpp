@@ -213,19 +213,6 @@ std::string sightingText(const ObjectAnswer& answer) {
     return text + ".";
 }
 
-std::string cellName(const AskedScene& asked, uint32_t cell) {
-    const bool named = cell < asked.cells.size() && !asked.cells[cell].empty();
-    return named ? "'" + oneLine(asked.cells[cell], 60) + "'" : fmt::format("cell {}", cell);
-}
-
-std::string cellNames(const AskedScene& asked, const Array<uint32_t>& cells, const char* between) {
-    constexpr size_t kMost = 8;
-    std::string text;
-    for (size_t i = 0; i < std::min(cells.size(), kMost); ++i) text += (i ? between : "") + cellName(asked, cells[i]);
-    if (cells.size() > kMost) text += fmt::format("{}{} more", between, cells.size() - kMost);
-    return text;
-}
-
 bool isByCells(const Explanation& why) {
     return why.verdict == Verdict::kNotInPvs || why.verdict == Verdict::kNoWindow;
 }
@@ -332,6 +319,18 @@ std::string titleOf(const Scene& scene, uint32_t object) {
 std::string callOf(const Scene& scene, uint32_t object) {
     const std::string path = oneLine(objectPath(scene, scene.objects[object]), kLongestCall);
     return path.empty() ? fmt::format("object {}", scene.objects[object].key) : fmt::format("'{}'", path);
+}
+
+std::string cellNames(const AskedScene& asked, std::span<const uint32_t> cells, const char* between) {
+    constexpr size_t kMost = 8;
+    std::string text;
+    for (size_t i = 0; i < std::min(cells.size(), kMost); ++i) {
+        const bool named = cells[i] < asked.cells.size() && !asked.cells[cells[i]].empty();
+        text += i ? between : "";
+        text += named ? "'" + oneLine(asked.cells[cells[i]], 60) + "'" : fmt::format("cell {}", cells[i]);
+    }
+    if (cells.size() > kMost) text += fmt::format("{}{} more", between, cells.size() - kMost);
+    return text;
 }
 
 AskedScene::AskedScene(const Scene& from, const RunOptions& options) : scene(from) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -95,6 +96,9 @@ struct AskedScene {
     static uint32_t objectOf(ObjectId id) { return id.index - 1; }
     std::string nameOf(ObjectId id) const { return callOf(scene, objectOf(id)); }
 };
+
+/// "'hall', 'study', cell 7": by their names where they have some, at most eight.
+std::string cellNames(const AskedScene& asked, std::span<const uint32_t> cells, const char* between);
 
 /// A view, and whose it is: ObjectAnswer::eye.
 struct EyeView {

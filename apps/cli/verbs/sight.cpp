@@ -1,4 +1,4 @@
-// The verb `sight`: whether one point sees another, and what may be seen from a place or its surroundings.
+// The verb `sight`: whether one point sees another, the way between them, and what may be seen from a place.
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <cstdio>
@@ -16,6 +16,7 @@
 #include "apps/cli/verbs/explain_object.h"
 #include "apps/cli/verbs/verbs.h"
 #include "apps/cli/verbs/visibility_choice.h"
+#include "sightline/query/connectivity.h"
 #include "sightline/query/sight_query.h"
 #include "sightline/tools/report/output_file.h"
 
@@ -27,7 +28,7 @@ using Json = nlohmann::ordered_json;
 
 struct SightOptions : RunOptions {
     std::string from, to;
-    double within = 0;
+    double within = 0, narrowest = 0;
 };
 
 Result<glm::dvec3> readPoint(const char* option, const std::string& text) {
@@ -55,6 +56,34 @@ void answerLine(const AskedScene& asked, const glm::dvec3& from, const glm::dvec
     fmt::print(out, "{}\n",
                line.blocked ? fmt::format("blocked: {} stands between them", asked.nameOf(line.by.id))
                             : "open: no front of an occluder stands between them");
+}
+
+/// How far two points are apart for whoever goes through open portals of the file's cells.
+void answerWay(const AskedScene& asked, const glm::dvec3& from, const glm::dvec3& to, double narrowest, std::FILE* out,
+               Json& body) {
+    constexpr size_t kMost = 4;
+    ConnectivityQuery query;
+    query.begin(asked.now, from, {.narrowest = narrowest});
+    const Way way = query.to(to);
+    Json& told = body["way"] = {{"known", way.known}, {"connected", way.connected}};
+    if (!way.known)
+        return fmt::print(out, "way: not known, for a place is in no cell of the file, or a wall has moved\n");
+    if (!way.connected)
+        return fmt::print(out, "no way: walls{} part them\n", narrowest > 0 ? " and narrower holes" : "");
+    told["distance"] = way.distance;
+    if (std::isfinite(way.narrowest)) told["narrowest"] = way.narrowest;
+    for (const glm::dvec3& point : way.points) told["points"].push_back(pointJson(point));
+    for (const uint32_t cell : way.cells) told["cells"].push_back(cell);
+    const size_t bends = way.points.size() - 2;
+    std::string text =
+        fmt::format("a way: {:.6g} long, {}", way.distance,
+                    bends == 0 ? "straight" : fmt::format("with {} bend{}", bends, bends == 1 ? "" : "s"));
+    if (std::isfinite(way.narrowest)) text += fmt::format("; the narrowest hole on it is {:.3g} wide", way.narrowest);
+    fmt::print(out, "{}\n", text);
+    for (size_t i = 1; i <= std::min(bends, kMost); ++i)
+        fmt::print(out, "  bends at {:.6g}, {:.6g}, {:.6g}\n", way.points[i].x, way.points[i].y, way.points[i].z);
+    if (bends > kMost) fmt::print(out, "  and at {} more (--json lists them)\n", bends - kMost);
+    fmt::print(out, "  through {}\n", cellNames(asked, way.cells, ", "));
 }
 
 void answerRegion(const AskedScene& asked, const glm::dvec3& from, double within, std::FILE* out, Json& body) {
@@ -98,6 +127,7 @@ Status runSight(SightOptions& options) {
     Json body = {{"schema", "sightline.sight/1"}, {"scene", options.scene.title()}, {"from", pointJson(*from)}};
     if (options.to.empty()) answerRegion(asked, *from, options.within, out, body);
     else answerLine(asked, *from, *to, out, body);
+    if (!options.to.empty() && options.opened) answerWay(asked, *from, *to, options.narrowest, out, body);
     if (options.json.empty()) return success();
     return writeText(options.json, body.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
@@ -105,7 +135,8 @@ Status runSight(SightOptions& options) {
 }  // namespace
 
 void addSight(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("sight", "whether two points see each other, and what a region sees");
+    CLI::App* verb =
+        tool.add_subcommand("sight", "whether two points see each other, the way between them, and what a region sees");
     const auto options = std::make_shared<SightOptions>();
     addSceneChoice(*verb, options->scene);
     verb->add_option("--from", options->from, "where one stands [world units]")->required()->type_name("X,Y,Z");
@@ -117,9 +148,17 @@ void addSight(CLI::App& tool, int& exit_code) {
         ->check(CLI::Range(0.0, 1e9))
         ->excludes(to)
         ->type_name("R");
-    verb->add_option("--visibility", options->visibility.file,
-                     "cells and rows that `bake` made of this scene: the second question is answered by them")
-        ->type_name("FILE");
+    CLI::Option* visibility =
+        verb->add_option(
+                "--visibility", options->visibility.file,
+                "cells and rows that `bake` made of this scene: what a region sees is answered by them, and by "
+                "which way one comes to the other point")
+            ->type_name("FILE");
+    verb->add_option("--narrowest", options->narrowest, "holes that are narrower are no way [world units] (default: 0)")
+        ->check(CLI::Range(0.0, 1e9))
+        ->needs(to)
+        ->needs(visibility)
+        ->type_name("W");
     verb->add_option("--json", options->json, "write the answer as JSON (-: standard output)")->type_name("FILE");
     verb->callback([options, &exit_code] {
         exit_code = kDone;

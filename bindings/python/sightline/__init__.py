@@ -21,13 +21,14 @@ import ctypes.util
 import os
 import pathlib
 import threading
+import typing
 
 import cffi
 import numpy
 
 from . import _cdef
 
-__all__ = ["Buffer", "Error", "Explanation", "Occluder", "Query", "Sight", "Snapshot", "View", "Visible", "World", "version"]
+__all__ = ["Buffer", "Error", "Explanation", "Occluder", "Query", "Sight", "Snapshot", "View", "Visible", "Way", "Ways", "World", "version"]
 
 _ffi = cffi.FFI()
 _ffi.cdef(_cdef.TEXT)
@@ -420,6 +421,41 @@ class Sight:
         region, seen = _ffi.new("slBox*", [list(map(float, low)), list(map(float, high))]), _ffi.new("slRegionSet*")
         _check(_lib.slSightFrom(self._handle, snapshot._handle, region, layers, seen))
         return _view_of(seen.objects, seen.count, _VISIBLE, self)["key"] if seen.known else None
+
+
+class Way(typing.NamedTuple):
+    """A way through open portals."""
+    known: bool              # False: nothing is known of one of the places, and connected is True
+    connected: bool
+    distance: float
+    narrowest: float         # the width of the narrowest hole on it; infinite: it passes none
+    points: numpy.ndarray    # [n, 3]: both places, and the bends between them
+    cells: numpy.ndarray
+
+
+class Ways:
+    """Ways from one place to others, for sound and for whoever walks; scratch of one thread."""
+
+    def __init__(self):
+        out = _ffi.new("slWays**")
+        _check(_lib.slCreateWays(_hooks(), out))
+        self._handle = _ffi.gc(out[0], _lib.slDestroyWays)
+
+    def begin(self, snapshot, place, narrowest=0.0, farthest=float("inf")):
+        """Says where ways begin; False: nothing is known of that place."""
+        settings, known = _ffi.new("slWaySettings*", _lib.slDefaultWaySettings()), _ffi.new("bool*")
+        settings.narrowest, settings.farthest = narrowest, farthest
+        _check(_lib.slBeginWays(self._handle, snapshot._handle, _ffi.new("double[3]", list(map(float, place))), settings,
+                                known))
+        return bool(known[0])
+
+    def to(self, place):
+        """The way to a place, a Way."""
+        way = _ffi.new("slWay*")
+        _check(_lib.slWayTo(self._handle, _ffi.new("double[3]", list(map(float, place))), way))
+        points = _view_of(way.points, 3 * way.point_count, numpy.dtype("f8"), self).reshape(-1, 3).copy()
+        cells = _view_of(way.cells, way.cell_count, numpy.dtype("u4"), self).copy()
+        return Way(bool(way.known), bool(way.connected), way.distance, way.narrowest, points, cells)
 
 
 class Buffer:

@@ -106,6 +106,7 @@ enum Cookie : uint32_t {
     kLightCookie,
     kCasterCookie,
     kBakeCookie,
+    kWayCookie,
 };
 
 }  // namespace sightline::c

@@ -8,15 +8,14 @@
 
 #include "sightline/base/assert.h"
 #include "sightline/math/box.h"
+#include "sightline/math/finite.h"
 #include "sightline/prepare/facing/facets.h"
 #include "sightline/prepare/inner/solids.h"
 
 namespace sightline {
 namespace {
 
-bool isFinite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
-bool isFinite(const MeshView& mesh, uint32_t triangle) {
+bool hasFiniteCorners(const MeshView& mesh, uint32_t triangle) {
     for (uint32_t corner = 0; corner < 3; ++corner)
         if (!isFinite(mesh.positions[mesh.indices[3 * triangle + corner]])) return false;
     return true;
@@ -50,7 +49,7 @@ std::vector<Closed> findClosed(const MeshView& mesh, std::span<const MeshPart> p
         any |= part.double_sided;
         for (uint32_t t = part.first; t < part.first + part.count; ++t) {
             double_sided[t] = part.double_sided;
-            if (!isDegenerate(mesh, t) && isFinite(mesh, t)) given.push_back(t);
+            if (!isDegenerate(mesh, t) && hasFiniteCorners(mesh, t)) given.push_back(t);
         }
     }
     if (!any) return found;

@@ -5,15 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/math/finite.h"
 #include "sightline/prepare/occluder/exact.h"
 #include "sightline/prepare/welder.h"
 
 namespace sightline {
-namespace {
-
-bool isFinite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
-}  // namespace
 
 Patchwork weld(std::span<const OccluderSource> sources) {
     constexpr uint32_t kUnknown = ~uint32_t{0};

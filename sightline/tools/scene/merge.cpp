@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/scene/merge.h"
 
+#include "sightline/math/finite.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -15,13 +17,6 @@ namespace sightline::tools {
 namespace {
 
 using MergeCube = std::tuple<int64_t, int64_t, int64_t>;
-
-bool isFinite(const glm::dmat4& transform) {
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row)
-            if (!std::isfinite(transform[column][row])) return false;
-    return true;
-}
 
 /// Objects of each cube that may be joined, in their order.
 std::map<MergeCube, std::vector<uint32_t>> smallOf(const Scene& scene, const MergeSmall& settings) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/import/foreign/scene_stream.h"
 
+#include "sightline/math/finite.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -108,13 +110,6 @@ private:
     unsigned char block_[kBlock];
 };
 
-bool finite(const glm::dmat4& matrix) {
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row)
-            if (!std::isfinite(matrix[column][row])) return false;
-    return true;
-}
-
 bool affine(const glm::dmat4& matrix) {
     return matrix[0][3] == 0 && matrix[1][3] == 0 && matrix[2][3] == 0 && matrix[3][3] == 1;
 }
@@ -198,7 +193,7 @@ SceneObject takeObject(StreamRecords& in, const Scene& scene) {
     out.name = in.takeText();
     if (out.mesh >= scene.meshes.size()) throw Broken{"a mesh is out of range"};
     if (out.node >= scene.nodes.size()) throw Broken{"a node is out of range"};
-    if (!finite(out.transform) || !affine(out.transform)) throw Broken{"a transform is not affine"};
+    if (!isFinite(out.transform) || !affine(out.transform)) throw Broken{"a transform is not affine"};
     if (!within(transformBox(scene.meshes[out.mesh].bounds, out.transform)))
         throw Broken{"an object's bounds in the world are too large"};
     return out;
@@ -215,7 +210,7 @@ SceneCamera takeCamera(StreamRecords& in) {
     const bool angle = out.fov_y > 0 && out.fov_y < 3.14159 && out.orthographic_height == 0;
     const bool height = out.orthographic_height > 0 && out.orthographic_height < kFarthest && out.fov_y == 0;
     if (!angle && !height) throw Broken{"a camera is of neither kind"};
-    if (!finite(out.transform) || !affine(out.transform) ||
+    if (!isFinite(out.transform) || !affine(out.transform) ||
         !(glm::length(glm::cross(glm::dvec3(out.transform[1]), glm::dvec3(out.transform[2]))) > 0))
         throw Broken{"a camera looks nowhere"};
     if (!(out.z_near >= (angle ? 1e-30 : 0.0) && out.z_near < kFarthest)) throw Broken{"a camera has no near plane"};

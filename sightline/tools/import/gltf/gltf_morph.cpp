@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sightline/tools/import/gltf/gltf_accessor.h"
+#include "sightline/math/finite.h"
 #include "sightline/tools/import/gltf/gltf_deform.h"
 
 namespace sightline::tools::gltf {
@@ -22,12 +23,10 @@ void addTarget(const std::vector<float>& displacements, const VertexRun& run, do
     }
 }
 
-bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 // Here, vertex by vertex: a box that grows would lose a NaN.
 void checkFinite(const MorphReach& reach, const BuiltMesh& built) {
     for (size_t i = 0; i < reach.rest.size(); ++i)
-        if (!finite(reach.low[i]) || !finite(reach.high[i]) || !finite(glm::dvec3(glm::vec3(reach.rest[i]))))
+        if (!isFinite(reach.low[i]) || !isFinite(reach.high[i]) || !isFinite(glm::dvec3(glm::vec3(reach.rest[i]))))
             fail(built.runs[0].primitive->place, "its morph targets leave what a float can hold");
 }
 
