@@ -8,9 +8,7 @@
 #include <utility>
 
 #include "sightline/bake/flow/bake_state.h"
-#include "sightline/bake/flow/region_flow.h"
 #include "sightline/bake/objects/scene_hash.h"
-#include "sightline/geom/leaf_tree.h"
 
 namespace sightline::bake {
 using namespace tools;
@@ -206,76 +204,14 @@ ObjectCells placeObjects(const BakeCells& cells, const Scene& scene, const BakeS
     return cellsOfObjects(scene, cells.space, placing);
 }
 
-ViewRowCounts narrowViewRows(const BakeCells& cells, const Scene& scene, std::span<const uint32_t> object_of,
-                             const BakeSettings& settings, BitMatrix& rows) {
-    ViewRowCounts counts;
-    const CellSpace& space = cells.view_space;
-    if (!space.ofTree() || space.graph.portals.empty()) return counts;
-    ObjectCellSettings placing;
-    placing.moves = cells.placing.moves;
-    placing.jobs = settings.jobs;
-    const ObjectCells objects = cellsOfObjects(scene, space, placing);
-    const ObjectPlaces& places = objects.places;
-    constexpr uint32_t kNone = ~0u;
-    std::vector<uint32_t> column_of(scene.objects.size(), kNone);
-    for (uint32_t column = 0; column < object_of.size(); ++column) column_of[object_of[column]] = column;
-    struct Piece {
-        uint32_t column;
-        Box3d box;
-    };
-    std::vector<std::vector<Piece>> pieces(space.graph.cells);
-    std::vector<uint32_t> asked;  // columns
-    for (uint32_t place = 0; place < places.size(); ++place) {
-        const uint32_t column = column_of[objects.object_of[place]];
-        if (column == kNone || places.everywhere[place]) continue;
-        asked.push_back(column);
-        for (uint64_t at = places.first_cell[place]; at < places.first_cell[place + 1]; ++at)
-            pieces[places.cells[at]].push_back({column, objects.pieces[at]});
-    }
-    const std::vector<Box3d> boxes = leafBoxes(cells.views->tree);
-    const auto count = static_cast<uint32_t>(boxes.size());
-    std::vector<std::vector<uint32_t>> hidden(count);
-    std::vector<RegionFlow::End> ends(count, RegionFlow::End::kDone);
-    constexpr uint32_t kTogether = 16, kTasks = 16;  // cells of a task, and tasks between two questions whether to stop
-    const uint32_t tasks = (count + kTogether - 1) / kTogether;
-    for (uint32_t begin = 0; begin < tasks && !asksToStop(settings); begin += kTasks) {
-        runJobs(settings.jobs, std::min(kTasks, tasks - begin), [&](uint32_t task) {
-            RegionFlow flow(space);
-            std::vector<uint8_t> seen;
-            const uint32_t first = (begin + task) * kTogether;
-            for (uint32_t leaf = std::max(first, 1u); leaf < std::min(count, first + kTogether); ++leaf) {
-                if (boxes[leaf].empty()) continue;  // the first is all that is outside
-                // Seen, or not asked for.
-                seen.assign(rows.columns(), 1);
-                size_t left = 0;
-                for (const uint32_t column : asked)
-                    if (rows.at(leaf, column)) {
-                        seen[column] = 0;
-                        ++left;
-                    }
-                ends[leaf] = flow.from(boxes[leaf], [&](uint32_t cell, const Penumbra* through) {
-                    for (const Piece& piece : pieces[cell])
-                        if (!seen[piece.column] && (!through || through->touches(piece.box))) {
-                            seen[piece.column] = 1;
-                            --left;
-                        }
-                    return left > 0;
-                });
-                if (ends[leaf] != RegionFlow::End::kDone) continue;
-                for (const uint32_t column : asked)
-                    if (!seen[column]) hidden[leaf].push_back(column);
-            }
-        });
-        if (settings.progress)
-            settings.progress({"view cells", std::min(1.0, double(begin + kTasks) / static_cast<double>(tasks))});
-    }
-    for (uint32_t leaf = 0; leaf < count; ++leaf) {
-        for (const uint32_t column : hidden[leaf]) rows.clear(leaf, column);
-        counts.hidden += hidden[leaf].size();
-        counts.over_budget += ends[leaf] == RegionFlow::End::kOverBudget;
-        counts.out_of_bounds += ends[leaf] == RegionFlow::End::kOutOfBounds;
-    }
-    return counts;
+PortalRowCounts narrowViewRows(const BakeCells& cells, const Scene& scene, std::span<const uint32_t> object_of,
+                               const BakeSettings& settings, BitMatrix& rows) {
+    PortalRowSettings narrowing;
+    narrowing.moves = cells.placing.moves;
+    narrowing.jobs = settings.jobs;
+    narrowing.stop = settings.stop;
+    if (settings.progress) narrowing.progress = [&](double done) { settings.progress({"view cells", done}); };
+    return narrowRows(cells.views->tree, cells.view_space, scene, object_of, narrowing, rows);
 }
 
 BoxVisibility bakeObjectRows(const CellGraph& rows, const CellVisibility& visibility, const CellBoxes& boxes,

@@ -18,6 +18,7 @@
 #include "sightline/bake/objects/box_visibility.h"
 #include "sightline/bake/objects/object_cells.h"
 #include "sightline/bake/soup/soup_cells.h"
+#include "sightline/bake/view_cells/portal_rows.h"
 #include "sightline/bake/view_cells/view_cells.h"
 #include "sightline/base/jobs.h"
 #include "sightline/base/memory.h"
@@ -64,13 +65,6 @@ struct BakeSettings {
     double checkpoint_seconds = 10;  ///< between two checkpoints  [s] [>= 0]
     /// What readBakeState() made of the bytes of a checkpoint, or null. The bake takes it apart.
     CellVisibilityState* resume = nullptr;
-};
-
-/// What portals did to the rows of view cells.
-struct ViewRowCounts {
-    uint64_t hidden = 0;         ///< pairs that they took away
-    uint64_t over_budget = 0;    ///< cells whose flow ended by its work limit: they keep what they had
-    uint64_t out_of_bounds = 0;  ///< cells that reach out of the space that has portals: they, too
 };
 
 /// What is baked.
@@ -128,12 +122,12 @@ Result<CellVisibility> bakeRows(const CellGraph& rows, const BakeSettings& setti
 ObjectCells placeObjects(const BakeCells& cells, const Scene& scene, const BakeSettings& settings);
 
 /// Step 5, where there are view cells: takes out of their rows what no way through the portals of BakeCells::view_space leads
-/// to, by RegionFlow. Doors count as open. Objects that are in none of its cells stay in all rows.
+/// to, by narrowRows().
 /// @param scene      whose objects are placed
 /// @param object_of  per column of the rows the scene's object
 /// @param rows       [leaves of the view cells x placed objects]
-ViewRowCounts narrowViewRows(const BakeCells& cells, const Scene& scene, std::span<const uint32_t> object_of,
-                             const BakeSettings& settings, BitMatrix& rows);
+PortalRowCounts narrowViewRows(const BakeCells& cells, const Scene& scene, std::span<const uint32_t> object_of,
+                               const BakeSettings& settings, BitMatrix& rows);
 
 /// Step 6: which boxes each row sees, by bakeBoxVisibility().
 /// @param visibility  bakeRows() of the same rows, with BakeSettings::object_rows
@@ -164,7 +158,7 @@ struct Baked {
     ObjectCells objects;
     std::optional<BoxVisibility> object_rows;  ///< if they were asked for
     BitMatrix view_rows;                       ///< [leaves of the view cells x placed objects], if there are view cells
-    ViewRowCounts view_counts;                 ///< of these
+    PortalRowCounts view_counts;               ///< of these
     BakedFile file;
     bool interrupted = false;                      ///< by BakeSettings::stop: there is no file
     double rows_seconds = 0, objects_seconds = 0;  ///< of Steps 3 and 4, and of Steps 5 and 6
