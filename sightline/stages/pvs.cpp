@@ -11,6 +11,7 @@
 namespace sightline::detail {
 
 void CellMemory::findRows(const Frame& frame) {
+    if (!frame.world) return;
     const CellState& cells = frame.world->cell_state;
     if (pvs_of_ != cells.cells) {
         pvs_.clear();
