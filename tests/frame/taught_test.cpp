@@ -138,28 +138,34 @@ TEST(Taught, TeachersStopWhereNobodyLearns) {
 
 /// The teacher answers on another thread while this one asks, and things move.
 TEST(Taught, ByAnotherThread) {
-    Rooms rooms(5);
-    Random random(5);
-    Steps steps(random);
-    Query query, teacher;
-    std::optional<std::thread> other;
-    uint64_t drawn = 0;
-    for (int frame = 0; frame < 80; ++frame) {
-        if (frame % 8 == 7)
-            rooms.moveTo(rooms.things[random.below(rooms.things.size())],
-                         {random.uniform(-2, 2), 0, random.uniform(-2, 2)});
-        const Snapshot now = rooms.world.commit();
-        const View view = steps.next();
-        if (other) {
-            other->join();
-            query.learn(teacher);
+    std::vector<uint64_t> draws;  // of 20 walks three were drawn in half of their frames or more
+    for (uint64_t seed = 1; seed <= 9; ++seed) {
+        Rooms rooms(seed);
+        Random random(seed);
+        Steps steps(random);
+        Query query, teacher;
+        std::optional<std::thread> other;
+        uint64_t drawn = 0;
+        for (int frame = 0; frame < 80; ++frame) {
+            if (frame % 8 == 7) {
+                const auto thing = rooms.things[random.below(rooms.things.size())];
+                rooms.moveTo(thing, {random.uniform(-2, 2), 0, random.uniform(-2, 2)});
+            }
+            const Snapshot now = rooms.world.commit();
+            const View view = steps.next();
+            if (other) {
+                other->join();
+                query.learn(teacher);
+            }
+            other.emplace([&teacher, now, view] { teacher.visible(now, view); });
+            const std::string what = "seed " + std::to_string(seed) + " frame " + std::to_string(frame);
+            drawn += expectSound(rooms, query, now, view, {}, what, 1).stats.occluder_triangles > 0;
         }
-        other.emplace([&teacher, now, view] { teacher.visible(now, view); });
-        drawn +=
-            expectSound(rooms, query, now, view, {}, "frame " + std::to_string(frame), 1).stats.occluder_triangles > 0;
+        other->join();
+        draws.push_back(drawn);
     }
-    other->join();
-    EXPECT_LT(drawn, 20u);
+    std::nth_element(draws.begin(), draws.begin() + 4, draws.end());
+    EXPECT_LT(draws[4], 10u) << "of 80 frames";
 }
 
 /// Each eye learns from the same eye of the teacher.
