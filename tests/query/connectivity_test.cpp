@@ -171,6 +171,7 @@ TEST(Connectivity, IsThatOfTheHolesAndNearlyTheShortestWay) {
     }
     EXPECT_GT(ways, 300u);
     EXPECT_GT(none, 30u);
+    RecordProperty("ways", std::to_string(ways));
     RecordProperty("longest", std::to_string(longest));
     RecordProperty("mean", std::to_string(sum / double(ways)));
     EXPECT_LT(longest, 1.02);

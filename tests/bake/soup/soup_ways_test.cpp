@@ -84,7 +84,7 @@ TEST(SoupWays, WhoWalksWithoutPassingATriangleIsConnected) {
     EXPECT_LT(counts.longer, 1.5);
 }
 
-/// A room within a room, one door from the inner into the outer one, and a slit from that to the outside.
+/// A room, drawn from within alone, and a wall across it with a doorway.
 TEST(SoupWays, GoByHolesThatAreOpenFromBothSides) {
     MarkedRooms made;
     made.room({{0, 0, 0}, {12, 3, 8}});  // drawn from within alone
