@@ -86,6 +86,13 @@ Result<Baked> bake(BakeCells cells, const Scene& objects, const BakeSettings& se
         content.view_tree = &out.cells.views->tree;
         content.view_rows = &out.view_rows;
     }
+    std::vector<uint32_t> prepared_of_place;
+    if (has_places && !settings.prepared.empty()) {
+        for (const uint32_t object : out.objects.object_of)
+            prepared_of_place.push_back(settings.prepared_of_object[object]);
+        content.prepared = settings.prepared;
+        content.prepared_of_object = prepared_of_place;
+    }
     Result<BakedFile> file = bakedFile(content, settings.form == VisibilityForm::kPacked);
     if (!file) return file.error();
     out.file = std::move(*file);
@@ -137,6 +144,7 @@ void addViewCells(BakeCells& cells, const Scene& scene, const ViewCellSettings& 
     if (cells.views->tree.contents.empty()) return;
     SoupCellSettings dividing;
     dividing.smallest_hole = settings.smallest_hole;
+    dividing.widest_gap = 0;
     dividing.movable = settings.movable;
     dividing.jobs = settings.jobs;
     SoupCells own = cellsOfSoup(scene, dividing);

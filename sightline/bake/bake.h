@@ -52,6 +52,9 @@ struct BakeSettings {
     bool object_rows =
         false;  ///< find also which objects each row sees, if there are rows: takes longer than the cells do
     VisibilityForm form = VisibilityForm::kPacked;  ///< of the file
+    /// What the file is to hold of the objects' meshes besides, so that a program need not prepare it again.
+    std::span<const PreparedMesh> prepared;
+    std::span<const uint32_t> prepared_of_object;  ///< per object of the scene which of these  [size: Scene::objects]
 
     /// Asked between pieces of work, on the thread of the caller; true ends the bake without a file.
     std::function<bool()> stop;

@@ -17,8 +17,8 @@ namespace {
 constexpr size_t kMapBytes = 16;  // before the name
 
 /// The sections of places: the same in both forms.
-constexpr uint32_t kPlaces[] = {kCells, kCellNames, kRegions,    kTree,     kPortals,
-                                kDoors, kObjects,   kObjectRows, kViewTree, kViewRows};
+constexpr uint32_t kPlaces[] = {kCells,   kCellNames,  kRegions,  kTree,     kPortals, kDoors,
+                                kObjects, kObjectRows, kViewTree, kViewRows, kPrepared};
 
 Array<char> mapSection(size_t leaves, uint64_t hash, std::string_view name, Memory* memory) {
     Array<char> bytes(memory);
@@ -54,6 +54,7 @@ Status addPlaces(const VisibilityContent& content, SectionWriter& writer, Memory
     const CellSpace* space = content.space;
     if (!content.view_tree != !content.view_rows) return wrong("view cells without rows, or rows without view cells");
     if ((content.object_rows || content.view_rows) && !content.objects) return wrong("rows of objects without objects");
+    if (!content.prepared.empty() && !content.objects) return wrong("prepared meshes without objects");
     if (!space) return content.objects ? wrong("objects without cells") : success();
     if (Status added = addCellSections(*space, static_cast<uint32_t>(content.visible.rows()), writer, memory); !added)
         return added;
@@ -75,6 +76,11 @@ Status addPlaces(const VisibilityContent& content, SectionWriter& writer, Memory
         if (!fits(*content.object_rows, content.visible.rows()))
             return wrong("rows of objects that are not rows of these cells and objects");
         writer.add(kObjectRows, objectRowsSection(*content.object_rows, memory));
+    }
+    if (!content.prepared.empty()) {
+        if (content.prepared_of_object.size() != content.objects->size())
+            return wrong("prepared meshes of other objects");
+        writer.add(kPrepared, preparedSection(content.prepared, content.prepared_of_object, memory));
     }
     if (!content.view_tree) return success();
     if (!fits(*content.view_rows, content.view_tree->contents.size()))
@@ -121,7 +127,8 @@ Array<char> packedFile(const VisibilityFile& file, Memory* memory) {
 
 size_t VisibilityFile::residentBytes() const {
     size_t bytes = rows_.bytes() + 2 * cell_of_leaf_.size();
-    for (const uint32_t tag : kPlaces) bytes += sections_.find(tag).size();
+    for (const uint32_t tag : kPlaces)
+        if (tag != kPrepared) bytes += sections_.find(tag).size();
     return bytes;
 }
 
@@ -133,12 +140,18 @@ CellSpace VisibilityFile::cellSpace() const {
     return space;
 }
 
+Result<PreparedMeshes> VisibilityFile::prepared(std::string_view file, Memory* memory) const {
+    const std::span<const char> bytes = sections_.find(kPrepared);
+    return readPreparedSection(bytes, objects_.size(), file, sections_.placeOf(bytes), memory);
+}
+
 Status VisibilityFile::openPlaces(const SectionFile& sections, std::string_view file) {
     sections_ = sections;
     const auto at = [&](uint32_t tag) { return sections.placeOf(sections.find(tag)); };
     has_cells_ = !sections.find(kCells).empty();
     has_objects_ = !sections.find(kObjects).empty();
     has_object_rows_ = !sections.find(kObjectRows).empty();
+    has_prepared_ = !sections.find(kPrepared).empty();
     if (!has_cells_) {
         for (const uint32_t tag : kPlaces)
             if (!sections.find(tag).empty()) return faultAt(file, "a section of cells that there are not", at(tag));
@@ -166,6 +179,8 @@ Status VisibilityFile::openPlaces(const SectionFile& sections, std::string_view 
             PlacedObjects::open(sections.find(kObjects), cells->cells(), file, at(kObjects));
         if (!objects) return objects.error();
         objects_ = *objects;
+    } else if (has_prepared_) {
+        return faultAt(file, "prepared meshes of no objects", at(kPrepared));
     }
     if (has_object_rows_) {
         const Result<PlacedObjectRows> rows =

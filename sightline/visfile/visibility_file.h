@@ -14,6 +14,7 @@
 #include "sightline/visfile/object_rows.h"
 #include "sightline/visfile/object_section.h"
 #include "sightline/visfile/portal_sections.h"
+#include "sightline/visfile/prepared_section.h"
 #include "sightline/visfile/section_file.h"
 #include "sightline/visfile/tree_section.h"
 #include "sightline/visfile/visible_rows.h"
@@ -47,7 +48,9 @@ struct VisibilityContent {
     const BitMatrix* object_rows = nullptr;  ///< [rows of `visible` x objects]; or null
     /// View cells, and the objects that may be seen from each, whatever the other cells are. Both or neither.
     const LeafTree* view_tree = nullptr;
-    const BitMatrix* view_rows = nullptr;  ///< [leaves of `view_tree` x objects]
+    const BitMatrix* view_rows = nullptr;               ///< [leaves of `view_tree` x objects]
+    std::span<const PreparedMesh> prepared = {};        ///< what a world needs of the objects' meshes; may be empty
+    std::span<const uint32_t> prepared_of_object = {};  ///< per object which of these; PreparedMeshes::kNone: none
 };
 
 enum class VisibilityForm {
@@ -111,6 +114,15 @@ public:
     LeafTree viewTree() const { return view_tree_.tree(); }
     const PlacedObjectRows& viewRows() const { return view_rows_; }
 
+    /// Whether it holds what a world needs of the objects' meshes; then hasObjects().
+    bool hasPrepared() const { return has_prepared_; }
+    /// A copy of it: occluders, shapes, clusters to draw, and chains of levels of detail. It is what was prepared of the meshes that
+    /// were baked: whoever gives it to a world answers for it that its meshes are the same. O(bytes).
+    /// @param file  what errors call the bytes
+    /// Errors (kInput): one line with the file, what is wrong, and at which byte.
+    /// @pre hasPrepared()
+    Result<PreparedMeshes> prepared(std::string_view file, Memory* memory = defaultMemory()) const;
+
     VisibilityFile(VisibilityFile&&) = default;
     VisibilityFile& operator=(VisibilityFile&&) = delete;
 
@@ -126,7 +138,8 @@ private:
     uint64_t map_hash_ = 0;
 
     SectionFile sections_;
-    bool has_cells_ = false, has_objects_ = false, has_object_rows_ = false, has_view_cells_ = false;
+    bool has_cells_ = false, has_objects_ = false, has_object_rows_ = false, has_view_cells_ = false,
+         has_prepared_ = false;
     PlacedCells cells_;
     PlacedPortals portals_;
     PlacedTree tree_;

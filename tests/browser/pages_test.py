@@ -17,7 +17,7 @@ from browser import Browser, find_chromium  # noqa: E402
 
 TOOL = os.path.abspath(sys.argv[1]) if len(sys.argv) > 1 else ""
 TAB = ("Tab", "Tab", 9)
-PAGES = ("a", "b", "single", "both", "again", "drawn", "coarse", "map")
+PAGES = ("a", "b", "single", "both", "again", "drawn", "coarse", "map", "baked")
 # A corridor with two rooms on one side, and one on the other, as a file of portals.
 ROOMS = """PRT1
 4
@@ -140,6 +140,7 @@ class Pages(unittest.TestCase):
         with open(os.path.join(cls.directory, "rooms.prt"), "w", encoding="utf-8") as file:
             file.write(ROOMS)
         cls.run_tool("vis", "rooms.prt", "--report", "map")
+        cls.run_tool("bake", "building:1:1", "--cells", "walls", "--view-cells", "256", "--report", "baked")
 
     @classmethod
     def run_tool(cls, *words):
@@ -176,7 +177,7 @@ class Pages(unittest.TestCase):
 
     def test_draws_every_picture_and_chart(self):
         least = {"a": (5, 4), "b": (5, 3), "single": (5, 3), "both": (6, 4), "again": (5, 4), "drawn": (8, 2),
-                 "coarse": (8, 2), "map": (6, 0)}
+                 "coarse": (8, 2), "map": (6, 0), "baked": (2, 0)}
         for name in PAGES:
             with self.subTest(page=name):
                 self.open(name)
@@ -458,6 +459,23 @@ class Pages(unittest.TestCase):
         for kind in ("mousePressed", "mouseReleased"):
             self.browser.call("Input.dispatchMouseEvent", type=kind, x=place[0], y=place[1], button="left", clickCount=1)
         self.assertEqual(self.browser.evaluate(kinds)[1], "asked")
+        self.assertEqual(self.browser.complaints(), [])
+
+    def test_a_view_cell_of_a_bake_can_be_asked(self):
+        self.open("baked")
+        number = "document.querySelector('#plan input')"
+        seen = self.browser.evaluate("data.plan.cells.map((cell) => cell.seen)")
+        self.assertGreater(len(seen), 4)
+        for cell in (0, len(seen) - 1):
+            self.browser.evaluate(f"{number}.value = {cell}; {number}.dispatchEvent(new Event('change'))")
+            words = self.text("#plan output").replace(",", "")
+            self.assertIn(f"from it {seen[cell]} of ", words)
+            boxes = self.browser.evaluate("[...document.querySelectorAll('#plan path')].map((path) => "
+                                          "path.getAttribute('d').split('M').length - 1).reduce((a, b) => a + b)")
+            self.assertIn(f", {boxes} of them on this storey".replace(",", ""), words)
+            self.assertLessEqual(boxes, seen[cell])
+            self.assertGreater(boxes, 0)
+        self.assertIn("gaps between walls", self.text("main"))
         self.assertEqual(self.browser.complaints(), [])
 
     def test_both_schemes_can_be_read(self):

@@ -68,7 +68,10 @@ TEST_F(Bake, AScenesOwnWallsAreCells) {
 
 // All of space as one cell, and boxes of it with a row each.
 TEST_F(Bake, ViewCellsHaveRowsOfObjects) {
-    const json out = bake("building:1:1 --cells none --view-cells 256 -o views.see --threads 1");
+    const json out =
+        bake("building:1:1 --cells none --view-cells 256 -o views.see --threads 1 --report page --height 2");
+    EXPECT_NE(read(path("page/index.html")).find("cut at the height 2"), std::string::npos);
+    EXPECT_EQ(json::parse(read(path("page/bake.json")))["view_cells"]["count"], 256);
     EXPECT_EQ(out["cells"], 1);
     EXPECT_EQ(out["portals"], 0);
     EXPECT_EQ(out["cells_are"], "all of space");
@@ -92,6 +95,38 @@ TEST_F(Bake, ViewCellsHaveRowsOfObjects) {
     const json few = bake("city:1:50 --view-cells 8 -o city.see");
     EXPECT_EQ(few["view_cells"]["count"], 0) << "from so much room too little is hidden";
     EXPECT_EQ(info("city.see")["places"]["view_cells"], 0);
+}
+
+// What is prepared once is in the file, and answers are what they are without it.
+TEST_F(Bake, PreparedMeshesAreTakenFromTheFile) {
+    bake("building:1:1 -o plain.see");
+    const json out = bake("building:1:1 -o b.see --prepare inner,clusters,lods --threads 2");
+    bake("building:1:1 -o again.see --prepare inner,clusters,lods --threads 1");
+    EXPECT_EQ(read(path("again.see")), read(path("b.see"))) << "the same bytes for any number of threads";
+    const json told = info("b.see");
+    EXPECT_GT(told["prepared"]["meshes"], 10);
+    EXPECT_GT(told["prepared"]["occluder_triangles"], 1000);
+    EXPECT_GT(told["prepared"]["inner_occluders"], 0);
+    EXPECT_GT(told["prepared"]["clusters"], 100);
+    EXPECT_GT(told["prepared"]["levels"], 10);
+    EXPECT_FALSE(info("plain.see").contains("prepared"));
+    const Outcome text = succeed("info b.see");
+    EXPECT_NE(text.out.find("prepared meshes"), std::string::npos) << text.out;
+    for (const std::string more :
+         {"", " --occluder-error 4 --use pvs,portals,frustum,occlusion,clusters", " --lod-error 2"}) {
+        SCOPED_TRACE(more);
+        const std::string asked =
+            "cull building:1:1 --path scatter --frames 4 --size 640x360" + more + " --visibility ";
+        json before = answer(asked + "plain.see"), after = answer(asked + "b.see");
+        ASSERT_EQ(before["frames"].size(), after["frames"].size());
+        for (size_t i = 0; i < before["frames"].size(); ++i) {
+            EXPECT_EQ(before["frames"][i]["visible"], after["frames"][i]["visible"]);
+            EXPECT_EQ(before["frames"][i]["stages"].size(), after["frames"][i]["stages"].size());
+            for (size_t s = 0; s < before["frames"][i]["stages"].size(); ++s)
+                EXPECT_EQ(before["frames"][i]["stages"][s]["culled"], after["frames"][i]["stages"][s]["culled"]);
+        }
+    }
+    expectError("bake building:1:1 --prepare walls", 2, "--prepare");
 }
 
 TEST_F(Bake, ABuildingBecomesAFileThatHoldsItsCells) {
@@ -274,6 +309,7 @@ TEST_F(Bake, ASourceHasTheCellsOfItsBrushes) {
     EXPECT_EQ(out["objects"]["count"], 0);
     EXPECT_EQ(info("room.see")["places"]["cells_are"], "leaves of a tree");
     expectError("bake room.map --cells leaves", 2, "room.map");
+    expectError("bake room.map --prepare occluders", 2, "--prepare: of scenes");
 }
 
 TEST_F(Bake, WhatCannotBeBakedIsALine) {
@@ -281,6 +317,9 @@ TEST_F(Bake, WhatCannotBeBakedIsALine) {
     expectError("bake building:1:1 --cells none --objects", 2, "--objects: these cells have no rows");
     expectError("bake city:1:10 --objects", 2, "--objects: these cells have no rows");
     expectError("bake building:1:1 --smallest-hole 0.001", 2, "the scene has marked cells");
+    expectError("bake building:1:1 --widest-gap 0.01", 2, "the scene has marked cells");
+    expectError("bake building:1:1 --report page --height 2", 2, "--height goes with --report, of a scene without");
+    expectError("bake city:1:10 --height 2", 2, "--height goes with --report");
     expectError("bake room.map --cells walls", 2, "room.map: a map has cells of its own");
     expectError("bake room.map --view-cells 8", 2, "room.map: a map has cells of its own");
     expectError("bake m.bsp --smallest-occluder 4", 2, "m.bsp: a map has cells of its own");

@@ -9,6 +9,7 @@
 
 #include "sightline/cells/portal_graph.h"
 #include "sightline/visfile/visibility_file.h"
+#include "tests/visfile/prepared_check.h"
 
 namespace sightline::test {
 
@@ -34,7 +35,8 @@ inline std::string faultOfViews(const VisibilityFile& file) {
 
 /// Empty, or what is wrong with cells as places: a number of what there is not, what is not finite.
 inline std::string faultOfPlaces(const VisibilityFile& file) {
-    if (!file.hasCells()) return file.hasObjects() || file.hasObjectRows() ? "objects without cells" : "";
+    if (!file.hasCells())
+        return file.hasObjects() || file.hasObjectRows() || file.hasPrepared() ? "objects without cells" : "";
     const CellSpace space = file.cellSpace();
     const uint32_t cells = space.graph.cells, none = CellGraph::kNoCell;
     for (const uint32_t row : space.row_of_cell)
@@ -87,6 +89,10 @@ inline std::string faultOfPlaces(const VisibilityFile& file) {
     for (uint32_t row = 0; file.hasObjectRows() && row < file.rows().cells(); ++row) {
         file.objectRow(row, seen);
         if (objects.size() % 64 != 0 && seen.back() >> objects.size() % 64 != 0) return "an object behind the last";
+    }
+    if (file.hasPrepared()) {
+        const std::string fault = faultOfPrepared(file.prepared("a/map.see"), objects.size());
+        if (!fault.empty()) return fault;
     }
     return faultOfViews(file);
 }

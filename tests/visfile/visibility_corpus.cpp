@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/support/files.h"
 #include "tests/visfile/made_file.h"
+#include "tests/visfile/made_meshes.h"
 #include "tests/visfile/made_places.h"
 #include "tests/visfile/seal.h"
 
@@ -45,6 +46,13 @@ void makeAll(Seed seed) {
     Random random(3);
     seen_from.addViews(5, random);
     const Array<char> views = withPlaces(seen_from, true);
+    const MadePlaces few = boxesInARow(4, 3, 3, 6);
+    const MadeFile few_rows(5, few.object_rows.rows());
+    const PreparedMeshes made = madeMeshes(6, 6);
+    VisibilityContent with_meshes{few_rows.visible, {}, "house", 5, &few.space, &few.objects};
+    with_meshes.prepared = made.meshes;
+    with_meshes.prepared_of_object = made.mesh_of_object;
+    const Array<char> prepared = *visibilityFile(with_meshes, VisibilityForm::kInPlace);
     Array<char> loose_child = tree;
     const SectionFile tree_sections = *SectionFile::open(tree, "");
     loose_child[tree_sections.placeOf(tree_sections.find(visibility_file::kTree)) + 56 + 32] = 0;
@@ -52,6 +60,7 @@ void makeAll(Seed seed) {
     seed("boxes.see", boxes);
     seed("tree.see", tree);
     seed("views.see", views);
+    seed("prepared.see", prepared);
     seed("loose_child.see", loose_child);
     seed("in_place.see", plain);
     seed("packed.see", packed);

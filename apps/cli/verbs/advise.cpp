@@ -85,21 +85,15 @@ void AdvisedScene::tryClusters() {
 void AdvisedScene::trySplit() {
     if (!options.scene.split.empty()) return;
     if (options.opened) return skip("split", "a visibility file knows the objects as they are");
-    const double half = glm::length(worldBounds(scene).size()) / 2;
-    const uint64_t all = drawnTriangles(scene);
-    uint64_t wide = 0, objects = 0;
-    for (const SceneObject& object : scene.objects) {
-        const Mesh& mesh = scene.meshes[object.mesh];
-        if (mesh.deforms || !(glm::length(transformBox(mesh.bounds, object.transform).size()) > half)) continue;
-        wide += mesh.triangles();
-        ++objects;
-    }
-    if (wide < kFewestSplit || wide < all / 4) return skip("split", "no large mesh reaches through half of the scene");
+    const WideObjects wide = wideObjects(scene);
+    if (wide.triangles < kFewestSplit || wide.triangles < drawnTriangles(scene) / 4)
+        return skip("split", "no large mesh reaches through half of the scene");
     auto cut = std::make_unique<Scene>(splitScene(scene, {Split::Along::kGrid, kCubes}));
     Advice advice;
     advice.kind = Advice::Kind::kSplit;
-    advice.what = fmt::format("{} of {} triangles into {} objects", objects == 1 ? "the mesh" : "the widest meshes",
-                              grouped(wide), grouped(cut->objects.size()));
+    advice.what =
+        fmt::format("{} of {} triangles into {} objects", wide.objects == 1 ? "the mesh" : "the widest meshes",
+                    grouped(wide.triangles), grouped(cut->objects.size()));
     advice.how = fmt::format("--split grid:{}", kCubes);
     add(std::move(advice), std::move(cut), options);
 }

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -10,13 +11,16 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/cli/shell/apart.h"
+#include "apps/cli/verbs/bake_prepared.h"
 #include "apps/cli/verbs/bake_run.h"
 #include "apps/cli/verbs/bake_source.h"
 #include "apps/cli/verbs/bake_summary.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/verbs.h"
 #include "sightline/tools/import/quake/map_source.h"
+#include "sightline/tools/load/choose_path.h"
 #include "sightline/tools/report/output_file.h"
+#include "sightline/tools/report/page/bake_page.h"
 #include "sightline/tools/report/page/vis_page.h"
 
 namespace sightline::cli {
@@ -31,12 +35,38 @@ double secondsSince(Clock::time_point then) { return std::chrono::duration<doubl
 struct SceneBakeOptions : BakeOptions {
     SceneChoice scene;
     BakeSourceChoice source;
+    std::optional<double> height;  ///< at which the page's plans cut
 };
 
-/// The page has the rows alone.
-Status writeRowsPage(const Baked& baked, VisSummary rows, const std::string& directory) {
+/// Where somebody stands in the scene: whose storey the page shows.
+glm::dvec3 eyeIn(const Scene& scene, std::optional<double> height) {
+    PathChoice walk;
+    walk.kind = PathKind::kWalk;
+    walk.walk.frames = 1;
+    const Result<CameraPath> path = choosePath(scene, walk);
+    glm::dvec3 eye = path && !path->frames.empty() ? path->frames.front().eye : worldBounds(scene).center();
+    if (height) eye.y = *height;
+    return eye;
+}
+
+/// Of cells that have rows the page has these alone, of others what walls and view cells are.
+Status writePage(const SceneBakeOptions& options, const BakeSource& source, const Baked& baked, VisSummary rows,
+                 const std::string& json) {
     rows.objects.reset();
-    return writeVisPage(baked.cells.rows, baked.rows.visible, baked.rows.witnessed, rows, directory);
+    if (source.rows_are != "none")
+        return writeVisPage(baked.cells.rows, baked.rows.visible, baked.rows.witnessed, rows, options.report);
+    DrawnBake drawn;
+    drawn.scene = &source.scene;
+    drawn.space = &baked.cells.space;
+    if (source.walls)
+        for (const WallGap& gap : source.walls->gaps) drawn.gaps.push_back({gap.from, gap.to});
+    if (baked.view_rows.rows() > 0) {
+        drawn.views = &baked.cells.views->tree;
+        drawn.rows = &baked.view_rows;
+        drawn.object_of = baked.objects.object_of;
+    }
+    drawn.eye = eyeIn(source.scene, options.height);
+    return writeBakePage(drawn, json, options.report);
 }
 
 Result<int> runBake(SceneBakeOptions& options) {
@@ -50,15 +80,22 @@ Result<int> runBake(SceneBakeOptions& options) {
     options.source.jobs = &run.jobs();
     Result<BakeSource> source = loadBakeSource(options.scene, options.source);
     if (!source) return source.error();
-    if (source->rows_are == "none" && (options.objects || !options.report.empty()))
-        return usageError(std::string(options.objects ? "--objects" : "--report") +
-                          ": these cells have no rows of visibility, which it tells of; cull --visibility FILE "
-                          "--report DIR shows such cells");
+    if (source->rows_are == "none" && options.objects)
+        return usageError("--objects: these cells have no rows of visibility, which it tells of");
+    if (options.height && (options.report.empty() || source->rows_are != "none"))
+        return usageError("--height goes with --report, of a scene without marked cells");
     if (Status fits = checkSize(source->cells.rows, title, source->of_bsp); !fits) return fits.error();
     const double cells_seconds = secondsSince(begin);
 
-    const Result<BakeSettings> settings = run.begin(source->cells.rows);
+    if (!options.prepare.empty() && (source->of_bsp || source->scene.objects.empty()))
+        return usageError("--prepare: of scenes, not of maps");
+    const PreparedMeshes prepared =
+        options.prepare.empty() ? PreparedMeshes() : prepareForFile(source->scene, options.prepare, run.threads());
+
+    Result<BakeSettings> settings = run.begin(source->cells.rows);
     if (!settings) return settings.error();
+    settings->prepared = prepared.meshes;
+    settings->prepared_of_object = prepared.mesh_of_object;
     const Result<Baked> baked = bake::bake(std::move(source->cells), source->scene, *settings);
     if (!baked) return baked.error();
     if (baked->interrupted) return run.reportInterrupted();
@@ -73,13 +110,13 @@ Result<int> runBake(SceneBakeOptions& options) {
     summary.rows.threads = run.threads();
     summary.cells_seconds = cells_seconds;
     summary.rows.wall_seconds = secondsSince(begin);
+    const std::string json = bakeJson(*source, *baked, summary);
     if (!options.report.empty())
-        if (Status written = writeRowsPage(*baked, summary.rows, options.report); !written) return written.error();
+        if (Status written = writePage(options, *source, *baked, summary.rows, json); !written) return written.error();
     printBakeSummary(options.json == "-" ? stderr : stdout, *source, *baked, summary);
     if (!options.report.empty()) tellPage(options.json == "-" ? stderr : stdout, options.report);
     if (!options.json.empty())
-        if (Status written = writeText(options.json, bakeJson(*source, *baked, summary)); !written)
-            return written.error();
+        if (Status written = writeText(options.json, json); !written) return written.error();
     return kDone;
 }
 
@@ -103,13 +140,30 @@ void addBake(CLI::App& tool, int& exit_code) {
             "holes that can be seen through, so that a cull may be false (default: 2^-23 of the scene's diagonal)")
         ->check(CLI::Range(0.0, 1e9))
         ->type_name("L");
+    verb->add_option("--widest-gap", options->source.widest_gap,
+                     "list the slits between walls that are no wider, which were probably meant to be shut [world "
+                     "units]; 0: none (default: 2^-12 of the scene's diagonal)")
+        ->check(CLI::Range(0.0, 1e9))
+        ->type_name("L");
     verb->add_option("--view-cells", options->source.view_cells,
                      "divide space into so many boxes and tell which objects may be seen from each, as 2048 (default: "
                      "none)")
         ->check(CLI::Range(0u, 1u << 16))
         ->type_name("COUNT");
+    verb->add_option("--prepare", options->prepare,
+                     "of a scene: what the file is to hold of its meshes, so that they need not be prepared again: "
+                     "occluders, and with them inner, clusters or lods (default: nothing)")
+        ->delimiter(',')
+        ->check(CLI::IsMember(kPrepareWords))
+        ->type_name("LIST");
+    verb->add_option(
+            "--height", options->height,
+            "of a scene without marked cells, with --report: the height at which plans cut the walls [world units] "
+            "(default: of an eye on a floor of the scene)")
+        ->type_name("Y");
     verb->callback([verb, options, &exit_code] {
-        options->source.of_walls = verb->count("--smallest-occluder") + verb->count("--smallest-hole") > 0;
+        options->source.of_walls =
+            verb->count("--smallest-occluder") + verb->count("--smallest-hole") + verb->count("--widest-gap") > 0;
         const Result<int> done = runBake(*options);
         exit_code = done ? *done : report(done.error());
     });

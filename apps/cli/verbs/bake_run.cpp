@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/cli/shell/session.h"
+#include "apps/cli/verbs/common.h"
 #include "sightline/bake/flow/bake_state.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/scene/text_file.h"
@@ -100,9 +101,7 @@ Status finishBakeOptions(BakeOptions& options, ApartFiles& files) {
     files.write("--state", options.state);
     if (!options.report.empty()) files.write("--report", std::filesystem::path(options.report) / "index.html");
     if (!files.status()) return files.status();
-    for (const std::string& name : {options.output, options.state, options.json == "-" ? "" : options.json})
-        if (!name.empty())
-            if (Status writable = canWriteFile(name); !writable) return writable;
+    if (Status writable = canWriteFiles({options.output, options.state, options.json}); !writable) return writable;
     return options.report.empty() ? success() : makeDirectory(options.report);
 }
 

@@ -30,6 +30,7 @@ struct BakeOptions {
     double time_limit = 0;             ///< BakeSettings  [s]
     double farthest = 0;               ///< BakeSettings  [world units]
     bool in_place = false, objects = false;
+    std::vector<std::string> prepare;  ///< what the file holds of meshes, too
 };
 
 /// What --cells says of a .bsp.

@@ -34,8 +34,8 @@ Result<BakeSource> loadMapSource(const std::string& name, const BakeSourceChoice
     const std::string kind = mapKind(name);
     if (asked.of_walls || asked.view_cells > 0 || asked.cells == "walls" || asked.cells == "none")
         return usage(
-            "a map has cells of its own: --cells walls, --cells none, --smallest-occluder, --smallest-hole and "
-            "--view-cells are for scenes");
+            "a map has cells of its own: --cells walls, --cells none, --smallest-occluder, --smallest-hole, "
+            "--widest-gap and --view-cells are for scenes");
     if (kind == ".prt") return usage("a portal file has no tree to find an eye in: bake its .bsp or .map");
     if (kind == ".map" && !asked.cells.empty())
         return usage("a .map has the cells of its brushes: --cells goes with a .bsp");
@@ -105,6 +105,7 @@ Result<BakeSource> wallsOf(const Scene& scene, const SceneChoice& names, const s
     SoupCellSettings settings;
     settings.smallest_occluder = choice.smallest_occluder;
     settings.smallest_hole = choice.smallest_hole;
+    settings.widest_gap = choice.widest_gap;
     settings.jobs = choice.jobs;
     constexpr uint32_t kPlaces = 32;
     if (choice.smallest_occluder < 0)
@@ -136,7 +137,7 @@ Result<BakeSource> loadScene(const SceneChoice& names, const BakeSourceChoice& c
     }
     if (choice.of_walls)
         return Error{Error::Kind::kUsage,
-                     "--smallest-occluder, --smallest-hole: the scene has marked cells, which they "
+                     "--smallest-occluder, --smallest-hole, --widest-gap: the scene has marked cells, which they "
                      "say nothing of; --cells walls takes its walls instead"};
     BakeSource out;
     SceneCellSettings settings;

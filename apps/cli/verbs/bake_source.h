@@ -30,7 +30,8 @@ struct BakeSourceChoice {
     std::string cells;              ///< of --cells; empty: not given
     double smallest_occluder = -1;  ///< SoupCellSettings
     double smallest_hole = -1;      ///< SoupCellSettings
-    bool of_walls = false;          ///< one of these two was given
+    double widest_gap = -1;         ///< SoupCellSettings
+    bool of_walls = false;          ///< one of these three was given
     uint32_t view_cells = 0;        ///< ViewCellSettings::most_cells; below 2: none
     Jobs* jobs = nullptr;
 };

@@ -9,6 +9,7 @@
 
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
+#include "apps/cli/verbs/explain_object.h"
 #include "sightline/tools/scene/one_line.h"
 
 namespace sightline::cli {
@@ -40,6 +41,30 @@ void printFindings(std::FILE* out, const SceneCellReport& report) {
         tell(out, fmt::format("  {}\n", oneLine(report.findings[i].text)));
     if (report.findings.size() > kMost)
         tell(out, fmt::format("  and {} more (--json lists them)\n", grouped(report.findings.size() - kMost)));
+}
+
+std::string pointText(const glm::dvec3& point) {
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", point.x, point.y, point.z);
+}
+
+/// The objects whose surfaces bound a gap.
+std::string boundsText(const WallGap& gap, const Scene& scene) {
+    const std::string first = callOf(scene, gap.objects[0]);
+    return gap.objects[0] == gap.objects[1] ? first : first + " and " + callOf(scene, gap.objects[1]);
+}
+
+void printGaps(std::FILE* out, const SoupCellReport& report, const Scene& scene) {
+    constexpr size_t kMost = 8;
+    if (report.gaps.empty()) return;
+    tell(out, fmt::format("gaps between walls, up to {:.2g} wide: {}; they are seen through\n", report.widest_gap,
+                          grouped(report.gaps.size())));
+    for (size_t i = 0; i < std::min(report.gaps.size(), kMost); ++i) {
+        const WallGap& gap = report.gaps[i];
+        tell(out, fmt::format("  {:.2g} wide from {} to {}: {}\n", gap.width, pointText(gap.from), pointText(gap.to),
+                              oneLine(boundsText(gap, scene))));
+    }
+    if (report.gaps.size() > kMost)
+        tell(out, fmt::format("  and {} smaller ones (--json lists them)\n", grouped(report.gaps.size() - kMost)));
 }
 
 void printWalls(std::FILE* out, const SoupCellReport& report) {
@@ -156,12 +181,15 @@ void printBakeSummary(std::FILE* out, const BakeSource& source, const Baked& bak
                           source.cells_are, grouped(space.graph.portals.size()), grouped(space.doors.size())));
     if (baked.cells.report) printFindings(out, *baked.cells.report);
     if (source.leaks) tell(out, "leaks: the outside is a place like any other (vis --leak writes the way)\n");
-    if (source.walls) printWalls(out, *source.walls);
-    else
+    if (source.walls) {
+        printWalls(out, *source.walls);
+        printGaps(out, *source.walls, source.scene);
+    } else {
         tell(out, fmt::format("rows: {} ({}); a row sees {:.1f} of them ({}), {} unresolved\n", grouped(s.clusters),
                               s.cells_are, ratio(s.visible_cluster_pairs, s.clusters),
                               percentText(s.visible_cluster_pairs, s.clusters * s.clusters),
                               percentText(s.unresolved_pairs, s.visible_cluster_pairs)));
+    }
     printLimits(out, s);
     printViews(out, baked);
     tell(out,
@@ -240,6 +268,18 @@ std::string bakeJson(const BakeSource& source, const Baked& baked, const BakeSum
                                               {"portals", trial.portals},
                                               {"objects_seen", trial.objects_seen},
                                               {"portals_tried", trial.portals_tried}});
+        out["walls"]["widest_gap"] = walls.widest_gap;
+        out["walls"]["gaps"] = Json::array();
+        for (const WallGap& gap : walls.gaps) {
+            Json bounds = Json::array();
+            for (const uint32_t object : gap.objects)
+                bounds.push_back({{"key", source.scene.objects[object].key},
+                                  {"name", objectPath(source.scene, source.scene.objects[object])}});
+            out["walls"]["gaps"].push_back({{"from", {gap.from.x, gap.from.y, gap.from.z}},
+                                            {"to", {gap.to.x, gap.to.y, gap.to.z}},
+                                            {"width", gap.width},
+                                            {"objects", bounds}});
+        }
     }
     if (baked.cells.views)
         out["view_cells"] = {{"count", baked.cells.views->tree.contents.size()},

@@ -13,7 +13,6 @@
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/verbs.h"
 #include "bench/bench.h"
-#include "sightline/tools/report/output_file.h"
 
 namespace sightline::cli {
 using namespace tools;
@@ -40,8 +39,7 @@ Status check(const CLI::App& verb, bench::Options& options, const std::string& s
                 fmt::format("--only: there is no scene \"{}\" (there are: {})", name, fmt::join(scenes, ", ")));
     if (verb.count("--size") > 0)
         if (Status read = readSize("--size", size, options.proof.width, options.proof.height); !read) return read;
-    if (options.json.empty() || options.json == "-") return success();
-    return canWriteFile(options.json);
+    return canWriteFiles({options.json});
 }
 
 /// Returns the exit code.

@@ -11,7 +11,6 @@
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/verbs.h"
 #include "sightline/tools/profile/facing_costs.h"
-#include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/run/calibration_json.h"
 
 namespace sightline::cli {
@@ -23,9 +22,7 @@ struct CalibrateOptions {
 };
 
 Result<int> runCalibrate(const CalibrateOptions& options) {
-    const bool to_file = !options.json.empty() && options.json != "-";
-    if (to_file)
-        if (Status writable = canWriteFile(options.json); !writable) return writable.error();
+    if (Status writable = canWriteFiles({options.json}); !writable) return writable.error();
     const std::string machine = machineName();
     const FacingCosts costs = measureFacingCosts();
     tell(options.json == "-" ? stderr : stdout,

@@ -25,7 +25,6 @@
 #include "sightline/bake/objects/scene_hash.h"
 #include "sightline/query/record/frame_recording.h"
 #include "sightline/tools/load/recorded_scene.h"
-#include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/run/run_reader.h"
 #include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/scene/text_file.h"
@@ -224,8 +223,7 @@ Result<int> runCheck(CheckOptions& options) {
     if (!files.status()) return files.status().error();
     const Result<Checked> of = readToCheck(options);
     if (!of) return of.error();
-    if (!options.json.empty() && options.json != "-")
-        if (Status writable = canWriteFile(options.json); !writable) return writable.error();
+    if (Status writable = canWriteFiles({options.json}); !writable) return writable.error();
 
     stopGently();
     const SceneFacts facts(of->scene);

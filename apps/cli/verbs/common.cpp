@@ -285,6 +285,22 @@ Status writeText(const std::string& file, const std::string& text) {
     return Error{Error::Kind::kOutput, "standard output: cannot be written"};
 }
 
+ApartFiles filesRead(const RunOptions& options) {
+    ApartFiles files;
+    for (const std::string& name : options.scene.names) files.read("SCENE", name);
+    files.read("--cameras", options.choice.file);
+    files.read("--visibility", options.visibility.file);
+    files.read("--calibration", options.calibration);
+    return files;
+}
+
+Status canWriteFiles(std::initializer_list<std::string> files) {
+    for (const std::string& file : files)
+        if (!file.empty() && file != "-")
+            if (Status writable = canWriteFile(file); !writable) return writable;
+    return success();
+}
+
 void tellPage(std::FILE* out, const std::string& directory) {
     tell(out, fmt::format("report       {}/index.html\n", directory));
 }

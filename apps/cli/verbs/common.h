@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <initializer_list>
 #include <string>
 
-#include "apps/cli/shell/session.h"
+#include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/quoted.h"
+#include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/run_options.h"
 #include "sightline/base/result.h"
 #include "sightline/geom/view.h"
@@ -53,6 +55,12 @@ std::string ownerOfPath(const Scene& scene, const RunOptions& options);
 
 /// Writes text to a file aside and renames it, or to standard output for `-`.
 Status writeText(const std::string& file, const std::string& text);
+
+/// The files that a verb reads; what it writes is named after them.
+ApartFiles filesRead(const RunOptions& options);
+
+/// Finds out before long work whether files can be written, by canWriteFile(). An empty name and `-` are none.
+Status canWriteFiles(std::initializer_list<std::string> files);
 
 /// Says where a page was written.
 void tellPage(std::FILE* out, const std::string& directory);

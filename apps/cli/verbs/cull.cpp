@@ -161,11 +161,7 @@ struct CullOptions : RunOptions {
 
 /// That nothing is written over what is read, or over another output.
 Status checkCullApart(const CullOptions& options) {
-    ApartFiles files;
-    for (const std::string& name : options.scene.names) files.read("SCENE", name);
-    files.read("--cameras", options.choice.file);
-    files.read("--visibility", options.visibility.file);
-    files.read("--calibration", options.calibration);
+    ApartFiles files = filesRead(options);
     files.write("--json", options.json);
     files.write("--trace", options.trace);
     files.write("--record", options.recording);
@@ -181,12 +177,7 @@ Status checkCullApart(const CullOptions& options) {
 
 /// Finds out before the work whether its result can be written.
 Status checkCullOutputs(const CullOptions& options) {
-    if (!options.json.empty() && options.json != "-")
-        if (Status writable = canWriteFile(options.json); !writable) return writable;
-    if (!options.trace.empty())
-        if (Status writable = canWriteFile(options.trace); !writable) return writable;
-    if (!options.recording.empty())
-        if (Status writable = canWriteFile(options.recording); !writable) return writable;
+    if (Status writable = canWriteFiles({options.json, options.trace, options.recording}); !writable) return writable;
     if (!options.depth_images.empty())
         if (Status made = makeDirectory(options.depth_images); !made) return made;
     if (options.report.empty()) return success();

@@ -187,7 +187,10 @@ void prepareLods(Scene& scene, const RunOptions& options) {
     joinLevels(scene);
     Progress progress("simplifying", "meshes", scene.meshes.size());
     forEach(scene.meshes.size(), options.threads, [&](size_t i) {
-        addMeshLods(scene.meshes[i]);
+        const PreparedMesh* before =
+            options.opened && !options.opened->of_mesh.empty() ? options.opened->of_mesh[i] : nullptr;
+        const bool known = before && !before->lods.levels.empty() && scene.meshes[i].lods.empty();
+        if (!known || !setMeshLods(scene.meshes[i], before->lods)) addMeshLods(scene.meshes[i]);
         progress.step();
     });
 }
@@ -217,8 +220,7 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     LoadedWorld loaded = [&] {
         Progress progress("preparing", "meshes", scene.meshes.size());
         return loadWorld(
-            scene, [&](size_t done, size_t total) { progress.set(done, total); },
-            loadSettings(options.settings, options.cluster_test));
+            scene, [&](size_t done, size_t total) { progress.set(done, total); }, loadSettingsOf(options));
     }();
     attachVisibility(options, loaded.world);
     const Snapshot now = loaded.world.commit();

@@ -67,21 +67,12 @@ Status readQuestion(const CLI::App& verb, ExplainOptions& options) {
 }
 
 Status checkExplainOutputs(const ExplainOptions& options) {
-    ApartFiles files;
-    for (const std::string& name : options.scene.names) files.read("SCENE", name);
-    files.read("--cameras", options.choice.file);
-    files.read("--visibility", options.visibility.file);
-    files.read("--calibration", options.calibration);
+    ApartFiles files = filesRead(options);
     files.write("--json", options.json);
     files.write("-o", options.picture);
     files.write("--outside", options.outside);
     if (!files.status()) return files.status();
-    if (!options.json.empty() && options.json != "-")
-        if (Status writable = canWriteFile(options.json); !writable) return writable;
-    for (const std::string& picture : {options.picture, options.outside})
-        if (!picture.empty())
-            if (Status writable = canWriteFile(picture); !writable) return writable;
-    return success();
+    return canWriteFiles({options.json, options.picture, options.outside});
 }
 
 Status writeJson(const ExplainOptions& options, const Scene& scene, const Json& body) {

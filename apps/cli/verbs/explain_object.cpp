@@ -334,7 +334,7 @@ std::string cellNames(const AskedScene& asked, std::span<const uint32_t> cells, 
 }
 
 AskedScene::AskedScene(const Scene& from, const RunOptions& options) : scene(from) {
-    LoadSettings settings = loadSettings(options.settings, options.cluster_test);
+    LoadSettings settings = loadSettingsOf(options);
     settings.volumes = true;
     Progress progress("preparing", "meshes", scene.meshes.size());
     loaded = loadWorld(

@@ -50,9 +50,7 @@ Status checkExport(const CLI::App& verb, const ExportOptions& options) {
     for (const char* option : {"--cameras", "--path", "--frames", "--seed", "--fps", "--speed", "--size"})
         if (!options.from_path && verb.count(option) > 0)
             return usageError(fmt::format("{} goes with --from-path", option));
-    ApartFiles files;
-    for (const std::string& name : options.scene.names) files.read("SCENE", name);
-    files.read("--cameras", options.choice.file);
+    ApartFiles files = filesRead(options);
     files.write("-o", options.output);
     files.write("--json", options.json);
     if (!files.status()) return files.status();

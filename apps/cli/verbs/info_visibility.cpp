@@ -80,6 +80,23 @@ PlaceFacts countPlaces(const VisibilityFile& file) {
     return facts;
 }
 
+struct PreparedFacts {
+    size_t meshes = 0, inner = 0, clusters = 0, levels = 0;
+    uint64_t triangles = 0;  // of occluders
+};
+
+PreparedFacts countPrepared(const PreparedMeshes& prepared) {
+    PreparedFacts facts;
+    facts.meshes = prepared.meshes.size();
+    for (const PreparedMesh& mesh : prepared.meshes) {
+        facts.triangles += mesh.occluder.triangleCount();
+        facts.inner += mesh.inner.size();
+        facts.clusters += mesh.clusters.count();
+        facts.levels += mesh.lods.levels.size();
+    }
+    return facts;
+}
+
 }  // namespace
 
 bool isVisibilityFile(const std::string& file) {
@@ -99,6 +116,9 @@ Status infoOfVisibility(const std::string& file, const std::string& json) {
     const VisibleRows& rows = opened->rows();
     const VisibilityFacts facts = countPairs(*opened);
     const PlaceFacts places = countPlaces(*opened);
+    const Result<PreparedMeshes> prepared = opened->hasPrepared() ? opened->prepared(file) : PreparedMeshes();
+    if (!prepared) return prepared.error();
+    const PreparedFacts made = countPrepared(*prepared);
     const bool packed = !SectionFile::open(*bytes, file)->find(visibility_file::kPackedRows).empty();
     const std::string map(opened->mapName());
     const std::string hash = fmt::format("{:016x}", opened->mapHash());
@@ -125,6 +145,11 @@ Status infoOfVisibility(const std::string& file, const std::string& json) {
                             grouped(places.everywhere), grouped(places.walls)));
         if (opened->hasObjectRows()) row("visible objects", places.object_pairs, "pairs of rows and objects");
         if (opened->hasViewCells()) row("view cells", opened->viewRows().rows(), "with a row of objects each");
+        if (made.meshes > 0)
+            row("prepared meshes", made.meshes,
+                fmt::format("{} triangles that hide, {} simpler occluders, {} clusters, {} levels of detail",
+                            grouped(made.triangles), grouped(made.inner), grouped(made.clusters),
+                            grouped(made.levels)));
         row("bytes", bytes->size(), grouped(opened->residentBytes()) + " resident");
     }
     if (json.empty()) return success();
@@ -152,6 +177,12 @@ Status infoOfVisibility(const std::string& file, const std::string& json) {
                               {"everywhere", places.everywhere},
                               {"walls", places.walls}};
         if (opened->hasObjectRows()) out["visible_object_pairs"] = places.object_pairs;
+        if (made.meshes > 0)
+            out["prepared"] = {{"meshes", made.meshes},
+                               {"occluder_triangles", made.triangles},
+                               {"inner_occluders", made.inner},
+                               {"clusters", made.clusters},
+                               {"levels", made.levels}};
     }
     return writeText(json, out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }

@@ -94,9 +94,7 @@ void addDepth(CLI::App& verb, RenderOptions& options) {
 
 /// Of files only; a directory's are those that the report has.
 Status checkRenderApart(const RenderOptions& options) {
-    ApartFiles files;
-    for (const std::string& name : options.scene.names) files.read("SCENE", name);
-    files.read("--cameras", options.choice.file);
+    ApartFiles files = filesRead(options);
     files.write("-o", options.image);
     files.write("--ids", options.ids);
     files.write("--heat-map", options.heat_map);
@@ -152,9 +150,8 @@ Status finishRender(const CLI::App& verb, RenderOptions& options) {
 }
 
 Status checkOutputs(const RenderOptions& options) {
-    for (const std::string* file : {&options.image, &options.ids, &options.heat_map, &options.json})
-        if (!file->empty() && *file != "-")
-            if (Status writable = canWriteFile(*file); !writable) return writable;
+    if (Status writable = canWriteFiles({options.image, options.ids, options.heat_map, options.json}); !writable)
+        return writable;
     if (options.report.empty()) return success();
     if (Status made = makeDirectory(options.report); !made) return made;
     return canWriteFile(options.report + "/index.html");

@@ -222,10 +222,7 @@ Status checkReplayFiles(const ReplayOptions& options) {
     files.write("--json", options.json);
     files.write("--image", options.image);
     if (!files.status()) return files.status();
-    for (const std::string& file : {options.json, options.image})
-        if (!file.empty() && file != "-")
-            if (Status writable = canWriteFile(file); !writable) return writable;
-    return success();
+    return canWriteFiles({options.json, options.image});
 }
 
 void tellFaults(const ReplayRun& run, const FrameRecording& recording, const ReplayOptions& options) {

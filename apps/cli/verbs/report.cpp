@@ -139,8 +139,7 @@ Result<int> runReport(const CLI::App& verb, const ReportOptions& options) {
         if (!file) return file.error();
         files.push_back(std::move(*file));
     }
-    if (!options.json.empty() && options.json != "-")
-        if (Status writable = canWriteFile(options.json); !writable) return writable.error();
+    if (Status writable = canWriteFiles({options.json}); !writable) return writable.error();
     if (!options.directory.empty()) {
         if (Status made = makeDirectory(options.directory); !made) return made.error();
         if (Status writable = canWriteFile(options.directory + "/index.html"); !writable) return writable.error();

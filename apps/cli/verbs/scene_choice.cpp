@@ -148,19 +148,12 @@ Result<Scene> loadOne(const std::string& name, ImportSettings settings) {
 void tellOfWideObjects(const Scene& scene) {
     constexpr uint64_t kMany = 20000;
     const uint64_t all = drawnTriangles(scene);
-    const double half = glm::length(worldBounds(scene).size()) / 2;
-    uint64_t wide = 0, objects = 0;
-    for (const SceneObject& object : scene.objects) {
-        const Mesh& mesh = scene.meshes[object.mesh];
-        if (mesh.deforms || !(glm::length(transformBox(mesh.bounds, object.transform).size()) > half)) continue;
-        wide += mesh.triangles();
-        ++objects;
-    }
-    if (wide < kMany || wide < all / 2) return;
+    const WideObjects wide = wideObjects(scene);
+    if (wide.triangles < kMany || wide.triangles < all / 2) return;
     note(fmt::format("{} {:.0f} % of the triangles: --split grid:8 may cull more of them, in a longer query",
-                     objects == 1 ? "one object through half the scene holds"
-                                  : fmt::format("{} objects through half the scene hold", objects),
-                     100.0 * static_cast<double>(wide) / static_cast<double>(all)));
+                     wide.objects == 1 ? "one object through half the scene holds"
+                                       : fmt::format("{} objects through half the scene hold", wide.objects),
+                     100.0 * static_cast<double>(wide.triangles) / static_cast<double>(all)));
 }
 
 }  // namespace

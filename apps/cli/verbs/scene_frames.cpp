@@ -17,7 +17,6 @@
 #include "sightline/studies/hidden/render.h"
 #include "sightline/tools/profile/loaded_reference.h"
 #include "sightline/tools/profile/middle.h"
-#include "sightline/tools/report/output_file.h"
 
 namespace sightline::cli {
 namespace {
@@ -59,14 +58,10 @@ AblationRow changed(AblationRow::Change change, Stage stage = Stage::kFrustum) {
 }
 
 Status checkFrameOutput(const RunOptions& options) {
-    ApartFiles files;
-    for (const std::string& name : options.scene.names) files.read("SCENE", name);
-    files.read("--cameras", options.choice.file);
-    files.read("--visibility", options.visibility.file);
-    files.read("--calibration", options.calibration);
+    ApartFiles files = filesRead(options);
     files.write("--json", options.json);
     if (!files.status()) return files.status();
-    return options.json.empty() || options.json == "-" ? success() : canWriteFile(options.json);
+    return canWriteFiles({options.json});
 }
 
 Result<std::vector<View>> chooseViews(const CameraPath& path, const RunOptions& options) {

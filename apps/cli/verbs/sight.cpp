@@ -18,7 +18,6 @@
 #include "apps/cli/verbs/visibility_choice.h"
 #include "sightline/query/connectivity.h"
 #include "sightline/query/sight_query.h"
-#include "sightline/tools/report/output_file.h"
 
 namespace sightline::cli {
 using namespace tools;
@@ -105,12 +104,10 @@ void answerRegion(const AskedScene& asked, const glm::dvec3& from, double within
 }
 
 Status checkOutput(const SightOptions& options) {
-    ApartFiles files;
-    for (const std::string& name : options.scene.names) files.read("SCENE", name);
-    files.read("--visibility", options.visibility.file);
+    ApartFiles files = filesRead(options);
     files.write("--json", options.json);
     if (!files.status()) return files.status();
-    return options.json.empty() || options.json == "-" ? success() : canWriteFile(options.json);
+    return canWriteFiles({options.json});
 }
 
 Status runSight(SightOptions& options) {

@@ -12,7 +12,6 @@
 #include "apps/cli/verbs/summary.h"
 #include "apps/cli/verbs/verbs.h"
 #include "apps/cli/verbs/visibility_choice.h"
-#include "sightline/tools/report/output_file.h"
 
 namespace sightline::cli {
 using namespace tools;
@@ -21,10 +20,7 @@ namespace {
 /// The whole verb. Returns the exit code.
 Result<int> runVerify(const CLI::App& verb, RunOptions& options) {
     if (Status good = finish(verb, options); !good) return good.error();
-    ApartFiles files;
-    for (const std::string& name : options.scene.names) files.read("SCENE", name);
-    files.read("--cameras", options.choice.file);
-    files.read("--visibility", options.visibility.file);
+    ApartFiles files = filesRead(options);
     files.write("--json", options.json);
     if (!files.status()) return files.status().error();
     Result<Scene> scene = loadScene(options.scene);
@@ -32,8 +28,7 @@ Result<int> runVerify(const CLI::App& verb, RunOptions& options) {
     if (Status opened = openVisibility(*scene, options); !opened) return opened.error();
     const Result<CameraPath> path = loadPath(*scene, options);
     if (!path) return path.error();
-    if (!options.json.empty() && options.json != "-")
-        if (Status writable = canWriteFile(options.json); !writable) return writable.error();
+    if (Status writable = canWriteFiles({options.json}); !writable) return writable.error();
 
     prepareLods(*scene, options);
     CullRun run = cullPath(*scene, *path, options);

@@ -116,10 +116,7 @@ Status runWindow(const ViewOptions& options, viewer::Window& window, viewer::Vie
 }
 
 Status checkView(const ViewOptions& options) {
-    ApartFiles files;
-    for (const std::string& name : options.scene.names) files.read("SCENE", name);
-    files.read("--cameras", options.choice.file);
-    files.read("--visibility", options.visibility.file);
+    ApartFiles files = filesRead(options);
     files.write("--screenshot", options.screenshot);
     if (!files.status()) return files.status();
     if (options.screenshot == "-") return usageError("--screenshot -: pictures go into files");
@@ -132,7 +129,7 @@ Status checkView(const ViewOptions& options) {
 
 LoadedWorld loadForView(const Scene& scene, const ViewOptions& options) {
     Progress progress("preparing", "meshes", scene.meshes.size());
-    LoadSettings settings = loadSettings(options.settings, options.cluster_test);
+    LoadSettings settings = loadSettingsOf(options);
     settings.volumes = true;
     LoadedWorld loaded = loadWorld(
         scene, [&](size_t done, size_t total) { progress.set(done, total); }, settings);

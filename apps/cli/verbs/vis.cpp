@@ -126,7 +126,7 @@ Status checkVisFiles(VisOptions& options) {
     files.read("--prt", portalFileOf(options.map));
     files.write("--leak", options.leak);
     if (Status good = finishBakeOptions(options, files); !good) return good.error();
-    return options.leak.empty() ? success() : canWriteFile(options.leak);
+    return canWriteFiles({options.leak});
 }
 
 /// Rows of leaves, as a lump has them: leaf i + 1 of the map is row i.

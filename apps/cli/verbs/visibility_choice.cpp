@@ -58,6 +58,22 @@ Error wrongFile(const std::string& file, const std::string& what) {
     return {Error::Kind::kInput, oneLine(file) + ": " + what};
 }
 
+/// Finds what the file holds of the meshes of the scene that it was baked of.
+Status openPrepared(const Scene& scene, const std::string& name, OpenedVisibility& opened) {
+    Result<PreparedMeshes> prepared = opened.file.prepared(name);
+    if (!prepared) return prepared.error();
+    opened.prepared = std::move(*prepared);
+    opened.of_mesh.assign(scene.meshes.size(), nullptr);
+    const PlacedObjects& objects = opened.file.objects();
+    for (const SceneObject& object : scene.objects) {
+        const auto [first, end] = objects.find(object.key);
+        if (end - first != 1) continue;
+        const uint32_t mesh = opened.prepared.mesh_of_object[first];
+        if (mesh != PreparedMeshes::kNone) opened.of_mesh[object.mesh] = &opened.prepared.meshes[mesh];
+    }
+    return success();
+}
+
 }  // namespace
 
 Status openVisibility(const Scene& scene, RunOptions& options) {
@@ -89,8 +105,27 @@ Status openVisibility(const Scene& scene, RunOptions& options) {
                              fmt::format("it was baked of another scene: {} of its {} objects are not where it says",
                                          grouped(all - there), grouped(all)));
     }
-    options.opened = std::make_shared<OpenedVisibility>(std::move(text), std::move(*file));
+    const auto opened = std::make_shared<OpenedVisibility>(std::move(text), std::move(*file));
+    if (opened->file.hasPrepared() && !isOfMap(options.scene))
+        if (Status taken = openPrepared(scene, name, *opened); !taken) return taken;
+    options.opened = opened;
     return success();
+}
+
+LoadSettings loadSettingsOf(const RunOptions& options) {
+    LoadSettings load = loadSettings(options.settings, options.cluster_test);
+    if (!options.opened) return load;
+    const auto any = [&](auto has) {
+        const Array<PreparedMesh>& meshes = options.opened->prepared.meshes;
+        return std::any_of(meshes.begin(), meshes.end(), has);
+    };
+    if (load.inner && !any([](const PreparedMesh& mesh) { return !mesh.inner.empty(); })) return load;
+    // Clusters are made for what a test costs.
+    if (load.clusters && (options.cluster_test != FacingCost().test ||
+                          !any([](const PreparedMesh& mesh) { return mesh.clusters.count() > 0; })))
+        return load;
+    load.prepared = options.opened->of_mesh;
+    return load;
 }
 
 void attachVisibility(const RunOptions& options, World& world) {

@@ -13,6 +13,7 @@
 #include "sightline/bake/soup/soup_tree.h"
 #include "sightline/bake/soup/soup_trial.h"
 #include "sightline/bake/soup/soup_walls.h"
+#include "sightline/bake/soup/wall_gaps.h"
 #include "sightline/bsp/tree_portals.h"
 
 namespace sightline::bake {
@@ -213,6 +214,9 @@ SoupCells cellsOfSoup(const Scene& scene, const SoupCellSettings& settings) {
     best.report.objects = scene.objects.size();
     best.report.triangles = opaque;
     best.report.smallest_hole = soup.hole;
+    best.report.widest_gap = settings.widest_gap >= 0 ? settings.widest_gap : std::ldexp(diagonal, -12);
+    if (best.report.widest_gap > 0)
+        best.report.gaps = gapsOfWalls(soup.walls, best.space, soup.hole, best.report.widest_gap);
     return best;
 }
 

@@ -22,6 +22,9 @@ struct SoupCellSettings {
     /// Holes that are narrower are no holes: as much as coordinates of the scene may be off. A larger one closes
     /// holes that light passes, which is not conservative. Negative: 2^-23 of the scene's diagonal.  [world units]
     double smallest_hole = -1;
+    /// Slits between walls are listed as gaps, which were probably meant to be shut, if they are no wider. 0: none are.
+    /// Negative: 2^-12 of the scene's diagonal.  [world units]
+    double widest_gap = -1;
     uint32_t most_cells = 1u << 15;  ///< [limit: >= 1]
     uint32_t most_holes = 32;        ///< pieces of the holes of one face; more become their hull  [limit: >= 1]
     std::vector<uint32_t> movable;   ///< objects that may be elsewhere at run time: they hide nothing  [Scene::objects]
@@ -37,6 +40,15 @@ struct SoupTrial {
     double portals_tried = 0;  ///< by the walks of a place
 };
 
+/// A straight slit between two walls. It is a portal like any other, so that nothing seen through it is lost.
+struct WallGap {
+    glm::dvec3 from{0.0}, to{0.0};  ///< its ends, in the middle of it
+    double width = 0;               ///< where it is widest  [world units] [> 0]
+    uint32_t objects[2] = {0,
+                           0};  ///< whose surfaces bound it; twice the same if both are of one  [Scene::objects] rising
+    double length() const { return glm::distance(from, to); }
+};
+
 struct SoupCellReport {
     std::vector<SoupTrial> trials;                    ///< the finest first; none without `eyes`
     uint64_t objects = 0;                             ///< of the scene, that trials speak of
@@ -49,6 +61,8 @@ struct SoupCellReport {
     uint64_t merged = 0;                              ///< faces whose holes became their hull
     uint32_t depth = 0;                               ///< of the tree
     bool full = false;                                ///< `most_cells` ended the division
+    double widest_gap = 0;                            ///< as used  [world units]
+    std::vector<WallGap> gaps;                        ///< the largest first, by width times length
     /// Whether the trial of what was used saw a quarter of the objects or more; false without trials.
     bool hardlyAnInside() const {
         for (const SoupTrial& trial : trials)

@@ -10,7 +10,7 @@
 #include <span>
 
 #include "sightline/base/memory.h"
-#include "sightline/geom/lod.h"
+#include "sightline/geom/lod_chain.h"
 #include "sightline/geom/mesh_view.h"
 #include "sightline/prepare/facing/draw_clusters.h"
 #include "sightline/prepare/lod/surface_distance.h"
@@ -28,31 +28,6 @@ struct LodChainSettings {
     /// nor borders between parts: for what is far away.
     bool sloppy = false;
     DistanceLimits distance;  ///< how exactly the errors are known
-};
-
-/// Triangles of a part in a level.
-struct LodPart {
-    uint32_t first = 0, count = 0;  ///< triangles: places in LodChain::indices / 3
-};
-
-/// Levels of one mesh. Plain data.
-struct LodChain {
-    /// Finest first: the mesh itself, with no error. Triangles fall, and errors rise, each above the last one.
-    Array<LodLevel> levels;
-    /// Of the mesh's own vertices: those of all levels but the first, one after the other, each in the order of its
-    /// parts.
-    Array<uint32_t> indices;
-    Array<LodPart> ranges;  ///< [size: (levels - 1) * parts], level by level
-    uint32_t parts = 0;
-
-    explicit LodChain(Memory* memory = defaultMemory()) : levels(memory), indices(memory), ranges(memory) {}
-
-    /// @param level  > 0: the mesh itself is drawn by its own index buffer
-    LodPart range(uint32_t level, uint32_t part) const { return ranges[size_t{level - 1} * parts + part]; }
-    std::span<const uint32_t> indicesOf(uint32_t level, uint32_t part) const {
-        const LodPart range = this->range(level, part);
-        return std::span(indices).subspan(3 * size_t{range.first}, 3 * size_t{range.count});
-    }
 };
 
 /// Each level has about half as many triangles as the one before. Its error is SurfaceDistance::upper against the

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "sightline/base/bytes.h"
+#include "sightline/geom/occluder_bytes.h"
 #include "sightline/query/record/frame_recording.h"
 
 namespace sightline {
@@ -10,12 +11,6 @@ namespace sightline {
 using namespace recording_file;
 
 namespace {
-
-template <class T>
-void putBox(ByteWriter& out, const Box<T>& box) {
-    for (const auto& corner : {box.min, box.max})
-        for (int axis = 0; axis < 3; ++axis) out.put(corner[axis]);
-}
 
 void putMatrix(ByteWriter& out, const glm::dmat4& matrix) {
     for (int column = 0; column < 4; ++column)
@@ -32,12 +27,12 @@ public:
         putSettings(recording.settings);
         for (const FrameRecording::Form& form : recording.forms) {
             to(kForms).put(static_cast<uint32_t>(form.inner.size()));
-            putOccluder(form.occluder);
+            putOccluder(form.occluder, occluders());
             for (const InnerOccluder& inner : form.inner) {
                 ByteWriter out = to(kInner);
                 putBox(out, inner.outside);
                 out.put(inner.error);
-                putOccluder(inner.occluder);
+                putOccluder(inner.occluder, occluders());
             }
         }
         for (const Array<LodLevel>& chain : recording.chains) {
@@ -74,6 +69,9 @@ public:
 
 private:
     ByteWriter to(Section section) { return ByteWriter(sections_[section]); }
+    std::span<Array<char>, occluder_bytes::kRuns> occluders() {
+        return std::span<Array<char>, occluder_bytes::kRuns>(sections_.data() + kOccluders, occluder_bytes::kRuns);
+    }
 
     void putView(const View& view, bool volumes) {
         ByteWriter out = to(kView);
@@ -102,29 +100,6 @@ private:
             for (size_t i = 0; i < kNameBytes; ++i) out.put(i < name.size() ? name[i] : '\0');
             out.put(static_cast<double>(settings.*row.member));
         });
-    }
-
-    void putOccluder(const Occluder& occluder) {
-        ByteWriter head = to(kOccluders), clusters = to(kClusters), vertices = to(kVertices), polygons = to(kPolygons),
-                   edges = to(kEdges);
-        putBox(head, occluder.clusters.empty() ? Box3f() : occluder.bounds);
-        for (const size_t count :
-             {occluder.clusters.size(), occluder.x.size(), occluder.polygons.size(), occluder.edges.size()})
-            head.put(static_cast<uint32_t>(count));
-        for (const OccluderCluster& c : occluder.clusters) {
-            putBox(clusters, c.bounds);
-            for (const uint32_t value : {c.first_vertex, c.vertex_count, c.first_polygon, c.polygon_count, c.ring_count,
-                                         c.first_edge, c.edge_count})
-                clusters.put(value);
-        }
-        for (size_t i = 0; i < occluder.x.size(); ++i)
-            for (const float value : {occluder.x[i], occluder.y[i], occluder.z[i]}) vertices.put(value);
-        for (const OccluderPolygon& polygon : occluder.polygons) {
-            for (const uint8_t vertex : polygon.vertex) polygons.put(vertex);
-            polygons.put(static_cast<uint8_t>(polygon.double_sided));
-        }
-        for (const OccluderEdge& e : occluder.edges)
-            for (const uint8_t value : {e.from, e.to, e.left, e.right}) edges.put(value);
     }
 
     void putObject(const ObjectDef& object) {

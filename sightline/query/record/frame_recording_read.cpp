@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sightline/base/bytes.h"
+#include "sightline/geom/occluder_bytes.h"
 #include "sightline/query/record/frame_recording.h"
 
 namespace sightline {
@@ -33,19 +34,13 @@ public:
         if (good()) readAnswers();
         if (good()) readCertificates();
         if (good()) return success();
-        return Error{Error::Kind::kInput, std::string(file_) + ": " + fault_ + " at byte " + std::to_string(fault_at_)};
+        return Error{Error::Kind::kInput,
+                     std::string(file_) + ": " + fault_.what + " at byte " + std::to_string(fault_.at)};
     }
 
 private:
-    bool good() const { return fault_.empty(); }
-    /// @return false, so that whoever finds a fault may return it
-    bool wrong(std::string what, uint64_t at) {
-        if (good()) {
-            fault_ = std::move(what);
-            fault_at_ = at;
-        }
-        return false;
-    }
+    bool good() const { return fault_.none(); }
+    bool wrong(std::string what, uint64_t at) { return fault_.wrong(std::move(what), at); }
     uint64_t records(Section section) const { return sections_[section].left() / kRecordBytes[section]; }
 
     void readHead() {
@@ -77,28 +72,6 @@ private:
     static void takeMatrix(ByteCursor& from, glm::dmat4& matrix) {
         for (int column = 0; column < 4; ++column)
             for (int row = 0; row < 4; ++row) matrix[column][row] = from.take<double>();
-    }
-
-    bool takeFinite(ByteCursor& from, float& value) {
-        const uint64_t at = from.at();
-        value = from.take<float>();
-        return std::isfinite(value) || wrong("a number that is not finite", at);
-    }
-
-    bool takeBox(ByteCursor& from, Box3f& box) {
-        const uint64_t at = from.at();
-        for (glm::vec3* corner : {&box.min, &box.max})
-            for (int axis = 0; axis < 3; ++axis)
-                if (!takeFinite(from, (*corner)[axis])) return false;
-        for (int axis = 0; axis < 3; ++axis)
-            if (!(box.min[axis] <= box.max[axis])) return wrong("bounds that are empty", at);
-        return true;
-    }
-
-    static bool holds(const Box3f& box, const glm::vec3& p) {
-        for (int axis = 0; axis < 3; ++axis)
-            if (!(box.min[axis] <= p[axis] && p[axis] <= box.max[axis])) return false;
-        return true;
     }
 
     void readView() {
@@ -161,114 +134,17 @@ private:
             if (count > records(kInner)) return (void)wrong("more inner occluders than the file has", at);
             FrameRecording::Form& form = out_.forms.emplace_back(memory);
             form.inner.reserve(count);
-            readOccluder(form.occluder);
+            occluders_.take(form.occluder);
             for (uint64_t i = 0; i < count && good(); ++i) {
                 InnerOccluder& inner = form.inner.emplace_back(memory);
-                if (!takeBox(sections_[kInner], inner.outside) || !takeFinite(sections_[kInner], inner.error)) return;
-                readOccluder(inner.occluder);
+                if (!takeBox(sections_[kInner], inner.outside, fault_) ||
+                    !takeFinite(sections_[kInner], inner.error, fault_))
+                    return;
+                occluders_.take(inner.occluder);
             }
         }
-        for (const Section section : {kInner, kOccluders, kClusters, kVertices, kPolygons, kEdges})
-            if (good() && sections_[section].left() > 0) wrong("more than the occluders have", sections_[section].at());
-    }
-
-    void readOccluder(Occluder& occluder) {
-        ByteCursor& heads = sections_[kOccluders];
-        if (heads.left() == 0) return (void)wrong("fewer occluders than forms", heads.at());
-        ByteCursor bounds = heads;
-        for (int i = 0; i < 6; ++i) heads.take<float>();
-        const auto reserve = [&](Section section, auto... arrays) {
-            const uint64_t at = heads.at(), count = heads.take<uint32_t>();
-            if (count > records(section)) return wrong("an occluder that has more than the file", at);
-            (arrays->reserve(count), ...);
-            counts_[section] = count;
-            return true;
-        };
-        const uint64_t at = heads.at();
-        if (!reserve(kClusters, &occluder.clusters) || !reserve(kVertices, &occluder.x, &occluder.y, &occluder.z) ||
-            !reserve(kPolygons, &occluder.polygons) || !reserve(kEdges, &occluder.edges))
-            return;
-        if (counts_[kClusters] > 0) {
-            if (takeBox(bounds, occluder.bounds)) readParts(occluder);
-        } else if (counts_[kVertices] + counts_[kPolygons] + counts_[kEdges] > 0) {
-            wrong("an occluder without clusters that has parts", at);
-        }
-    }
-
-    /// Vertices, polygons and edges first: the clusters are what holds them to each other.
-    void readParts(Occluder& occluder) {
-        for (uint64_t i = 0; i < counts_[kVertices]; ++i)
-            for (Array<float>* axis : {&occluder.x, &occluder.y, &occluder.z}) {
-                float value = 0;
-                if (!takeFinite(sections_[kVertices], value)) return;
-                axis->push_back(value);
-            }
-        polygons_at_ = sections_[kPolygons].at();
-        for (uint64_t i = 0; i < counts_[kPolygons]; ++i) {
-            OccluderPolygon& polygon = occluder.polygons.emplace_back();
-            for (uint8_t& vertex : polygon.vertex) vertex = sections_[kPolygons].take<uint8_t>();
-            const uint64_t at = sections_[kPolygons].at();
-            const uint8_t sides = sections_[kPolygons].take<uint8_t>();
-            if (sides > 1) return (void)wrong("a polygon with neither one side nor two", at);
-            polygon.double_sided = sides == 1;
-        }
-        edges_at_ = sections_[kEdges].at();
-        for (uint64_t i = 0; i < counts_[kEdges]; ++i) {
-            OccluderEdge& edge = occluder.edges.emplace_back();
-            for (uint8_t* value : {&edge.from, &edge.to, &edge.left, &edge.right})
-                *value = sections_[kEdges].take<uint8_t>();
-        }
-        for (uint64_t i = 0; good() && i < counts_[kClusters]; ++i) readCluster(occluder);
-    }
-
-    void readCluster(Occluder& occluder) {
-        ByteCursor& from = sections_[kClusters];
-        const uint64_t at = from.at();
-        OccluderCluster& c = occluder.clusters.emplace_back();
-        if (!takeBox(from, c.bounds)) return;
-        for (uint32_t* value : {&c.first_vertex, &c.vertex_count, &c.first_polygon, &c.polygon_count, &c.ring_count,
-                                &c.first_edge, &c.edge_count})
-            *value = from.take<uint32_t>();
-        const auto within = [](uint64_t first, uint64_t count, uint64_t size) { return first + count <= size; };
-        if (!holds(occluder.bounds, c.bounds.min) || !holds(occluder.bounds, c.bounds.max))
-            return (void)wrong("a cluster that its occluder's bounds do not hold", at);
-        if (c.first_vertex % 8 != 0 || c.vertex_count == 0 || c.vertex_count > OccluderCluster::kMaxVertices ||
-            !within(c.first_vertex, (uint64_t{c.vertex_count} + 7) / 8 * 8, occluder.x.size()))
-            return (void)wrong("a cluster with vertices that there are not", at);
-        const uint64_t polygons = uint64_t{c.polygon_count} + c.ring_count;
-        const uint64_t most = c.edge_count > 0 ? OccluderCluster::kMaxOwn : OccluderCluster::kMaxLoose;
-        if (c.polygon_count == 0 || c.polygon_count > most || polygons > OccluderCluster::kMaxPolygons ||
-            !within(c.first_polygon, polygons, occluder.polygons.size()))
-            return (void)wrong("a cluster with polygons that there are not", at);
-        if (c.edge_count > 4 * OccluderCluster::kMaxVertices * OccluderCluster::kMaxPolygons ||
-            !within(c.first_edge, c.edge_count, occluder.edges.size()))
-            return (void)wrong("a cluster with edges that there are not", at);
-        checkPolygons(occluder, c, static_cast<uint32_t>(polygons));
-        for (uint32_t i = c.first_edge; good() && i < c.first_edge + c.edge_count; ++i) {
-            const OccluderEdge& edge = occluder.edges[i];
-            if (edge.from >= c.vertex_count || edge.to >= c.vertex_count || edge.from == edge.to ||
-                edge.left >= polygons || (edge.right >= polygons && edge.right != OccluderEdge::kNone))
-                wrong("an edge between what there is not", edges_at_ + kRecordBytes[kEdges] * i);
-        }
-    }
-
-    void checkPolygons(const Occluder& occluder, OccluderCluster& c, uint32_t polygons) {
-        for (uint32_t i = 0; i < polygons; ++i) {
-            const OccluderPolygon& polygon = occluder.polygons[c.first_polygon + i];
-            const uint64_t at = polygons_at_ + kRecordBytes[kPolygons] * (c.first_polygon + i);
-            if (i < c.polygon_count) c.triangle_count += static_cast<uint32_t>(polygon.corners() - 2);
-            for (int k = 0; k < polygon.corners(); ++k) {
-                if (polygon.vertex[k] >= c.vertex_count)
-                    return (void)wrong("a polygon of a vertex that there is not", at);
-                for (int j = 0; j < k; ++j)
-                    if (polygon.vertex[j] == polygon.vertex[k])
-                        return (void)wrong("a polygon that names a vertex twice", at);
-                const uint32_t vertex = c.first_vertex + polygon.vertex[k];
-                if (i < c.polygon_count &&
-                    !holds(c.bounds, {occluder.x[vertex], occluder.y[vertex], occluder.z[vertex]}))
-                    return (void)wrong("a polygon that its cluster's bounds do not hold", at);
-            }
-        }
+        if (good() && sections_[kInner].left() > 0) wrong("more than the occluders have", sections_[kInner].at());
+        if (good()) occluders_.end();
     }
 
     void readChains() {
@@ -360,11 +236,9 @@ private:
     std::span<const char> bytes_;
     std::string_view file_;
     FrameRecording& out_;
-    std::string fault_;
-    uint64_t fault_at_ = 0;
+    ByteFault fault_;
     ByteCursor sections_[kSectionCount];
-    uint64_t counts_[kSectionCount] = {};  ///< of the occluder at hand
-    uint64_t polygons_at_ = 0, edges_at_ = 0;
+    OccluderReader occluders_{&sections_[kOccluders], fault_};
 };
 
 }  // namespace

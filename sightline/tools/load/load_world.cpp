@@ -3,6 +3,7 @@
 #include "sightline/tools/load/load_world.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "sightline/prepare/facing/draw_clusters.h"
 #include "sightline/tools/load/mesh_lods.h"
@@ -20,11 +21,24 @@ struct Forms {
     LodsId lods;
 };
 
-/// The occluder holds the triangles whose material hides, the shape all; one record serves both where they are equal.
-Forms formsOf(const Scene& scene, const Mesh& mesh, const LoadSettings& settings, World& world) {
+/// Takes what is asked for to a world.
+Forms addForms(const PreparedMesh& prepared, const LoadSettings& settings, World& world) {
     Forms forms;
-    if (settings.lods) forms.lods = world.addLods(lodLevels(mesh));
-    if (mesh.deforms) return forms;
+    if (!prepared.occluder.clusters.empty())
+        forms.occluder = world.addOccluder(
+            prepared.occluder, settings.inner ? std::span(prepared.inner) : std::span<const InnerOccluder>());
+    if (prepared.occluder_is_shape) forms.shape = forms.occluder;
+    else if (prepared.has_shape) forms.shape = world.addShape(prepared.shape);
+    if (settings.clusters && prepared.clusters.count() > 0) forms.clusters = world.addClusters(prepared.clusters);
+    return forms;
+}
+
+}  // namespace
+
+/// The occluder holds the triangles whose material hides, the shape all; one record serves both where they are equal.
+PreparedMesh prepareMesh(const Scene& scene, const Mesh& mesh, const LoadSettings& settings) {
+    PreparedMesh out;
+    if (mesh.deforms) return out;
     std::vector<uint8_t> hides(mesh.triangles(), 0), double_sided(mesh.triangles(), 0);
     for (const Primitive& primitive : mesh.primitives) {
         const Material& material = scene.materials[primitive.material];
@@ -36,26 +50,25 @@ Forms formsOf(const Scene& scene, const Mesh& mesh, const LoadSettings& settings
     const MeshView view{mesh.positions, mesh.indices};
     const size_t hiding = static_cast<size_t>(std::count(hides.begin(), hides.end(), 1));
     if (hiding > 0) {
-        const Occluder occluder = prepareOccluder(view, hides, double_sided, settings.occluders);
-        std::vector<InnerOccluder> inner;
+        out.occluder = prepareOccluder(view, hides, double_sided, settings.occluders);
         if (settings.inner && hiding >= kDense)
-            inner = prepareInner(view, hides, double_sided, settings.occluders, settings.inner_occluders);
-        if (occluder.triangleCount() > 0) forms.occluder = world.addOccluder(occluder, inner);
+            for (InnerOccluder& inner :
+                 prepareInner(view, hides, double_sided, settings.occluders, settings.inner_occluders))
+                out.inner.push_back(std::move(inner));
     }
-    if (hiding == hides.size()) forms.shape = forms.occluder;
-    else forms.shape = world.addShape(prepareOccluder(view, {}, double_sided));
+    out.occluder_is_shape = hiding == hides.size();
+    out.has_shape = !out.occluder_is_shape;
+    if (out.has_shape) out.shape = prepareOccluder(view, {}, double_sided);
     if (settings.clusters && mesh.triangles() >= kClustered) {
         std::vector<MeshPart> parts;
         for (const Primitive& primitive : mesh.primitives)
             parts.push_back({primitive.first_triangle, primitive.triangle_count,
                              scene.materials[primitive.material].double_sided,
                              scene.materials[primitive.material].hides()});
-        forms.clusters = world.addClusters(prepareDrawClusters(view, parts, settings.draw_clusters));
+        out.clusters = prepareDrawClusters(view, parts, settings.draw_clusters);
     }
-    return forms;
+    return out;
 }
-
-}  // namespace
 
 LoadSettings loadSettings(bool volumes, double occluder_error, bool clusters, double cluster_test) {
     LoadSettings settings;
@@ -81,7 +94,10 @@ LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_
     LoadedWorld loaded{World::create(world), {}};
     std::vector<Forms> forms(scene.meshes.size());
     for (size_t i = 0; i < scene.meshes.size(); ++i) {
-        forms[i] = formsOf(scene, scene.meshes[i], settings, loaded.world);
+        const Mesh& mesh = scene.meshes[i];
+        const PreparedMesh* before = settings.prepared.empty() ? nullptr : settings.prepared[i];
+        forms[i] = addForms(before ? *before : prepareMesh(scene, mesh, settings), settings, loaded.world);
+        if (settings.lods) forms[i].lods = loaded.world.addLods(lodLevels(mesh));
         if (progress && (i % 64 == 63 || i + 1 == scene.meshes.size())) progress(i + 1, scene.meshes.size());
     }
     loaded.ids.reserve(scene.objects.size());

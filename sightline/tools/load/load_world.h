@@ -3,8 +3,10 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
+#include "sightline/geom/prepared_mesh.h"
 #include "sightline/geom/query_settings.h"
 #include "sightline/prepare/facing/draw_clusters.h"
 #include "sightline/prepare/inner/inner.h"
@@ -27,7 +29,12 @@ struct LoadSettings {
     bool clusters = false;  ///< prepare clusters of meshes of some size, too: prepareDrawClusters()
     DrawClusterSettings draw_clusters;
     bool lods = false;  ///< tell the world the levels that meshes have, and what they take to draw: addMeshLods()
+    /// What was prepared of meshes before, of which what is asked for above is taken. Null, or no mesh: it is prepared now.
+    std::span<const PreparedMesh* const> prepared;  ///< [size: Scene::meshes, or 0]
 };
+
+/// What a world needs of a mesh, but for its levels of detail.
+PreparedMesh prepareMesh(const Scene& scene, const Mesh& mesh, const LoadSettings& settings);
 
 /// What queries with these settings need.
 /// @param cluster_test  of Stage::kClusters: what a test costs, in triangles: FacingCost::test

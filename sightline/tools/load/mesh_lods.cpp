@@ -47,11 +47,23 @@ void append(const LodChain& chain, uint32_t level, uint32_t part, uint32_t mater
 void addMeshLods(Mesh& mesh, const LodChainSettings& settings) {
     if (mesh.deforms) return mesh.lods.clear();
     if (!mesh.lods.empty()) return measure(mesh, settings);
-    if (mesh.triangles() < kLeastForLods) return;
+    setMeshLods(mesh, lodChainOf(mesh, settings));
+}
+
+LodChain lodChainOf(const Mesh& mesh, const LodChainSettings& settings) {
+    if (mesh.deforms || !mesh.lods.empty() || mesh.triangles() < kLeastForLods) return LodChain();
     std::vector<MeshPart> parts;
     for (const Primitive& primitive : mesh.primitives)
         parts.push_back({primitive.first_triangle, primitive.triangle_count, false});
-    const LodChain chain = makeLods({mesh.positions, mesh.indices}, parts, settings);
+    return makeLods({mesh.positions, mesh.indices}, parts, settings);
+}
+
+bool setMeshLods(Mesh& mesh, const LodChain& chain) {
+    const size_t parts = std::max<size_t>(1, mesh.primitives.size());
+    if (chain.levels.size() > 1 && chain.parts != parts) return false;
+    for (const uint32_t index : chain.indices)
+        if (index >= mesh.positions.size()) return false;
+    mesh.lods.clear();
     for (uint32_t level = 1; level < chain.levels.size(); ++level) {
         MeshLod& lod = mesh.lods.emplace_back();
         lod.error = chain.levels[level].error;
@@ -59,6 +71,7 @@ void addMeshLods(Mesh& mesh, const LodChainSettings& settings) {
         for (uint32_t part = 0; part < chain.parts; ++part)
             append(chain, level, part, mesh.primitives.empty() ? 0 : mesh.primitives[part].material, lod);
     }
+    return true;
 }
 
 std::vector<LodLevel> lodLevels(const Mesh& mesh) {

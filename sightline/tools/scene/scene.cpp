@@ -21,6 +21,18 @@ Box3d worldBounds(const Scene& scene) {
     return bounds;
 }
 
+WideObjects wideObjects(const Scene& scene) {
+    const double half = glm::length(worldBounds(scene).size()) / 2;
+    WideObjects wide;
+    for (const SceneObject& object : scene.objects) {
+        const Mesh& mesh = scene.meshes[object.mesh];
+        if (mesh.deforms || !(glm::length(transformBox(mesh.bounds, object.transform).size()) > half)) continue;
+        wide.triangles += mesh.triangles();
+        ++wide.objects;
+    }
+    return wide;
+}
+
 std::string objectPath(const Scene& scene, const SceneObject& object) {
     if (object.name.size() > kLongestPath) return shortened(object.name, kLongestPath);
     constexpr std::string_view kMore = ".../";

@@ -143,6 +143,13 @@ std::string objectPath(const Scene& scene, const SceneObject& object);
 /// Triangles that would be drawn: each object's mesh counted once per object.
 uint64_t drawnTriangles(const Scene& scene);
 
+/// Objects whose bounds reach through half of the scene, by the diagonal; not those that deform.
+struct WideObjects {
+    uint64_t objects = 0;
+    uint64_t triangles = 0;  ///< of theirs
+};
+WideObjects wideObjects(const Scene& scene);
+
 /// The box around all objects' bounds, in world space. Empty if there are no objects.
 Box3d worldBounds(const Scene& scene);
 

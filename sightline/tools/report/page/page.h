@@ -8,7 +8,7 @@
 namespace sightline::tools {
 
 /// The whole page: report.html with its style, its scripts, Chart.js and the data in it. It needs no network.
-/// @param data  JSON: an object whose `page` is "cull", "compare", "render" or "vis"; docs/report.md tells the rest
+/// @param data  JSON: an object whose `page` is "cull", "compare", "render", "vis" or "bake"; docs/report.md tells the rest
 std::string pageWith(std::string_view data);
 
 }  // namespace sightline::tools

@@ -83,6 +83,32 @@ function heatLegend(full) {
     short(part * full) + (part < 1 ? '' : ' or more')));
   return [h('div', {class: 'bar', role: 'img', 'aria-label': 'Colour scale'}), h('div', {class: 'scale'}, ticks)];
 }
+/** An element of a drawing. */
+function svg(tag, attributes) {
+  const made = document.createElementNS('http://www.w3.org/2000/svg', tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  return made;
+}
+/** The bytes of a base64 text. */
+const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+/** Lets the cells of a map be asked, by a click or a number: ask(cell) shows the answer and returns it in words. */
+function askedByNumber(map, count, first, ask) {
+  const number = h('input', {type: 'number', min: 0, max: count - 1, step: 1, 'aria-label': 'Cell'});
+  const words = h('output', {'aria-live': 'polite'});
+  const answer = (cell) => {
+    number.value = cell;
+    words.textContent = ask(cell);
+  };
+  map.addEventListener('click', (event) => {
+    // Of cells above one another a second click takes the next.
+    const under = document.elementsFromPoint(event.clientX, event.clientY).filter((at) => at.dataset.cell)
+      .map((at) => +at.dataset.cell).sort((a, b) => a - b);
+    if (under.length > 0) answer(under[(under.indexOf(+number.value) + 1) % under.length]);
+  });
+  number.addEventListener('change', () => answer(Math.min(count - 1, Math.max(0, Math.round(+number.value) || 0))));
+  answer(first);
+  return h('div', {class: 'player'}, h('label', {}, 'Cell ', number), words);
+}
 function setHead(title, subtitle, ...below) {
   document.title = title.slice(0, 200) + ' – Sightline';
   at('head').append(h('h1', {}, named(title, 120)), note(subtitle), ...below.filter(Boolean));

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 'use strict';
 
-const frameToOpen = {cull: cullPage, compare: comparePage, render: renderPage, vis: visPage}[data.page]();
+const frameToOpen = {cull: cullPage, compare: comparePage, render: renderPage, vis: visPage, bake: bakePage}[data.page]();
 if (player.frames) show(frameToOpen);
 followHash();
 drawCharts();

@@ -27,20 +27,12 @@ function visFacts(run) {
 
 /** The plan of the cells: one that is asked, by a click or its number, shows what it sees. */
 function askedPlan(plan) {
-  const svg = (tag, attributes) => {
-    const made = document.createElementNS('http://www.w3.org/2000/svg', tag);
-    for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-    return made;
-  };
-  const bits = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  const visible = bits(plan.visible), witnessed = bits(plan.witnessed), count = plan.cells.length;
+  const visible = bytesOf(plan.visible), witnessed = bytesOf(plan.witnessed), count = plan.cells.length;
   const has = (rows, row, cell) => rows[row * plan.row_bytes + (cell >> 3)] >> (cell & 7) & 1;
   const shapes = plan.cells.map((points, cell) => svg('polygon', {points, 'data-cell': cell}));
   const map = svg('svg', {viewBox: `0 0 ${plan.width} ${plan.height}`, class: 'cells', role: 'img',
     'aria-label': 'Plan of the cells; colours show what the asked cell sees'});
   map.append(...shapes);
-  const number = h('input', {type: 'number', min: 0, max: count - 1, step: 1, 'aria-label': 'Cell'});
-  const words = h('output', {'aria-live': 'polite'});
   function ask(cell) {
     const seen = {witnessed: 0, unresolved: 0};
     shapes.forEach((shape, other) => {
@@ -49,19 +41,10 @@ function askedPlan(plan) {
       shape.setAttribute('class', other === cell ? 'asked' : kind);
     });
     map.append(shapes[cell]);  // the last is drawn on top
-    number.value = cell;
-    words.textContent = `sees ${grouped(seen.witnessed + seen.unresolved)} of ${plural(count - 1, 'other cell')}: ` +
+    return `sees ${grouped(seen.witnessed + seen.unresolved)} of ${plural(count - 1, 'other cell')}: ` +
       `${grouped(seen.witnessed)} proved by rays, ${grouped(seen.unresolved)} not proved hidden`;
   }
-  map.addEventListener('click', (event) => {
-    // Of cells above one another a second click takes the next.
-    const under = document.elementsFromPoint(event.clientX, event.clientY).filter((at) => at.dataset.cell)
-      .map((at) => +at.dataset.cell).sort((a, b) => a - b);
-    if (under.length > 0) ask(under[(under.indexOf(+number.value) + 1) % under.length]);
-  });
-  number.addEventListener('change', () => ask(Math.min(count - 1, Math.max(0, Math.round(+number.value) || 0))));
-  ask(plan.first);
-  return [h('div', {class: 'player'}, h('label', {}, 'Cell ', number), words), map,
+  return [askedByNumber(map, count, plan.first, ask), map,
     legend([['witnessed', 'seen: a ray proves it'], ['unresolved', 'not proved hidden'], ['hidden', 'proved hidden'],
       ['asked', 'the cell']]),
     note('Click a cell. Of cells above one another, another click takes the next.')];

@@ -11,8 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sightline/base/random.h"
-#include "sightline/tools/report/output_file.h"
-#include "sightline/tools/report/page/page.h"
+#include "sightline/tools/report/page/page_pictures.h"
 #include "sightline/tools/report/pictures/png.h"
 #include "sightline/tools/report/pictures/pvs_picture.h"
 #include "sightline/tools/truth/graph_rays.h"
@@ -86,63 +85,22 @@ std::vector<uint32_t> cellsBySight(const BitMatrix& visible) {
 /// The plan whose cells a reader may ask: outlines in pixels, and the rows as bits, each row in whole words.
 nlohmann::ordered_json askedPlan(const CellPlan& plan, const BitMatrix& visible, const BitMatrix& witnessed,
                                  uint32_t first) {
-    const auto bitsOf = [](const BitMatrix& rows) {
-        std::string bytes;
-        for (size_t r = 0; r < rows.rows(); ++r)
-            for (const uint64_t word : rows.row(r))
-                for (int at = 0; at < 64; at += 8) bytes += static_cast<char>(word >> at & 0xff);
-        return base64(bytes);
-    };
     nlohmann::ordered_json cells = nlohmann::ordered_json::array();
-    for (const std::vector<glm::dvec2>& outline : plan.outlines()) {
-        std::string points;
-        for (const glm::dvec2& p : outline) points += fmt::format("{:.1f},{:.1f} ", p.x, p.y);
-        cells.push_back(std::move(points));
-    }
+    for (const std::vector<glm::dvec2>& outline : plan.outlines()) cells.push_back(svgPoints(outline));
     return {{"width", plan.width()},
             {"height", plan.height()},
             {"first", first},
             {"cells", std::move(cells)},
-            {"visible", bitsOf(visible)},
-            {"witnessed", bitsOf(witnessed)},
+            {"visible", base64Rows(visible)},
+            {"witnessed", base64Rows(witnessed)},
             {"row_bytes", visible.wordsPerRow() * 8}};
 }
-
-/// The pictures of a page, which are files beside it as well.
-class VisPictures {
-public:
-    explicit VisPictures(std::string directory) : directory_(std::move(directory)) {}
-
-    void add(const std::string& name, const Image<Rgb>& image, const std::string& text) {
-        const std::string png = encodePalettePng(image);
-        save(name + ".png", png);
-        pictures_.push_back({{"name", name}, {"image", dataUri(png)}, {"text", text}});
-    }
-    void ask(nlohmann::ordered_json plan) { plan_ = std::move(plan); }
-    Status finish(const VisSummary& summary) {
-        const std::string json = visJson(summary);
-        save("vis.json", json);
-        save("index.html", pageWith("{\"page\":\"vis\",\"pictures\":" + pictures_.dump() + ",\"plan\":" + plan_.dump() +
-                                    ",\"run\":" + json + "}"));
-        return status_;
-    }
-
-private:
-    void save(const std::string& name, const std::string& bytes) {
-        if (status_) status_ = writeFileAside(directory_ + "/" + name, bytes);
-    }
-
-    std::string directory_;
-    nlohmann::ordered_json pictures_ = nlohmann::ordered_json::array();
-    nlohmann::ordered_json plan_;  // null: there is none to ask
-    Status status_ = success();
-};
 
 }  // namespace
 
 Status writeVisPage(const CellGraph& graph, const BitMatrix& visible, const BitMatrix& witnessed,
                     const VisSummary& summary, const std::string& directory) {
-    VisPictures page(directory);
+    PagePictures page(directory);
     if (visible.rows() > 0)
         page.add("matrix", pvsMatrixPicture(visible, witnessed),
                  "Who sees whom: a row and a column a cell. Blue: a ray proves it. Orange: not proved hidden. Pale: "
@@ -170,7 +128,7 @@ Status writeVisPage(const CellGraph& graph, const BitMatrix& visible, const BitM
                      fmt::format("A sight line through {} cells, and the portals between them.", line.cells));
         }
     }
-    return page.finish(summary);
+    return page.finish("vis", visJson(summary));
 }
 
 }  // namespace sightline::tools

@@ -21,6 +21,11 @@ struct PlanArea {
     double left = 0, top = 0;      ///< the upper left corner: smallest `across`; smallest `down`, or largest if upward
     double width = 1, height = 1;  ///< [world units]
     int through() const { return 3 - across - down; }  ///< the axis that is looked along
+    /// Where a point of the world lies in a picture of this size.  [pixels from the upper left corner]
+    glm::dvec2 at(const glm::dvec3& point, double width_pixels, double height_pixels) const {
+        const double v = upward ? top - point[down] : point[down] - top;
+        return {(point[across] - left) * width_pixels / width, v * height_pixels / height};
+    }
 };
 
 /// What of the axis looked along is drawn in full colour; the rest is pale.

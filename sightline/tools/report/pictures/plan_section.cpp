@@ -3,6 +3,7 @@
 #include "sightline/tools/report/pictures/plan_section.h"
 
 #include <optional>
+#include <utility>
 
 #include "sightline/tools/report/pictures/canvas.h"
 
@@ -88,6 +89,34 @@ std::vector<PlanLine> cellsAt(const PlanCells& cells, const PlanArea& area, doub
         }
     }
     return lines;
+}
+
+std::vector<LeafAt> leavesAt(const LeafTree& tree, const PlanArea& area, double height) {
+    const glm::dvec2 low(area.left, area.top), high(area.left + area.width, area.top + area.height);
+    std::vector<LeafAt> leaves;
+    struct Part {
+        uint32_t child;
+        std::vector<glm::dvec2> outline;
+    };
+    std::vector<Part> parts;
+    parts.push_back({tree.nodes.empty() ? LeafTreeNode::kLeaf : 0, {low, {high.x, low.y}, high, {low.x, high.y}}});
+    while (!parts.empty()) {
+        Part part = std::move(parts.back());
+        parts.pop_back();
+        if (part.outline.size() < 3) continue;
+        if ((part.child & LeafTreeNode::kLeaf) != 0) {
+            leaves.push_back({part.child & ~LeafTreeNode::kLeaf, std::move(part.outline)});
+            continue;
+        }
+        const LeafTreeNode& node = tree.nodes[part.child];
+        const glm::dvec3 line(node.plane.x, node.plane.z, node.plane.y * height + node.plane.w);
+        Part front{node.child[1], part.outline}, behind{node.child[0], std::move(part.outline)};
+        cutOutline(front.outline, line);
+        cutOutline(behind.outline, -line);
+        parts.push_back(std::move(front));
+        parts.push_back(std::move(behind));
+    }
+    return leaves;
 }
 
 std::vector<PlanLine> portalsAt(const PlanCells& cells, double height) {

@@ -29,6 +29,14 @@ PlanCells planCells(const CellSpace& space);
 /// The borders of the cells at a height, as far as they lie near the plan.
 std::vector<PlanLine> cellsAt(const PlanCells& cells, const PlanArea& area, double height);
 
+/// What of a leaf of a tree lies at a height: a convex outline in x and z.
+struct LeafAt {
+    uint32_t leaf = 0;
+    std::vector<glm::dvec2> outline;
+};
+/// The leaves at a height, as far as they lie in the plan.
+std::vector<LeafAt> leavesAt(const LeafTree& tree, const PlanArea& area, double height);
+
 /// The portals at a height.
 std::vector<PlanLine> portalsAt(const PlanCells& cells, double height);
 

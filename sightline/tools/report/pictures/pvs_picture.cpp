@@ -50,10 +50,7 @@ CellPlan::CellPlan(const CellGraph& graph, const PlanArea& area, uint32_t width)
     }
 }
 
-glm::dvec2 CellPlan::at(const glm::dvec3& point) const {
-    return {(point[area_.across] - area_.left) * width_ / area_.width,
-            (point[area_.down] - area_.top) * height_ / area_.height};
-}
+glm::dvec2 CellPlan::at(const glm::dvec3& point) const { return area_.at(point, width_, height_); }
 
 void CellPlan::drawPortal(Canvas& canvas, const CellPortal& portal, double width, Rgb colour, double opacity) const {
     const std::span<const glm::dvec3> outline = graph_.outline(portal);

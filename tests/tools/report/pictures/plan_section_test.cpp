@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/report/pictures/plan_section.h"
 
+#include <cmath>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "sightline/tools/scene/solids.h"
@@ -81,6 +84,30 @@ TEST(PlanSection, ShowsPortalsAndTheBordersOfCells) {
     EXPECT_EQ(portals[0].from.x, 5);
     EXPECT_TRUE(portalsAt(cells, 2.5).empty());
     EXPECT_TRUE(portalsAt({}, 1.7).empty());
+}
+
+TEST(PlanSection, ShowsWhatOfLeavesLiesAtAHeight) {
+    // Below y = 2 a slanted plane divides: x + y = 5, so that at 1.7 it is crossed at 3.3.
+    LeafTree tree;
+    const double half = std::sqrt(0.5);
+    tree.nodes = {{{0, 1, 0, -2}, {1, LeafTreeNode::kLeaf | 2}},
+                  {{half, half, 0, -5 * half}, {LeafTreeNode::kLeaf | 0, LeafTreeNode::kLeaf | 1}}};
+    const auto areaOf = [](const std::vector<LeafAt>& leaves, uint32_t leaf) {
+        double area = 0;
+        for (const LeafAt& at : leaves)
+            for (size_t i = 0; at.leaf == leaf && i < at.outline.size(); ++i) {
+                const glm::dvec2 &a = at.outline[i], &b = at.outline[(i + 1) % at.outline.size()];
+                area += 0.5 * (a.x * b.y - a.y * b.x);
+            }
+        return std::abs(area);
+    };
+    const std::vector<LeafAt> low = leavesAt(tree, squareCut(10), 1.7), high = leavesAt(tree, squareCut(10), 2.5);
+    EXPECT_EQ(low.size(), 2u);
+    EXPECT_NEAR(areaOf(low, 0), 33, 1e-9);
+    EXPECT_NEAR(areaOf(low, 1), 67, 1e-9);
+    ASSERT_EQ(high.size(), 1u);
+    EXPECT_NEAR(areaOf(high, 2), 100, 1e-9);
+    EXPECT_EQ(leavesAt(LeafTree(), squareCut(10), 1).size(), 1u) << "no planes: one leaf is all";
 }
 
 TEST(PlanSection, TakesTheCellsOfAVisibilityFile) {
