@@ -160,6 +160,7 @@ void addBake(CLI::App& tool, int& exit_code) {
             "--height", options->height,
             "of a scene without marked cells, with --report: the height at which plans cut the walls [world units] "
             "(default: of an eye on a floor of the scene)")
+        ->check(CLI::Range(-1e9, 1e9))
         ->type_name("Y");
     verb->callback([verb, options, &exit_code] {
         options->source.of_walls =

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "sightline/math/finite.h"
 #include "sightline/prepare/lod/near_triangle.h"
 #include "sightline/tools/scene/joined_sets.h"
 #include "sightline/tree/bvh.h"
@@ -21,13 +22,19 @@ namespace {
 /// Finds the triangles near a point.
 class NearWalls {
 public:
-    explicit NearWalls(const std::vector<WallTriangle>& triangles) : triangles_(triangles) {
+    /// @param triangles  must outlive this; those that are not finite are passed over
+    explicit NearWalls(const std::vector<WallTriangle>& triangles) {
         std::vector<Box3d> boxes;
-        boxes.reserve(triangles.size());
         for (const WallTriangle& triangle : triangles) {
             Box3d box;
-            for (const glm::dvec3& corner : triangle.corners) box.grow(corner);
+            bool finite = true;
+            for (const glm::dvec3& corner : triangle.corners) {
+                finite &= isFinite(corner);
+                box.grow(corner);
+            }
+            if (!finite) continue;
             boxes.push_back(box);
+            triangles_.push_back(&triangle);
         }
         tree_ = buildBvh(boxes);
     }
@@ -42,7 +49,7 @@ public:
             const uint32_t child = stack.back();
             stack.pop_back();
             if ((child & BvhNode::kLeaf) != 0) {
-                const WallTriangle& triangle = triangles_[tree_.order[child ^ BvhNode::kLeaf]];
+                const WallTriangle& triangle = *triangles_[tree_.order[child ^ BvhNode::kLeaf]];
                 const double squared =
                     squaredDistance({{triangle.corners[0], triangle.corners[1], triangle.corners[2]}}, point);
                 if (squared <= reach * reach) visit(triangle, squared);
@@ -58,11 +65,11 @@ public:
     }
 
 private:
-    const std::vector<WallTriangle>& triangles_;
+    std::vector<const WallTriangle*> triangles_;
     Bvh tree_;
 };
 
-/// A convex outline as a strip: along its longest pair of parallel lines that hold it.
+/// A convex outline as a strip: between the two parallel lines that hold it and are nearest to one another.
 struct Strip {
     FlatPiece piece;
     glm::dvec2 along{1, 0}, across{0, 1};
@@ -97,11 +104,11 @@ struct Strip {
             const glm::dvec2 &a = piece[i], &b = piece[(i + 1) % piece.size()];
             const double from = glm::dot(along, a) - at, to = glm::dot(along, b) - at;
             if ((from > 0 && to > 0) || (from < 0 && to < 0)) continue;
-            const double part = from == to ? 0 : from / (from - to);
-            for (const double height : {glm::dot(across, a + part * (b - a)),
-                                        from == to ? glm::dot(across, b) : glm::dot(across, a + part * (b - a))}) {
-                low = std::min(low, height);
-                high = std::max(high, height);
+            // Of an edge across the strip both ends count.
+            const glm::dvec2 first = from == to ? a : a + from / (from - to) * (b - a), last = from == to ? b : first;
+            for (const glm::dvec2& point : {first, last}) {
+                low = std::min(low, glm::dot(across, point));
+                high = std::max(high, glm::dot(across, point));
             }
         }
         return {low, high};
@@ -167,7 +174,7 @@ std::optional<WallGap> slitOf(const NearWalls& walls, std::span<const glm::dvec3
     if (areaOf(piece) < 0) std::reverse(piece.begin(), piece.end());
     const Strip strip(std::move(piece));
     if (!(strip.length() > 16 * hole)) return std::nullopt;
-    constexpr int kPlaces = 5, kMost = kPlaces / 2 + 1;
+    constexpr int kPlaces = 5, kNeeded = kPlaces / 2 + 1;
     WallGap gap;
     std::map<std::pair<uint32_t, uint32_t>, int> bounds;
     for (int place = 0; place < kPlaces; ++place) {
@@ -195,7 +202,7 @@ std::optional<WallGap> slitOf(const NearWalls& walls, std::span<const glm::dvec3
         gap.objects[0] = objects.first;
         gap.objects[1] = objects.second;
     }
-    if (found < kMost || !(gap.width > hole)) return std::nullopt;
+    if (found < kNeeded || !(gap.width > hole)) return std::nullopt;
     const auto endAt = [&](double at) {
         const auto [low, high] = strip.chord(std::clamp(at, strip.begin, strip.end));
         return frame.from(at * strip.along + (low + high) / 2 * strip.across);

@@ -14,28 +14,15 @@ namespace {
 
 constexpr Rgb kWallInk{20, 24, 31}, kCellInk{150, 160, 175}, kGapInk{213, 40, 0};
 
-/// From above, around all boxes, with some air.
-PlanArea areaAround(std::span<const Box3d> bounds) {
-    Box3d world;
-    for (const Box3d& box : bounds)
-        if (box.finite()) world.grow(box);
-    PlanArea area;
-    if (world.empty()) return area;
-    const glm::dvec3 size = world.size();
-    const double most = std::max({size.x, size.z, 1e-9}), air = 0.03 * most;
-    area.width = std::max(size.x, most / 4) + 2 * air;
-    area.height = std::max(size.z, most / 4) + 2 * air;
-    area.left = world.center().x - area.width / 2;
-    area.top = world.center().z - area.height / 2;
-    return area;
-}
-
 }  // namespace
 
 BakePlan::BakePlan(const DrawnBake& bake) : bake_(bake) {
     for (const SceneObject& object : bake.scene->objects)
         bounds_.push_back(transformBox(bake.scene->meshes[object.mesh].bounds, object.transform));
-    area_ = areaAround(bounds_);
+    Box3d world;
+    for (const Box3d& box : bounds_)
+        if (box.finite()) world.grow(box);
+    area_ = planAreaAround(world);
     band_ = storeyOf(bounds_, bake.eye);
     const double scale = kSide / std::max(area_.width, area_.height);
     width_ = std::max(1u, static_cast<uint32_t>(std::lround(scale * area_.width)));

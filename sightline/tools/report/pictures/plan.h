@@ -38,6 +38,9 @@ struct PlanBand {
 PlanArea planArea(std::span<const Box3d> bounds, std::span<const std::span<const uint8_t>> reasons,
                   std::span<const View> views);
 
+/// From above, around a box, with some air: at most four times as high as wide or as wide as high.
+PlanArea planAreaAround(const Box3d& box);
+
 /// From the side: along the world axis that is nearest to the view's direction, as wide as the plan, 2.4 times as wide
 /// as high; heights are drawn larger by a whole factor where the world is flat, and the drawing is wider where it is
 /// high.

@@ -69,6 +69,18 @@ PlanArea planArea(std::span<const Box3d> bounds, std::span<const std::span<const
     return area;
 }
 
+PlanArea planAreaAround(const Box3d& box) {
+    PlanArea area;
+    if (box.empty() || !box.finite()) return area;
+    const glm::dvec3 size = box.size(), center = box.center();
+    const double most = std::max({size.x, size.z, 1e-9}), air = 0.04 * most;
+    area.width = std::max(size.x, most / 4) + 2 * air;
+    area.height = std::max(size.z, most / 4) + 2 * air;
+    area.left = center.x - area.width / 2;
+    area.top = center.z - area.height / 2;
+    return area;
+}
+
 PlanArea sectionArea(std::span<const Box3d> bounds, std::span<const uint8_t> reasons, const View& view,
                      const PlanArea& plan) {
     const glm::dvec3 forward = -glm::transpose(glm::dmat3(view.view))[2], eye = eyePosition(view);

@@ -23,15 +23,7 @@ Rgb colourOf(const BitMatrix& visible, const BitMatrix& witnessed, size_t row, s
 PlanArea cellPlanArea(const CellGraph& graph) {
     Box3d box;
     for (const glm::dvec3& point : graph.points) box.grow(point);
-    PlanArea area;
-    if (graph.points.empty() || !box.finite()) return area;
-    const glm::dvec3 size = box.size(), center = box.center();
-    const double most = std::max({size.x, size.z, 1e-9}), air = 0.04 * most;
-    area.width = std::max(size.x, most / 4) + 2 * air;
-    area.height = std::max(size.z, most / 4) + 2 * air;
-    area.left = center.x - area.width / 2;
-    area.top = center.z - area.height / 2;
-    return area;
+    return planAreaAround(box);
 }
 
 CellPlan::CellPlan(const CellGraph& graph, const PlanArea& area, uint32_t width)
