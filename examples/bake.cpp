@@ -4,9 +4,11 @@
 #include <fstream>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "sightline/bake/bake.h"
 #include "sightline/base/thread_pool.h"
+#include "sightline/tools/load/load_world.h"
 #include "sightline/tools/scene/procedural.h"
 
 namespace {
@@ -29,6 +31,14 @@ int main(int argc, char** argv) {
     sightline::bake::BakeSettings settings;
     settings.jobs = &threads;
     settings.object_rows = true;
+    // What meshes hide with goes into the file, too: whoever opens it need not prepare them.
+    std::vector<sightline::PreparedMesh> meshes;
+    std::vector<uint32_t> mesh_of_object;
+    for (const sightline::tools::Mesh& mesh : scene->meshes)
+        meshes.push_back(sightline::tools::prepareMesh(*scene, mesh, {}));
+    for (const sightline::tools::SceneObject& object : scene->objects) mesh_of_object.push_back(object.mesh);
+    settings.prepared = meshes;
+    settings.prepared_of_object = mesh_of_object;
     sightline::bake::SceneCellSettings marks;
     marks.trusted = true;  // who made the scene knows its walls; without it they are searched for holes
     const sightline::Result<sightline::bake::Baked> baked =

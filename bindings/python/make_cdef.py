@@ -7,7 +7,7 @@ import re
 import sys
 
 # In the order in which one needs the other.
-ORDER = ["base", "view", "world", "query", "explain", "sight", "ways", "shadows", "buffer"]
+ORDER = ["base", "view", "world", "prepared", "query", "explain", "sight", "ways", "shadows", "buffer"]
 
 
 def main():

@@ -18,6 +18,7 @@
 #include "sightline/c/buffer.h"      // the occlusion buffer alone
 #include "sightline/c/debug_draw.h"  // answers as lines
 #include "sightline/c/explain.h"     // why an object is, or is not, in an answer
+#include "sightline/c/prepared.h"    // prepared meshes of a visibility file
 #include "sightline/c/query.h"       // what can be seen
 #include "sightline/c/shadows.h"     // shadow casters
 #include "sightline/c/sight.h"       // lines of sight, and what a region sees

@@ -176,6 +176,16 @@ class Snapshot:
         return _lib.slSnapshotObjects(self._handle)
 
 
+def _opened(file):
+    """A visibility file, and what must live as long."""
+    data = file if isinstance(file, bytes) else pathlib.Path(file).read_bytes()
+    name = b"the visibility file" if isinstance(file, bytes) else str(file).encode()
+    out = _ffi.new("slVisibility**")
+    held = _ffi.from_buffer(data)
+    _check(_lib.slOpenVisibility(held, len(data), name, _hooks(), out))
+    return _ffi.gc(out[0], _lib.slCloseVisibility), held, data
+
+
 class World:
     """Objects that come, move and go."""
 
@@ -243,14 +253,27 @@ class World:
 
     def attach(self, file):
         """Takes up the cells of a visibility file, of `sightline bake`: a path, or its bytes."""
-        data = file if isinstance(file, bytes) else pathlib.Path(file).read_bytes()
-        name = b"the visibility file" if isinstance(file, bytes) else str(file).encode()
-        out = _ffi.new("slVisibility**")
-        held = _ffi.from_buffer(data)
-        _check(_lib.slOpenVisibility(held, len(data), name, _hooks(), out))
-        opened = _ffi.gc(out[0], _lib.slCloseVisibility)
-        _check(_lib.slAttach(self._handle, opened))
-        self._files.append((opened, held, data))  # they must outlive snapshots, which hold the world
+        opened = _opened(file)
+        _check(_lib.slAttach(self._handle, opened[0]))
+        self._files.append(opened)  # they must outlive snapshots, which hold the world
+
+    def add_prepared(self, file, keys):
+        """Adds what a visibility file holds of the meshes of objects, of `sightline bake --prepare`, each mesh once.
+
+        file: a path, or its bytes; keys: [objects], as they were baked
+        Two arrays for add(): what each hides with, and its shape; 0 where the file holds nothing, or several objects of the key."""
+        opened = _opened(file)
+        out = _ffi.new("slPrepared**")
+        _check(_lib.slOpenPrepared(opened[0], out))
+        prepared = _ffi.gc(out[0], _lib.slClosePrepared)
+        keys = _array(_whole(keys, "u8", "keys"), "u8", (None,), "keys")
+        meshes = numpy.array([_lib.slPreparedMeshOf(prepared, int(key)) for key in keys], "u4")
+        found = numpy.zeros((2, len(keys)), "u4")
+        ids = _ffi.new("slPreparedIds*")
+        for mesh in numpy.unique(meshes[meshes != 0xffffffff]):
+            _check(_lib.slAddPrepared(self._handle, prepared, int(mesh), ids))
+            found[0, meshes == mesh], found[1, meshes == mesh] = ids.occluder.index, ids.shape.index
+        return found[0], found[1]
 
     def set_door(self, name, open):
         """open: 0 shut, 1 open, and between."""
