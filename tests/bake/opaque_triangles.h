@@ -26,7 +26,9 @@ public:
                 for (size_t c = 0; c < 3; ++c)
                     triangle.corners[c] = glm::dvec3(
                         object.transform * glm::dvec4(glm::dvec3(mesh.positions[mesh.indices[3 * t + c]]), 1));
-                all_.push_back(triangle);
+                const auto& [a, b, c] = triangle.corners;
+                if (glm::length(glm::cross(b - a, c - a)) > 0)
+                    all_.push_back(triangle);  // without area it hides nothing
             }
         }
     }

@@ -12,7 +12,9 @@
 #include "sightline/bake/soup/soup_cells.h"
 #include "sightline/base/random.h"
 #include "tests/bake/marked/made_rooms.h"
+#include "tests/bake/opaque_triangles.h"
 #include "tests/bake/soup/slit_room.h"
+#include "tests/support/shared_scenes.h"
 
 namespace sightline {
 using namespace bake;
@@ -150,6 +152,34 @@ TEST(WallGaps, TheInsideOfALeafIsNone) {
         const SoupCells cells = cellsOfSoup(made.scene, settings);
         EXPECT_GT(cells.space.graph.cells, 4u);
         EXPECT_TRUE(cells.report.gaps.empty());
+    }
+}
+
+// What is listed is open: some short segment through its middle meets no front.
+TEST(WallGaps, OfRealScenesAreSeenThrough) {
+    for (const char* name : {"bsi-duplex", "aws-small-house"}) {
+        SCOPED_TRACE(name);
+        const auto scene = sharedScene(name);
+        if (!scene) GTEST_SKIP() << "no scenes beside the repository";
+        const SoupCellReport report = cellsOfSoup(*scene).report;
+        EXPECT_GE(report.gaps.size(), 10u);
+        const OpaqueTriangles truth(*scene);
+        Random random(5);
+        for (size_t i = 0; i < std::min<size_t>(report.gaps.size(), 20); ++i) {
+            const WallGap& gap = report.gaps[i];
+            EXPECT_LE(gap.width, report.widest_gap);
+            const glm::dvec3 middle = 0.5 * (gap.from + gap.to), line = (gap.to - gap.from) / gap.length();
+            bool open = false;
+            for (int k = 0; k < 200 && !open; ++k) {
+                const double turn = random.uniform(0, 3.15);
+                const glm::dvec3 side = glm::normalize(
+                    glm::cross(line, std::abs(line.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0)));
+                const glm::dvec3 along = std::cos(turn) * side + std::sin(turn) * glm::cross(line, side);
+                const double half = gap.width / 2;
+                open = !truth.meets(middle - half * along, along, 0, 2 * half, 0);
+            }
+            EXPECT_TRUE(open) << i << ": at (" << middle.x << ", " << middle.y << ", " << middle.z << ")";
+        }
     }
 }
 
