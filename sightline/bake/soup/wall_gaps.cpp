@@ -166,51 +166,103 @@ bool isGap(const Bound& a, const Bound& b) {
     return !a.inside && !b.inside && !of_one_leaf && (a.flush || b.flush);
 }
 
-/// The slit that a portal is, if it is one.
-std::optional<WallGap> slitOf(const NearWalls& walls, std::span<const glm::dvec3> outline, const glm::dvec4& plane,
-                              double hole, double widest) {
-    const FlatFrame frame(outline[0], glm::dvec3(plane));
-    FlatPiece piece = frame.to(outline);
-    if (areaOf(piece) < 0) std::reverse(piece.begin(), piece.end());
-    const Strip strip(std::move(piece));
-    if (!(strip.length() > 16 * hole)) return std::nullopt;
-    constexpr int kPlaces = 5, kNeeded = kPlaces / 2 + 1;
-    WallGap gap;
-    std::map<std::pair<uint32_t, uint32_t>, int> bounds;
-    for (int place = 0; place < kPlaces; ++place) {
-        const double at = strip.begin + strip.length() * (place + 0.5) / kPlaces;
-        const auto [low, high] = strip.chord(at);
-        const double width = high - low - 2 * hole;  // as it was before it was widened
-        if (!(width <= widest) || !(strip.length() >= 3 * width)) return std::nullopt;
-        gap.width = std::max(gap.width, width);
-        const auto pointAt = [&](double height) { return frame.from(at * strip.along + height * strip.across); };
-        const glm::dvec3 middle = pointAt((low + high) / 2);
+/// A portal that may be a slit, or hold some.
+class ThinPortal {
+public:
+    ThinPortal(const NearWalls& walls, std::span<const glm::dvec3> outline, const glm::dvec4& plane, double hole)
+        : walls_(walls),
+          plane_(plane),
+          hole_(hole),
+          frame_(outline[0], glm::dvec3(plane)),
+          strip_(pieceOf(frame_, outline)) {}
+
+    /// Appends the stretches of it that the same two objects bound.
+    void findSlits(double widest, std::vector<WallGap>& slits) const {
+        if (!(strip_.length() > 16 * hole_)) return;
+        constexpr double kPlaces = 64;
+        double width = 0;
+        for (int i = 0; i < kPlaces; ++i) width = std::max(width, widthAt(placeOf(i, kPlaces)));
+        if (!(width <= widest && width > hole_ && strip_.length() >= kLeastShape * width)) return;
+        WallGap slit;
+        int places = 0;
+        const auto end = [&](double at) {
+            slit.to = middleAt(at);
+            if (places >= 3 && slit.length() >= kLeastShape * slit.width) slits.push_back(slit);
+            places = 0;
+        };
+        Objects last = kNoGap;
+        for (int i = 0; i < kPlaces; ++i) {
+            const double at = placeOf(i, kPlaces);
+            const Objects now = boundsAt(at);
+            if (places > 0 && now != last) end(changeBetween(placeOf(i - 1, kPlaces), at));
+            if (now != kNoGap && places == 0) {
+                slit = WallGap{};
+                slit.objects[0] = now.first;
+                slit.objects[1] = now.second;
+                slit.from = middleAt(i == 0 ? strip_.begin + hole_ : changeBetween(at, placeOf(i - 1, kPlaces)));
+            }
+            if (now != kNoGap) {
+                slit.width = std::max(slit.width, widthAt(at));
+                ++places;
+            }
+            last = now;
+        }
+        if (places > 0) end(strip_.end - hole_);
+    }
+
+private:
+    using Objects = std::pair<uint32_t, uint32_t>;
+    static constexpr Objects kNoGap{UINT32_MAX, UINT32_MAX};
+    static constexpr double kLeastShape = 3;  // length over width
+
+    static FlatPiece pieceOf(const FlatFrame& frame, std::span<const glm::dvec3> outline) {
+        FlatPiece piece = frame.to(outline);
+        if (areaOf(piece) < 0) std::reverse(piece.begin(), piece.end());
+        return piece;
+    }
+    double placeOf(int i, double places) const { return strip_.begin + strip_.length() * (i + 0.5) / places; }
+    /// As it was before it was widened.
+    double widthAt(double at) const {
+        const auto [low, high] = strip_.chord(at);
+        return high - low - 2 * hole_;
+    }
+    glm::dvec3 pointAt(double at, double height) const {
+        return frame_.from(at * strip_.along + height * strip_.across);
+    }
+    glm::dvec3 middleAt(double at) const {
+        const auto [low, high] = strip_.chord(std::clamp(at, strip_.begin, strip_.end));
+        return pointAt(at, (low + high) / 2);
+    }
+    /// The objects that bound a gap at a place, or kNoGap.
+    Objects boundsAt(double at) const {
+        const auto [low, high] = strip_.chord(at);
+        const double width = high - low - 2 * hole_;
+        const glm::dvec3 middle = middleAt(at);
         bool covered = false;  // by the back of a wall: a portal from one side alone
-        walls.near(middle, 2 * hole, [&](const WallTriangle&, double) { covered = true; });
-        if (covered) continue;
-        const double reach = std::max(width, 0.0) / 4 + 2 * hole;
-        const auto first = boundAt(walls, pointAt(low + hole), middle, plane, reach, hole);
-        const auto second = boundAt(walls, pointAt(high - hole), middle, plane, reach, hole);
-        if (!first || !second || !isGap(*first, *second)) continue;
-        ++bounds[std::minmax(first->object, second->object)];
+        walls_.near(middle, 2 * hole_, [&](const WallTriangle&, double) { covered = true; });
+        if (covered) return kNoGap;
+        const double reach = std::max(width, 0.0) / 4 + 2 * hole_;
+        const auto first = boundAt(walls_, pointAt(at, low + hole_), middle, plane_, reach, hole_);
+        const auto second = boundAt(walls_, pointAt(at, high - hole_), middle, plane_, reach, hole_);
+        if (!first || !second || !isGap(*first, *second)) return kNoGap;
+        return std::minmax(first->object, second->object);
     }
-    int found = 0, most = 0;
-    for (const auto& [objects, count] : bounds) {
-        found += count;
-        if (count <= most) continue;
-        most = count;
-        gap.objects[0] = objects.first;
-        gap.objects[1] = objects.second;
+    /// Where the objects that bound it change, on the side of a place.
+    double changeBetween(double at, double other) const {
+        const Objects here = boundsAt(at);
+        for (int i = 0; i < 10; ++i) {
+            const double middle = 0.5 * (at + other);
+            (boundsAt(middle) == here ? at : other) = middle;
+        }
+        return at;
     }
-    if (found < kNeeded || !(gap.width > hole)) return std::nullopt;
-    const auto endAt = [&](double at) {
-        const auto [low, high] = strip.chord(std::clamp(at, strip.begin, strip.end));
-        return frame.from(at * strip.along + (low + high) / 2 * strip.across);
-    };
-    gap.from = endAt(strip.begin + hole);
-    gap.to = endAt(strip.end - hole);
-    return gap;
-}
+
+    const NearWalls& walls_;
+    const glm::dvec4 plane_;
+    const double hole_;
+    const FlatFrame frame_;
+    const Strip strip_;
+};
 
 bool inLine(const WallGap& a, const WallGap& b, double apart) {
     const bool longer = a.length() >= b.length();
@@ -250,9 +302,10 @@ WallGap joined(const std::vector<const WallGap*>& slits) {
 std::vector<WallGap> gapsOfWalls(const SoupWalls& walls, const CellSpace& space, double hole, double widest) {
     const NearWalls near(walls.triangles);
     std::map<std::pair<uint32_t, uint32_t>, std::vector<WallGap>> slits;
+    std::vector<WallGap> found;
     for (const CellPortal& portal : space.graph.portals)
-        if (const auto slit = slitOf(near, space.graph.outline(portal), portal.plane, hole, widest))
-            slits[{slit->objects[0], slit->objects[1]}].push_back(*slit);
+        ThinPortal(near, space.graph.outline(portal), portal.plane, hole).findSlits(widest, found);
+    for (const WallGap& slit : found) slits[{slit.objects[0], slit.objects[1]}].push_back(slit);
     std::vector<WallGap> out;
     for (const auto& [objects, of] : slits) {
         JoinedSets lines(of.size());

@@ -9,13 +9,13 @@
 
 namespace sightline::bake {
 
-/// The gaps among the portals of a scene's own walls. A portal is a slit if it is wider than `hole`, at least three times as long as
-/// it is wide, and if in most of five places along it nothing covers its middle, a surface ends at either side, and one of
-/// these surfaces lies in the portal's plane. It is none where the nearest surface across that plane shows its back, or is one
-/// object's of two sides at both sides: that is the inside of a solid, as of a door's leaf. Slits that lie in line and are bounded by
-/// the same objects are one gap. All of this decides what is listed, and nothing else.
+/// The gaps among the portals of a scene's own walls: stretches of a portal that are wider than `hole` and at least three times
+/// as long as wide, where nothing covers the middle, a surface ends at either side, both of the same objects all along, and one of these surfaces
+/// lies in the portal's plane. None is where the nearest surface across that plane shows its back, or is one object's of two sides
+/// at both sides: that is the inside of a solid, as of a door's leaf. Stretches in line that the same objects bound are one gap. 64
+/// places are looked at along a portal. All of this decides what is listed, and nothing else.
 ///
-/// O(portals + slits * log triangles + slits of the same objects squared).
+/// O(portals + thin portals * log triangles + slits of the same objects squared).
 /// @param walls   whose faces the portals were left over from
 /// @param space   the cells, with SoupCellReport::smallest_hole already added to their portals
 /// @param hole    SoupCellReport::smallest_hole
