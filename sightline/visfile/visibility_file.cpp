@@ -80,7 +80,12 @@ Status addPlaces(const VisibilityContent& content, SectionWriter& writer, Memory
     if (!content.prepared.empty()) {
         if (content.prepared_of_object.size() != content.objects->size())
             return wrong("prepared meshes of other objects");
-        writer.add(kPrepared, preparedSection(content.prepared, content.prepared_of_object, memory));
+        Array<char> prepared = preparedSection(content.prepared, content.prepared_of_object, memory);
+        if (const Result<PreparedMeshes> read =
+                readPreparedSection(prepared, content.objects->size(), "prepared meshes", 0, memory);
+            !read)
+            return wrong(read.error().message.c_str());
+        writer.add(kPrepared, std::move(prepared));
     }
     if (!content.view_tree) return success();
     if (!fits(*content.view_rows, content.view_tree->contents.size()))

@@ -59,7 +59,8 @@ enum class VisibilityForm {
 };
 
 /// The bytes of the file: the same for the same content, on every machine.
-/// Errors (kUsage): as tiledRows(), a leaf of a cell that there is not, or parts that do not belong together.
+/// Errors (kUsage): as tiledRows(), a leaf of a cell that there is not, parts that do not belong together, or what a reader would
+/// refuse.
 Result<Array<char>> visibilityFile(const VisibilityContent& content, VisibilityForm form,
                                    Memory* memory = defaultMemory());
 

@@ -47,6 +47,7 @@ FacingCone makeFacingCone(std::span<const Facet> facets) {
         if (least > best_least) best_least = least, best = middle / size;
         middle += (facets[farthest].normal - middle) / (step + 3.0);
     }
+    if (best == glm::dvec3(0.0)) return cone;  // all normals together lead nowhere
     const glm::vec3 axis(best);
     const double axis_length = glm::length(glm::dvec3(axis));
     size_t farthest = 0;
