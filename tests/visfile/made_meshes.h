@@ -38,8 +38,9 @@ struct Torus {
     MeshView view() const { return {positions, indices}; }
 };
 
-/// @param dense  with simpler occluders, clusters of every kind, and levels of detail in two parts
-inline PreparedMesh madeMesh(const Torus& torus, bool dense) {
+/// @param dense     with simpler occluders, clusters of every kind, and levels of detail in two parts
+/// @param all_kinds  of records of clusters
+inline PreparedMesh madeMesh(const Torus& torus, bool dense, bool all_kinds = true) {
     PreparedMesh mesh;
     mesh.occluder = prepareOccluder(torus.view());
     mesh.occluder_is_shape = true;
@@ -48,8 +49,8 @@ inline PreparedMesh madeMesh(const Torus& torus, bool dense) {
     const MeshPart parts[] = {{0, half, false}, {half, half, true}};
     for (InnerOccluder& inner : prepareInner(torus.view())) mesh.inner.push_back(std::move(inner));
     DrawClusterSettings settings;
-    settings.records.turned = settings.records.cones = true;
-    settings.records.mask_steps = 2;
+    settings.records.turned = settings.records.cones = all_kinds;
+    settings.records.mask_steps = all_kinds ? 2 : 1;
     mesh.clusters = prepareDrawClusters(torus.view(), parts, settings);
     mesh.lods = makeLods(torus.view(), parts);
     return mesh;

@@ -46,9 +46,12 @@ void makeAll(Seed seed) {
     Random random(3);
     seen_from.addViews(5, random);
     const Array<char> views = withPlaces(seen_from, true);
-    const MadePlaces few = boxesInARow(4, 3, 3, 6);
+    // The fuzzer takes inputs of up to 4096 bytes.
+    const MadePlaces few = boxesInARow(4, 2, 2, 2);
     const MadeFile few_rows(5, few.object_rows.rows());
-    const PreparedMeshes made = madeMeshes(6, 6);
+    PreparedMeshes made;
+    made.meshes.push_back(madeMesh(Torus(4, 3), true, false));
+    made.mesh_of_object.assign(few.objects.size(), 0);
     VisibilityContent with_meshes{few_rows.visible, {}, "house", 5, &few.space, &few.objects};
     with_meshes.prepared = made.meshes;
     with_meshes.prepared_of_object = made.mesh_of_object;
