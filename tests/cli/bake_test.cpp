@@ -66,6 +66,23 @@ TEST_F(Bake, AScenesOwnWallsAreCells) {
     EXPECT_EQ(bake("building:1:1 --cells walls --smallest-occluder 2")["walls"]["smallest_occluder"], 2);
 }
 
+TEST_F(Bake, GapsBetweenWallsAreListed) {
+    const json walls = bake("building:1:1 --cells walls --smallest-occluder 0.3 --widest-gap 0.05")["walls"];
+    EXPECT_EQ(walls["widest_gap"], 0.05);
+    ASSERT_GT(walls["gaps"].size(), 8u);
+    for (const json& gap : walls["gaps"]) {
+        EXPECT_GT(gap["width"], 0);
+        EXPECT_LE(gap["width"], 0.05);
+        EXPECT_NE(gap["from"], gap["to"]);
+        ASSERT_EQ(gap["objects"].size(), 2u);
+        EXPECT_NE(gap["objects"][0]["name"], "");
+    }
+    EXPECT_TRUE(bake("building:1:1 --cells walls --smallest-occluder 0.3 --widest-gap 0")["walls"]["gaps"].empty());
+    const Outcome text = succeed("bake building:1:1 --cells walls --smallest-occluder 0.3 --widest-gap 0.05");
+    EXPECT_NE(text.out.find("gaps between walls, up to 0.05 wide: "), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find(" smaller ones (--json lists them)"), std::string::npos) << text.out;
+}
+
 // All of space as one cell, and boxes of it with a row each.
 TEST_F(Bake, ViewCellsHaveRowsOfObjects) {
     const json out =

@@ -3,14 +3,9 @@
 #include "sightline/tools/report/page/bake_page.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "sightline/tools/scene/solids.h"
-#include "tests/tools/report/page/page_data.h"
+#include "tests/tools/report/page/page_files.h"
 
 namespace sightline {
 using namespace tools;
@@ -59,20 +54,7 @@ struct TwoHalves {
     DrawnBake bake;
 };
 
-class BakePageFiles : public testing::Test {
-protected:
-    void SetUp() override {
-        directory_ = std::filesystem::temp_directory_path() / ("sightline-bake-page-" + std::to_string(::getpid()));
-        std::filesystem::create_directories(directory_);
-    }
-    void TearDown() override { std::filesystem::remove_all(directory_); }
-    std::string read(const std::string& name) const {
-        std::stringstream text;
-        text << std::ifstream(directory_ / name, std::ios::binary).rdbuf();
-        return text.str();
-    }
-    std::filesystem::path directory_;
-};
+class BakePageFiles : public PageFiles {};
 
 TEST_F(BakePageFiles, HoldsBothPlansAndRowsToAsk) {
     const TwoHalves halves;
@@ -81,9 +63,7 @@ TEST_F(BakePageFiles, HoldsBothPlansAndRowsToAsk) {
     EXPECT_EQ(data["page"], "bake");
     EXPECT_EQ(data["run"]["scene"], "a<b");
     EXPECT_EQ(read("bake.json"), "{\"scene\":\"a<b\"}");
-    ASSERT_EQ(data["pictures"].size(), 2u);
-    for (const auto& picture : data["pictures"])
-        EXPECT_EQ(read(picture["name"].get<std::string>() + ".png").substr(1, 3), "PNG");
+    ASSERT_EQ(pictures(), 2u);
     const nlohmann::json& plan = data["plan"];
     ASSERT_EQ(plan["cells"].size(), 2u) << "the third is above the height";
     EXPECT_EQ(plan["row_bytes"], 8);
@@ -121,7 +101,7 @@ TEST_F(BakePageFiles, TakesABakeWithoutViewCells) {
     halves.bake.rows = nullptr;
     ASSERT_TRUE(writeBakePage(halves.bake, "{}", directory_.string()).ok());
     const nlohmann::json data = dataOf(read("index.html"));
-    EXPECT_EQ(data["pictures"].size(), 1u);
+    EXPECT_EQ(pictures(), 1u);
     EXPECT_TRUE(data["plan"].is_null());
     const Scene empty;
     halves.bake.scene = &empty;
