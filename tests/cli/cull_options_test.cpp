@@ -213,6 +213,32 @@ TEST_F(LodOptions, ABudgetIsKeptAndWhatItLeavesOutIsNoFalseCull) {
         if (frame.contains("lod_cost")) { EXPECT_LE(frame["lod_cost"], 1000); }
 }
 
+TEST_F(LodOptions, VerticesAndPixelsCostWhatIsSaid) {
+    const std::string arguments =
+        "terrain:1:64 --path scatter --frames 3 --seed 1 --budget 0.02 --cost-triangle 1 --cost-object 100";
+    const auto triangles = [&](const std::string& more) {
+        const json run = cull(arguments + more);
+        uint64_t sum = 0;
+        for (const json& frame : run["frames"])
+            if (frame.contains("lod_triangles")) sum += frame["lod_triangles"].get<uint64_t>();
+        return sum;
+    };
+    const uint64_t plain = triangles("");
+    EXPECT_GT(plain, 0u);
+    EXPECT_LT(triangles(" --cost-vertex 20"), plain) << "dearer levels are coarser";
+    // What covers many pixels costs the same at all levels: then the finest is drawn where it is no dearer than the pixels.
+    EXPECT_NE(triangles(" --cost-pixel 0.05"), plain);
+    expectError("cull terrain:1:64 --lod-error 1 --cost-vertex -1", 2, "--cost-vertex");
+    expectError("cull terrain:1:64 --lod-error 1 --cost-pixel -1", 2, "--cost-pixel");
+}
+
+TEST_F(LodOptions, FadesAreTakenAndLimited) {
+    const std::string arguments = "terrain:1:64 --path scatter --frames 3 --seed 1 --lod-error 2 --lod-fade ";
+    EXPECT_EQ(cull(arguments + "0")["frames"].size(), 3u);
+    EXPECT_EQ(cull(arguments + "12")["frames"].size(), 3u);
+    expectError("cull " + arguments + "-1", 2, "--lod-fade");
+}
+
 TEST_F(LodOptions, SayWhatTheyMiss) {
     expectError("cull city:1:10 --budget 5", 2, "--cost-triangle");
     expectError("cull city:1:10 --hard-budget", 2, "--budget");

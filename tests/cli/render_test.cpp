@@ -103,6 +103,14 @@ TEST_F(Render, EveryMethodDrawsTheSameExceptThePainter) {
     }
 }
 
+TEST_F(Render, CompressedDepthTilesDoNotChangeThePicture) {
+    const std::string common = "render " + kCity + "--method zbuffer --depth-compression ";
+    succeed(common + "on -o on.png");
+    succeed(common + "off -o off.png");
+    EXPECT_EQ(read(path("on.png")), read(path("off.png")));
+    expectError(common + "half -o half.png", 2, "--depth-compression");
+}
+
 TEST_F(Render, ThreadsDoNotChangeThePicture) {
     const std::string common = "render city:1:2000 --frames 2 --size 200x120 --shading smooth --method ";
     for (const char* method : {"zbuffer", "raycast", "painter"}) {

@@ -116,6 +116,16 @@ TEST_F(Vis, MapsOfAllFormatsGetTheirLump) {
     EXPECT_EQ(vis("a.pak --cells leaves")["leafs"], vis("a.pak:maps/a.bsp --cells groups")["leafs"]);
 }
 
+// Two rooms, one of them full of water.
+TEST_F(Vis, WaterIsLookedThroughUnlessItIsSaidToBeOpaque) {
+    write("m.bsp", mapBytes(QuakeFormat::kQuake, {}));
+    const json clear = vis("m.bsp --cells leaves"), opaque = vis("m.bsp --cells leaves --opaque-water");
+    EXPECT_EQ(clear["visible_leaf_pairs"], 4);
+    EXPECT_EQ(opaque["visible_leaf_pairs"], 2) << "each room sees itself";
+    write("rooms.prt", "PRT1\n2\n1\n4 0 1 (64 16 0) (64 16 16) (64 0 16) (64 0 0)\n");
+    expectError("vis rooms.prt --opaque-water", 2, "--opaque-water needs a .bsp");
+}
+
 TEST_F(Vis, AMapIsWrittenInItsPlaceAsCompilersDo) {
     MadeMap made;
     madeVisibility(QuakeFormat::kQuake, false, made);
