@@ -73,6 +73,7 @@ Result<Baked> bake(BakeCells cells, const Scene& objects, const BakeSettings& se
         out.view_rows = rowsOfPlaced(out.cells.views->visible, out.objects.object_of);
         out.view_counts = narrowViewRows(out.cells, objects, out.objects.object_of, settings, out.view_rows);
     }
+    if (settings.journal && !settings.journal->written()) return settings.journal->written().error();
     out.interrupted = asksToStop(settings);
     if (out.interrupted) return out;
     out.objects_seconds = secondsSince(objects_begin);
@@ -141,7 +142,7 @@ BakeCells openToBake(const Scene& scene, const std::string& name) {
 
 void addViewCells(BakeCells& cells, const Scene& scene, const ViewCellSettings& settings) {
     cells.views = viewCellsOf(scene, settings);
-    if (cells.views->tree.contents.empty()) return;
+    if (cells.views->tree.contents.empty() || (settings.stop && settings.stop())) return;
     SoupCellSettings dividing;
     dividing.smallest_hole = settings.smallest_hole;
     dividing.widest_gap = 0;
@@ -194,7 +195,8 @@ Result<CellVisibility> bakeRows(const CellGraph& rows, const BakeSettings& setti
         flows.checkpoint = [&](const CellVisibilityState& state) {
             if (state.flowed == state.order.size()) return;  // the end is near
             if (!asksToStop(settings) && secondsSince(saved) < settings.checkpoint_seconds) return;
-            written = settings.checkpoint(bakeStateBytes(state, hashOf(rows, settings.farthest), settings.budget));
+            written = settings.checkpoint((settings.journal ? settings.journal->bytes() : std::string()) +
+                                          bakeStateBytes(state, hashOf(rows, settings.farthest), settings.budget));
             saved = Clock::now();
         };
     CellVisibility visibility = bakeCellVisibility(rows, flows);
@@ -217,6 +219,7 @@ PortalRowCounts narrowViewRows(const BakeCells& cells, const Scene& scene, std::
     PortalRowSettings narrowing;
     narrowing.moves = cells.placing.moves;
     narrowing.jobs = settings.jobs;
+    narrowing.journal = settings.journal;
     narrowing.stop = settings.stop;
     if (settings.progress) narrowing.progress = [&](double done) { settings.progress({"view cells", done}); };
     return narrowRows(cells.views->tree, cells.view_space, scene, object_of, narrowing, rows);

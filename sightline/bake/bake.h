@@ -68,6 +68,8 @@ struct BakeSettings {
     double checkpoint_seconds = 10;  ///< between two checkpoints  [s] [>= 0]
     /// What readBakeState() made of the bytes of a checkpoint, or null. The bake takes it apart.
     CellVisibilityState* resume = nullptr;
+    /// ViewCellSettings::journal of the same view cells, or null. Its bytes go before those of a checkpoint.
+    RowJournal* journal = nullptr;
 };
 
 /// What is baked.

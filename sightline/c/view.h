@@ -35,7 +35,7 @@ typedef struct slView {
     double jitter;          /**< largest shift of the image that the frame may use [pixels, 0 to 1e6] */
     uint32_t layers;        /**< objects outside of these are neither reported nor hide */
     double
-        eye_radius; /**< the answer holds for each eye that is as near to this one; rows of visibility alone apply then
+        eye_radius; /**< the answer holds for each eye as near to this one; only rows and, in perspective, distances apply
                                  [world units] */
     /** Planes n, d: what has dot(n, p) + d < 0 is cut away. [limit: SL_MOST_PLANES] */
     double sections[SL_MOST_PLANES][4];

@@ -44,6 +44,7 @@ void SizeLimits::begin(const SnapshotState& state, const View& view, const Query
     contribution_ = makeContributionMeasure(view);
     zoom_ = distanceZoom(view, settings.max_distance_fov);
     max_distance_ = zoom_ * settings.max_distance;
+    eye_radius_ = view.eye_radius;
     least_radius_ = settings.contribution;
     stays_ = !shown.empty() && settings.hysteresis > 0.0 ? std::min(settings.hysteresis, 1.0) : 0.0;
 }
@@ -96,7 +97,7 @@ uint32_t SizeLimits::far(uint32_t node, const EyeBoxes& boxes, uint32_t left) co
         const int slot = std::countr_zero(bits);
         const bool leaf = from.child[slot] & BvhNode::kLeaf;
         const double limit = leaf ? farthest(from.first[slot]) : farthestBelow(node, slot);
-        answer |= uint32_t{isFarther(squares[slot], limit)} << slot;
+        answer |= uint32_t{isFarther(squares[slot], limit + eye_radius_)} << slot;
     }
     return answer;
 }
@@ -126,7 +127,7 @@ SizeReason SizeLimits::reasonFor(uint32_t place) const {
     reason.distance = std::sqrt(static_cast<double>(squares[at % 8]));
     squaredRadii(contribution_, boxes, 0xff, squares);
     reason.radius = std::sqrt(static_cast<double>(squares[at % 8]));
-    if (by_distance_) reason.distance_limit = farthest(place);
+    if (by_distance_) reason.distance_limit = farthest(place) + eye_radius_;
     if (by_contribution_) reason.radius_limit = smallest(place);
     return reason;
 }

@@ -53,7 +53,8 @@ private:
     DistanceMeasure distance_;
     ContributionMeasure contribution_;
     double zoom_ = 1, max_distance_ = 0, least_radius_ = 0;
-    double stays_ = 0;  ///< QuerySettings::hysteresis, if there is a memory
+    double eye_radius_ = 0;  ///< View::eye_radius: how much nearer another eye may be
+    double stays_ = 0;       ///< QuerySettings::hysteresis, if there is a memory
 };
 
 /// What a query remembers from answer to answer for SizeLimits::shown.

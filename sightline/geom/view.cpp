@@ -105,7 +105,8 @@ uint32_t stagesInUse(const View& view, const QuerySettings& settings) {
     if (!(settings.contribution > 0.0)) stages &= ~stageBit(Stage::kContribution);
     if (!(settings.lod_error > 0.0) && !(settings.budget > 0.0)) stages &= ~stageBit(Stage::kLod);
     if (opensWalls(view)) stages &= ~kCellStages;
-    if (view.eye_radius != 0.0) stages &= stageBit(Stage::kPvs);
+    if (view.eye_radius != 0.0)
+        stages &= stageBit(Stage::kPvs) | (isOrthographic(view) ? 0 : stageBit(Stage::kDistance));
     return stages;
 }
 

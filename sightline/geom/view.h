@@ -52,7 +52,7 @@ struct View {
     double jitter = 0.5;         ///< largest shift of the image that the frame may use  [pixels, 0 to 1e6]
     uint32_t layers = ~0u;       ///< objects outside these layers are neither reported nor hide
     /// Radius of a region of eyes: the answer holds for every eye that is as close to this one, whichever way it looks.
-    /// Only Stage::kPvs applies then.  [world units, >= 0; 0: this eye alone]
+    /// Only rows of visibility apply then and, in perspective, distances.  [world units, >= 0; 0: this eye alone]
     double eye_radius = 0;
     /// Cuts the world open: only what is inside of all these planes is drawn. Stage::kFrustum culls objects that lie
     /// wholly outside of one. An object that is cut hides only with parts that are left whole: the cut may show what it
@@ -115,8 +115,8 @@ bool runsOutward(const View& view);
 bool isUsable(const View& view);
 
 /// The stages that a query for this view uses. They are the settings' stages without distance and contribution if the
-/// settings do not say how far and how small, without levels of detail if they name neither an error nor a budget, without the stages of cells if sections cut the world open, and with the
-/// PVS alone if the view has an eye_radius.
+/// settings do not say how far and how small, without levels of detail if they name neither an error nor a budget, without the stages of cells if sections cut the world open, and of a
+/// view that has an eye_radius those alone that View::eye_radius names.
 uint32_t stagesInUse(const View& view, const QuerySettings& settings);
 
 }  // namespace sightline

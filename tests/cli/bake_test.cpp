@@ -1,5 +1,6 @@
 // The verb bake: buildings and maps become files that hold their cells.
 // SPDX-License-Identifier: MIT
+#include <chrono>
 #include <filesystem>
 #include <string>
 
@@ -107,11 +108,46 @@ TEST_F(Bake, ViewCellsHaveRowsOfObjects) {
         for (const json& stage : frame["stages"])
             if (stage["name"] == "pvs") culled += stage["culled"].get<uint64_t>();
     EXPECT_GT(culled, 100u);
-    const Outcome text = succeed("bake building:1:1 --view-cells 64");
+    const Outcome text = succeed("bake building:1:1 --cells none --view-cells 192 --rays 1000 --json rays.json");
     EXPECT_NE(text.out.find("view cells: "), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find(" of what 1,000 rays see"), std::string::npos) << text.out;
+    const json looked = json::parse(read(path("rays.json")))["view_cells"];
+    EXPECT_GT(looked["witnessed_pairs"], 64);
+    EXPECT_LT(looked["witnessed_pairs"], looked["visible_pairs"]);
+    EXPECT_GT(looked["median_looseness"], 1);
+    expectError("bake building:1:1 --rays 5", 2, "--rays goes with --view-cells");
     const json few = bake("city:1:50 --view-cells 8 -o city.see");
     EXPECT_EQ(few["view_cells"]["count"], 0) << "from so much room too little is hidden";
     EXPECT_EQ(info("city.see")["places"]["view_cells"], 0);
+}
+
+// A bake of view cells that is ended goes on to the same bytes, whatever it was doing.
+TEST_F(Bake, InterruptedViewCellsGoOnToTheSameBytes) {
+    const std::string verb = "bake building:1:1 --cells none --view-cells 128 --threads 1 -o ";
+    const auto start = std::chrono::steady_clock::now();
+    ASSERT_EQ(run(verb + "whole.see").exit_code, 0);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    bool left = false;
+    for (const double part : {0.3, 0.8}) {
+        std::filesystem::remove(path("x.see"));
+        const Outcome outcome =
+            run(verb + "x.see & sleep " + std::to_string(part * seconds) + "; kill -TERM $! ; wait $!");
+        if (!std::filesystem::exists(path("x.see.state"))) continue;
+        EXPECT_EQ(outcome.exit_code, 130);
+        EXPECT_FALSE(std::filesystem::exists(path("x.see")));
+        left = true;
+        const Outcome rest = succeed(verb + "x.see");
+        EXPECT_NE(rest.err.find("goes on from x.see.state"), std::string::npos) << rest.err;
+        EXPECT_EQ(read(path("x.see")), read(path("whole.see")));
+        EXPECT_FALSE(std::filesystem::exists(path("x.see.state")));
+    }
+    write("notes.state", "my notes");
+    expectError(verb + "y.see --state notes.state", 4, "notes.state: holds something else");
+    write("cut.state", "slsbrow1 and cut off");
+    const Outcome anew = succeed(verb + "y.see --state cut.state");
+    EXPECT_NE(anew.err.find("cut.state: damaged: the bake begins anew"), std::string::npos) << anew.err;
+    EXPECT_EQ(read(path("y.see")), read(path("whole.see")));
+    if (!left) GTEST_SKIP() << "the machine was too fast or too slow to interrupt it";
 }
 
 // What is prepared once is in the file, and answers are what they are without it.

@@ -67,6 +67,44 @@ TEST(SizeLimits, DoNothingUnlessAsked) {
     EXPECT_EQ(set.stats.stages[static_cast<int>(Stage::kDistance)].tested, 0u);
 }
 
+TEST(SizeLimits, OfEyesWithinARadiusDropWhatIsTooFarForAllOfThem) {
+    Random random(11);
+    uint64_t culled = 0, nearer = 0;
+    for (uint64_t seed = 1; seed <= 4; ++seed) {
+        MadeWorld made(seed, 300);
+        const Snapshot now = made.world.commit();
+        Query query;
+        for (int kind = 0; kind < 8; ++kind) {
+            View view = someView(random, kind);
+            const QuerySettings settings{.max_distance = 12, .contribution = 6, .hysteresis = 0};
+            view.eye_radius = random.uniform(0.5, 6);
+            const auto all = reasonsOf(query, now, view, settings);
+            if (isOrthographic(view)) {
+                EXPECT_EQ(std::count(all.begin(), all.end(), 0), std::ssize(all)) << "as far as it may turn";
+                continue;
+            }
+            for (int other = 0; other < 10; ++other) {
+                glm::dvec3 by(0);
+                for (int axis = 0; axis < 3; ++axis) by[axis] = random.uniform(-1, 1);
+                by *= random.uniform(0, view.eye_radius) / glm::length(by);
+                View one = view;
+                one.eye_radius = 0;
+                one.view[3] += glm::dvec4(by, 0);
+                const auto alone =
+                    reasonsOf(query, now, one, {.stages = stageBit(Stage::kDistance), .max_distance = 12});
+                for (size_t i = 0; i < all.size(); ++i) {
+                    ASSERT_TRUE(all[i] == 0 || all[i] == kByDistance);
+                    culled += all[i] != 0;
+                    nearer += all[i] == 0 && alone[i] != 0;
+                    if (all[i] != 0) { ASSERT_EQ(alone[i], kByDistance) << "seed " << seed << " object " << i; }
+                }
+            }
+        }
+    }
+    EXPECT_GT(culled, 1000u);
+    EXPECT_GT(nearer, 100u);
+}
+
 TEST(SizeLimits, WhatContributionCullsCoversNoMoreThanItsDisk) {
     Random random(5);
     int culled = 0;

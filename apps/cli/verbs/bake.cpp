@@ -11,6 +11,8 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/cli/shell/apart.h"
+#include "apps/cli/shell/progress.h"
+#include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/bake_prepared.h"
 #include "apps/cli/verbs/bake_run.h"
 #include "apps/cli/verbs/bake_source.h"
@@ -22,6 +24,7 @@
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/page/bake_page.h"
 #include "sightline/tools/report/page/vis_page.h"
+#include "sightline/tools/truth/region_sight.h"
 
 namespace sightline::cli {
 using namespace bake;
@@ -36,6 +39,7 @@ struct SceneBakeOptions : BakeOptions {
     SceneChoice scene;
     BakeSourceChoice source;
     std::optional<double> height;  ///< at which the page's plans cut
+    uint32_t rays = 0;             ///< from each view cell
 };
 
 /// Where somebody stands in the scene: whose storey the page shows.
@@ -50,8 +54,9 @@ glm::dvec3 eyeIn(const Scene& scene, std::optional<double> height) {
 }
 
 /// Of cells that have rows the page has these alone, of others what walls and view cells are.
-Status writePage(const SceneBakeOptions& options, const BakeSource& source, const Baked& baked, VisSummary rows,
-                 const std::string& json) {
+Status writePage(const SceneBakeOptions& options, const BakeSource& source, const Baked& baked,
+                 const BakeSummary& summary, const std::string& json) {
+    VisSummary rows = summary.rows;
     rows.objects.reset();
     if (source.rows_are != "none")
         return writeVisPage(baked.cells.rows, baked.rows.visible, baked.rows.witnessed, rows, options.report);
@@ -63,10 +68,25 @@ Status writePage(const SceneBakeOptions& options, const BakeSource& source, cons
     if (baked.view_rows.rows() > 0) {
         drawn.views = &baked.cells.views->tree;
         drawn.rows = &baked.view_rows;
+        if (summary.by_rays) drawn.seen = &summary.by_rays->seen;
         drawn.object_of = baked.objects.object_of;
     }
     drawn.eye = eyeIn(source.scene, options.height);
     return writeBakePage(drawn, json, options.report);
+}
+
+/// Looks from each view cell; none if that was interrupted.
+std::optional<RowsByRays> lookFromCells(const Scene& scene, const Baked& baked, uint32_t rays, Jobs& jobs) {
+    RowRaysSettings settings;
+    settings.rays = rays;
+    settings.jobs = &jobs;
+    settings.stop = [] { return interrupted(); };
+    constexpr size_t kParts = 100;
+    Progress progress("looking from view cells", "percent", kParts);
+    settings.progress = [&](double done) { progress.set(static_cast<size_t>(done * kParts), kParts); };
+    BitMatrix seen = seenOfRows(scene, baked.cells.views->tree, baked.objects.object_of, baked.view_rows, settings);
+    if (interrupted()) return std::nullopt;
+    return rowsByRays(rays, std::move(seen), baked.view_rows);
 }
 
 Result<int> runBake(SceneBakeOptions& options) {
@@ -78,13 +98,17 @@ Result<int> runBake(SceneBakeOptions& options) {
     BakeRun run(options);
     options.source.cells = options.cells;
     options.source.jobs = &run.jobs();
+    options.source.begin_view_cells = [&] { return run.beginViewCells(); };
     Result<BakeSource> source = loadBakeSource(options.scene, options.source);
     if (!source) return source.error();
+    if (interrupted()) return run.reportInterrupted();
     if (source->rows_are == "none" && options.objects)
         return usageError("--objects: these cells have no rows of visibility, which it tells of");
     if (options.height && (options.report.empty() || source->rows_are != "none"))
         return usageError("--height goes with --report, of a scene without marked cells");
     if (Status fits = checkSize(source->cells.rows, title, source->of_bsp); !fits) return fits.error();
+    if (options.rays > 0 && options.source.view_cells < 2)
+        return usageError("--rays goes with --view-cells: it looks from these");
     const double cells_seconds = secondsSince(begin);
 
     if (!options.prepare.empty() && (source->of_bsp || source->scene.objects.empty()))
@@ -110,9 +134,13 @@ Result<int> runBake(SceneBakeOptions& options) {
     summary.rows.threads = run.threads();
     summary.cells_seconds = cells_seconds;
     summary.rows.wall_seconds = secondsSince(begin);
+    if (options.rays > 0 && baked->view_rows.rows() > 0) {
+        summary.by_rays = lookFromCells(source->scene, *baked, options.rays, run.jobs());
+        if (!summary.by_rays) return reportInterruption("the bake", !options.output.empty());
+    }
     const std::string json = bakeJson(*source, *baked, summary);
     if (!options.report.empty())
-        if (Status written = writePage(options, *source, *baked, summary.rows, json); !written) return written.error();
+        if (Status written = writePage(options, *source, *baked, summary, json); !written) return written.error();
     printBakeSummary(options.json == "-" ? stderr : stdout, *source, *baked, summary);
     if (!options.report.empty()) tellPage(options.json == "-" ? stderr : stdout, options.report);
     if (!options.json.empty())
@@ -149,6 +177,12 @@ void addBake(CLI::App& tool, int& exit_code) {
                      "divide space into so many boxes and tell which objects may be seen from each, as 2048 (default: "
                      "none)")
         ->check(CLI::Range(0u, 1u << 16))
+        ->type_name("COUNT");
+    verb->add_option(
+            "--rays", options->rays,
+            "look from each view cell with so many rays: what they see may be seen for sure, so that the cell's "
+            "row is known from below, too (default: none)")
+        ->check(CLI::Range(0u, 1u << 30))
         ->type_name("COUNT");
     verb->add_option("--prepare", options->prepare,
                      "of a scene: what the file is to hold of its meshes, so that they need not be prepared again: "

@@ -23,26 +23,33 @@ namespace {
 
 constexpr size_t kProgressParts = 100;
 
-/// The state that was left by an earlier run, if it is one of this bake.
-Result<std::optional<CellVisibilityState>> stateLeft(const CellGraph& rows, const BakeOptions& options) {
+/// What an earlier run left.
+struct Left {
+    RowJournal journal;
+    std::string rows;  // a state of rows, or empty
+};
+
+/// Errors: the file holds something else.
+Result<Left> readLeft(const std::string& file) {
+    Left out;
     std::error_code error;
-    std::optional<CellVisibilityState> state_left;
-    if (options.state.empty() || !std::filesystem::is_regular_file(options.state, error)) return state_left;
-    const Result<std::string> bytes = readTextFile(options.state, size_t(1) << 36);
+    if (file.empty() || !std::filesystem::is_regular_file(file, error)) return out;
+    const Result<std::string> bytes = readTextFile(file, size_t(1) << 36);
     if (!bytes) {
         note(bytes.error().message + ": the bake begins anew");
-        return state_left;
+        return out;
     }
-    Result<CellVisibilityState> state = readBakeState(*bytes, options.state, rows, options.budget, options.farthest);
-    if (!state && !isBakeState(*bytes))
-        return Error{Error::Kind::kOutput, options.state + ": holds something else than the state of a bake"};
-    if (!state) {
-        note(state.error().message + ": the bake begins anew");
-        return state_left;
+    if (!isBakeState(*bytes) && !RowJournal::begins(*bytes))
+        return Error{Error::Kind::kOutput, file + ": holds something else than the state of a bake"};
+    std::span<const char> rest = *bytes;
+    Result<RowJournal> journal = RowJournal::takenOff(rest, file);
+    if (!journal) {
+        note(journal.error().message + ": the bake begins anew");
+        return out;
     }
-    note("goes on from " + options.state);
-    state_left = std::move(*state);
-    return state_left;
+    out.journal = std::move(*journal);
+    out.rows.assign(rest.begin(), rest.end());
+    return out;
 }
 
 }  // namespace
@@ -110,11 +117,27 @@ BakeRun::BakeRun(const BakeOptions& options)
       threads_(options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency())),
       pool_(threads_) {}
 
+Result<RowJournal*> BakeRun::beginViewCells() {
+    Result<Left> left = readLeft(options_.state);
+    if (!left) return left.error();
+    if (left->journal.size() > 0) note("goes on from " + options_.state);
+    journal_ = std::move(left->journal);
+    if (!options_.state.empty())
+        journal_->writeTo([this](const std::string& bytes) { return writeFileAside(options_.state, bytes); });
+    stopGently();
+    return &*journal_;
+}
+
 Result<BakeSettings> BakeRun::begin(const CellGraph& rows) {
     stopGently();
-    Result<std::optional<CellVisibilityState>> left = stateLeft(rows, options_);
+    const Result<Left> left = readLeft(options_.state);
     if (!left) return left.error();
-    left_ = std::move(*left);
+    if (!left->rows.empty()) {
+        Result<CellVisibilityState> state =
+            readBakeState(left->rows, options_.state, rows, options_.budget, options_.farthest);
+        if (state) left_ = std::move(*state);
+        note(state ? "goes on from " + options_.state : state.error().message + ": the bake begins anew");
+    }
     BakeSettings settings;
     settings.jobs = &pool_;
     settings.budget = options_.budget;
@@ -125,6 +148,7 @@ Result<BakeSettings> BakeRun::begin(const CellGraph& rows) {
     settings.stop = [] { return interrupted(); };
     settings.progress = [this](const BakeProgress& now) { show(now); };
     settings.resume = left_ ? &*left_ : nullptr;
+    settings.journal = journal_ ? &*journal_ : nullptr;
     if (!options_.state.empty())
         settings.checkpoint = [this](const std::string& bytes) { return writeFileAside(options_.state, bytes); };
     return settings;

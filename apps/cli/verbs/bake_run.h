@@ -44,14 +44,17 @@ void addBakeOptions(CLI::App& verb, BakeOptions& options, const std::string& out
 /// @param files  what is read, and what else the verb writes. Errors: kUsage, kOutput.
 Status finishBakeOptions(BakeOptions& options, ApartFiles& files);
 
-/// A bake on threads. From begin() on Ctrl-C stops it gently, and the state is there for the next time.
+/// A bake on threads. From its beginning on Ctrl-C stops it gently, and the state is there for the next time.
 class BakeRun {
 public:
     /// @param options  must outlive this
     explicit BakeRun(const BakeOptions& options);
 
-    /// The settings of the bake; it goes on from the state's file if there is one of this graph and budget. Errors: the
-    /// file holds something else than a state.
+    /// Before view cells are divided: what an earlier run left of them in the state's file. From here on Ctrl-C stops gently.
+    /// Errors: the file holds something else than a state.
+    Result<RowJournal*> beginViewCells();
+    /// The settings of the bake; it goes on from the state's file if there is one of this graph and budget. Errors: as
+    /// above.
     Result<BakeSettings> begin(const CellGraph& rows);
     /// Says that the bake was interrupted. @return the exit code
     int reportInterrupted();
@@ -68,6 +71,7 @@ private:
     uint32_t threads_;
     ThreadPool pool_;
     std::optional<CellVisibilityState> left_;
+    std::optional<RowJournal> journal_;
     std::string step_;
     std::unique_ptr<Progress> progress_;
 };

@@ -78,16 +78,21 @@ std::vector<uint32_t> doorsOf(const Scene& scene) {
 }
 
 /// Adds view cells, if they are wanted.
-void addViews(const BakeSourceChoice& choice, const Scene& scene, BakeCells& cells) {
-    if (choice.view_cells < 2) return;
+Status addViews(const BakeSourceChoice& choice, const Scene& scene, BakeCells& cells) {
+    if (choice.view_cells < 2) return success();
+    const Result<RowJournal*> journal = choice.begin_view_cells();
+    if (!journal) return journal.error();
     ViewCellSettings settings;
     settings.most_cells = choice.view_cells;
     settings.smallest_hole = choice.smallest_hole;
     settings.movable = doorsOf(scene);
     settings.jobs = choice.jobs;
+    settings.journal = *journal;
+    settings.stop = [&] { return interrupted() || !(*journal)->written(); };
     Progress progress("dividing space", "view cells", 0);
     settings.progress = [&](size_t done, size_t total) { progress.set(done, total); };
     addViewCells(cells, scene, settings);
+    return (*journal)->written();
 }
 
 /// Cells of a scene's own walls. Where they leave most of it in sight, they are not worth their portals: then space is
@@ -131,7 +136,7 @@ Result<BakeSource> loadScene(const SceneChoice& names, const BakeSourceChoice& c
     if (scene->cells.empty() || choice.cells == "walls" || choice.cells == "none") {
         Result<BakeSource> out = wallsOf(*scene, names, name, choice);
         if (!out) return out.error();
-        addViews(choice, *scene, out->cells);
+        if (Status added = addViews(choice, *scene, out->cells); !added) return added.error();
         out->scene = std::move(*scene);
         return out;
     }
@@ -143,7 +148,7 @@ Result<BakeSource> loadScene(const SceneChoice& names, const BakeSourceChoice& c
     SceneCellSettings settings;
     settings.trusted = !names.procedural().empty();
     out.cells = sceneToBake(*scene, name, settings);
-    addViews(choice, *scene, out.cells);
+    if (Status added = addViews(choice, *scene, out.cells); !added) return added.error();
     out.cells_are = "marked";
     out.rows_are = "cells";
     out.scene = std::move(*scene);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -34,6 +35,8 @@ struct BakeSourceChoice {
     bool of_walls = false;          ///< one of these three was given
     uint32_t view_cells = 0;        ///< ViewCellSettings::most_cells; below 2: none
     Jobs* jobs = nullptr;
+    /// Gives the journal of view cells, right before they are divided; from then on interrupted() ends that early.
+    std::function<Result<RowJournal*>()> begin_view_cells;
 };
 
 /// The cells of a map, those that a scene's maker marked, or where there are none those of its own walls.

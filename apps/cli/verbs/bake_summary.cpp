@@ -3,6 +3,9 @@
 #include "apps/cli/verbs/bake_summary.h"
 
 #include <algorithm>
+#include <bit>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,6 +13,7 @@
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/explain_object.h"
+#include "sightline/tools/report/run/cull_run.h"
 #include "sightline/tools/scene/one_line.h"
 
 namespace sightline::cli {
@@ -107,7 +111,29 @@ void printViews(std::FILE* out, const Baked& baked) {
              fmt::format("  cells over budget {}: what was not asked counts as visible\n", grouped(views.over_budget)));
 }
 
+void printRays(std::FILE* out, const RowsByRays& by_rays, const BitMatrix& rows) {
+    tell(out, fmt::format("  rays have seen {} of these pairs; in the median a row holds {:.2f} of what {} rays see\n",
+                          percentText(by_rays.seen.count(), rows.count()), by_rays.median, grouped(by_rays.rays)));
+}
+
 }  // namespace
+
+RowsByRays rowsByRays(uint32_t rays, BitMatrix seen, const BitMatrix& rows) {
+    const auto countOf = [](std::span<const uint64_t> words) {
+        double ones = 0;
+        for (const uint64_t word : words) ones += std::popcount(word);
+        return ones;
+    };
+    RowsByRays out;
+    out.rays = rays;
+    std::vector<double> ratios;
+    for (size_t row = 0; row < rows.rows(); ++row)
+        if (const double witnessed = countOf(seen.row(row)); witnessed > 0)
+            ratios.push_back(countOf(rows.row(row)) / witnessed);
+    out.median = medianOf(std::move(ratios));
+    out.seen = std::move(seen);
+    return out;
+}
 
 VisSummary rowFigures(const CellGraph& rows, const CellVisibility& visibility) {
     VisSummary out;
@@ -192,6 +218,7 @@ void printBakeSummary(std::FILE* out, const BakeSource& source, const Baked& bak
     }
     printLimits(out, s);
     printViews(out, baked);
+    if (summary.by_rays) printRays(out, *summary.by_rays, baked.view_rows);
     tell(out,
          fmt::format("objects: {}, each in {:.2f} cells; {} seen from everywhere, {} outside, {} moving and not in "
                      "the file\n",
@@ -293,6 +320,11 @@ std::string bakeJson(const BakeSource& source, const Baked& baked, const BakeSum
                              {"hidden_by_portals", baked.view_counts.hidden},
                              {"flows_over_budget", baked.view_counts.over_budget},
                              {"flows_out_of_bounds", baked.view_counts.out_of_bounds}};
+    if (summary.by_rays) {
+        out["view_cells"]["rays"] = summary.by_rays->rays;
+        out["view_cells"]["witnessed_pairs"] = summary.by_rays->seen.count();
+        out["view_cells"]["median_looseness"] = summary.by_rays->median;
+    }
     out["bytes"] = s.pvs_bytes;
     out["resident_bytes"] = s.resident_bytes;
     out["in_place_bytes"] = summary.in_place_bytes;

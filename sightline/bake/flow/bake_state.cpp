@@ -6,6 +6,7 @@
 #include <cstring>
 #include <vector>
 
+#include "sightline/bake/flow/bit_runs.h"
 #include "sightline/bake/flow/thin_cells.h"
 #include "sightline/base/bytes.h"
 #include "sightline/base/random.h"
@@ -15,34 +16,13 @@ namespace {
 
 constexpr uint64_t kMagic = 0x31656b6162736c73ull;  // "slsbake1"
 
-/// Runs of words: how many are zero, how many are not, and these.
 void putMatrix(ByteWriter& out, const BitMatrix& matrix) {
-    for (size_t r = 0; r < matrix.rows(); ++r) {
-        const std::span<const uint64_t> row = matrix.row(r);
-        for (size_t w = 0; w < row.size();) {
-            size_t zeros = w, end;
-            while (zeros < row.size() && row[zeros] == 0) ++zeros;
-            for (end = zeros; end < row.size() && row[end] != 0;) ++end;
-            out.put(static_cast<uint32_t>(zeros - w));
-            out.put(static_cast<uint32_t>(end - zeros));
-            for (w = zeros; w < end; ++w) out.put(row[w]);
-        }
-    }
+    for (size_t r = 0; r < matrix.rows(); ++r) putBits(out, matrix.row(r));
 }
 
 bool takeMatrix(ByteCursor& in, BitMatrix& matrix) {
-    const size_t beyond = matrix.columns() % 64;
-    for (size_t r = 0; r < matrix.rows(); ++r) {
-        const std::span<uint64_t> row = matrix.row(r);
-        for (size_t w = 0; w < row.size();) {
-            const size_t zeros = in.take<uint32_t>(), ones = in.take<uint32_t>();
-            if (zeros + ones == 0 || zeros > row.size() - w || ones > row.size() - w - zeros || in.left() < 8 * ones)
-                return false;
-            w += zeros;
-            for (size_t end = w + ones; w < end; ++w) row[w] = in.take<uint64_t>();
-        }
-        if (beyond && !row.empty() && row.back() >> beyond) return false;
-    }
+    for (size_t r = 0; r < matrix.rows(); ++r)
+        if (!takeBits(in, matrix.row(r), matrix.columns())) return false;
     return true;
 }
 

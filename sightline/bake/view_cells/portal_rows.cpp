@@ -3,9 +3,16 @@
 #include "sightline/bake/view_cells/portal_rows.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
+#include "sightline/bake/flow/bake_state.h"
+#include "sightline/bake/flow/bit_runs.h"
 #include "sightline/bake/flow/region_flow.h"
 #include "sightline/bake/objects/object_cells.h"
+#include "sightline/bake/objects/scene_hash.h"
+#include "sightline/base/bytes.h"
+#include "sightline/base/random.h"
 #include "sightline/math/box.h"
 
 namespace sightline::bake {
@@ -63,6 +70,48 @@ RegionFlow::End findHidden(RegionFlow& flow, const Box3d& region, const PiecesIn
     return end;
 }
 
+/// How one cell's flow ended, and what it found hidden.
+struct Narrowed {
+    RegionFlow::End end = RegionFlow::End::kDone;
+    std::vector<uint32_t> hidden;  // columns of the row
+};
+
+Array<char> bytesOf(const Narrowed& found, size_t columns) {
+    BitMatrix bits(1, columns);
+    for (const uint32_t column : found.hidden) bits.set(0, column);
+    Array<char> bytes;
+    ByteWriter out(bytes);
+    out.put(static_cast<uint8_t>(found.end));
+    putBits(out, bits.row(0));
+    return bytes;
+}
+
+std::optional<Narrowed> narrowedOf(std::span<const char> bytes, size_t columns) {
+    ByteCursor in(bytes);
+    const auto end = in.take<uint8_t>();
+    BitMatrix bits(1, columns);
+    if (end > static_cast<uint8_t>(RegionFlow::End::kStopped) || !takeBits(in, bits.row(0), columns) || in.left() > 0)
+        return std::nullopt;
+    Narrowed out{static_cast<RegionFlow::End>(end), {}};
+    for (uint32_t column = 0; column < columns; ++column)
+        if (bits.at(0, column)) out.hidden.push_back(column);
+    return out;
+}
+
+/// All that the flows depend on besides a cell and its row.
+uint64_t questionOf(const Scene& scene, const CellSpace& space, std::span<const uint32_t> object_of,
+                    const std::vector<bool>& moves) {
+    uint64_t question = mixSeed(mixSeed(kRowsVersion, hashOf(scene)), hashOf(space.graph));
+    for (const uint32_t object : object_of) question = mixSeed(question, object);
+    for (const bool one : moves) question = mixSeed(question, one);
+    return question;
+}
+
+uint64_t questionOf(uint64_t all, const Box3d& region, std::span<const uint64_t> row) {
+    for (const uint64_t word : row) all = mixSeed(all, word);
+    return askedWith(all, {{region.min.x, region.min.y, region.min.z, region.max.x, region.max.y, region.max.z}});
+}
+
 }  // namespace
 
 PortalRowCounts narrowRows(const LeafTree& tree, const CellSpace& space, const Scene& scene,
@@ -75,24 +124,43 @@ PortalRowCounts narrowRows(const LeafTree& tree, const CellSpace& space, const S
     const PiecesInCells pieces(scene, space, object_of, placing);
     const std::vector<Box3d> boxes = leafBoxes(tree);
     const auto count = static_cast<uint32_t>(boxes.size());
-    std::vector<std::vector<uint32_t>> hidden(count);
-    std::vector<RegionFlow::End> ends(count, RegionFlow::End::kDone);
+    std::vector<Narrowed> found(count);
+    std::vector<uint64_t> questions(count, 0);  // of those that the journal does not answer
+    const uint64_t all = settings.journal ? questionOf(scene, space, object_of, settings.moves) : 0;
     constexpr uint32_t kTogether = 16, kTasks = 16;  // cells of a task, and tasks between two questions whether to stop
     const uint32_t tasks = (count + kTogether - 1) / kTogether;
-    for (uint32_t begin = 0; begin < tasks && !(settings.stop && settings.stop()); begin += kTasks) {
+    const auto stops = [&] { return settings.stop && settings.stop(); };
+    for (uint32_t begin = 0; begin < tasks && !stops(); begin += kTasks) {
         runJobs(settings.jobs, std::min(kTasks, tasks - begin), [&](uint32_t task) {
             RegionFlow flow(space);
             const uint32_t first = (begin + task) * kTogether;
-            for (uint32_t leaf = std::max(first, 1u); leaf < std::min(count, first + kTogether); ++leaf)
-                if (!boxes[leaf].empty()) ends[leaf] = findHidden(flow, boxes[leaf], pieces, rows, leaf, hidden[leaf]);
+            for (uint32_t leaf = std::max(first, 1u); leaf < std::min(count, first + kTogether); ++leaf) {
+                if (boxes[leaf].empty()) continue;
+                if (settings.journal) {
+                    questions[leaf] = questionOf(all, boxes[leaf], rows.row(leaf));
+                    if (const auto answer = settings.journal->find(questions[leaf]))
+                        if (std::optional<Narrowed> left = narrowedOf(*answer, rows.columns())) {
+                            found[leaf] = std::move(*left);
+                            questions[leaf] = 0;
+                            continue;
+                        }
+                }
+                found[leaf].end = findHidden(flow, boxes[leaf], pieces, rows, leaf, found[leaf].hidden);
+            }
         });
+        if (settings.journal) {
+            const uint32_t end = std::min(count, (begin + kTasks) * kTogether);
+            for (uint32_t leaf = begin * kTogether; leaf < end; ++leaf)
+                if (questions[leaf]) settings.journal->add(questions[leaf], bytesOf(found[leaf], rows.columns()));
+            settings.journal->keep(stops());
+        }
         if (settings.progress) settings.progress(std::min(1.0, double(begin + kTasks) / static_cast<double>(tasks)));
     }
     for (uint32_t leaf = 0; leaf < count; ++leaf) {
-        for (const uint32_t column : hidden[leaf]) rows.clear(leaf, column);
-        counts.hidden += hidden[leaf].size();
-        counts.over_budget += ends[leaf] == RegionFlow::End::kOverBudget;
-        counts.out_of_bounds += ends[leaf] == RegionFlow::End::kOutOfBounds;
+        for (const uint32_t column : found[leaf].hidden) rows.clear(leaf, column);
+        counts.hidden += found[leaf].hidden.size();
+        counts.over_budget += found[leaf].end == RegionFlow::End::kOverBudget;
+        counts.out_of_bounds += found[leaf].end == RegionFlow::End::kOutOfBounds;
     }
     return counts;
 }

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "sightline/bake/view_cells/row_journal.h"
 #include "sightline/base/bit_matrix.h"
 #include "sightline/base/jobs.h"
 #include "sightline/cells/cell_space.h"
@@ -23,6 +24,7 @@ struct PortalRowSettings {
     Jobs* jobs = nullptr;        ///< threads to share the cells out to; the answer is the same with any
     std::function<bool()> stop;  ///< asked between pieces of work; true: what is left stays as it is; may be empty
     std::function<void(double)> progress;  ///< called with the share that is done; may be empty
+    RowJournal* journal = nullptr;         ///< ViewCellSettings
 };
 
 /// What portals did to rows.

@@ -11,10 +11,14 @@
 #include <span>
 #include <utility>
 
+#include "sightline/bake/flow/bit_runs.h"
+#include "sightline/bake/objects/scene_hash.h"
 #include "sightline/bake/soup/soup_scale.h"
 #include "sightline/bake/view_cells/flat_hiders.h"
 #include "sightline/bake/view_cells/hider_covers.h"
 #include "sightline/bake/view_cells/hider_tree.h"
+#include "sightline/base/bytes.h"
+#include "sightline/base/random.h"
 #include "sightline/tree/descend.h"
 
 namespace sightline::bake {
@@ -142,6 +146,61 @@ private:
     std::vector<uint32_t> used_;
 };
 
+/// A row that was found, and the hiders that it rests on.
+struct FoundRow {
+    RegionRow row;
+    std::vector<uint32_t> used;
+};
+
+/// @param from  the row of a region that holds this one
+Array<char> bytesOf(const FoundRow& found, const Bits& from) {
+    Array<char> bytes;
+    ByteWriter out(bytes);
+    out.put(static_cast<uint8_t>(found.row.over_budget));
+    out.put(static_cast<uint32_t>(found.row.covers.size()));
+    for (const HiderCover& cover : found.row.covers) {
+        out.put(static_cast<uint32_t>(cover.size()));
+        for (const CoverMember& member : cover) {
+            out.put(member.hider);
+            out.put(member.shared);
+        }
+    }
+    out.put(static_cast<uint32_t>(found.used.size()));
+    for (const uint32_t hider : found.used) out.put(hider);
+    Bits hidden = from;
+    for (size_t word = 0; word < hidden.size(); ++word) hidden[word] &= ~found.row.visible[word];
+    putBits(out, hidden);
+    return bytes;
+}
+
+std::optional<FoundRow> foundRowOf(std::span<const char> bytes, const Bits& from, size_t hiders) {
+    ByteCursor in(bytes);
+    FoundRow out;
+    const auto takeCount = [&](size_t each) { return std::min<uint64_t>(in.take<uint32_t>(), in.left() / each); };
+    out.row.over_budget = in.take<uint8_t>() != 0;
+    out.row.covers.resize(takeCount(4));
+    bool good = true;
+    for (HiderCover& cover : out.row.covers) {
+        cover.resize(takeCount(8));
+        for (CoverMember& member : cover) {
+            member.hider = in.take<uint32_t>();
+            member.shared = in.take<uint32_t>();
+            good &= member.hider < hiders;
+        }
+        good &= !cover.empty() && cover.size() <= HiderCovers::kMostMembers;
+    }
+    out.used.resize(takeCount(4));
+    for (uint32_t& hider : out.used) {
+        hider = in.take<uint32_t>();
+        good &= hider < hiders;
+    }
+    Bits hidden(from.size(), 0);
+    if (!good || !takeBits(in, hidden, 0) || in.left() > 0) return std::nullopt;
+    out.row.visible = from;
+    for (size_t word = 0; word < hidden.size(); ++word) out.row.visible[word] &= ~hidden[word];
+    return out;
+}
+
 /// A wall along an axis that cells may be halved at.
 struct AxisWall {
     int axis = 0;
@@ -168,8 +227,13 @@ struct Cell {
 
 class Division {
 public:
-    Division(const Hiding& hiding, const ViewCellSettings& settings, double smallest)
-        : hiding_(hiding), settings_(settings), smallest_(smallest), margin_(kMargin * hiding.bend) {
+    /// @param question  all that rows depend on besides a cell and its row
+    Division(const Hiding& hiding, const ViewCellSettings& settings, double smallest, uint64_t question)
+        : hiding_(hiding),
+          settings_(settings),
+          smallest_(smallest),
+          margin_(kMargin * hiding.bend),
+          question_(question) {
         constexpr double kAlong = 1 - 1e-12;
         for (const FlatHider& hider : hiding.covers.hiders())
             for (int axis = 0; axis < 3; ++axis) {
@@ -187,7 +251,8 @@ public:
             if (!cells_[cell].done) queue.emplace(worthOf(cells_[cell]), ~cell);
         };
         wait(0);
-        while (!queue.empty() && cells_.size() + 1 < settings_.most_cells) {
+        const auto stops = [&] { return settings_.stop && settings_.stop(); };
+        while (!queue.empty() && cells_.size() + 1 < settings_.most_cells && !stops()) {
             std::vector<uint32_t> batch;
             while (!queue.empty() && batch.size() < kBatch && cells_.size() + batch.size() + 1 < settings_.most_cells) {
                 batch.push_back(~queue.top().second);
@@ -199,6 +264,7 @@ public:
             for (uint32_t cell = before; cell < cells_.size(); ++cell) fresh.push_back(cell);
             findRows(fresh);
             for (const uint32_t cell : fresh) wait(cell);
+            if (settings_.journal) settings_.journal->keep(stops());
             if (settings_.progress) settings_.progress(cells_.size(), settings_.most_cells);
         }
         finish(out, object_of_item);
@@ -307,23 +373,49 @@ private:
     }
 
     void findRows(std::span<const uint32_t> numbers) {
-        std::vector<std::vector<uint32_t>> used(numbers.size());
+        struct Task {
+            std::vector<uint32_t> used;
+            uint64_t question = 0;
+            Array<char> answer;  // that the journal does not have; or empty
+        };
+        std::vector<Task> tasks(numbers.size());
         runJobs(settings_.jobs, static_cast<uint32_t>(numbers.size()), [&](uint32_t i) {
             Cell& cell = cells_[numbers[i]];
             const glm::dvec3 size = cell.region.size();
             // From so much room hardly anything is hidden; in a seam between two cells no eye stands for long.
             constexpr double kMuch = 1. / 4;
             if (longestOf(cell.region) > kMuch * whole_ || std::min({size.x, size.y, size.z}) < 4 * margin_) return;
-            RowFinder finder(hiding_, cell.region);
-            cell.row = finder.find(cell.row);
-            used[i] = finder.used();
+            FoundRow found = findRow(cell, tasks[i].question, tasks[i].answer);
+            cell.row = std::move(found.row);
+            tasks[i].used = std::move(found.used);
             const uint64_t before = std::exchange(cell.seen, countOf(cell.row.visible));
             const double taken = before ? 1 - static_cast<double>(cell.seen) / static_cast<double>(before) : 0;
             cell.gain = 0.5 * (cell.gain + taken);
         });
-        for (const std::vector<uint32_t>& hiders : used) used_.insert(used_.end(), hiders.begin(), hiders.end());
+        for (const Task& task : tasks) {
+            used_.insert(used_.end(), task.used.begin(), task.used.end());
+            if (!task.answer.empty()) settings_.journal->add(task.question, task.answer);
+        }
         std::sort(used_.begin(), used_.end());
         used_.erase(std::unique(used_.begin(), used_.end()), used_.end());
+    }
+
+    /// By the journal, or by search; `answer` then receives what the journal is to hold, if there is one.
+    FoundRow findRow(const Cell& cell, uint64_t& question, Array<char>& answer) const {
+        const Bits& from = cell.row.visible;
+        if (settings_.journal) {
+            const glm::dvec3 &low = cell.region.min, &high = cell.region.max;
+            question = askedWith(question_, {{low.x, low.y, low.z, high.x, high.y, high.z}});
+            if (const auto known = settings_.journal->find(question))
+                if (std::optional<FoundRow> found = foundRowOf(*known, from, hiding_.covers.hiders().size()))
+                    return std::move(*found);
+        }
+        RowFinder finder(hiding_, cell.region);
+        FoundRow found;
+        found.row = finder.find(cell.row);
+        found.used = finder.used();
+        if (settings_.journal) answer = bytesOf(found, from);
+        return found;
     }
 
     void finish(ViewCells& out, const std::vector<uint32_t>& object_of_item) {
@@ -359,6 +451,7 @@ private:
     const Hiding& hiding_;
     const ViewCellSettings& settings_;
     const double smallest_, margin_;
+    const uint64_t question_;
     double whole_ = 0;
     std::vector<AxisWall> walls_;
     LeafTree tree_;
@@ -403,7 +496,13 @@ ViewCells viewCellsOf(const Scene& scene, const ViewCellSettings& settings) {
     const HiderCovers covers(hiders, search, flat.bend, settings.jobs);
     const Hiding hiding{covers, search, objects, flat.bend, reach, settings.budget};
     out.visible = BitMatrix(0, scene.objects.size());
-    Division(hiding, settings, out.smallest_cell).run(bounds, out, object_of_item);
+    uint64_t question = 0;
+    if (settings.journal) {
+        const double numbers[] = {flat.bend, flat.least_area, static_cast<double>(settings.budget)};
+        question = askedWith(mixSeed(kRowsVersion, hashOf(scene)), numbers);
+        for (const uint32_t object : settings.movable) question = mixSeed(question, object);
+    }
+    Division(hiding, settings, out.smallest_cell, question).run(bounds, out, object_of_item);
     if (out.hidden >= settings.least_hidden) return out;
     out.tree = {};
     out.visible = {};

@@ -9,6 +9,7 @@
 #include <functional>
 #include <vector>
 
+#include "sightline/bake/view_cells/row_journal.h"
 #include "sightline/base/bit_matrix.h"
 #include "sightline/base/jobs.h"
 #include "sightline/geom/leaf_tree.h"
@@ -33,6 +34,10 @@ struct ViewCellSettings {
     std::vector<uint32_t> movable;  ///< objects that may be elsewhere at run time: they hide nothing  [Scene::objects]
     Jobs* jobs = nullptr;           ///< threads to share the cells out to; the answer is the same with any
     std::function<void(size_t, size_t)> progress;  ///< called with (done, total) cells now and then; may be empty
+    /// What an earlier process found is taken from it, and what is found is added; null: neither. The answer is the same.
+    RowJournal* journal = nullptr;
+    /// Asked between pieces of work; true: no cell is halved any more, and the journal is kept. May be empty.
+    std::function<bool()> stop;
 };
 
 struct ViewCells {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sightline/bake/bake.h"
+#include "sightline/base/thread_pool.h"
 #include "sightline/query/query.h"
 #include "sightline/tools/load/load_world.h"
 #include "sightline/tools/load/seeded_cameras.h"
@@ -31,16 +32,23 @@ namespace {
 
 using namespace test;
 
+/// SIGHTLINE_FULL: finer view cells, eight times as many frames, each with a hundred times as many rays, and larger scenes.
+bool full() { return std::getenv("SIGHTLINE_FULL") != nullptr; }
+
 /// As `bake SCENE --cells walls --view-cells N` makes it.
 Baked bakeSoup(const Scene& scene, uint32_t view_cells) {
+    ThreadPool threads(2);
     SoupCellSettings settings;
+    settings.jobs = &threads;
     for (const CameraFrame& frame : seededCameras(scene, 32, 1).frames) settings.eyes.push_back(frame.eye);
     BakeCells cells = soupToBake(scene, scene.name, settings);
     ViewCellSettings views;
     views.most_cells = view_cells;
     views.least_hidden = 0;
+    views.jobs = &threads;
     addViewCells(cells, scene, views);
     BakeSettings in_place;
+    in_place.jobs = &threads;
     in_place.form = VisibilityForm::kInPlace;
     Result<Baked> baked = bake::bake(std::move(cells), scene, in_place);
     EXPECT_TRUE(baked.ok()) << baked.error().message;
@@ -100,11 +108,9 @@ struct CellTotals {
     uint64_t by_rows = 0, by_portals = 0, culled = 0, frames = 0;
 };
 
-/// SIGHTLINE_FULL: finer view cells, eight times as many frames, each with a hundred times as many rays.
 CellTotals expectSoupHidesNothing(const Scene& scene, uint64_t frames) {
     CellTotals totals;
-    const bool full = std::getenv("SIGHTLINE_FULL") != nullptr;
-    const Baked baked = bakeSoup(scene, full ? 2048 : 64);
+    const Baked baked = bakeSoup(scene, full() ? 2048 : 64);
     const Result<VisibilityFile> file = VisibilityFile::open(baked.file.bytes(VisibilityForm::kInPlace), "baked");
     EXPECT_TRUE(file.ok()) << file.error().message;
     LoadedWorld loaded = loadWorld(scene);
@@ -113,7 +119,7 @@ CellTotals expectSoupHidesNothing(const Scene& scene, uint64_t frames) {
     const Witness witness(scene);
     StrangeWalk walk(scene, baked, 21);
     Query query;
-    for (uint64_t frame = 0; frame < (full ? 8 * frames : rounds(frames, frames / 4)); ++frame) {
+    for (uint64_t frame = 0; frame < (full() ? 8 * frames : rounds(frames, frames / 4)); ++frame) {
         const View view = makeView(walk.next(), 320, 180);
         QuerySettings settings{.windows = static_cast<PortalWindows>(frame % 3)};
         settings.stages = frame % 2 ? kDefaultStages : kCellStages;
@@ -123,31 +129,35 @@ CellTotals expectSoupHidesNothing(const Scene& scene, uint64_t frames) {
         const std::vector<uint8_t> reasons = reasonsOf(query, now);
         totals.culled += reasons.size() - set.objects.size();
         ++totals.frames;
-        WitnessSettings looks{.rays = full ? 1000000u : 10000u};
+        WitnessSettings looks{.rays = full() ? 1000000u : 10000u};
         looks.aimed_rays = looks.rays / 2;
         looks.supersampling = 2;
         expectNoFalseCulls(witness, view, reasons, looks, scene.name + ", frame " + std::to_string(frame));
     }
-    if (full)
+    if (full())
         std::printf("%s: %" PRIu64 " frames, %" PRIu64 " culls, by rows %" PRIu64 ", by portals %" PRIu64 "\n",
                     scene.name.c_str(), totals.frames, totals.culled, totals.by_rows, totals.by_portals);
     return totals;
 }
 
 TEST(SoupScenes, ABuildingWithoutItsMarksHidesNothingThatIsSeen) {
-    Scene scene = makeBuilding(1, 1);
-    scene.name = "building:1:1";
-    scene.cells.clear();
-    scene.portals.clear();
-    const CellTotals totals = expectSoupHidesNothing(scene, 24);
-    EXPECT_GT(totals.by_rows, 0u);
-    EXPECT_GT(totals.by_portals, 0u);
+    for (const uint32_t floors : full() ? std::vector<uint32_t>{1, 10} : std::vector<uint32_t>{1}) {
+        Scene scene = makeBuilding(1, floors);
+        scene.name = "building:1:" + std::to_string(floors);
+        scene.cells.clear();
+        scene.portals.clear();
+        const CellTotals totals = expectSoupHidesNothing(scene, 24);
+        EXPECT_GT(totals.by_rows, 0u);
+        EXPECT_GT(totals.by_portals, 0u);
+    }
 }
 
 TEST(SoupScenes, ACityHidesNothingThatIsSeen) {
-    Scene scene = makeCity(1, 800);
-    scene.name = "city:1:800";
-    EXPECT_GT(expectSoupHidesNothing(scene, 16).by_rows, 0u);
+    for (const uint32_t objects : full() ? std::vector<uint32_t>{800, 100000} : std::vector<uint32_t>{800}) {
+        Scene scene = makeCity(1, objects);
+        scene.name = "city:1:" + std::to_string(objects);
+        EXPECT_GT(expectSoupHidesNothing(scene, 16).by_rows, 0u);
+    }
 }
 
 using SoupScenes = SceneTest;
@@ -157,9 +167,13 @@ TEST_P(SoupScenes, OfRealWallsHideNothingThatIsSeen) {
     EXPECT_GT(totals.by_rows + totals.by_portals, 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, SoupScenes,
-                         testing::Values("bsi-duplex", "aws-small-house", "gazebo-willowgarage", "redeclipse-auster"),
-                         sceneLabel);
+std::vector<const char*> scenesOfSoup() {
+    std::vector<const char*> names = {"bsi-duplex", "aws-small-house", "gazebo-willowgarage", "redeclipse-auster"};
+    if (full()) names.insert(names.end(), {"sauer-pandora", "nibs-clinic-mep"});
+    return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, SoupScenes, testing::ValuesIn(scenesOfSoup()), sceneLabel);
 
 }  // namespace
 }  // namespace sightline

@@ -14,6 +14,8 @@ function bakeFacts(run) {
     walls && ['Holes', `narrower than ${short(walls.smallest_hole)} count as shut`],
     views && ['View cells', `${grouped(views.used)} of ${grouped(views.hiders)} flat parts hide something from a cell; ` +
       `portals take ${grouped(views.hidden_by_portals)} more pairs of a cell and an object`],
+    views && views.rays && ['Rays', `${grouped(views.rays)} from each view cell have seen ${grouped(views.witnessed_pairs)} of ` +
+      `${grouped(views.visible_pairs)} pairs`],
     ['Objects', `${grouped(run.objects.count)}, each in ` +
       `${(run.objects.places / Math.max(1, run.objects.count)).toFixed(2)} cells`],
     ['Size', `${bytes(run.bytes)}, ${bytes(run.resident_bytes)} when opened`],
@@ -23,7 +25,7 @@ function bakeFacts(run) {
 
 /** The plan of the view cells: one that is asked shows the objects that may be seen from it. */
 function askedViews(plan, objects) {
-  const rows = bytesOf(plan.rows);
+  const rows = bytesOf(plan.rows), witnessed = plan.seen && bytesOf(plan.seen);
   const map = svg('svg', {viewBox: `0 0 ${plan.width} ${plan.height}`, class: 'cells views', role: 'img',
     'aria-label': 'Plan of the view cells, and of what may be seen from the asked one'});
   map.append(svg('image', {href: plan.walls, width: plan.width, height: plan.height}));
@@ -31,19 +33,27 @@ function askedViews(plan, objects) {
   // What is as large as a floor would colour all that stands on it.
   const large = ([, , w, h]) => w * h > 5 * plan.width * plan.height;
   const draw = (boxes) => boxes.map(([x, y, w, h]) => `M${x / 10} ${y / 10}h${w / 10}v${h / 10}h${-w / 10}z`).join('');
-  const seen = svg('path', {}), floors = svg('path', {class: 'floors'}), asked = svg('polygon', {class: 'asked'});
-  map.append(floors, seen, asked);
+  const isIn = (bits, cell, i) => bits[cell * plan.row_bytes + (i >> 3)] >> (i & 7) & 1;
+  const seen = svg('path', {}), open = svg('path', {class: 'open'}), floors = svg('path', {class: 'floors'}), asked = svg('polygon', {class: 'asked'});
+  map.append(floors, open, seen, asked);
   function ask(cell) {
-    const boxes = plan.objects.filter((box, i) => box && rows[cell * plan.row_bytes + (i >> 3)] >> (i & 7) & 1);
-    seen.setAttribute('d', draw(boxes.filter((box) => !large(box))));
-    floors.setAttribute('d', draw(boxes.filter(large)));
+    const held = plan.objects.map((box, i) => ({box, i})).filter(({box, i}) => box && isIn(rows, cell, i));
+    const isSeen = ({i}) => !witnessed || isIn(witnessed, cell, i);
+    const boxesOf = (list) => draw(list.map(({box}) => box));
+    const small = held.filter(({box}) => !large(box));
+    seen.setAttribute('d', boxesOf(small.filter(isSeen)));
+    open.setAttribute('d', boxesOf(small.filter((one) => !isSeen(one))));
+    floors.setAttribute('d', boxesOf(held.filter(({box}) => large(box))));
     asked.setAttribute('points', plan.cells[cell].points);
-    return `from it ${grouped(plan.cells[cell].seen)} of ${plural(objects, 'object')} may be seen, ` +
-      `${grouped(boxes.length)} of them on this storey`;
+    const {held: all, witnessed: sure} = plan.cells[cell];
+    return `from it ${grouped(all)} of ${plural(objects, 'object')} may be seen` +
+      (witnessed ? `: rays have seen ${grouped(sure)}, ${grouped(all - sure)} are unresolved, ` +
+        `${grouped(objects - all)} are proved hidden` : '') + `; ${grouped(held.length)} are on this storey`;
   }
   return [askedByNumber(map, plan.cells.length, plan.first, ask), map,
-    note('Click a view cell. The boxes are objects that may be seen from somewhere in it; cells are the brighter, the more ' +
-      'may be seen.')];
+    note('Click a view cell. The boxes are objects that may be seen from somewhere in it' +
+      (witnessed ? ': blue where a ray has seen one, orange where that is not known' : '') +
+      '; cells are the brighter, the more may be seen.')];
 }
 
 function gapTable({gaps, widest_gap: widest}) {
@@ -66,6 +76,7 @@ function bakePage() {
     plural(run.portals, 'portal') + (seen ? `; ${plural(views.count, 'view cell')}` : ''));
   at('main').append(...[
     tiles(seen && [readable(seen), `of ${plural(run.objects.count, 'object')} may be seen from a view cell, in the mean`],
+      seen && views.rays && [views.median_looseness.toFixed(2), 'times what rays see is held by a view cell, in the median'],
       walls && [percent(walls.shut, walls.faces), 'of the faces between cells are shut by walls'],
       walls && [grouped(walls.gaps.length), 'gaps between walls that nearly touch']),
     plan && card('plan', 'Ask a view cell', askedViews(plan, run.objects.count)),

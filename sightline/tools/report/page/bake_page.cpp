@@ -19,14 +19,19 @@ constexpr size_t kMostRowBytes = 3u << 20;  // of the rows that are in the page
 /// The view cells of the plan with their rows, and where the objects are.
 nlohmann::ordered_json askedViews(const BakePlan& plan, const DrawnBake& bake) {
     const std::vector<LeafAt>& views = plan.views();
-    BitMatrix rows(views.size(), bake.rows->columns());
+    BitMatrix rows(views.size(), bake.rows->columns()), seen(bake.seen ? views.size() : 0, bake.rows->columns());
     nlohmann::ordered_json cells = nlohmann::ordered_json::array();
     for (size_t i = 0; i < views.size(); ++i) {
         const auto row = bake.rows->row(views[i].leaf);
         std::copy(row.begin(), row.end(), rows.row(i).begin());
+        if (bake.seen) {
+            const auto of_rays = bake.seen->row(views[i].leaf);
+            std::copy(of_rays.begin(), of_rays.end(), seen.row(i).begin());
+        }
         const Rgb colour = plan.colourOf(views[i].leaf);
         cells.push_back({{"points", svgPoints(views[i].outline)},
-                         {"seen", plan.seenFrom(views[i].leaf)},
+                         {"held", plan.heldBy(views[i].leaf)},
+                         {"witnessed", plan.witnessedBy(views[i].leaf)},
                          {"colour", fmt::format("#{:02x}{:02x}{:02x}", colour.x, colour.y, colour.z)}});
     }
     // Tenths of pixels: left, top, width and height; null off the storey.
@@ -45,9 +50,8 @@ nlohmann::ordered_json askedViews(const BakePlan& plan, const DrawnBake& bake) {
     }
     std::vector<uint32_t> order(views.size());
     for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-        return plan.seenFrom(views[a].leaf) < plan.seenFrom(views[b].leaf);
-    });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](uint32_t a, uint32_t b) { return plan.heldBy(views[a].leaf) < plan.heldBy(views[b].leaf); });
     return {{"width", plan.width()},
             {"height", plan.height()},
             {"first", order[order.size() / 2]},
@@ -55,6 +59,7 @@ nlohmann::ordered_json askedViews(const BakePlan& plan, const DrawnBake& bake) {
             {"cells", std::move(cells)},
             {"objects", std::move(objects)},
             {"rows", base64Rows(rows)},
+            {"seen", bake.seen ? nlohmann::ordered_json(base64Rows(seen)) : nlohmann::ordered_json(nullptr)},
             {"row_bytes", rows.wordsPerRow() * 8}};
 }
 
@@ -73,7 +78,13 @@ Status writeBakePage(const DrawnBake& bake, const std::string& json, const std::
                  "View cells at the height " + height +
                      ": the brighter one is, the more objects may be seen from it; white is all of them. Walls are "
                      "white lines.");
-        if (plan.views().size() * bake.rows->wordsPerRow() * 8 <= kMostRowBytes) page.ask(askedViews(plan, bake));
+        if (bake.seen)
+            page.add("open", plan.open(),
+                     "View cells at the height " + height +
+                         ": which share of its row no ray from a cell has seen. Black: "
+                         "rays have seen all of it; white: none. Walls are white lines.");
+        if (plan.views().size() * bake.rows->wordsPerRow() * (bake.seen ? 16 : 8) <= kMostRowBytes)
+            page.ask(askedViews(plan, bake));
     }
     return page.finish("bake", json);
 }

@@ -12,6 +12,16 @@
 namespace sightline::tools {
 namespace {
 
+std::vector<uint32_t> onesOf(const BitMatrix& rows) {
+    std::vector<uint32_t> out;
+    for (size_t row = 0; row < rows.rows(); ++row) {
+        uint32_t ones = 0;
+        for (const uint64_t word : rows.row(row)) ones += static_cast<uint32_t>(std::popcount(word));
+        out.push_back(ones);
+    }
+    return out;
+}
+
 constexpr Rgb kWallInk{20, 24, 31}, kCellInk{150, 160, 175}, kGapInk{213, 40, 0};
 
 }  // namespace
@@ -29,11 +39,8 @@ BakePlan::BakePlan(const DrawnBake& bake) : bake_(bake) {
     height_ = std::max(1u, static_cast<uint32_t>(std::lround(scale * area_.height)));
     walls_ = wallsAt(*bake.scene, bounds_, area_, bake.eye.y);
     if (!bake.views) return;
-    for (size_t leaf = 0; leaf < bake.rows->rows(); ++leaf) {
-        uint32_t seen = 0;
-        for (const uint64_t word : bake.rows->row(leaf)) seen += static_cast<uint32_t>(std::popcount(word));
-        seen_.push_back(seen);
-    }
+    held_ = onesOf(*bake.rows);
+    if (bake.seen) witnessed_ = onesOf(*bake.seen);
     views_ = leavesAt(*bake.views, area_, bake.eye.y);
     for (LeafAt& view : views_)
         for (glm::dvec2& point : view.outline) point = at({point.x, bake.eye.y, point.y});
@@ -41,7 +48,7 @@ BakePlan::BakePlan(const DrawnBake& bake) : bake_(bake) {
 
 Rgb BakePlan::colourOf(uint32_t leaf) const {
     const double all = std::max<double>(1, static_cast<double>(bake_.rows->columns()));
-    return heatColour(std::sqrt(seen_[leaf] / all));
+    return heatColour(std::sqrt(held_[leaf] / all));
 }
 
 void BakePlan::drawWalls(Canvas& canvas) const {
@@ -72,8 +79,19 @@ Image<Rgb> BakePlan::cells() const {
 }
 
 Image<Rgb> BakePlan::rows() const {
+    return views([&](uint32_t leaf) { return colourOf(leaf); });
+}
+
+Image<Rgb> BakePlan::open() const {
+    return views([&](uint32_t leaf) {
+        const double held = std::max(1u, heldBy(leaf));
+        return heatColour((held - witnessedBy(leaf)) / held);
+    });
+}
+
+Image<Rgb> BakePlan::views(const std::function<Rgb(uint32_t leaf)>& colour) const {
     Canvas canvas(width_, height_, kPaperColour);
-    for (const LeafAt& view : views_) canvas.fill(view.outline, colourOf(view.leaf));
+    for (const LeafAt& view : views_) canvas.fill(view.outline, colour(view.leaf));
     for (const LeafAt& view : views_)
         for (size_t i = 0; i < view.outline.size(); ++i)
             canvas.line(view.outline[i], view.outline[(i + 1) % view.outline.size()], 0.6, kPaperColour, 0.5);

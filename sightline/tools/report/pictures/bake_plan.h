@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct DrawnBake {
     std::vector<PlanLine> gaps;           ///< between walls
     const LeafTree* views = nullptr;      ///< its leaves are view cells; null: there are none
     const BitMatrix* rows = nullptr;      ///< [leaves of `views` x objects in the file]
+    const BitMatrix* seen = nullptr;      ///< of the rows, what rays have seen, alike; null: none looked
     std::span<const uint32_t> object_of;  ///< per column of these the scene's object
     glm::dvec3 eye{0.0};                  ///< whose storey the plans show, and at whose height they cut
 };
@@ -44,13 +46,17 @@ public:
     Image<Rgb> cells() const;
     /// Each view cell in the colour of how many objects may be seen from it, as a heat map, and the walls.
     Image<Rgb> rows() const;
+    /// Each view cell in the colour of which share of its row no ray has seen, and the walls.
+    Image<Rgb> open() const;
     /// The walls alone.
     Image<Rgb> walls() const;
 
     /// The view cells at the height, in pixels.
     const std::vector<LeafAt>& views() const { return views_; }
     /// Objects that may be seen from a view cell.
-    uint32_t seenFrom(uint32_t leaf) const { return seen_[leaf]; }
+    uint32_t heldBy(uint32_t leaf) const { return held_[leaf]; }
+    /// Those of them that a ray has seen.
+    uint32_t witnessedBy(uint32_t leaf) const { return witnessed_.empty() ? 0 : witnessed_[leaf]; }
     Rgb colourOf(uint32_t leaf) const;
     /// The storey of the eye.
     const PlanBand& band() const { return band_; }
@@ -58,6 +64,7 @@ public:
 
 private:
     void drawWalls(Canvas& canvas) const;
+    Image<Rgb> views(const std::function<Rgb(uint32_t leaf)>& colour) const;
 
     const DrawnBake& bake_;
     std::vector<Box3d> bounds_;
@@ -66,7 +73,7 @@ private:
     uint32_t width_ = 1, height_ = 1;
     std::vector<PlanLine> walls_;
     std::vector<LeafAt> views_;
-    std::vector<uint32_t> seen_;  ///< per leaf of the view cells
+    std::vector<uint32_t> held_, witnessed_;  ///< per leaf of the view cells
 };
 
 }  // namespace sightline::tools

@@ -73,13 +73,42 @@ TEST_F(BakePageFiles, HoldsBothPlansAndRowsToAsk) {
     EXPECT_TRUE(plan["objects"][2].is_null()) << "it is above the slab";
     EXPECT_LT(plan["objects"][1][0], plan["objects"][0][0]) << "in the order of the rows' columns";
     // The right half sees three, the left two; the first to be asked is the one in the middle of their order.
-    const bool left_first = plan["cells"][0]["seen"] == 2;
-    EXPECT_EQ(plan["cells"][left_first ? 1 : 0]["seen"], 3);
+    const bool left_first = plan["cells"][0]["held"] == 2;
+    EXPECT_EQ(plan["cells"][left_first ? 1 : 0]["held"], 3);
     EXPECT_EQ(plan["first"], left_first ? 1 : 0);
     std::string bits(16, '\0');
     bits[left_first ? 0 : 8] = 0b101;
     bits[left_first ? 8 : 0] = 0b111;
     EXPECT_EQ(plan["rows"], base64(bits));
+}
+
+TEST_F(BakePageFiles, TellsWhatRaysHaveSeenOfRows) {
+    TwoHalves halves;
+    ASSERT_TRUE(writeBakePage(halves.bake, "{}", directory_.string()).ok());
+    EXPECT_TRUE(dataOf(read("index.html"))["plan"]["seen"].is_null());
+    BitMatrix seen(3, 4);
+    seen.set(0, 2), seen.set(1, 0), seen.set(1, 1), seen.set(1, 2);
+    halves.bake.seen = &seen;
+    ASSERT_TRUE(writeBakePage(halves.bake, "{}", directory_.string()).ok());
+    const nlohmann::json data = dataOf(read("index.html"));
+    EXPECT_EQ(pictures(), 3u);
+    const nlohmann::json& plan = data["plan"];
+    const bool left_first = plan["cells"][0]["held"] == 2;
+    EXPECT_EQ(plan["cells"][left_first ? 0 : 1]["witnessed"], 1);
+    EXPECT_EQ(plan["cells"][left_first ? 1 : 0]["witnessed"], 3);
+    std::string bits(16, '\0');
+    bits[left_first ? 0 : 8] = 0b100;
+    bits[left_first ? 8 : 0] = 0b111;
+    EXPECT_EQ(plan["seen"], base64(bits));
+    // Where rays have seen all of a row it is black, where they have not it is brighter.
+    const BakePlan drawn(halves.bake);
+    const Image<Rgb> open = drawn.open();
+    const auto light = [&](double x) {
+        const glm::dvec2 at = drawn.at({x, 0, 3.3});
+        const Rgb colour = open.at(static_cast<uint32_t>(at.x), static_cast<uint32_t>(at.y));
+        return colour.x + colour.y + colour.z;
+    };
+    EXPECT_LT(light(7.4), light(3.4));
 }
 
 TEST_F(BakePageFiles, DrawsGapsWhateverTheirHeight) {
