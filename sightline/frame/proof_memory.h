@@ -52,7 +52,8 @@ public:
         kProofs,        ///< by certificates alone: nothing is drawn
     };
 
-    static constexpr uint32_t kMostSought = 32;  ///< for one view
+    static constexpr uint32_t kMostSought = 32;       ///< for one view
+    static constexpr uint32_t kMostSoughtTaught = 8;  ///< the same, where another memory draws for this one
 
     explicit ProofMemory(Memory* memory)
         : of_node_(memory),
@@ -79,7 +80,8 @@ public:
     Way way() const { return way_; }
     /// Takes over what another memory found for its last view: who hides what has no certificate here. From then on the
     /// other one is a teacher: it draws each view, and seeks certificates for all that it finds hidden. This one is taught:
-    /// for some answers it seeks nothing, and draws nothing but at a cut. O(what was found).
+    /// for some answers it seeks for a few things alone that were hidden just now, and draws nothing but at a cut. O(what
+    /// was found).
     void learn(ProofMemory& teacher);
     /// Whether another memory draws for this one.
     bool taught() const { return isBefore(taught_until_); }
@@ -213,6 +215,7 @@ private:
         return kind == Pending::Kind::kNode ? of_node_ : of_place_;
     }
     void forget(Pending::Kind kind, uint32_t index);
+    void handDown(const Frame& frame, uint32_t node, const Certificate& certificate);
     void note(const Frame& frame, std::span<const ObjectId> proposed);
     void makeRoom(Pending::Kind kind, size_t size);
     void makeRoom(const Frame& frame, Pending::Kind kind, uint32_t index);

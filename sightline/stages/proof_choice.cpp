@@ -20,7 +20,8 @@ constexpr uint32_t kTeachersShare = 32;                  // times as much may be
 constexpr uint32_t kTeacherWaits = 16;                   // answers, until what was sought in vain is sought again
 constexpr uint32_t kMostDrawn = 16;        // views, one after the other, for which certificates are sought
 constexpr double kMostLoose = 0.12;        // of what is visible: that certificates may keep although it is hidden
-constexpr double kMostLooseTaught = 0.25;  // the same, of what a teacher keeps
+constexpr double kMostLooseTaught = 0.15;  // the same, of what a teacher keeps
+constexpr double kFewLoose = 3;            // objects that are kept besides, whatever the teacher keeps
 constexpr double kMostDrawnTaught = 0.6;   // of answers
 constexpr double kMostWorkAlone = 0.6;     // of that of drawing: certificates with more are not sought
 constexpr double kFewTaught = 8;           // answers that these are averages of
@@ -156,14 +157,15 @@ double ProofMemory::workOf(const QueryStats& stats) const {
 /// Goes on by itself for some answers, if it keeps much more than the teacher does, or must draw all the same.
 void ProofMemory::noteTaught(const QueryStats& stats, size_t visible) {
     const bool drew = way_ != Way::kProofs;
-    const double kept = static_cast<double>(visible), share = taught_ > 0 ? 1.0 / kFewTaught : 1;
+    // The first one was answered before the teacher had found anything.
+    const double kept = static_cast<double>(visible), share = taught_ > 1 ? 1.0 / kFewTaught : 1;
     const auto note = [&](double& average, double value) { average += share * (value - average); };
     note(drew_here_, drew ? 1 : 0);
     note(kept_here_, kept);
     note(kept_there_, drew ? kept : static_cast<double>(drawn_visible_));
     if (!drew) note(proof_work_, workOf(stats));
     if (++taught_ == kShortRest) alone_for_ = rest_for_ = 0;
-    const bool loose = taught_ >= 2 * kFewTaught && kept_here_ > (1 + kMostLooseTaught) * kept_there_ + 6;
+    const bool loose = taught_ >= 2 * kFewTaught && kept_here_ > (1 + kMostLooseTaught) * kept_there_ + kFewLoose;
     const bool often = taught_ >= kFewTaught && drew_here_ > kMostDrawnTaught;
     if (!loose && !often) return;
     taught_ = 0;

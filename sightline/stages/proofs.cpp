@@ -6,6 +6,7 @@
 
 #include "sightline/stages/occluder_form.h"
 #include "sightline/stages/pipeline.h"
+#include "sightline/tree/descend.h"
 
 namespace sightline::detail {
 
@@ -196,7 +197,20 @@ bool ProofMemory::holds(const Frame& frame, Pending::Kind kind, uint32_t index, 
     const Certificate certificate = certificateOf(kind, index);
     if (isCovered(frame, certificate, kind, index, box)) return true;
     forget(kind, index);
+    if (kind == Pending::Kind::kNode) handDown(frame, index, certificate);
     return false;
+}
+
+/// What hides a node no longer may still hide most of what is below it.
+void ProofMemory::handDown(const Frame& frame, uint32_t node, const Certificate& certificate) {
+    const BvhNode& of = frame.world->bvh.nodes[node];
+    forEachSlot(usedSlots(of), [&](int slot) {
+        const bool leaf = of.child[slot] & BvhNode::kLeaf;
+        const Pending::Kind kind = leaf ? Pending::Kind::kObject : Pending::Kind::kNode;
+        const uint32_t index = of.child[slot] & ~BvhNode::kLeaf;
+        makeRoom(frame, kind, index);
+        if (numbers(kind)[index] == 0) write(kind, index, certificate);
+    });
 }
 
 void ProofMemory::note(const Frame& frame, std::span<const ObjectId> proposed) {
@@ -251,8 +265,12 @@ TurnAnswer cull(ProofMemory& proofs, const Pending& entry) {
 TurnAnswer cullProposed(const Frame& frame, TraversalState& state, const Pending& entry) {
     ProofMemory& proofs = state.proofs;
     if (!proofs.isProposed(entry)) return {};
-    // If not, nobody but drawing knows more of it.
-    if (!proofs.proveProposed(frame, entry)) return {.settled = proofs.way() == ProofMemory::Way::kProofs};
+    const uint32_t tried = proofs.proposalsTried();
+    if (!proofs.proveProposed(frame, entry)) {
+        // If it was sought, nobody but drawing knows more of it.
+        const bool sought = proofs.proposalsTried() > tried;
+        return {.settled = sought && proofs.way() == ProofMemory::Way::kProofs};
+    }
     ++state.stats.proved;
     TurnAnswer answer = cull(proofs, entry);
     answer.drawn = true;
@@ -264,16 +282,17 @@ TurnAnswer cullProved(const Frame& frame, TraversalState& state, const Pending& 
     const bool before = proofs.hasCertificate(entry.kind, entry.index);
     const bool proved = proofs.holds(frame, entry.kind, entry.index, entry.box);
     state.stats.proved += proved;
-    if (!proved && proofs.taught()) {
+    if (proved) return cull(proofs, entry);
+    // One that is taught seeks for what was hidden just now alone: of the rest its teacher will tell.
+    const bool taught = proofs.taught();
+    if (taught ? !before || proofs.sought >= ProofMemory::kMostSoughtTaught
+               : proofs.sought >= ProofMemory::kMostSought) {
         proofs.passOver(state.visible.size());
-        return {};
+        return {.settled = !taught};
     }
-    if (!proved && proofs.sought >= ProofMemory::kMostSought) {
-        proofs.passOver(state.visible.size());
-        return {.settled = true};
-    }
-    if (!proved && !proofs.seek(frame, entry.kind, entry.index, entry.box, before)) return {};
-    return cull(proofs, entry);
+    if (proofs.seek(frame, entry.kind, entry.index, entry.box, before)) return cull(proofs, entry);
+    if (taught) proofs.passOver(state.visible.size());
+    return {};
 }
 
 }  // namespace sightline::detail

@@ -96,6 +96,34 @@ TEST(Taught, AnswerTheSameAgainAndWithEveryInstructionSet) {
     });
 }
 
+/// Hundreds of things behind a wall, hidden as a whole; one after the other comes out from behind its edge. What is still
+/// hidden is culled in the same answer, without drawing: what hid all of it hides most of it.
+TEST(Taught, WhatIsLeftOfAGroupStaysHiddenWhenAPartComesIntoSight) {
+    MadeWorld made;
+    made.add({-6, -6, -10}, {6, 6, -9});
+    for (int x = 0; x < 32; ++x)
+        for (int y = 0; y < 32; ++y) {
+            const glm::dvec3 at(x * 0.35 - 5.6, y * 0.35 - 5.6, -13);
+            made.add(at, at + glm::dvec3(0.1, 0.1, 0.1));
+        }
+    const Snapshot now = made.world.commit();
+    Query query, teacher;
+    uint64_t came = 0, more = 0;
+    for (int frame = 0; frame < 120; ++frame) {
+        const View view = viewFrom({0.15 * frame, 0, 0}, {0, 0, -11});
+        query.learn(teacher);
+        const VisibleSet set = query.visible(now, view);
+        const size_t seen = Query().visible(now, view, {.stateless = true}).objects.size();
+        came = std::max<uint64_t>(came, seen);
+        if (frame > 0) { EXPECT_EQ(set.stats.occluder_triangles, 0u) << frame; }
+        more = std::max<uint64_t>(more, set.objects.size() - std::min(seen, set.objects.size()));
+        teacher.visible(now, view);
+    }
+    EXPECT_GT(came, 200u);
+    EXPECT_LE(more, 8u);
+    RecordProperty("more", std::to_string(more));
+}
+
 TEST(Taught, DrawAgainWhereNobodyTeachesAnyLonger) {
     MadeWorld made;
     made.add({-6, -6, -10}, {6, 6, -9});
