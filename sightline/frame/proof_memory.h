@@ -52,8 +52,7 @@ public:
         kProofs,        ///< by certificates alone: nothing is drawn
     };
 
-    static constexpr uint32_t kMostSought = 32;       ///< for one view
-    static constexpr uint32_t kMostSoughtTaught = 8;  ///< the same, where another memory draws for this one
+    static constexpr uint32_t kMostSought = 32;  ///< for one view
 
     explicit ProofMemory(Memory* memory)
         : of_node_(memory),
@@ -80,8 +79,7 @@ public:
     Way way() const { return way_; }
     /// Takes over what another memory found for its last view: who hides what has no certificate here. From then on the
     /// other one is a teacher: it draws each view, and seeks certificates for all that it finds hidden. This one is taught:
-    /// for some answers it seeks for a few things alone that were hidden just now, and draws nothing but at a cut. O(what
-    /// was found).
+    /// for some answers it seeks nothing, and draws nothing but at a cut. O(what was found).
     void learn(ProofMemory& teacher);
     /// Whether another memory draws for this one.
     bool taught() const { return isBefore(taught_until_); }

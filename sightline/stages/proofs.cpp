@@ -282,17 +282,16 @@ TurnAnswer cullProved(const Frame& frame, TraversalState& state, const Pending& 
     const bool before = proofs.hasCertificate(entry.kind, entry.index);
     const bool proved = proofs.holds(frame, entry.kind, entry.index, entry.box);
     state.stats.proved += proved;
-    if (proved) return cull(proofs, entry);
-    // One that is taught seeks for what was hidden just now alone: of the rest its teacher will tell.
-    const bool taught = proofs.taught();
-    if (taught ? !before || proofs.sought >= ProofMemory::kMostSoughtTaught
-               : proofs.sought >= ProofMemory::kMostSought) {
+    if (!proved && proofs.taught()) {
         proofs.passOver(state.visible.size());
-        return {.settled = !taught};
+        return {};
     }
-    if (proofs.seek(frame, entry.kind, entry.index, entry.box, before)) return cull(proofs, entry);
-    if (taught) proofs.passOver(state.visible.size());
-    return {};
+    if (!proved && proofs.sought >= ProofMemory::kMostSought) {
+        proofs.passOver(state.visible.size());
+        return {.settled = true};
+    }
+    if (!proved && !proofs.seek(frame, entry.kind, entry.index, entry.box, before)) return {};
+    return cull(proofs, entry);
 }
 
 }  // namespace sightline::detail
