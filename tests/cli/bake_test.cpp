@@ -128,7 +128,7 @@ TEST_F(Bake, InterruptedViewCellsGoOnToTheSameBytes) {
     ASSERT_EQ(run(verb + "whole.see").exit_code, 0);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     bool left = false;
-    for (const double part : {0.3, 0.8}) {
+    for (const double part : {0.2, 0.35, 0.5, 0.65, 0.8}) {
         std::filesystem::remove(path("x.see"));
         const Outcome outcome =
             run(verb + "x.see & sleep " + std::to_string(part * seconds) + "; kill -TERM $! ; wait $!");
