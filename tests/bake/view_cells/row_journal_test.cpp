@@ -152,13 +152,13 @@ TEST(RowJournal, ServesABakeOfMoreCells) {
     EXPECT_EQ(baked(rooms(), &journal, nullptr), baked(rooms(), nullptr, nullptr));
 }
 
-TEST(RowJournal, AnswersThatAreNoRowsAreFoundAnew) {
+TEST(RowJournal, DamagedAnswersEndNoBake) {
     RowJournal journal;
     ASSERT_FALSE(baked(rooms(), &journal, nullptr).empty());
     const std::string bytes = journal.bytes();
     Random random(5);
     for (int round = 0; round < 16; ++round) {
-        // Each answer is cut, or says something else.
+        // Each answer is cut, or has something in its midst. Bytes have a hash: this is for those that pass it.
         RowJournal odd;
         for (size_t at = 16; at + 8 < bytes.size();) {
             ByteCursor in(std::span<const char>(bytes).subspan(at));
