@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include <chrono>
 #include <filesystem>
+#include <set>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -65,6 +67,35 @@ TEST_F(Bake, AScenesOwnWallsAreCells) {
     EXPECT_NE(text.out.find("faces between cells are shut"), std::string::npos) << text.out;
     EXPECT_NE(text.out.find(", taken\n"), std::string::npos) << text.out;
     EXPECT_EQ(bake("building:1:1 --cells walls --smallest-occluder 2")["walls"]["smallest_occluder"], 2);
+}
+
+TEST_F(Bake, WhatMovesHidesNothing) {
+    const std::string scene = "bake building:1:1 --cells walls --smallest-occluder 0.3";
+    const auto wallsOf = [&](const std::string& moves) {
+        const json out = answer(scene + moves + " -o moves.see");
+        EXPECT_EQ(answer("verify building:1:1 --path scatter --frames 3 --size 320x180 --rays 20000 --visibility "
+                         "moves.see")["verification"]["false_culls"],
+                  0);
+        const std::string bytes = read(path("moves.see"));
+        const Result<VisibilityFile> file = VisibilityFile::open(bytes, "moves.see");
+        EXPECT_TRUE(file.ok()) << file.error().message;
+        std::set<uint64_t> walls;
+        for (size_t i = 0; file.ok() && i < file->objects().size(); ++i)
+            if (file->objects().isWall(i)) walls.insert(file->objects().key(i));
+        return std::pair(out["objects"]["movable"].get<size_t>(), walls);
+    };
+    const auto [doors, walls] = wallsOf("");
+    EXPECT_GT(doors, 10u) << "the leaves of its doors";
+    ASSERT_GT(walls.size(), 10u);
+    const std::string one = std::to_string(*walls.begin());
+    const auto [with_one, other] = wallsOf(" --moves " + one);
+    EXPECT_EQ(with_one, doors + 1);
+    EXPECT_EQ(other.count(*walls.begin()), 0u);
+    const auto [many, rest] = wallsOf(" --moves WALL --moves " + one);
+    EXPECT_GT(many, with_one);
+    EXPECT_LT(rest.size(), walls.size());
+    EXPECT_NE(succeed(scene + " --moves " + one).out.find(" may move, and hide nothing\n"), std::string::npos);
+    expectError(scene + " --moves no-such", 2, "--moves no-such: ");
 }
 
 TEST_F(Bake, GapsBetweenWallsAreListed) {

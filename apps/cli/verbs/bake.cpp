@@ -173,6 +173,12 @@ void addBake(CLI::App& tool, int& exit_code) {
                      "units]; 0: none (default: 2^-12 of the scene's diagonal)")
         ->check(CLI::Range(0.0, 1e9))
         ->type_name("L");
+    verb->add_option("--moves", options->source.moves,
+                     "of a scene: objects that may be elsewhere at run time, as doors that stand in no portal: they "
+                     "hide nothing. A key, or what their paths have in common, as door [may be given many times] "
+                     "(default: the leaves of doors in portals)")
+        ->allow_extra_args(false)
+        ->type_name("NAME");
     verb->add_option("--view-cells", options->source.view_cells,
                      "divide space into so many boxes and tell which objects may be seen from each, as 2048 (default: "
                      "none)")

@@ -11,9 +11,11 @@
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/bake_run.h"
+#include "apps/cli/verbs/common.h"
 #include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/import/quake/quake_scene.h"
 #include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/scene/procedural.h"
 
 namespace sightline::cli {
@@ -32,6 +34,7 @@ bool isMap(const std::string& name) {
 Result<BakeSource> loadMapSource(const std::string& name, const BakeSourceChoice& asked) {
     const auto usage = [&](const char* what) { return Error{Error::Kind::kUsage, name + ": " + what}; };
     const std::string kind = mapKind(name);
+    if (!asked.moves.empty()) return usage("the map says by itself what moves: --moves is for scenes");
     if (asked.of_walls || asked.view_cells > 0 || asked.cells == "walls" || asked.cells == "none")
         return usage(
             "a map has cells of its own: --cells walls, --cells none, --smallest-occluder, --smallest-hole, "
@@ -70,22 +73,45 @@ Result<BakeSource> loadMapSource(const std::string& name, const BakeSourceChoice
     return out;
 }
 
-std::vector<uint32_t> doorsOf(const Scene& scene) {
-    std::vector<uint32_t> doors;
+/// The leaves of doors, and what each of the words names: the objects with that key; else those whose paths have the word
+/// in them. Errors (kUsage): one names nothing.
+Result<std::vector<uint32_t>> movableOf(const Scene& scene, const std::vector<std::string>& words) {
+    std::vector<bool> moves(scene.objects.size());
     for (const ScenePortal& portal : scene.portals)
-        if (portal.door < scene.objects.size()) doors.push_back(portal.door);
-    return doors;
+        if (portal.door < scene.objects.size()) moves[portal.door] = true;
+    const auto mark = [&](const auto& isMeant) {
+        bool any = false;
+        for (uint32_t i = 0; i < scene.objects.size(); ++i)
+            if (isMeant(scene.objects[i])) any = moves[i] = true;
+        return any;
+    };
+    for (const std::string& word : words) {
+        const std::string part = lower(word);
+        if (!mark([&](const SceneObject& object) { return word == std::to_string(object.key); }) &&
+            !mark([&](const SceneObject& object) {
+                return lower(objectPath(scene, object)).find(part) != std::string::npos;
+            }))
+            return Error{Error::Kind::kUsage,
+                         fmt::format("--moves {}: {} has no object of that key, and none whose path has that in it; "
+                                     "info --objects lists them",
+                                     oneLine(word), scene.name)};
+    }
+    std::vector<uint32_t> out;
+    for (uint32_t i = 0; i < moves.size(); ++i)
+        if (moves[i]) out.push_back(i);
+    return out;
 }
 
 /// Adds view cells, if they are wanted.
-Status addViews(const BakeSourceChoice& choice, const Scene& scene, BakeCells& cells) {
+Status addViews(const BakeSourceChoice& choice, const Scene& scene, const std::vector<uint32_t>& movable,
+                BakeCells& cells) {
     if (choice.view_cells < 2) return success();
     const Result<RowJournal*> journal = choice.begin_view_cells();
     if (!journal) return journal.error();
     ViewCellSettings settings;
     settings.most_cells = choice.view_cells;
     settings.smallest_hole = choice.smallest_hole;
-    settings.movable = doorsOf(scene);
+    settings.movable = movable;
     settings.jobs = choice.jobs;
     settings.journal = *journal;
     settings.stop = [&] { return interrupted() || !(*journal)->written(); };
@@ -98,7 +124,7 @@ Status addViews(const BakeSourceChoice& choice, const Scene& scene, BakeCells& c
 /// Cells of a scene's own walls. Where they leave most of it in sight, they are not worth their portals: then space is
 /// one cell.
 Result<BakeSource> wallsOf(const Scene& scene, const SceneChoice& names, const std::string& name,
-                           const BakeSourceChoice& choice) {
+                           const BakeSourceChoice& choice, const std::vector<uint32_t>& movable) {
     BakeSource out;
     out.rows_are = "none";
     const auto takeAllOfSpace = [&] {
@@ -115,7 +141,7 @@ Result<BakeSource> wallsOf(const Scene& scene, const SceneChoice& names, const s
     constexpr uint32_t kPlaces = 32;
     if (choice.smallest_occluder < 0)
         for (const CameraFrame& frame : seededCameras(scene, kPlaces, 1).frames) settings.eyes.push_back(frame.eye);
-    settings.movable = doorsOf(scene);
+    settings.movable = movable;
     Progress progress("finding portals", "faces", 0);
     settings.progress = [&](size_t done, size_t total) { progress.set(done, total); };
     out.cells = soupToBake(scene, name, settings, &out.walls.emplace());
@@ -132,11 +158,14 @@ Result<BakeSource> wallsOf(const Scene& scene, const SceneChoice& names, const s
 Result<BakeSource> loadScene(const SceneChoice& names, const BakeSourceChoice& choice) {
     Result<Scene> scene = loadScene(names);
     if (!scene) return scene.error();
+    const Result<std::vector<uint32_t>> movable = movableOf(*scene, choice.moves);
+    if (!movable) return movable.error();
     const std::string name = std::filesystem::path(names.title()).filename().string();
     if (scene->cells.empty() || choice.cells == "walls" || choice.cells == "none") {
-        Result<BakeSource> out = wallsOf(*scene, names, name, choice);
+        Result<BakeSource> out = wallsOf(*scene, names, name, choice, *movable);
         if (!out) return out.error();
-        if (Status added = addViews(choice, *scene, out->cells); !added) return added.error();
+        if (Status added = addViews(choice, *scene, *movable, out->cells); !added) return added.error();
+        out->movable = movable->size();
         out->scene = std::move(*scene);
         return out;
     }
@@ -147,8 +176,10 @@ Result<BakeSource> loadScene(const SceneChoice& names, const BakeSourceChoice& c
     BakeSource out;
     SceneCellSettings settings;
     settings.trusted = !names.procedural().empty();
+    settings.movable = *movable;
     out.cells = sceneToBake(*scene, name, settings);
-    if (Status added = addViews(choice, *scene, out.cells); !added) return added.error();
+    if (Status added = addViews(choice, *scene, *movable, out.cells); !added) return added.error();
+    out.movable = movable->size();
     out.cells_are = "marked";
     out.rows_are = "cells";
     out.scene = std::move(*scene);

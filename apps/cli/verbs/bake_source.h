@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/cli/verbs/scene_choice.h"
 #include "apps/cli/verbs/vis_map.h"
@@ -21,6 +22,7 @@ struct BakeSource {
     Scene scene;            ///< its objects; of a .map none
     std::string cells_are;  ///< where the cells come from, for people
     std::string rows_are;   ///< what has a row
+    uint64_t movable = 0;   ///< objects that hide nothing, for they may be elsewhere at run time: doors, and --moves
     bool of_bsp = false;
     bool leaks = false;                   ///< of a .map
     std::optional<SoupCellReport> walls;  ///< of cells of a scene's own walls
@@ -28,12 +30,13 @@ struct BakeSource {
 
 /// What of a scene is baked, and how its own walls divide it.
 struct BakeSourceChoice {
-    std::string cells;              ///< of --cells; empty: not given
-    double smallest_occluder = -1;  ///< SoupCellSettings
-    double smallest_hole = -1;      ///< SoupCellSettings
-    double widest_gap = -1;         ///< SoupCellSettings
-    bool of_walls = false;          ///< one of these three was given
-    uint32_t view_cells = 0;        ///< ViewCellSettings::most_cells; below 2: none
+    std::string cells;               ///< of --cells; empty: not given
+    double smallest_occluder = -1;   ///< SoupCellSettings
+    double smallest_hole = -1;       ///< SoupCellSettings
+    double widest_gap = -1;          ///< SoupCellSettings
+    bool of_walls = false;           ///< one of these three was given
+    std::vector<std::string> moves;  ///< of --moves: keys, or parts of the paths of objects that hide nothing
+    uint32_t view_cells = 0;         ///< ViewCellSettings::most_cells; below 2: none
     Jobs* jobs = nullptr;
     /// Gives the journal of view cells, right before they are divided; from then on interrupted() ends that early.
     std::function<Result<RowJournal*>()> begin_view_cells;

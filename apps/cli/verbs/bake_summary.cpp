@@ -224,6 +224,7 @@ void printBakeSummary(std::FILE* out, const BakeSource& source, const Baked& bak
                      "the file\n",
                      grouped(objects.places.size()), ratio(objects.places.cells.size(), objects.places.size()),
                      grouped(objects.everywhere), grouped(objects.outside), grouped(objects.moving)));
+    if (source.movable > 0) tell(out, fmt::format("  {} may move, and hide nothing\n", grouped(source.movable)));
     if (s.objects)
         tell(out,
              fmt::format("rows of objects: {} pairs, {} of those in visible cells\n", grouped(s.objects->visible_pairs),
@@ -260,6 +261,7 @@ std::string bakeJson(const BakeSource& source, const Baked& baked, const BakeSum
                   {"outside", objects.outside},
                   {"by_box", objects.by_box},
                   {"moving", objects.moving},
+                  {"movable", source.movable},
                   {"unbounded", objects.unbounded}}}};
     if (s.objects)
         out["object_rows"] = {{"visible_pairs", s.objects->visible_pairs},

@@ -59,7 +59,7 @@ private:
 struct RegionFlowSettings {
     /// That a portal may have, each with a wider window, before it counts as open from edge to edge.
     uint32_t turns = 20;
-    uint64_t budget = uint64_t{1} << 18;  ///< portals that are clipped for one region
+    uint64_t budget = uint64_t{1} << 22;  ///< portals that are clipped for one region
 };
 
 /// Follows light from boxes through the portals of a tree's cells. Of each portal the part that light comes to is kept as one
