@@ -3,12 +3,15 @@
 #include "sightline/bake/flow/region_flow.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <numeric>
 #include <utility>
 
 #include "sightline/base/assert.h"
+#include "sightline/base/random.h"
 
 namespace sightline::bake {
 namespace {
@@ -66,7 +69,8 @@ double farthest(const Box3d& box) {
 
 }  // namespace
 
-Penumbra::Penumbra(const Box3d& region, std::span<const glm::dvec3> window, const glm::dvec4& beyond, double slack) {
+Penumbra::Penumbra(const Box3d& region, std::span<const glm::dvec3> window, const glm::dvec4& beyond, double slack,
+                   std::span<const glm::dvec4> passed) {
     // A polygon of which less than three corners are left has no point as close as the slack.
     const auto take = [&](const glm::dvec4& plane) { planes_[count_++] = plane + glm::dvec4(0, 0, 0, 2 * slack); };
     take(beyond);
@@ -114,10 +118,19 @@ Penumbra::Penumbra(const Box3d& region, std::span<const glm::dvec3> window, cons
             break;
         }
     }
+    edges_ = count_ - 1;
+    for (const glm::dvec4& plane : passed.first(std::min(passed.size(), kMostPassed))) planes_[count_++] = plane;
 }
 
-void Penumbra::clip(std::vector<glm::dvec3>& polygon, std::vector<glm::dvec3>& scratch) const {
-    for (const glm::dvec4& plane : planes()) {
+bool Penumbra::divides(const glm::dvec4& plane, std::span<const glm::dvec3> window, double slack) {
+    // It was moved by two slacks when it was taken.
+    return std::all_of(window.begin(), window.end(),
+                       [&](const glm::dvec3& point) { return heightOf(plane, point) >= (2 + 1.375) * slack; });
+}
+
+void Penumbra::clip(std::vector<glm::dvec3>& polygon, std::vector<glm::dvec3>& scratch, uint64_t by) const {
+    for (by &= (uint64_t{1} << count_) - 1; by != 0; by &= by - 1) {
+        const glm::dvec4& plane = planes_[static_cast<size_t>(std::countr_zero(by))];
         scratch.clear();
         for (size_t i = 0; i < polygon.size(); ++i) {
             const glm::dvec3 &a = polygon[i], &b = polygon[i + 1 == polygon.size() ? 0 : i + 1];
@@ -137,13 +150,17 @@ RegionFlow::RegionFlow(const CellSpace& space, const RegionFlowSettings& setting
     double reach = farthest(space.tree.bounds), thickest = 0;
     for (const glm::dvec3& point : graph.points) reach = std::max(reach, farthest({point, point}));
     for (const CellPortal& portal : graph.portals) thickest = std::max(thickest, portal.thickness);
+    reach_ = reach;
     slack_ = 2 * space.tolerance + thickest + 1e-9 * reach;
     first_way_.assign(graph.cells + 1, 0);
     const auto forEachWay = [&](const auto& visit) {
         for (uint32_t portal = 0; portal < graph.portals.size(); ++portal) {
             const CellPortal& of = graph.portals[portal];
-            visit(Way{portal, of.cells[0], of.cells[1], false});
-            if (!of.one_way) visit(Way{portal, of.cells[1], of.cells[0], true});
+            Box3d box;
+            for (const glm::dvec3& point : graph.outline(of)) box.grow(point);
+            const double radius = 0.5 * glm::length(box.size()) + 1e-9 * reach;
+            visit(Way{portal, of.cells[0], of.cells[1], false, box.center(), radius});
+            if (!of.one_way) visit(Way{portal, of.cells[1], of.cells[0], true, box.center(), radius});
         }
     };
     forEachWay([&](const Way& way) { ++first_way_[way.from + 1]; });
@@ -194,23 +211,65 @@ void RegionFlow::findStarts(const Box3d& region) {
     starts_.erase(std::unique(starts_.begin(), starts_.end()), starts_.end());
 }
 
-/// Notes that light comes to a part of a way's portal.
-void RegionFlow::arrive(uint32_t way, const Polygon& part) {
+/// Notes that light comes to a part of a way's portal. A plane that some of the light has passed is kept if all of it has.
+void RegionFlow::arrive(uint32_t way, const Polygon& part, std::span<const uint32_t> passed) {
     Arrived& at = arrived_[way];
     if (at.window.empty()) {
         touched_.push_back(way);
         at.window = part;
+        at.passed.assign(passed.begin(), passed.end());
     } else {
+        const auto hasPassed = [&](uint32_t plane, std::span<const uint32_t> known, const Polygon& window) {
+            return std::binary_search(known.begin(), known.end(), plane, std::greater()) ||
+                   Penumbra::divides(planes_[plane], window, slack_);
+        };
         const glm::dvec3 normal(space_.graph.portals[ways_[way].portal].plane);
-        if (holds(at.window, part, normal, 0.125 * slack_)) return;
-        at.window = at.turns < settings_.turns ? hullOf(at.window, part, normal) : Polygon();
-        if (at.window.size() < 3) at.window = outlineOf(way);
+        const bool held = holds(at.window, part, normal, 0.125 * slack_);
+        std::vector<uint32_t> kept;
+        for (const uint32_t plane : at.passed)
+            if (hasPassed(plane, passed, part)) kept.push_back(plane);
+        if (held && kept.size() == at.passed.size()) return;
+        if (at.turns >= settings_.turns) {
+            at.window = outlineOf(way);
+            kept.clear();
+        } else if (!held) {
+            for (const uint32_t plane : passed)
+                if (!std::binary_search(at.passed.begin(), at.passed.end(), plane, std::greater()) &&
+                    Penumbra::divides(planes_[plane], at.window, slack_))
+                    kept.push_back(plane);
+            std::sort(kept.begin(), kept.end(), std::greater());
+            kept.resize(std::min(kept.size(), Penumbra::kMostPassed));
+            at.window = hullOf(at.window, part, normal);
+            if (at.window.size() < 3) at.window = outlineOf(way);
+        }
+        at.passed = std::move(kept);
     }
     if (std::exchange(at.waits, true)) return;
     const Polygon& window = at.window;
     const glm::dvec3 middle = std::accumulate(window.begin(), window.end(), glm::dvec3(0.0)) / double(window.size());
     queue_.emplace_back(-glm::distance(middle, middle_), way);
     std::push_heap(queue_.begin(), queue_.end());
+}
+
+/// Planes that are nowhere in the tree farther apart than a fiftieth of the slack are one: edges in line make many.
+uint32_t RegionFlow::numberOf(const glm::dvec4& plane) {
+    const glm::dvec4 step(glm::dvec3(slack_ / (200 * reach_)), slack_ / 200);
+    uint64_t bits = 0;
+    for (int i = 0; i < 4; ++i) bits = mixSeed(bits, static_cast<uint64_t>(std::llround(plane[i] / step[i])));
+    const auto next = static_cast<uint32_t>(planes_.size());
+    const uint32_t number = numbers_.try_emplace(bits, next).first->second;
+    if (number < next && glm::all(glm::lessThanEqual(glm::abs(planes_[number] - plane), step))) return number;
+    planes_.push_back(plane);
+    return next;
+}
+
+/// Lists in onward_ what light has passed behind a window: the planes of its edges, and those before. The latest are kept.
+void RegionFlow::passOn(const Penumbra& penumbra, std::span<const uint32_t> passed) {
+    onward_.assign(passed.begin(), passed.end());
+    for (const glm::dvec4& plane : penumbra.edges()) onward_.push_back(numberOf(plane));
+    std::sort(onward_.begin(), onward_.end(), std::greater());
+    onward_.erase(std::unique(onward_.begin(), onward_.end()), onward_.end());
+    onward_.resize(std::min(onward_.size(), Penumbra::kMostPassed));
 }
 
 RegionFlow::End RegionFlow::from(const Box3d& region, const Reach& reach) {
@@ -222,6 +281,8 @@ RegionFlow::End RegionFlow::from(const Box3d& region, const Reach& reach) {
     queue_.clear();
     for (const uint32_t way : touched_) arrived_[way] = {};
     touched_.clear();
+    planes_.clear();
+    numbers_.clear();
     return ended;
 }
 
@@ -232,7 +293,7 @@ RegionFlow::End RegionFlow::flow(const Box3d& region, const Reach& reach) {
     for (const uint32_t start : starts_) {
         if (!reach(start, nullptr)) return End::kStopped;
         for (uint32_t way = first_way_[start]; way < first_way_[start + 1]; ++way)
-            if (!isBeyond(region, ways_[way])) arrive(way, outlineOf(way));
+            if (!isBeyond(region, ways_[way])) arrive(way, outlineOf(way), {});
     }
     Polygon part, scratch;
     while (!queue_.empty()) {
@@ -244,15 +305,20 @@ RegionFlow::End RegionFlow::flow(const Box3d& region, const Reach& reach) {
         Arrived& at = arrived_[number];
         at.waits = false;
         ++at.turns;
-        const Penumbra penumbra(region, at.window, planeOf(way), slack_);
+        before_.clear();
+        for (const uint32_t plane : at.passed) before_.push_back(planes_[plane]);
+        const Penumbra penumbra(region, at.window, planeOf(way), slack_, before_);
         if (!reach(way.to, &penumbra)) return End::kStopped;
+        passOn(penumbra, at.passed);
         for (uint32_t next = first_way_[way.to]; next < first_way_[way.to + 1]; ++next) {
             // Cells are convex: no line comes back into the one that it has left. Nor does one from beyond a portal pass it.
             if (ways_[next].to == way.from || isBeyond(region, ways_[next])) continue;
             ++clipped_;
+            const std::optional<uint64_t> cutting = penumbra.cutting(ways_[next].center, ways_[next].radius);
+            if (!cutting) continue;
             part = outlineOf(next);
-            penumbra.clip(part, scratch);
-            if (!part.empty()) arrive(next, part);
+            penumbra.clip(part, scratch, *cutting);
+            if (!part.empty()) arrive(next, part, onward_);
         }
     }
     return End::kDone;

@@ -226,7 +226,24 @@ private:
             half.score = 0.2 - 0.5 * split;
             if (half.score > best.score) best = half;
         }
+        takeSheetIn(cell, best);
         return best;
+    }
+
+    /// Gives a plane the largest sheet that lies in it, if there is one: walls in a plane without a sheet hide nothing.
+    void takeSheetIn(const OpenCell& cell, Candidate& half) const {
+        std::map<uint32_t, double> areas;
+        for (const Fragment& fragment : cell.fragments)
+            if (std::all_of(fragment.outline.begin(), fragment.outline.end(), [&](const glm::dvec3& point) {
+                    return std::abs(heightOf(half.plane, point)) <= settings_.bend;
+                }))
+                areas[fragment.sheet] += fragment.area;
+        for (const auto& [sheet, area] : areas)
+            if (area > half.area) {
+                half.sheet = sheet;
+                half.area = area;
+            }
+        if (half.sheet != SoupTree::kNoSheet) half.plane = walls_.sheets[half.sheet].plane;
     }
 
     void part(Fragment&& fragment, const glm::dvec4& plane, std::vector<Fragment>& behind,

@@ -75,6 +75,54 @@ TEST(Penumbra, HoldsWhatSegmentsThroughTheWindowReach) {
     EXPECT_GT(left_out, beside / 2) << "of " << beside;
 }
 
+// What has come through two windows is behind the planes of both; the second one's do not know the first.
+TEST(Penumbra, HoldsWhatSegmentsThroughTwoWindowsReach) {
+    Random random(4);
+    uint64_t reached = 0, left_out = 0;
+    const double slack = 1e-6;
+    for (int round = 0; round < 20000; ++round) {
+        const Box3d box{{-6, -1, -1}, {-random.uniform(3, 5), 1, 1}};
+        const auto corner = [&] { return glm::dvec3(0, random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2)); };
+        const std::vector<glm::dvec3> window = {corner(), corner(), corner()};
+        const glm::dvec3 away = glm::normalize(glm::dvec3(1, random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)));
+        const glm::dvec4 second_plane(away, -random.uniform(0.3, 2));
+        glm::dvec3 from[3], through[3];
+        std::vector<glm::dvec3> second;
+        for (int i = 0; i < 3; ++i) {
+            from[i] = pointIn(box, random);
+            const double s = random.uniform(), t = random.uniform();
+            through[i] = glm::mix(glm::mix(window[0], window[1], s), window[2], t) + 0.5 * slack * randomUnit(random);
+            const glm::dvec3 along = through[i] - from[i];
+            const double rises = glm::dot(away, along);
+            const double at = -(glm::dot(away, through[i]) + second_plane.w) / rises;
+            if (rises > 0.1 && at > 0) second.push_back(through[i] + at * along);
+        }
+        if (second.size() < 3) continue;
+        const Penumbra first(box, window, {1, 0, 0, 0}, slack);
+        const Penumbra plain(box, second, second_plane, slack);
+        const Penumbra both(box, second, second_plane, slack, first.edges());
+        for (int i = 0; i < 3; ++i) {
+            const glm::dvec3 to = second[size_t(i)] + std::pow(10, random.uniform(-3, 2)) * (through[i] - from[i]);
+            ASSERT_TRUE(both.touches({to, to})) << "round " << round;
+        }
+        const glm::dvec3 any(10, random.uniform(-6, 6), random.uniform(-6, 6));
+        if (plain.touches({any, any})) {
+            ++reached;
+            left_out += !both.touches({any, any});
+        }
+        for (const glm::dvec4& plane : first.edges()) {
+            if (!Penumbra::divides(plane, second, slack)) continue;
+            for (int i = 0; i < 3; ++i) {
+                const glm::dvec3 to =
+                    second[size_t(i)] + std::pow(10, random.uniform(-3, 2)) * (second[size_t(i)] - from[i]);
+                ASSERT_GE(glm::dot(plane, glm::dvec4(to, 1)), 0) << "round " << round;
+            }
+        }
+    }
+    EXPECT_GT(reached, 1000u);
+    EXPECT_GT(left_out, reached / 10) << "of " << reached;
+}
+
 // Close to the window's plane a plane is found, too: all of the region is less than a millionth before it.
 TEST(Penumbra, OfAGrazingRegionIsNarrow) {
     const std::vector<glm::dvec3> window = {{0, 5, 0}, {0, 6, 0}, {0, 6, 1}, {0, 5, 1}};

@@ -20,6 +20,7 @@
 #include "tests/bake/marked/random_rooms.h"
 #include "tests/bake/opaque_triangles.h"
 #include "tests/bake/soup/slit_room.h"
+#include "tests/tools/truth/test_scenes.h"
 
 namespace sightline {
 using namespace bake;
@@ -332,6 +333,40 @@ TEST(SoupCells, MostCellsEndTheDivision) {
     EXPECT_EQ(few.space.graph.cells, 5u);
     Counts counts;
     shoot(made.scene, few, 2000, random, counts);
+}
+
+// Far apart, so that nothing is nearly a wall of all and space is halved; halves end where boxes do.
+TEST(SoupCells, WallsInThePlanesOfHalvesAreShut) {
+    Scene scene = emptyScene();
+    const uint32_t box = addBox(scene, glm::vec3(0.5f));
+    constexpr int kSide = 6;
+    constexpr double kApart = 9;
+    std::vector<glm::dvec3> middles;
+    for (int i = 0; i < kSide * kSide * kSide; ++i) {
+        middles.push_back(kApart * glm::dvec3(i % kSide, i / kSide % kSide, i / kSide / kSide));
+        addObject(scene, box, moved(middles.back()));
+    }
+    SoupCellSettings settings;
+    settings.smallest_occluder = 0.5;
+    const CellSpace space = cellsOfSoup(scene, settings).space;
+    ASSERT_GT(space.graph.cells, 100u);
+    uint64_t open = 0;
+    for (const glm::dvec3& middle : middles)
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double side : {-1.0, 1.0}) {
+                glm::dvec3 on = middle + glm::dvec3(0.01, 0.02, 0.03), outward(0.0);
+                on[axis] = middle[axis] + 0.5 * side;
+                outward[axis] = side;
+                const uint32_t before = space.graph.cell_of_leaf[leafOf(space.tree, on + 0.1 * outward)];
+                const uint32_t behind = space.graph.cell_of_leaf[leafOf(space.tree, on - 0.1 * outward)];
+                ASSERT_NE(before, behind);
+                for (const CellPortal& portal : space.graph.portals) {
+                    const bool leads = (portal.cells[0] == before && portal.cells[1] == behind) ||
+                                       (!portal.one_way && portal.cells[1] == before && portal.cells[0] == behind);
+                    open += leads && holds(space.graph, portal, on, 0.01);
+                }
+            }
+    EXPECT_EQ(open, 0u);
 }
 
 }  // namespace

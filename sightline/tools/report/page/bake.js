@@ -65,7 +65,7 @@ function gapTable({gaps, widest_gap: widest}) {
     gaps.length > 0 && table('Gaps between walls', ['Between', 'Width', 'Length', 'From', 'To'],
       shown.map(({from, to, width, objects}) => [
         [...new Set(objects.map(({key, name}) => name || 'object ' + key))].map((name, i) => [i ? ' and ' : '', named(name, 40)]),
-        short(width), short(Math.hypot(...from.map((value, axis) => to[axis] - value))), place(from), place(to)]), 'wide'),
+        short(width), short(Math.hypot(...from.map((value, axis) => to[axis] - value))), place(from), place(to)]), 'wide gaps'),
     gaps.length > kMostGaps && note(`and ${grouped(gaps.length - kMostGaps)} smaller ones, in bake.json`));
 }
 
