@@ -32,6 +32,7 @@ void measure(const Scene& scene, uint32_t most_cells, Table& table) {
     ViewCellSettings settings;
     settings.most_cells = most_cells;
     settings.least_hidden = 0;
+    for (const CameraFrame& frame : seededCameras(scene, 1024, 1).frames) settings.eyes.push_back(frame.eye);
     Result<Baked> baked = Error{Error::Kind::kInput, "not baked"};
     const double milliseconds = millisecondsOf([&] {
         BakeCells cells = soupToBake(scene, scene.name, walls);

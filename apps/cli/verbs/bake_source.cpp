@@ -112,6 +112,8 @@ Status addViews(const BakeSourceChoice& choice, const Scene& scene, const std::v
     settings.most_cells = choice.view_cells;
     settings.smallest_hole = choice.smallest_hole;
     settings.movable = movable;
+    constexpr uint32_t kViewers = 1024;
+    for (const CameraFrame& frame : seededCameras(scene, kViewers, 1).frames) settings.eyes.push_back(frame.eye);
     settings.jobs = choice.jobs;
     settings.journal = *journal;
     settings.stop = [&] { return interrupted() || !(*journal)->written(); };

@@ -221,6 +221,7 @@ struct Cell {
     RegionRow row;
     std::vector<uint32_t> walls;  // of AxisWall, that meet the region
     uint64_t seen = 0;            // objects of the row
+    uint64_t eyes = 0;            // ViewCellSettings::eyes within
     double gain = 1;              // the share of what was seen that halvings took away lately
     bool done = false;            // it is not halved
 };
@@ -298,6 +299,7 @@ private:
         for (uint32_t place = 0; place < objects; ++place) root.row.visible[place / 64] |= uint64_t{1} << place % 64;
         for (uint32_t wall = 0; wall < walls_.size(); ++wall) root.walls.push_back(wall);
         root.seen = objects;
+        root.eyes = eyesIn(bounds);
         whole_ = longestOf(bounds);
         cells_.push_back(std::move(root));
     }
@@ -306,10 +308,20 @@ private:
         const glm::dvec3 size = box.size();
         return std::max({size.x, size.y, size.z});
     }
-    /// Where much is seen from much room, and where halving has helped before.
-    static double worthOf(const Cell& cell) {
-        const glm::dvec3 size = cell.region.size();
-        return (cell.gain + kLeastGain) * static_cast<double>(cell.seen) * std::cbrt(size.x * size.y * size.z);
+    /// Where much is seen from much room, or from where many eyes are, and where halving has helped before.
+    double worthOf(const Cell& cell) const {
+        constexpr double kElsewhere = 0.01;  // what room counts beside eyes
+        const glm::dvec3 part = cell.region.size() / tree_.bounds.size();
+        double share = part.x * part.y * part.z;
+        if (!settings_.eyes.empty())
+            share = kElsewhere * share + static_cast<double>(cell.eyes) / static_cast<double>(settings_.eyes.size());
+        return (cell.gain + kLeastGain) * static_cast<double>(cell.seen) * std::cbrt(share);
+    }
+    uint64_t eyesIn(const Box3d& region) const {
+        return static_cast<uint64_t>(
+            std::count_if(settings_.eyes.begin(), settings_.eyes.end(), [&](const glm::dvec3& eye) {
+                return glm::all(glm::greaterThanEqual(eye, region.min)) && glm::all(glm::lessThan(eye, region.max));
+            }));
     }
 
     Halving halvingOf(const Cell& cell) const {
@@ -366,6 +378,7 @@ private:
         behind.region.max[at.axis] = front.region.min[at.axis] = at.at;
         for (Cell* half : {&behind, &front}) {
             std::erase_if(half->walls, [&](uint32_t wall) { return !meet(walls_[wall].bounds, half->region); });
+            half->eyes = eyesIn(half->region);
             const glm::dvec3 size = half->region.size();
             half->done = longestOf(half->region) < 2 * smallest_ || std::min({size.x, size.y, size.z}) < 4 * margin_;
         }

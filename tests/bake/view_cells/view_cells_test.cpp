@@ -79,6 +79,30 @@ TEST(ViewCells, LeaveOutNothingThatALineComesTo) {
     EXPECT_GT(judged.hidden, judged.pairs / 20);
 }
 
+TEST(ViewCells, AreFinerWhereEyesAre) {
+    Random random(9);
+    const Scene scene = *makeProcedural("building:1:1");
+    const Box3d bounds = worldBounds(scene);
+    const Box3d part{bounds.min, bounds.min + 0.4 * bounds.size()};
+    ViewCellSettings settings;
+    settings.most_cells = 200;
+    settings.least_hidden = 0;
+    const auto cellsIn = [&](const ViewCells& cells) {
+        const std::vector<Box3d> boxes = leafBoxes(cells.tree);
+        return std::count_if(boxes.begin(), boxes.end(), [&](const Box3d& box) {
+            const glm::dvec3 middle = box.center();
+            return glm::all(glm::greaterThan(middle, part.min)) && glm::all(glm::lessThan(middle, part.max));
+        });
+    };
+    const auto anywhere = cellsIn(viewCellsOf(scene, settings));
+    for (int i = 0; i < 300; ++i) settings.eyes.push_back(pointIn(part, random));
+    const ViewCells cells = viewCellsOf(scene, settings);
+    EXPECT_GT(cellsIn(cells), 2 * anywhere);
+    Judged judged;
+    judge(scene, cells, 300, random, judged);
+    EXPECT_GT(judged.hidden, 10u);
+}
+
 TEST(ViewCells, HoldInABuildingAndACity) {
     Random random(8);
     for (const char* name : {"building:1:1", "city:1:300"}) {

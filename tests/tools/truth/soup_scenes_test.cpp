@@ -48,6 +48,7 @@ Baked bakeSoup(const Scene& scene, uint32_t view_cells, const std::vector<uint32
     BakeCells cells = soupToBake(scene, scene.name, settings);
     ViewCellSettings views;
     views.most_cells = view_cells;
+    for (const CameraFrame& frame : seededCameras(scene, 1024, 1).frames) views.eyes.push_back(frame.eye);
     views.least_hidden = 0;
     views.movable = movable;
     views.jobs = &threads;
