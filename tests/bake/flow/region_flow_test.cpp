@@ -78,7 +78,7 @@ TEST(Penumbra, HoldsWhatSegmentsThroughTheWindowReach) {
 // What has come through two windows is behind the planes of both; the second one's do not know the first.
 TEST(Penumbra, HoldsWhatSegmentsThroughTwoWindowsReach) {
     Random random(4);
-    uint64_t reached = 0, left_out = 0;
+    uint64_t reached = 0, left_out = 0, crossed = 0;
     const double slack = 1e-6;
     for (int round = 0; round < 20000; ++round) {
         const Box3d box{{-6, -1, -1}, {-random.uniform(3, 5), 1, 1}};
@@ -112,6 +112,7 @@ TEST(Penumbra, HoldsWhatSegmentsThroughTwoWindowsReach) {
         }
         for (const glm::dvec4& plane : first.edges()) {
             if (!Penumbra::divides(plane, second, slack)) continue;
+            ++crossed;
             for (int i = 0; i < 3; ++i) {
                 const glm::dvec3 to =
                     second[size_t(i)] + std::pow(10, random.uniform(-3, 2)) * (second[size_t(i)] - from[i]);
@@ -120,6 +121,7 @@ TEST(Penumbra, HoldsWhatSegmentsThroughTwoWindowsReach) {
         }
     }
     EXPECT_GT(reached, 1000u);
+    EXPECT_GT(crossed, 1000u);
     EXPECT_GT(left_out, reached / 10) << "of " << reached;
 }
 
