@@ -27,8 +27,8 @@ struct ViewCellSettings {
     /// scene's diagonal.  [world units]
     double smallest_occluder = -1;
     double smallest_hole = -1;  ///< SoupCellSettings::smallest_hole
-    /// Places where viewers may be, as many as are at hand: cells are the finer the more of them are near. Empty: the
-    /// finer the more room there is.
+    /// Places where viewers may be, some for each cell or more: cells are the finer the more of them are near. Rows hold
+    /// everywhere all the same. Empty: the finer the more room there is. O(eyes) for each cell.  [world units]
     std::vector<glm::dvec3> eyes;
     /// Nodes of hierarchies that the search for hiders of one cell may open: what is not asked by then is visible.
     uint64_t budget = uint64_t{1} << 22;
