@@ -124,6 +124,38 @@ TEST(CBake, FindsCellsAndViewCellsWhereNoneAreTold) {
     EXPECT_TRUE(file->hasCells());
 }
 
+/// View cells whose middle lies in the far half of the hall.
+int64_t viewCellsInTheFarHalf(const slBaked& baked) {
+    size_t size = 0;
+    const void* const bytes = slBakedBytes(&baked, &size);
+    const Result<VisibilityFile> file = VisibilityFile::open({static_cast<const char*>(bytes), size}, "house");
+    if (!file || !file->hasViewCells()) return -1;
+    const std::vector<Box3d> boxes = leafBoxes(file->viewTree());
+    return std::count_if(boxes.begin(), boxes.end(),
+                         [](const Box3d& box) { return box.center().x > 0 && box.center().x < 3; });
+}
+
+TEST(CBake, ViewCellsAreFinerWhereEyesAre) {
+    House house;
+    for (int i = 0; i < 60; ++i)  // beside the wall between the rooms, in the kitchen
+        house.add({6.2f, 0.04f * i, 3.5f}, {6.3f, 0.04f * i + 0.03f, 3.6f});
+    for (size_t i = house.meshes.size(); i < house.made.size(); ++i)
+        house.meshes.push_back({meshOf(house.made[i]), nullptr, nullptr, false});
+    slBakeDef def = house.def();
+    def.view_cells = 200;
+    const int64_t anywhere = viewCellsInTheFarHalf(*bakeOf(def));
+    ASSERT_GE(anywhere, 1);
+    double eyes[64][3];
+    for (int i = 0; i < 64; ++i) {
+        eyes[i][0] = 0.3 + i % 4 * 0.8;
+        eyes[i][1] = 0.3 + i / 4 % 4 * 0.8;
+        eyes[i][2] = 0.5 + i / 16;
+    }
+    def.eyes = eyes;
+    def.eye_count = 64;
+    EXPECT_GT(viewCellsInTheFarHalf(*bakeOf(def)), anywhere);
+}
+
 TEST(CBake, TellsWhatIsWrong) {
     House house;
     const auto refused = [&](auto change, const char* words) {
@@ -145,6 +177,14 @@ TEST(CBake, TellsWhatIsWrong) {
     refused([](House& h, slBakeDef&) { h.meshes[0].mesh.index_count = 5; }, "not three a triangle");
     refused([](House& h, slBakeDef&) { h.made[0].positions[0].x = std::nanf(""); }, "not finite");
     refused([](House& h, slBakeDef&) { h.objects[0].transform[12] = std::nan(""); }, "transform is not finite");
+    refused([](House&, slBakeDef& d) { d.eye_count = 1; }, "an array of the def is null");
+    refused(
+        [](House&, slBakeDef& d) {
+            static const double eyes[2][3] = {{1, 1.6, 1}, {2, std::nan(""), 3}};
+            d.eyes = eyes;
+            d.eye_count = 2;
+        },
+        "an eye is not finite");
     refused([](House& h, slBakeDef&) { h.corners[1][2] = std::nan(""); }, "corner is not finite");
     refused(
         [](House& h, slBakeDef&) {

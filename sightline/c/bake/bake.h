@@ -56,6 +56,10 @@ typedef struct slBakeDef {
     bool trusted; /**< cells and portals are taken as they are, without a look at the walls */
     uint32_t
         view_cells; /**< also rows of so many boxes of space at most, from each of which objects are seen or not [0: none] */
+    /** Places where viewers may be: view cells are the finer the more of them are near, and rows hold everywhere all the
+     * same. None: the finer the more room there is.  [world units, some for each view cell, size: eye_count] */
+    const double (*eyes)[3];
+    size_t eye_count;
     slHooks hooks; /**< `jobs` share the work out; memory is the system's */
     /** Called now and then, on the calling thread. False ends the bake. Null: nobody asks. */
     bool (*progress)(void* user, const char* step, double done);

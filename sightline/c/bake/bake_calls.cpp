@@ -131,6 +131,13 @@ slStatus addCells(const slBakeDef& def, const slLog& log, tools::Scene& scene) {
     return SL_OK;
 }
 
+slStatus checkEyes(const slBakeDef& def, const slLog& log) {
+    for (size_t i = 0; i < def.eye_count; ++i)
+        for (const double number : def.eyes[i])
+            if (!std::isfinite(number)) return fail(log, SL_BAD_ARGUMENT, kBake, "an eye is not finite");
+    return SL_OK;
+}
+
 /// Step 1, by what the caller knows of cells.
 bake::BakeCells cellsOf(const slBakeDef& def, const tools::Scene& scene, Jobs* jobs) {
     std::vector<uint32_t> movable;
@@ -155,6 +162,7 @@ bake::BakeCells cellsOf(const slBakeDef& def, const tools::Scene& scene, Jobs* j
         settings.most_cells = def.view_cells;
         settings.movable = movable;
         settings.jobs = jobs;
+        for (size_t i = 0; i < def.eye_count; ++i) settings.eyes.push_back(c::vec(def.eyes[i]));
         bake::addViewCells(cells, scene, settings);
     }
     for (uint32_t i = 0; i < def.object_count; ++i) cells.placing.moves.push_back(def.objects[i].moves);
@@ -169,6 +177,7 @@ slStatus bakeChecked(const slBakeDef& def, slBaked& baked) {
         if (const slStatus status = addMesh(def.meshes[i], log, scene)) return status;
     if (const slStatus status = addObjects(def, log, scene)) return status;
     if (const slStatus status = addCells(def, log, scene)) return status;
+    if (const slStatus status = checkEyes(def, log)) return status;
     c::HookJobs jobs(def.hooks.jobs);
     bake::BakeSettings settings;
     settings.jobs = jobs.given() ? &jobs : nullptr;
@@ -202,7 +211,8 @@ slStatus slBake(const slBakeDef* def, slBaked** baked_out) {
     if (def->cookie != c::kBakeCookie)
         return fail(log, SL_NO_DEFAULTS, kBake, "the def did not begin as slDefaultBakeDef()");
     if ((def->mesh_count > 0 && !def->meshes) || (def->object_count > 0 && !def->objects) ||
-        (def->cell_count > 0 && !def->cells) || (def->portal_count > 0 && !def->portals))
+        (def->cell_count > 0 && !def->cells) || (def->portal_count > 0 && !def->portals) ||
+        (def->eye_count > 0 && !def->eyes))
         return fail(log, SL_BAD_ARGUMENT, kBake, "an array of the def is null");
     try {
         auto baked = std::make_unique<slBaked>();
