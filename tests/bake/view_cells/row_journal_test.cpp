@@ -16,6 +16,8 @@
 #include "sightline/base/random.h"
 #include "sightline/base/thread_pool.h"
 #include "tests/bake/marked/random_rooms.h"
+#include "tests/bake/state_check.h"
+#include "tests/support/corpus.h"
 
 namespace sightline {
 using namespace bake;
@@ -155,25 +157,44 @@ TEST(RowJournal, ServesABakeOfMoreCells) {
 TEST(RowJournal, DamagedAnswersEndNoBake) {
     RowJournal journal;
     ASSERT_FALSE(baked(rooms(), &journal, nullptr).empty());
-    const std::string bytes = journal.bytes();
     Random random(5);
     for (int round = 0; round < 16; ++round) {
         // Each answer is cut, or has something in its midst. Bytes have a hash: this is for those that pass it.
         RowJournal odd;
-        for (size_t at = 16; at + 8 < bytes.size();) {
-            ByteCursor in(std::span<const char>(bytes).subspan(at));
-            const uint64_t question = in.take<uint64_t>();
-            const uint32_t length = in.take<uint32_t>();
-            std::string answer = bytes.substr(at + 12, length);
-            const size_t place = random.below(length + 1);
+        for (auto [question, answer] : answersOf(journal)) {
+            const size_t place = random.below(answer.size() + 1);
             const auto value = static_cast<char>(random.below(256));
             if (random.below(2)) answer.resize(place);
             else answer.insert(answer.begin() + static_cast<std::ptrdiff_t>(place), 1 + random.below(8), value);
             odd.add(question, answer);
-            at += 12 + length;
         }
         EXPECT_EQ(odd.size(), journal.size());
         EXPECT_FALSE(baked(rooms(), &odd, nullptr).empty());
+    }
+}
+
+TEST(BakeStates, OfTheCorpusAreReadOrRefused) {
+    size_t good = 0;
+    forCorpus("bake_state", 5, [&](const std::string& name, const std::string& bytes) {
+        SCOPED_TRACE(name);
+        EXPECT_EQ(bakeStateFault(bytes), "");
+        const std::string sealed = sealedState(bytes);
+        EXPECT_EQ(bakeStateFault(sealed), "");
+        good += sealed == bytes;
+    });
+    EXPECT_GE(good, 3u) << "as they were written, but those that are to be damaged";
+}
+
+TEST(BakeStates, ThatAreSpoiledAreReadOrRefused) {
+    RowJournal journal;
+    smallBake().rows(journal);
+    const std::string whole = journal.bytes() + smallBake().cellState(0);
+    Random random(7);
+    for (int i = 0; i < 200; ++i) {
+        std::string spoiled = whole;
+        for (uint64_t k = 1 + random.below(8); k > 0; --k)
+            spoiled[random.below(spoiled.size())] ^= static_cast<char>(1 + random.below(255));
+        EXPECT_EQ(bakeStateFault(sealedState(spoiled)), "") << i;
     }
 }
 
