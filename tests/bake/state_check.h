@@ -28,6 +28,7 @@ struct SmallBake {
     SmallBake() {
         Random random(6);
         scene = randomRooms(random, 1).scene;
+        scene.objects.resize(16);  // two rooms and the way between them
         SoupCellSettings coarse;
         coarse.smallest_occluder = 1;
         soup = cellsOfSoup(scene, coarse);
