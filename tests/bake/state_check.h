@@ -14,7 +14,7 @@
 #include "sightline/bake/view_cells/view_cells.h"
 #include "sightline/base/bytes.h"
 #include "tests/bake/flow/cell_worlds.h"
-#include "tests/bake/marked/random_rooms.h"
+#include "tests/bake/marked/made_rooms.h"
 
 namespace sightline::test {
 using namespace bake;
@@ -26,9 +26,14 @@ struct SmallBake {
     CellGraph graph;
 
     SmallBake() {
-        Random random(6);
-        scene = randomRooms(random, 1).scene;
-        scene.objects.resize(16);  // two rooms and the way between them
+        MarkedRooms made;  // two rooms with a hole between them, and boards
+        const FlatRect section{{0, 0}, {3, 4}}, hole{{0.5, 1}, {2, 2}};
+        made.room({{0, 0, 0}, {3, 3, 4}}, 2);
+        made.room({{3.25, 0, 0}, {6, 3, 4}}, 1);
+        made.wall(0, 3, section, -1, {hole});
+        made.wall(0, 3.25, section, 1, {hole});
+        for (const double x : {0.5, 3.5, 4.5, 5.5}) made.wall(0, x, {{0.2, 2.5}, {1.7, 3.5}}, x < 3 ? -1 : 1);
+        scene = made.scene;
         SoupCellSettings coarse;
         coarse.smallest_occluder = 1;
         soup = cellsOfSoup(scene, coarse);
