@@ -15,6 +15,7 @@
 #include "sightline/base/bytes.h"
 #include "tests/bake/flow/cell_worlds.h"
 #include "tests/bake/marked/made_rooms.h"
+#include "tests/support/line_fault.h"
 
 namespace sightline::test {
 using namespace bake;
@@ -87,19 +88,12 @@ inline std::vector<std::pair<uint64_t, std::string>> answersOf(const RowJournal&
     return answers;
 }
 
-/// Empty, or what is wrong with an error's line.
-inline std::string stateLineFault(const Error& error) {
-    if (error.message.rfind("x.state: ", 0) != 0) return "does not begin with the file: " + error.message;
-    if (error.message.find('\n') != std::string::npos) return "is not one line: " + error.message;
-    return error.kind == Error::Kind::kInput ? "" : "is not the input's fault";
-}
-
 /// Empty, or what is wrong with the answer to these bytes.
 inline std::string bakeStateFault(std::span<const char> bytes) {
     const SmallBake& bake = smallBake();
     std::span<const char> rest = bytes;
     const Result<RowJournal> journal = RowJournal::takenOff(rest, "x.state");
-    if (!journal) return stateLineFault(journal.error());
+    if (!journal) return lineFault(journal.error(), "x.state");
     if (journal->size() > 0) {
         const std::string again = journal->bytes();
         std::span<const char> left = again;
@@ -120,7 +114,7 @@ inline std::string bakeStateFault(std::span<const char> bytes) {
     }
     if (rest.empty()) return "";
     Result<CellVisibilityState> state = readBakeState(rest, "x.state", bake.graph, 0);
-    if (!state) return stateLineFault(state.error());
+    if (!state) return lineFault(state.error(), "x.state");
     const std::string again = bakeStateBytes(*state, hashOf(bake.graph), 0);
     const Result<CellVisibilityState> second = readBakeState(again, "x.state", bake.graph, 0);
     if (!second || bakeStateBytes(*second, hashOf(bake.graph), 0) != again)

@@ -12,21 +12,13 @@
 #include "sightline/tools/import/quake/quake_map.h"
 #include "sightline/tools/import/quake/quake_scene.h"
 #include "sightline/tools/import/quake/quake_visibility.h"
+#include "tests/support/line_fault.h"
 
 namespace sightline::test {
 using namespace tools;
 
 inline std::span<const unsigned char> bytesOf(const std::string& text) {
     return {reinterpret_cast<const unsigned char*>(text.data()), text.size()};
-}
-
-/// Empty, or what is wrong with an error's line.
-inline std::string lineFault(const Error& error, const std::string& file) {
-    if (error.message.rfind(file + ": ", 0) != 0) return "does not begin with the file: " + error.message;
-    for (const char c : error.message)
-        if (static_cast<unsigned char>(c) < ' ' || c == '\x7f')
-            return "is not one line that can be printed: " + error.message;
-    return error.kind == Error::Kind::kInput ? "" : "is not the input's fault";
 }
 
 /// Empty, or what is wrong with the graph.
