@@ -4,16 +4,33 @@
 #
 # ./run.sh              culls a flight through a city of 100,000 objects, verifies it, and writes out/index.html
 # ./run.sh VERB ARGS    runs the verb; only the tool writes to standard output
+#
+# What a verb does not need is not built for it: `bench`, `view`, the verbs of sightline-lab and the reader of foreign formats
+# are built when they are first asked for.
 set -euo pipefail
 
-root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
+root=${BASH_SOURCE[0]%/*}
+[ "$root" != "${BASH_SOURCE[0]}" ] || root=.
+root=$(cd -- "$root" && pwd)
 build=$root/build/release
 tool=$build/bin/sightline
 
 say() { printf 'sightline: %s\n' "$*" >&2; }
 
+# True if each program is there and nothing that it may be made of has changed since it was built.
+fresh() {
+    local program
+    for program in "$@"; do [ -f "$build/.built-$program" ] && [ -x "$build/bin/$program" ] || return 1; done
+    # The oldest of the marks is what sources are held against.
+    local oldest=$build/.built-$1
+    for program in "$@"; do [ "$build/.built-$program" -nt "$oldest" ] || oldest=$build/.built-$program; done
+    [ -z "$(cd "$root" && find CMakeLists.txt CMakePresets.json cmake sightline apps bench bindings docs/techniques/images \
+        -newer "$oldest" -print -quit 2>/dev/null)" ]
+}
+
 # Paths in the arguments are the caller's: nothing here changes the working directory.
 prepare() {
+    fresh "$@" && return
     "$root/tools/setup"
     mkdir -p "$build"
     # Two runs at once build one after the other. The lock must not outlive this block in the tool itself.
@@ -23,17 +40,27 @@ prepare() {
         say "configuring build/release"
         (cd "$root" && cmake --preset release) >&2
     fi
+    local mark program
+    mark=$(mktemp "$build/.mark-XXXXXX")  # as old as what ninja is about to read
     if ! ninja -C "$build" -n "$@" 2>/dev/null | grep -q 'no work to do'; then
-        say "building build/release"
+        say "building $*; the first time this takes minutes"
         ninja -C "$build" "$@" >&2
     fi
+    for program in "$@"; do touch -r "$mark" "$build/.built-$program"; done
+    rm -f "$mark"
     exec {lock}>&-
 }
 
-# The verbs `bench` and `view` are programs of their own, which take a minute more.
 programs=(sightline)
-case " $* " in *" bench "*) programs+=(sightline-bench) ;; esac
-case " $* " in *" view "*) programs+=(sightline-view) ;; esac
+for word in "$@"; do
+    case $word in
+        bench) programs+=(sightline-bench) ;;
+        view) programs+=(sightline-view) ;;
+        render|sight|replay|check|export|calibrate|profile|advise|report|config) programs+=(sightline-lab) ;;
+        *.glb|*.gltf|*.bsp|*.map|*.prt|*.pak|*.pk3|*.vis|*.json|*.toml|*.frame|*.png) ;;
+        *.*) if [ -f "$word" ]; then programs+=(sightline-import); fi ;;
+    esac
+done
 prepare "${programs[@]}"
 if [ $# -gt 0 ]; then exec "$tool" "$@"; fi
 

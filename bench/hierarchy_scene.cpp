@@ -6,7 +6,7 @@
 #include "bench/stopwatch.h"
 #include "sightline/cull/hierarchy.h"
 #include "sightline/studies/frustum/node_tree.h"
-#include "sightline/tools/load/scene_tree.h"
+#include "bench/scene_tree.h"
 #include "sightline/tools/load/seeded_cameras.h"
 
 namespace sightline::bench {

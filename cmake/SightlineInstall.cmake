@@ -32,7 +32,7 @@ set(SIGHTLINE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/sightline)
 
 sightline_install(EXPORT sightline-runtime COMPONENT development LIBRARIES run HEADERS sightline.h)
 sightline_install(EXPORT sightline-c COMPONENT development LIBRARIES c shared HEADERS c/sightline.h)
-sightline_install(EXPORT sightline-studies COMPONENT development LIBRARIES bsp studies
+sightline_install(EXPORT sightline-studies COMPONENT development LIBRARIES bsp hidden studies
   HEADERS studies/hidden/render.h studies/hidden/zbuffer/zbuffer.h)
 if(SIGHTLINE_TOOLS)
   sightline_install(EXPORT sightline-bake COMPONENT development LIBRARIES bake_shared HEADERS c/bake/bake.h)

@@ -6,8 +6,5 @@
 
 int main(int count, char** words) {
     using namespace sightline::cli;
-    OtherVerb bench = kBenchVerb;
-    bench.add = addBench;
-    bench.names = sightline::bench::names;
-    return toolMain(count, words, {bench, kViewVerb});
+    return toolMain(count, words, {{"bench", addBench, sightline::bench::names}});
 }

@@ -1,8 +1,5 @@
-// The command line tool `sightline`. Its verbs `bench` and `view` are programs beside it.
+// The command line tool `sightline`. Verbs that are rarely asked for are in programs beside it.
 // SPDX-License-Identifier: MIT
 #include "apps/cli/shell/tool.h"
 
-int main(int count, char** words) {
-    using namespace sightline::cli;
-    return toolMain(count, words, {kBenchVerb, kViewVerb});
-}
+int main(int count, char** words) { return sightline::cli::toolMain(count, words, {}); }

@@ -5,7 +5,5 @@
 
 int main(int count, char** words) {
     using namespace sightline::cli;
-    OtherVerb view = kViewVerb;
-    view.add = addView;
-    return toolMain(count, words, {kBenchVerb, view});
+    return toolMain(count, words, {{"view", addView}});
 }

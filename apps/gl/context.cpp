@@ -10,13 +10,14 @@
 #include <cstdlib>
 #include <utility>
 
+#include "apps/gl/objects.h"
+
 namespace sightline {
 namespace {
 
 constexpr int kWays = 2;
 std::atomic<bool> taken[kWays];
 
-Error fault(const std::string& what) { return {Error::Kind::kInput, "OpenGL: " + what}; }
 
 std::string eglFault(const char* call) {
     char code[16];
@@ -47,8 +48,8 @@ Result<GlContext> GlContext::create(uint32_t threads) {
     setenv("GALLIUM_DRIVER", "llvmpipe", 1);
     setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);
     if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
-        return fault("EGL here has no EGL_MESA_platform_surfaceless");
-    Error last = fault("two contexts are alive already");
+        return glFault("EGL here has no EGL_MESA_platform_surfaceless");
+    Error last = glFault("two contexts are alive already");
     for (int way = 0; way < kWays; ++way) {
         if (taken[way].exchange(true)) continue;
         GlContext context;
@@ -63,7 +64,7 @@ Result<GlContext> GlContext::create(uint32_t threads) {
 Result<GlContext> GlContext::current() {
     const int version = epoxy_gl_version();
     if (version < 45)
-        return fault("4.5 is needed, and here is " + std::to_string(version / 10) + "." + std::to_string(version % 10));
+        return glFault("4.5 is needed, and here is " + std::to_string(version / 10) + "." + std::to_string(version % 10));
     GlContext context;
     context.readRenderer();
     return context;
@@ -79,19 +80,19 @@ void GlContext::readRenderer() {
 
 Status GlContext::open(int way) {
     const EGLDisplay display = displayOf(way);
-    if (display == EGL_NO_DISPLAY) return fault("EGL has no display for the software driver");
-    if (!eglInitialize(display, nullptr, nullptr)) return fault(eglFault("eglInitialize"));
+    if (display == EGL_NO_DISPLAY) return glFault("EGL has no display for the software driver");
+    if (!eglInitialize(display, nullptr, nullptr)) return glFault(eglFault("eglInitialize"));
     display_ = display;
-    if (!eglBindAPI(EGL_OPENGL_API)) return fault(eglFault("eglBindAPI"));
+    if (!eglBindAPI(EGL_OPENGL_API)) return glFault(eglFault("eglBindAPI"));
     const EGLint wish[] = {
         EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     context_ = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wish);
-    if (context_ == EGL_NO_CONTEXT) return fault(eglFault("eglCreateContext for GL 4.5"));
-    if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) return fault(eglFault("eglMakeCurrent"));
+    if (context_ == EGL_NO_CONTEXT) return glFault(eglFault("eglCreateContext for GL 4.5"));
+    if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) return glFault(eglFault("eglMakeCurrent"));
     readRenderer();
     if (renderer_.find("llvmpipe") == std::string::npos)
-        return fault("drawn by " + renderer_ + ", not by Mesa's llvmpipe");
+        return glFault("drawn by " + renderer_ + ", not by Mesa's llvmpipe");
     return success();
 }
 

@@ -11,8 +11,6 @@
 namespace sightline {
 namespace {
 
-Error fault(const std::string& what) { return {Error::Kind::kInput, "OpenGL: " + what}; }
-
 std::string firstLine(const char* text) {
     const std::string all(text);
     return all.substr(0, all.find('\n'));
@@ -29,7 +27,7 @@ Result<GlName> makeShader(GLenum kind, const std::string& source) {
     char log[512] = "";
     glGetShaderInfoLog(shader.get(), sizeof log, nullptr, log);
     const char* const name = kind == GL_VERTEX_SHADER ? "vertex" : kind == GL_FRAGMENT_SHADER ? "fragment" : "compute";
-    return fault(std::string(name) + " shader: " + firstLine(log));
+    return glFault(std::string(name) + " shader: " + firstLine(log));
 }
 
 Result<GlName> linkProgram(std::initializer_list<const GlName*> shaders) {
@@ -41,7 +39,7 @@ Result<GlName> linkProgram(std::initializer_list<const GlName*> shaders) {
     if (good == GL_TRUE) return program;
     char log[512] = "";
     glGetProgramInfoLog(program.get(), sizeof log, nullptr, log);
-    return fault("program: " + firstLine(log));
+    return glFault("program: " + firstLine(log));
 }
 
 GlName makeRenderbuffer(GLenum format, uint32_t width, uint32_t height) {
@@ -52,6 +50,8 @@ GlName makeRenderbuffer(GLenum format, uint32_t width, uint32_t height) {
 }
 
 }  // namespace
+
+Error glFault(const std::string& what) { return {Error::Kind::kInput, "OpenGL: " + what}; }
 
 GlName makeGlBuffer(std::span<const std::byte> bytes) {
     GLuint name = 0;
@@ -89,7 +89,7 @@ Result<GlTarget> GlTarget::create(uint32_t colour_format, uint32_t width, uint32
     glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &size);
     if (width > static_cast<uint32_t>(std::min(limits[0], size)) ||
         height > static_cast<uint32_t>(std::min(limits[1], size)))
-        return fault("an image of " + std::to_string(width) + "x" + std::to_string(height) + " is too large");
+        return glFault("an image of " + std::to_string(width) + "x" + std::to_string(height) + " is too large");
     GlTarget target;
     target.width = width;
     target.height = height;
@@ -101,7 +101,7 @@ Result<GlTarget> GlTarget::create(uint32_t colour_format, uint32_t width, uint32
     glNamedFramebufferRenderbuffer(name, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target.colour.get());
     glNamedFramebufferRenderbuffer(name, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, target.depth.get());
     if (glCheckNamedFramebufferStatus(name, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        return fault("the image to draw into is not complete");
+        return glFault("the image to draw into is not complete");
     if (const Status made = checkGl("making an image"); !made) return made.error();
     return target;
 }
@@ -111,7 +111,7 @@ Status checkGl(const char* during) {
     if (code == GL_NO_ERROR) return success();
     char text[16];
     std::snprintf(text, sizeof text, "0x%04x", static_cast<unsigned>(code));
-    return fault(std::string("error ") + text + " while " + during);
+    return glFault(std::string("error ") + text + " while " + during);
 }
 
 }  // namespace sightline

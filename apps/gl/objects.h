@@ -12,6 +12,9 @@
 
 namespace sightline {
 
+/// What the GL did not do.
+Error glFault(const std::string& what);
+
 /// One name of the GL and what deletes it. The context that it came from must be current when it goes.
 class GlName {
 public:

@@ -21,7 +21,7 @@
 #include "sightline/bake/view_cells/portal_rows.h"
 #include "sightline/bake/view_cells/view_cells.h"
 #include "sightline/base/jobs.h"
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/base/result.h"
 #include "sightline/cells/cell_space.h"
 #include "sightline/tools/scene/scene.h"

@@ -10,7 +10,7 @@
 #include <span>
 #include <type_traits>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 
 namespace sightline {
 

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/base/paged.h"
 
 namespace sightline {

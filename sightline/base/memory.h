@@ -2,24 +2,44 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <memory>
-#include <memory_resource>
 #include <new>
 #include <utility>
-#include <vector>
 
 namespace sightline {
 
 /// Where memory comes from. It must outlive all that was made in it, and be thread-safe if that is used by several
-/// threads; it may not return null.
-using Memory = std::pmr::memory_resource;
+/// threads.
+class Memory {
+public:
+    virtual ~Memory() = default;
+    /// @param bytes      [> 0]
+    /// @param alignment  [a power of two]
+    /// @returns never null
+    virtual void* allocate(size_t bytes, size_t alignment) = 0;
+    /// @param place  of allocate(), with the same size and alignment
+    virtual void deallocate(void* place, size_t bytes, size_t alignment) = 0;
+};
 
-/// The source where no other is given: the program's new and delete, unless std::pmr::set_default_resource() says so.
-inline Memory* defaultMemory() { return std::pmr::get_default_resource(); }
+/// The source where no other is given: the program's new and delete.
+Memory* defaultMemory();
 
-/// An array in a given memory. Copying its elements leaves it there.
+/// Memory as the standard library's containers take it.
 template <class T>
-using Array = std::pmr::vector<T>;
+struct MemoryAllocator {
+    using value_type = T;
+
+    Memory* memory = defaultMemory();
+
+    MemoryAllocator() = default;
+    MemoryAllocator(Memory* from) : memory(from) {}
+    template <class Other>
+    MemoryAllocator(const MemoryAllocator<Other>& other) : memory(other.memory) {}
+    T* allocate(size_t count) { return static_cast<T*>(memory->allocate(count * sizeof(T), alignof(T))); }
+    void deallocate(T* place, size_t count) { memory->deallocate(place, count * sizeof(T), alignof(T)); }
+    bool operator==(const MemoryAllocator&) const = default;
+};
 
 /// Gives an object back to the memory that it came from.
 template <class T>
@@ -44,7 +64,7 @@ Owned<T> makeOwned(Memory* memory, Arguments&&... arguments) {
 
 template <class T, class... Arguments>
 std::shared_ptr<T> makeShared(Memory* memory, Arguments&&... arguments) {
-    return std::allocate_shared<T>(std::pmr::polymorphic_allocator<T>(memory), std::forward<Arguments>(arguments)...);
+    return std::allocate_shared<T>(MemoryAllocator<T>(memory), std::forward<Arguments>(arguments)...);
 }
 
 }  // namespace sightline

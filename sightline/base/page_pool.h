@@ -2,88 +2,57 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
-#include <utility>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 
 namespace sightline {
+
+/// How pages of one type are laid out, begun, copied and ended. One function for each keeps the pool out of templates,
+/// which every file that includes a world would compile again.
+struct PageKind {
+    size_t bytes = 0, alignment = 0;
+    size_t born_at = 0;  ///< where in a page its time of birth stands, an uint64_t
+    void (*begin)(void* place) = nullptr;
+    void (*copy)(void* place, const void* like) = nullptr;
+    void (*end)(void* page) = nullptr;
+};
 
 /// The pages of one array and of its copies. Time is counted in copies: a page is in those that were made since its birth
 /// and before it was replaced, and goes when none of them is left. So no copy counts references to pages.
 ///
 /// One thread changes the array; copies may end on any thread.
-template <class T, uint32_t kPage>
 class PagePool {
 public:
-    struct Page {
-        T items[kPage];
-        uint64_t born = 0;  ///< the time
-    };
-
-    explicit PagePool(Memory* memory)
-        : memory_(memory), replaced_now_(memory), spare_(memory), copies_(memory), replaced_(memory), freed_(memory) {}
+    PagePool(const PageKind& kind, Memory* memory);
     PagePool(const PagePool&) = delete;
     PagePool& operator=(const PagePool&) = delete;
-    ~PagePool() {
-        end();
-        for (Replaced& replaced : replaced_) letGo(replaced, 0);
-    }
+    ~PagePool();
 
     /// No copy has the page.
-    bool isNew(const Page& page) const { return page.born == now_; }
+    bool isNew(const void* page) const { return born(page) == now_; }
 
-    /// A page of T(), or like another one.
-    Page* make() { return isMade(new (place()) Page()); }
-    Page* make(const Page& like) { return isMade(new (place()) Page(like)); }
+    /// A page of new elements, or like another one.
+    void* make();
+    void* make(const void* like);
 
     /// Takes a page that the array no longer has.
-    void giveBack(Page* page) {
-        if (!isNew(*page)) return replaced_now_.push_back({page, page->born});
-        page->~Page();
-        spare_.push_back(page);
-    }
+    void giveBack(void* page);
 
     /// Notes a copy of the array as it is.
     /// @returns its time
-    uint64_t beginCopy() {
-        // Room for as many pages as were made since the last copy.
-        freeAll(spare_, made_);
-        const std::lock_guard lock(mutex_);
-        most_freed_ = std::exchange(made_, 0);
-        keepReplaced();
-        copies_.push_back(now_);
-        return now_++;
-    }
+    uint64_t beginCopy();
 
     /// There is no array any more, and there will be no further copy.
-    void end() {
-        freeAll(spare_, 0);
-        const std::lock_guard lock(mutex_);
-        most_freed_ = 0;
-        keepReplaced();
-        freeAll(freed_, 0);
-    }
+    void end();
 
-    void endCopy(uint64_t time) {
-        const std::lock_guard lock(mutex_);
-        const auto copy = copies_.erase(std::lower_bound(copies_.begin(), copies_.end(), time));
-        // Of what was replaced between this copy and the next, the one before is now the last that may have it.
-        const uint64_t before = copy == copies_.begin() ? 0 : copy[-1], next = copy == copies_.end() ? now_ : *copy;
-        const auto first = std::upper_bound(replaced_.begin(), replaced_.end(), time,
-                                            [](uint64_t at, const Replaced& replaced) { return at < replaced.at; });
-        auto end = first;
-        for (; end != replaced_.end() && end->at <= next; ++end) letGo(*end, before);
-        replaced_.erase(std::remove_if(first, end, [](const Replaced& replaced) { return replaced.pages.empty(); }),
-                        end);
-    }
+    void endCopy(uint64_t time);
 
 private:
     struct Waiting {
-        Page* page;
+        void* page;
         uint64_t born;
     };
     struct Replaced {
@@ -91,44 +60,16 @@ private:
         Array<Waiting> pages;
     };
 
-    Page* isMade(Page* page) {
-        page->born = now_;
-        ++made_;
-        return page;
+    uint64_t born(const void* page) const {
+        return *reinterpret_cast<const uint64_t*>(static_cast<const char*>(page) + kind_.born_at);
     }
-    void* place() {
-        if (spare_.empty()) {
-            const std::lock_guard lock(mutex_);
-            spare_.swap(freed_);
-        }
-        if (spare_.empty()) return memory_->allocate(sizeof(Page), alignof(Page));
-        void* place = spare_.back();
-        spare_.pop_back();
-        return place;
-    }
-    /// Puts what was replaced since the last copy where copies find it.
-    void keepReplaced() {
-        replaced_.push_back({now_, std::move(replaced_now_)});
-        replaced_now_.clear();
-        letGo(replaced_.back(), copies_.empty() ? 0 : copies_.back());
-        if (replaced_.back().pages.empty()) replaced_.pop_back();
-    }
-    /// Ends the pages that no copy has.
-    /// @param newest  the last copy before they were replaced
-    void letGo(Replaced& replaced, uint64_t newest) {
-        std::erase_if(replaced.pages, [&](const Waiting& waiting) {
-            if (waiting.born <= newest) return false;
-            waiting.page->~Page();
-            freed_.push_back(waiting.page);
-            return true;
-        });
-        if (replaced.pages.size() < replaced.pages.capacity() / 4) replaced.pages.shrink_to_fit();
-        freeAll(freed_, most_freed_);
-    }
-    void freeAll(Array<void*>& places, size_t but) {
-        for (; places.size() > but; places.pop_back()) memory_->deallocate(places.back(), sizeof(Page), alignof(Page));
-    }
+    void* isMade(void* page);
+    void* place();
+    void keepReplaced();
+    void letGo(Replaced& replaced, uint64_t newest);
+    void freeAll(Array<void*>& places, size_t but);
 
+    const PageKind& kind_;
     Memory* const memory_;
     // Of the thread that changes the array:
     size_t made_ = 0;              ///< pages, since the last copy

@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <new>
 #include <span>
 #include <utility>
 
-#include "sightline/base/assert.h"
 #include "sightline/base/memory.h"
-#include "sightline/base/page_pool.h"
+#include "sightline/base/shared_pages.h"
 
 namespace sightline {
 
@@ -24,27 +23,18 @@ namespace sightline {
 template <class T, uint32_t kPage>
 class Paged {
 public:
-    explicit Paged(Memory* memory = defaultMemory()) : pages_(memory) {}
-    Paged(Paged&& from) noexcept
-        : pages_(std::move(from.pages_)),
-          size_(std::exchange(from.size_, 0)),
-          pool_(std::move(from.pool_)),
-          copy_(std::move(from.copy_)) {}
+    explicit Paged(Memory* memory = defaultMemory()) : pages_(kKind, memory) {}
+    Paged(Paged&& from) noexcept : pages_(std::move(from.pages_)), size_(std::exchange(from.size_, 0)) {}
     Paged& operator=(Paged&& from) {
         if (this == &from) return *this;
-        leave();
         pages_ = std::move(from.pages_);
-        from.pages_.clear();
         size_ = std::exchange(from.size_, 0);
-        pool_ = std::move(from.pool_);
-        copy_ = std::move(from.copy_);
         return *this;
     }
-    ~Paged() { leave(); }
 
     uint32_t size() const { return size_; }
     bool empty() const { return size_ == 0; }
-    const T& operator[](size_t i) const { return pages_[i / kPage]->items[i % kPage]; }
+    const T& operator[](size_t i) const { return static_cast<const Page*>(pages_[i / kPage])->items[i % kPage]; }
     /// Elements from i on that stand side by side: `most`, or those to the end of the page.
     std::span<const T> run(uint32_t i, uint32_t most) const { return {&(*this)[i], std::min(most, kPage - i % kPage)}; }
     /// Asks the processor for an element that will be read soon.
@@ -55,88 +45,47 @@ public:
     const T& back() const { return (*this)[size_ - 1]; }
 
     /// For writing: makes the page this array's own first.
-    T& change(size_t i) { return ownPage(i / kPage).items[i % kPage]; }
+    T& change(size_t i) { return static_cast<Page*>(pages_.own(i / kPage))->items[i % kPage]; }
     void set(size_t i, const T& value) { change(i) = value; }
     void push_back(const T& value) {
-        if (size_ == pages_.size() * kPage) addPage();
+        if (size_ == pages_.size() * kPage) pages_.add();
         change(size_++) = value;
     }
     /// What is new is T().
     void resize(uint32_t size) {
         const uint32_t kept = std::min(size, size_);
         const size_t pages = (size_t{size} + kPage - 1) / kPage;
-        for (; pages_.size() > pages; pages_.pop_back()) pool_->giveBack(pages_.back());
-        while (pages_.size() < pages) addPage();
+        pages_.shrink(pages);
+        while (pages_.size() < pages) pages_.add();
         size_ = size;
         for (uint32_t i = kept; i < size; ++i) change(i) = T();
     }
     void clear() {
-        if (pool_)
-            for (Page* page : pages_) pool_->giveBack(page);
-        pages_.clear();
+        pages_.shrink(0);
         size_ = 0;
     }
 
     /// As it is now. O(pages).
-    Paged share() {
-        SIGHTLINE_ASSERT(!copy_);
-        Paged copy(memory());
-        if (empty()) return copy;
-        copy.pages_ = pages_;
-        copy.size_ = size_;
-        copy.copy_ = makeShared<Copy>(memory(), pool_);
-        return copy;
-    }
+    Paged share() { return Paged(pages_.share(), size_); }
 
     /// Of a copy: another one. O(pages).
-    Paged copy() const {
-        SIGHTLINE_ASSERT(!pool_);
-        Paged copy(memory());
-        copy.pages_ = pages_;
-        copy.size_ = size_;
-        copy.copy_ = copy_;
-        return copy;
-    }
+    Paged copy() const { return Paged(pages_.copy(), size_); }
 
 private:
-    using Pool = PagePool<T, kPage>;
-    using Page = typename Pool::Page;
-    /// Keeps the pages of a copy.
-    struct Copy {
-        const std::shared_ptr<Pool> pool;
-        const uint64_t time;
-
-        explicit Copy(std::shared_ptr<Pool> from) : pool(std::move(from)), time(pool->beginCopy()) {}
-        Copy(const Copy&) = delete;
-        Copy& operator=(const Copy&) = delete;
-        ~Copy() { pool->endCopy(time); }
+    struct Page {
+        T items[kPage];
+        uint64_t born = 0;
     };
+    static void begin(void* place) { new (place) Page(); }
+    static void copyPage(void* place, const void* like) { new (place) Page(*static_cast<const Page*>(like)); }
+    static void end(void* page) { static_cast<Page*>(page)->~Page(); }
+    static constexpr size_t bornAt() { return (sizeof(T) * kPage + alignof(uint64_t) - 1) / alignof(uint64_t) * alignof(uint64_t); }
+    static constexpr PageKind kKind = {sizeof(Page), alignof(Page), bornAt(), begin, copyPage, end};
 
-    void leave() {
-        clear();
-        if (pool_) pool_->end();
-    }
-    Memory* memory() const { return pages_.get_allocator().resource(); }
-    void addPage() {
-        SIGHTLINE_ASSERT(!copy_);
-        if (!pool_) pool_ = makeShared<Pool>(memory(), memory());
-        pages_.push_back(pool_->make());
-    }
-    Page& ownPage(size_t index) {
-        SIGHTLINE_ASSERT(!copy_);
-        Page*& page = pages_[index];
-        if (!pool_->isNew(*page)) {
-            Page* own = pool_->make(*page);
-            pool_->giveBack(page);
-            page = own;
-        }
-        return *page;
-    }
+    Paged(detail::SharedPages&& pages, uint32_t size) : pages_(std::move(pages)), size_(size) {}
 
-    Array<Page*> pages_;
+    detail::SharedPages pages_;
     uint32_t size_ = 0;
-    std::shared_ptr<Pool> pool_;        ///< null in copies, and where there never was a page
-    std::shared_ptr<const Copy> copy_;  ///< of a copy
 };
 
 }  // namespace sightline

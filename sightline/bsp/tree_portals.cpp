@@ -20,7 +20,7 @@
 namespace sightline {
 namespace {
 
-constexpr uint32_t kNone = ~0u;
+constexpr uint32_t kNoBounds = ~0u;
 
 double heightOf(const glm::dvec4& plane, const glm::dvec3& point) {
     return glm::dot(glm::dvec3(plane), point) + plane.w;
@@ -43,7 +43,7 @@ struct Piece {
 class Portalizer {
 public:
     Portalizer(const LeafTree& tree, const TreePortalSettings& settings)
-        : tree_(tree), settings_(settings), parent_(tree.nodes.size(), kNone) {}
+        : tree_(tree), settings_(settings), parent_(tree.nodes.size(), kNoBounds) {}
 
     CellGraph run(TreePortalCounts& counts, std::vector<uint32_t>& node_of_portal) {
         numberCells();
@@ -88,7 +88,7 @@ private:
         length_.resize(tree_.nodes.size());
         for (uint32_t node = 0; node < tree_.nodes.size(); ++node) {
             length_[node] = glm::length(glm::dvec3(tree_.nodes[node].plane));
-            if (parent_[node] != kNone) depth[node] = depth[parent_[node] >> 1] + 1;
+            if (parent_[node] != kNoBounds) depth[node] = depth[parent_[node] >> 1] + 1;
             deepest = std::max(deepest, depth[node]);
         }
         diagonal_ = tree_.bounds.empty() ? 0 : glm::length(tree_.bounds.size());
@@ -132,7 +132,7 @@ private:
         const glm::dvec3 u = 0.6 * diagonal_ * glm::normalize(glm::cross(helper, n));
         const glm::dvec3 v = glm::cross(n, u);
         outline_ = {middle - u - v, middle + u - v, middle + u + v, middle - u + v};
-        uint32_t bounds = kNone;
+        uint32_t bounds = kNoBounds;
         for (int axis = 0; axis < 3; ++axis)
             for (const double side : {1.0, -1.0}) {
                 glm::dvec4 inside(0.0);
@@ -140,7 +140,7 @@ private:
                 inside.w = side > 0 ? -box.min[axis] : box.max[axis];
                 if (!cutBy(inside, 1, bounds)) return false;
             }
-        for (uint32_t slot = parent_[node]; slot != kNone; slot = parent_[slot >> 1]) {
+        for (uint32_t slot = parent_[node]; slot != kNoBounds; slot = parent_[slot >> 1]) {
             const glm::dvec4& plane = tree_.nodes[slot >> 1].plane;
             if (!(length_[slot >> 1] > 0)) {
                 if ((plane.w >= 0) != ((slot & 1) != 0)) return false;
@@ -197,7 +197,7 @@ private:
     /// Whether the bounds leave exactly nothing of outline_: only those matter that it touches.
     bool isNothing(uint32_t bounds) {
         near_.clear();
-        for (uint32_t i = bounds; i != kNone; i = bounds_[i].before) {
+        for (uint32_t i = bounds; i != kNoBounds; i = bounds_[i].before) {
             double low = std::numeric_limits<double>::infinity();
             for (const glm::dvec3& point : outline_) low = std::min(low, heightOf(bounds_[i].inside, point));
             if (low <= 2 * margin_ * bounds_[i].length) near_.push_back(bounds_[i].inside);
@@ -207,13 +207,13 @@ private:
     }
 
     /// On which side of a node what lies just beside the plane is, all of it: the node has no normal, or its plane is the
-    /// same. kNone: the node divides.
+    /// same. kNoBounds: the node divides.
     uint32_t onlySide(uint32_t node, uint32_t from_side) const {
         const glm::dvec4& plane = tree_.nodes[node].plane;
         if (!(length_[node] > 0)) return plane.w >= 0;
         const double along = glm::dot(glm::dvec3(plane), glm::dvec3(plane_));
         if (std::abs(along) < 0.999 * length_[node] * glm::length(glm::dvec3(plane_)) || !samePlane(plane, plane_))
-            return kNone;
+            return kNoBounds;
         return (along > 0) == (from_side == 1);
     }
 
@@ -256,7 +256,7 @@ private:
         glm::dvec3 middle(0.0);
         for (const glm::dvec3& point : outline_) middle += point / static_cast<double>(outline_.size());
         bool wide = true;
-        for (uint32_t i = piece.bounds; i != kNone && wide; i = bounds_[i].before)
+        for (uint32_t i = piece.bounds; i != kNoBounds && wide; i = bounds_[i].before)
             wide = heightOf(bounds_[i].inside, middle) > margin_ * bounds_[i].length;
         if (!wide) {
             if (isNothing(piece.bounds)) {

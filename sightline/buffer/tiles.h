@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/buffer/polygon.h"
 #include "sightline/buffer/screen.h"
 #include "sightline/geom/occluder.h"

@@ -106,7 +106,7 @@ void Passages::add(const DirectedPortal& portal, uint32_t from, std::span<const 
 
 void Passages::addShared(const PortalGraph& graph, uint32_t from, const DirectedPortal& there,
                          const DirectedPortal& back) {
-    Memory* const memory = all_.get_allocator().resource();
+    Memory* const memory = all_.memory();
     const Array<glm::dvec3> outlines[2] = {cornersOf(graph, there, memory), cornersOf(graph, back, memory)};
     const double apart = slack_ + there.thickness + back.thickness;
     for (const glm::dvec3& corner : outlines[1])

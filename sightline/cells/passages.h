@@ -7,7 +7,7 @@
 
 #include <glm/glm.hpp>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/cells/portal_graph.h"
 
 namespace sightline {

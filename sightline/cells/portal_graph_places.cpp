@@ -201,7 +201,7 @@ bool PortalGraph::cellsOf(const Box3d& box, Array<uint32_t>& cells) const {
             uint32_t child;
             Box3d box;
         };
-        Array<Part> open(cells.get_allocator());
+        Array<Part> open(cells.memory());
         if (root_ != Node::kSolid) open.push_back({root_, wide});
         while (!open.empty()) {
             const Part part = open.back();

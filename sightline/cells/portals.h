@@ -10,7 +10,7 @@
 
 #include <glm/glm.hpp>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/cells/portal_bounds.h"
 #include "sightline/cells/portal_eye.h"
 #include "sightline/cells/portal_graph.h"

@@ -8,7 +8,7 @@
 namespace sightline {
 namespace {
 
-constexpr uint32_t kNone = ~0u;
+constexpr uint32_t kNoPolygon = ~0u;
 constexpr uint32_t kMostOfCell = 8;  // windows; further ones are joined
 constexpr double kSame = 0x1p-46;    // outside by less is inside: of the slack of 2^-36 that each portal adds
 constexpr double kConvex = 0x1p-30;  // share of the area that a hull may have more than both and still be their union
@@ -54,7 +54,7 @@ void PortalFlood::lookThroughPolygons(uint32_t cell, const DirectedPortal& porta
     const Projection projection = project(portal);
     if (projection.kind == Projection::Kind::kNothing) return;
     bool lines_known = false;
-    for (uint32_t i = states_[cell].polygon; i != kNone; i = polygons_[i].next) {
+    for (uint32_t i = states_[cell].polygon; i != kNoPolygon; i = polygons_[i].next) {
         if (!polygons_[i].waits) continue;
         Polygon next;
         next.cell = portal.to;
@@ -106,12 +106,12 @@ void PortalFlood::reach(uint32_t cell, Polygon polygon, double key) {
         gone.became = self;
         *link = gone.next;
     };
-    for (uint32_t i = state.polygon; i != kNone; i = polygons_[i].next)
+    for (uint32_t i = state.polygon; i != kNoPolygon; i = polygons_[i].next)
         if (polygon.shape.isWithin(polygons_[i].shape, kSame) &&
             (settings_.depth == 0 || polygons_[i].depth <= polygon.depth))
             return;
     // Windows that it holds, or that make a convex whole with it, are dropped. Their hull may hold more: start again.
-    for (uint32_t* link = &state.polygon; *link != kNone;) {
+    for (uint32_t* link = &state.polygon; *link != kNoPolygon;) {
         const Polygon& other = polygons_[*link];
         if (other.shape.isWithin(polygon.shape, kSame)) {
             polygon.depth = std::min(polygon.depth, other.depth);
@@ -137,7 +137,7 @@ void PortalFlood::reach(uint32_t cell, Polygon polygon, double key) {
         ++stats_.joined;
         uint32_t* best = nullptr;
         double least = INFINITY;
-        for (uint32_t* link = &state.polygon; *link != kNone; link = &polygons_[*link].next) {
+        for (uint32_t* link = &state.polygon; *link != kNoPolygon; link = &polygons_[*link].next) {
             const double* a = polygons_[*link].shape.bounds.most;
             const double* b = polygon.shape.bounds.most;
             const double width = std::max(a[0], b[0]) + std::max(a[1], b[1]);
@@ -177,7 +177,7 @@ void PortalFlood::writePolygons() {
                       -most[3],
                       most[0],
                       most[2],
-                      polygon.from == kNone ? kNone : polygons_[polygon.from].became,
+                      polygon.from == kNoPolygon ? kNoPolygon : polygons_[polygon.from].became,
                       polygon.portal};
         for (uint32_t i = 0; i < shape.count; ++i) {
             const glm::dvec2 &a = shape.points[i], &b = shape.points[i + 1 == shape.count ? 0 : i + 1];

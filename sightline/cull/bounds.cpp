@@ -10,7 +10,7 @@ namespace sightline {
 namespace {
 
 // Each of a test's some twenty steps rounds by 2^-53 of the sizes it adds, and normals are of unit length to 2^-52.
-constexpr double kRounding = 0x1p-46;
+constexpr double kBoundRounding = 0x1p-46;
 // Sums of planes are as exact as their weights are small beside what is left of the normals: 2^-52 times at most 2^8.
 constexpr double kSumRounding = 0x1p-38;
 constexpr double kLeastSum = 0x1p-8;
@@ -86,7 +86,7 @@ BoundAnswer test(const ViewVolume& volume, const Bound& bound, uint32_t active) 
         if (!(active >> i & 1)) continue;
         const glm::dvec4& plane = volume.planes[i];
         const Reach reach = reachOf(bound, volume.eye, glm::dvec3(plane));
-        const double margin = kRounding * (reach.size + std::abs(plane.w));
+        const double margin = kBoundRounding * (reach.size + std::abs(plane.w));
         answer.outside |= reach.most + plane.w < -margin;
         if (!(reach.least + plane.w >= margin)) answer.planes |= 1u << i;
     }

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 
 namespace sightline {
 

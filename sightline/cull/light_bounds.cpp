@@ -10,8 +10,8 @@
 namespace sightline {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kRounding = 0x1p-48;  // of some ten steps, each by at most 2^-53, of sines and cosines 2^-52
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+constexpr double kLightRounding = 0x1p-48;  // of some ten steps, each by at most 2^-53, of sines and cosines 2^-52
 
 /// The light's numbers, if a bound can be made of them.
 struct Sector {
@@ -49,10 +49,10 @@ struct Sector {
 
 Box3d lightBox(const Light& light) {
     const Sector sector(light);
-    if (!sector.bounded) return {glm::dvec3(-kInfinity), glm::dvec3(kInfinity)};
+    if (!sector.bounded) return {glm::dvec3(-kUnbounded), glm::dvec3(kUnbounded)};
     Box3d box;
     for (int i = 0; i < 3; ++i) {
-        const double slack = kRounding * (std::abs(sector.apex[i]) + sector.range);
+        const double slack = kLightRounding * (std::abs(sector.apex[i]) + sector.range);
         box.min[i] = sector.apex[i] - sector.reach(i, -1.0) - slack;
         box.max[i] = sector.apex[i] + sector.reach(i, 1.0) + slack;
     }
@@ -61,14 +61,14 @@ Box3d lightBox(const Light& light) {
 
 Sphere lightSphere(const Light& light) {
     const Sector sector(light);
-    if (!sector.bounded) return {light.position, kInfinity};
+    if (!sector.bounded) return {light.position, kUnbounded};
     // The rim of the round end, with the apex where the sector is slim; a wide one holds a great circle of the ball.
     double along = 0, radius = sector.range;
     if (sector.cosine > sector.sine) along = radius = sector.range / (2 * sector.cosine);
     else if (sector.cosine > 0) along = sector.range * sector.cosine, radius = sector.range * sector.sine;
     const glm::dvec3 center = sector.apex + along * sector.axis;
     const double size = std::abs(sector.apex.x) + std::abs(sector.apex.y) + std::abs(sector.apex.z) + 4 * sector.range;
-    return {center, radius + kRounding * size};
+    return {center, radius + kLightRounding * size};
 }
 
 }  // namespace sightline

@@ -15,7 +15,7 @@
 namespace sightline {
 namespace {
 
-constexpr double kRounding = 0x1p-23;  // of coordinates that are held in float
+constexpr double kFloatRounding = 0x1p-23;  // of coordinates that are held in float
 
 Sight sightOf(DepthTiles& tiles, const BoxAnswer& answer, const OccludeeBox& box) {
     if (answer.outside) return Sight::kOutside;
@@ -90,7 +90,7 @@ void OcclusionBuffer::ask(std::span<const Box3d> boxes, std::span<Sight> answers
         const ScreenAnswer on_screen = projectBoxes(screen_, near);
         for (int i = 0; i < count; ++i) {
             const Box3f at = boxOf(near, i);
-            const OccludeeBox box(screen_, {glm::dvec3(at.min), glm::dvec3(at.max)}, {.rounding = kRounding});
+            const OccludeeBox box(screen_, {glm::dvec3(at.min), glm::dvec3(at.max)}, {.rounding = kFloatRounding});
             answers[first + static_cast<size_t>(i)] = sightOf(tiles_, BoxAnswer(on_screen, i), box);
         }
     }

@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// All below is in double; this is far above what its steps round by, and far below a texel.
-constexpr double kRounding = 1e-9;
+constexpr double kCasterRounding = 1e-9;
 constexpr uint32_t kBlock = 8;
 
-double slack(double a, double b) { return kRounding * (std::abs(a) + std::abs(b)); }
+double slack(double a, double b) { return kCasterRounding * (std::abs(a) + std::abs(b)); }
 
 glm::dvec3 cornerOf(const Box3d& box, int corner) {
     return {corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y, corner & 4 ? box.max.z : box.min.z};
@@ -99,7 +99,7 @@ ReceiverMask::Rect ReceiverMask::rectOf(const Box3d& box, double spread) const {
         double w = 1.0;
         if (grid_.perspective) {
             w = glm::dot(glm::dvec3(grid_.rows[2]), p) + grid_.rows[2].w;
-            across |= !(w > kRounding * glm::length(p));
+            across |= !(w > kCasterRounding * glm::length(p));
             nearest = std::max(nearest, 1.0 / w);
         } else {
             nearest = std::max(nearest, -glm::dot(grid_.toward, p));
@@ -115,7 +115,7 @@ ReceiverMask::Rect ReceiverMask::rectOf(const Box3d& box, double spread) const {
     const auto texel = [](double at, uint32_t size) {  // one beside the image stands for all that lie beyond
         return static_cast<int32_t>(std::floor(std::clamp(at, -1.0, static_cast<double>(size))));
     };
-    const double wide = spread + kRounding * (grid_.width + grid_.height);
+    const double wide = spread + kCasterRounding * (grid_.width + grid_.height);
     if (across) {
         rect.x1 = static_cast<int32_t>(grid_.width) - 1;
         rect.y1 = static_cast<int32_t>(grid_.height) - 1;
@@ -131,11 +131,11 @@ ReceiverMask::Rect ReceiverMask::rectOf(const Box3d& box, double spread) const {
 /// What of a convex body the rays of a texel may meet, each half space at its most permissive.
 ReceiverMask::Span ReceiverMask::spanAt(std::span<const Along> planes, int32_t x, int32_t y, double spread) const {
     Span span{kInfinity, grid_.perspective ? 0.0 : -kInfinity, true};
-    const double reach = 0.5 + kRounding * (grid_.width + grid_.height) + spread;
+    const double reach = 0.5 + kCasterRounding * (grid_.width + grid_.height) + spread;
     for (const Along& plane : planes) {
         const double aside = (std::abs(plane.right) + std::abs(plane.up)) * reach;
         const double most = plane.constant + plane.right * (x + 0.5) + plane.up * (y + 0.5) + aside +
-                            kRounding * std::abs(plane.constant);
+                            kCasterRounding * std::abs(plane.constant);
         if (plane.slope > 0) span.farthest = std::max(span.farthest, -most / plane.slope);
         else if (plane.slope < 0) span.nearest = std::min(span.nearest, -most / plane.slope);
         else if (most < 0) span.any = false;

@@ -10,7 +10,7 @@
 
 #include <glm/glm.hpp>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/geom/view.h"
 #include "sightline/math/box.h"
 

@@ -10,7 +10,7 @@
 namespace sightline {
 namespace {
 
-constexpr double kRounding = 0x1p-46;     // of sums of a few products of doubles, with room to spare
+constexpr double kShapeRounding = 0x1p-46;     // of sums of a few products of doubles, with room to spare
 constexpr double kWorstPosition = 0.125;  // [pixels]: known less exactly, it is visible
 constexpr double kSlack = 0x1p-20;        // [pixels]: what rounding moves a place inside the buffer by, with room
 
@@ -39,7 +39,7 @@ struct Images {
         const Screen& screen = place.screen;
         const double w = glm::dot(screen.w, h), near = glm::dot(screen.near, h);
         const double size = glm::dot(glm::abs(screen.near), glm::abs(h));
-        sure = sure && near > kRounding * size && w > kRounding * glm::dot(glm::abs(screen.w), glm::abs(h));
+        sure = sure && near > kShapeRounding * size && w > kShapeRounding * glm::dot(glm::abs(screen.w), glm::abs(h));
         px = glm::dot(screen.x, h) / w;
         py = glm::dot(screen.y, h) / w;
         pd = glm::dot(screen.d, h) / w;
@@ -180,7 +180,7 @@ Sight askSphere(DepthTiles& tiles, const Screen& screen, const glm::dvec3& cente
     const glm::dvec4 h(c, 1.0);
     const auto least = [&](const glm::dvec4& row) {
         const double size = glm::dot(glm::abs(row), glm::abs(h)) + radius * glm::length(glm::dvec3(row));
-        return glm::dot(row, h) - radius * glm::length(glm::dvec3(row)) - kRounding * size;
+        return glm::dot(row, h) - radius * glm::length(glm::dvec3(row)) - kShapeRounding * size;
     };
     if (!(radius >= 0.0 && least(screen.near) > 0.0 && least(screen.w) > 0.0)) return Sight::kVisible;
     // Across, up, and along both diagonals.

@@ -12,7 +12,7 @@
 namespace sightline {
 namespace {
 
-constexpr double kConvex = 1e-5;  // of the size: how far a corner may lie before another face's plane
+constexpr double kPartConvex = 1e-5;  // of the size: how far a corner may lie before another face's plane
 
 /// Joins faces to convex bodies and lists the parts.
 struct PartMaker {
@@ -64,7 +64,7 @@ bool PartMaker::fits(std::span<const uint32_t> faces, uint32_t face, double size
     const auto behind = [&](uint32_t what, uint32_t plane) {
         const VolumeFace& f = out.faces[plane];
         for (uint32_t corner : outlineOf(what))
-            if (glm::dot(f.normal, out.corners[corner]) > f.high + kConvex * size) return false;
+            if (glm::dot(f.normal, out.corners[corner]) > f.high + kPartConvex * size) return false;
         return true;
     };
     for (uint32_t other : faces)
@@ -85,7 +85,7 @@ void PartMaker::growBodies() {
         while (!front.empty() && faces.size() < VolumePart::kMaxFaces) {
             const auto largest = std::min_element(front.begin(), front.end());  // faces lie by falling area
             const uint32_t face = *largest;
-            std::erase(front, face);
+            erase(front, face);
             if (std::find(faces.begin(), faces.end(), face) != faces.end() || body_of[face] != VolumePart::kNone)
                 continue;
             if (corners + out.faces[face].count > 2 * VolumeParts::kMaxCorners) continue;

@@ -6,7 +6,7 @@
 
 #include <glm/glm.hpp>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 
 namespace sightline {
 

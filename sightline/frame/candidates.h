@@ -8,7 +8,7 @@
 #include <span>
 
 #include "sightline/base/levelled_bits.h"
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/geom/view.h"
 #include "sightline/world/world_state.h"
 

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/cull/occlusion.h"
 #include "sightline/frame/place_range.h"
 

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 
 namespace sightline {
 

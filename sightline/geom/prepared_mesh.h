@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/geom/draw_clusters.h"
 #include "sightline/geom/lod_chain.h"
 #include "sightline/geom/occluder.h"

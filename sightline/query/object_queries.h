@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/cull/queries/occlusion_queries.h"
 #include "sightline/world/world.h"
 

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "sightline/base/jobs.h"
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/frame/draw_range.h"
 #include "sightline/frame/stats.h"
 #include "sightline/geom/image_rect.h"

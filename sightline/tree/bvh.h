@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/math/box.h"
 #include "sightline/tree/bvh_node.h"
 

@@ -154,7 +154,7 @@ void BvhSplitter::sortAlongCurve() {
     for (const uint32_t item : order) around.grow(centers[item]);
     const glm::vec3 size = around.size();
     const float side = std::max({size.x, size.y, size.z}), scale = side > 0 ? 1023.0f / side : 0.0f;
-    Array<uint64_t> coded(order.get_allocator().resource());
+    Array<uint64_t> coded(order.memory());
     coded.reserve(order.size());
     const auto cell = [](float at) { return static_cast<uint32_t>(std::clamp(at, 0.0f, 1023.0f)); };
     for (const uint32_t item : order) {

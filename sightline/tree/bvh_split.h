@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/math/box.h"
 
 namespace sightline {

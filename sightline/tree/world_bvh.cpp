@@ -437,7 +437,7 @@ void WorldBvh::rebuildBelow(uint32_t index) {
 std::span<const WorldBvh::Places> WorldBvh::mend(uint32_t most) {
     given_anew_.clear();
     const auto places = [&](uint32_t index) { return now_.nodes[parent_[index] / 8].count[parent_[index] % 8]; };
-    std::erase_if(decayed_, [&](uint32_t index) { return !marked_[index]; });
+    erase_if(decayed_, [&](uint32_t index) { return !marked_[index]; });
     std::sort(decayed_.begin(), decayed_.end(),
               [&](uint32_t a, uint32_t b) { return places(a) != places(b) ? places(a) < places(b) : a < b; });
     uint32_t left = std::max(most, kMostMended);
@@ -448,7 +448,7 @@ std::span<const WorldBvh::Places> WorldBvh::mend(uint32_t most) {
         left -= places(index);
         rebuildBelow(index);
     }
-    std::erase_if(decayed_, [&](uint32_t index) { return !marked_[index]; });
+    erase_if(decayed_, [&](uint32_t index) { return !marked_[index]; });
     return given_anew_;
 }
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <span>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/base/paged.h"
 #include "sightline/tree/bvh.h"
 

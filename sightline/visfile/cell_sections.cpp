@@ -13,7 +13,7 @@ using namespace visibility_file;
 namespace {
 
 constexpr uint32_t kNoCell = CellGraph::kNoCell;
-constexpr uint64_t kHeadBytes = 24;
+constexpr uint64_t kCellHeadBytes = 24;
 
 bool isUnit(const glm::dvec4& plane) {
     return std::isfinite(plane.w) && std::abs(glm::length(glm::dvec3(plane)) - 1) < 1e-6;
@@ -110,7 +110,7 @@ Result<PlacedCells> PlacedCells::open(const SectionFile& sections, uint32_t rows
     const std::span<const char> bytes = sections.find(kCells), names = sections.find(kCellNames),
                                 regions = sections.find(kRegions);
     const uint64_t at = sections.placeOf(bytes);
-    if (bytes.size() < kHeadBytes) return faultAt(file, "cells that end within their head", at + bytes.size());
+    if (bytes.size() < kCellHeadBytes) return faultAt(file, "cells that end within their head", at + bytes.size());
     PlacedCells out;
     ByteCursor head(bytes);
     out.cells_ = head.take<uint32_t>();
@@ -121,16 +121,16 @@ Result<PlacedCells> PlacedCells::open(const SectionFile& sections, uint32_t rows
         return faultAt(file, "an outside that is no cell", at + 4);
     if (with_rows != 0 && with_rows != out.cells_) return faultAt(file, "not a row for each cell", at + 12);
     if (!(std::isfinite(out.tolerance_) && out.tolerance_ >= 0)) return faultAt(file, "a tolerance that is none", at);
-    PlacedParts parts(bytes.subspan(kHeadBytes));
+    PlacedParts parts(bytes.subspan(kCellHeadBytes));
     out.row_of_cell_ = parts.take<uint32_t>(with_rows);
     out.cell_of_leaf_ = parts.take<uint32_t>(leaves);
     if (!parts.fits()) return faultAt(file, "cells that are not as long as they say", at);
     for (uint32_t i = 0; i < with_rows; ++i)
         if (const uint32_t row = out.row_of_cell_[i]; row >= rows && row != kNoCell)
-            return faultAt(file, "a cell with a row that there is not", at + kHeadBytes + 4 * uint64_t{i});
+            return faultAt(file, "a cell with a row that there is not", at + kCellHeadBytes + 4 * uint64_t{i});
     for (uint32_t i = 0; i < leaves; ++i)
         if (const uint32_t cell = out.cell_of_leaf_[i]; cell >= out.cells_ && cell != kNoCell)
-            return faultAt(file, "a leaf of a cell that there is not", at + kHeadBytes + 4 * (uint64_t{with_rows} + i));
+            return faultAt(file, "a leaf of a cell that there is not", at + kCellHeadBytes + 4 * (uint64_t{with_rows} + i));
     if (!names.empty()) {
         PlacedParts texts(names);
         out.names_.ends = texts.take<uint32_t>(out.cells_);

@@ -44,7 +44,7 @@ private:
     NumberModel step_;
 };
 
-constexpr size_t kHeadBytes = 4;
+constexpr size_t kLeafHeadBytes = 4;
 
 }  // namespace
 
@@ -66,9 +66,9 @@ Array<char> packedLeafCells(std::span<const uint32_t> cell_of_leaf, Memory* memo
 }
 
 Result<Array<char>> unpackedLeafCells(std::span<const char> bytes, std::string_view file, uint64_t at, Memory* memory) {
-    if (bytes.size() < kHeadBytes) return faultAt(file, "packed leaves that end within their head", at + bytes.size());
+    if (bytes.size() < kLeafHeadBytes) return faultAt(file, "packed leaves that end within their head", at + bytes.size());
     const uint32_t leaves = ByteCursor(bytes).take<uint32_t>();
-    BitDecoder decoder(bytes.subspan(kHeadBytes));
+    BitDecoder decoder(bytes.subspan(kLeafHeadBytes));
     LeafCoder<BitDecoder> coder(decoder);
     Array<char> numbers(memory);
     ByteWriter out(numbers);

@@ -12,7 +12,7 @@
 namespace sightline {
 namespace {
 
-constexpr uint64_t kHeadBytes = 24;
+constexpr uint64_t kObjectRowHeadBytes = 24;
 
 }  // namespace
 
@@ -54,7 +54,7 @@ Array<char> objectRowsSection(const BitMatrix& visible, Memory* memory) {
 
 Result<PlacedObjectRows> PlacedObjectRows::open(std::span<const char> bytes, uint32_t rows, uint64_t objects,
                                                 std::string_view file, uint64_t at) {
-    if (bytes.size() < kHeadBytes) return faultAt(file, "rows of objects that end within their head", at);
+    if (bytes.size() < kObjectRowHeadBytes) return faultAt(file, "rows of objects that end within their head", at);
     ByteCursor head(bytes);
     if (head.take<uint32_t>() != rows) return faultAt(file, "not a row of objects for each row of cells", at);
     const uint32_t kinds = head.take<uint32_t>();
@@ -62,7 +62,7 @@ Result<PlacedObjectRows> PlacedObjectRows::open(std::span<const char> bytes, uin
     if (head.take<uint64_t>() != objects) return faultAt(file, "rows of more or fewer objects than there are", at + 8);
     const uint64_t stored = head.take<uint64_t>();
     const uint64_t in_row = objects / 64 + (objects % 64 != 0);
-    PlacedParts parts(bytes.subspan(kHeadBytes));
+    PlacedParts parts(bytes.subspan(kObjectRowHeadBytes));
     PlacedObjectRows out;
     out.marks_per_kind_ = in_row / 64 + (in_row % 64 != 0);
     out.kind_of_ = parts.take<uint32_t>(rows);
@@ -75,7 +75,7 @@ Result<PlacedObjectRows> PlacedObjectRows::open(std::span<const char> bytes, uin
         if (zero != 0) return faultAt(file, "a mark that is not known", at);
     for (uint32_t row = 0; row < rows; ++row)
         if (out.kind_of_[row] >= kinds)
-            return faultAt(file, "a row of a kind that there is not", at + kHeadBytes + 4 * uint64_t{row});
+            return faultAt(file, "a row of a kind that there is not", at + kObjectRowHeadBytes + 4 * uint64_t{row});
     uint64_t word = 0;
     for (uint32_t kind = 0; kind < kinds; ++kind) {
         for (uint64_t m = 0; m < out.marks_per_kind_; ++m) {

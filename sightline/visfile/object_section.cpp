@@ -7,7 +7,7 @@
 namespace sightline {
 namespace {
 
-constexpr uint64_t kHeadBytes = 16;
+constexpr uint64_t kObjectHeadBytes = 16;
 
 }  // namespace
 
@@ -36,10 +36,10 @@ Result<Array<char>> objectSection(const ObjectPlaces& objects, uint32_t cells, M
 
 Result<PlacedObjects> PlacedObjects::open(std::span<const char> bytes, uint32_t cells, std::string_view file,
                                           uint64_t at) {
-    if (bytes.size() < kHeadBytes) return faultAt(file, "objects that end within their head", at + bytes.size());
+    if (bytes.size() < kObjectHeadBytes) return faultAt(file, "objects that end within their head", at + bytes.size());
     ByteCursor head(bytes);
     const uint64_t count = head.take<uint64_t>(), places = head.take<uint64_t>();
-    PlacedParts parts(bytes.subspan(kHeadBytes));
+    PlacedParts parts(bytes.subspan(kObjectHeadBytes));
     PlacedObjects out;
     out.keys_ = parts.take<uint64_t>(count);
     const std::span<const char> boxes = parts.take(count, 6 * sizeof(double));
@@ -56,13 +56,13 @@ Result<PlacedObjects> PlacedObjects::open(std::span<const char> bytes, uint32_t 
     for (size_t i = 0; i < count; ++i) {
         const uint64_t end = out.ends_[i];
         if (i > 0 && out.keys_[i] < out.keys_[i - 1])
-            return faultAt(file, "keys that do not rise", at + kHeadBytes + 8 * uint64_t{i});
+            return faultAt(file, "keys that do not rise", at + kObjectHeadBytes + 8 * uint64_t{i});
         if (const Box3d box = out.bounds(i); box.empty() || !box.finite())
-            return faultAt(file, "an object without bounds", at + kHeadBytes + 8 * count + 48 * uint64_t{i});
+            return faultAt(file, "an object without bounds", at + kObjectHeadBytes + 8 * count + 48 * uint64_t{i});
         if (end < begin || end > places)
-            return faultAt(file, "an object whose cells end before they begin", at + kHeadBytes);
-        if (out.marks_[i] > 3) return faultAt(file, "a mark that is not known", at + kHeadBytes + 64 * count + i);
-        if (begin == end && !out.seenFromEverywhere(i)) return faultAt(file, "an object in no cell", at + kHeadBytes);
+            return faultAt(file, "an object whose cells end before they begin", at + kObjectHeadBytes);
+        if (out.marks_[i] > 3) return faultAt(file, "a mark that is not known", at + kObjectHeadBytes + 64 * count + i);
+        if (begin == end && !out.seenFromEverywhere(i)) return faultAt(file, "an object in no cell", at + kObjectHeadBytes);
         for (uint64_t k = begin; k < end; ++k)
             if (all[k] >= cells || (k > begin && all[k] <= all[k - 1]))
                 return faultAt(file, "an object in a cell that there is not, or twice in one", at);

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/base/result.h"
 #include "sightline/math/box.h"
 #include "sightline/visfile/placed_parts.h"

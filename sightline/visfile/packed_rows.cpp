@@ -110,7 +110,7 @@ private:
     NumberModel step_, up_;
 };
 
-constexpr uint64_t kHeadBytes = 8;
+constexpr uint64_t kRowHeadBytes = 8;
 
 /// The arrays of a tiled form while it is unpacked.
 struct Unpacked {
@@ -140,7 +140,7 @@ bool takeList(BitDecoder& decoder, uint32_t cells, uint32_t classes, Unpacked& o
 
 /// @returns false if more was taken than there is
 bool takeTiles(BitDecoder& decoder, uint32_t classes, Unpacked& out) {
-    Memory* memory = out.mixed.get_allocator().resource();
+    Memory* memory = out.mixed.memory();
     const uint32_t side = (classes + 7) / 8;
     TileCoder<BitDecoder> coder(decoder, classes, memory);
     Array<Kind> kinds(side, kEmpty, memory);
@@ -194,13 +194,13 @@ Array<char> packedRows(const VisibleRows& rows, Memory* memory) {
 }
 
 Result<Array<char>> unpackedRows(std::span<const char> bytes, std::string_view file, uint64_t at, Memory* memory) {
-    if (bytes.size() < kHeadBytes) return faultAt(file, "packed rows that end within their head", at + bytes.size());
+    if (bytes.size() < kRowHeadBytes) return faultAt(file, "packed rows that end within their head", at + bytes.size());
     ByteCursor head(bytes);
     const uint32_t cells = head.take<uint32_t>(), classes = head.take<uint32_t>();
     if (cells > kMostOrderedRows) return faultAt(file, "more cells than there may be", at);
     if (classes > cells) return faultAt(file, "more classes than cells", at + 4);
     Unpacked out(memory);
-    BitDecoder decoder(bytes.subspan(kHeadBytes));
+    BitDecoder decoder(bytes.subspan(kRowHeadBytes));
     if (!takeList(decoder, cells, classes, out)) return faultAt(file, "packed rows with a wrong list of cells", at);
     if (!takeTiles(decoder, classes, out) || !decoder.atEnd())
         return faultAt(file, "packed rows that do not end with their bytes", at + bytes.size());

@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/base/result.h"
 #include "sightline/visfile/visible_rows.h"
 

@@ -123,7 +123,7 @@ public:
     PreparedReader(std::span<const char> bytes, uint64_t at, ByteFault& fault) : fault_(fault) { findRuns(bytes, at); }
 
     void read(size_t objects, PreparedMeshes& out) {
-        Memory* const memory = out.meshes.get_allocator().resource();
+        Memory* const memory = out.meshes.memory();
         ByteCursor& heads = runs_[kPreparedMeshes];
         // Each has an occluder and a shape, which may be empty.
         if (fault_.none()) out.meshes.reserve(std::min(records(kPreparedMeshes), records(kPreparedOccluders) / 2));
@@ -173,7 +173,7 @@ private:
         mesh.has_shape = marks == 2;
         if (!occluders_.take(mesh.occluder) || !occluders_.take(mesh.shape)) return;
         if (!mesh.has_shape && !mesh.shape.clusters.empty()) return (void)wrong("a shape of a mesh without one", at);
-        Memory* const memory = mesh.inner.get_allocator().resource();
+        Memory* const memory = mesh.inner.memory();
         mesh.inner.reserve(inner);
         for (uint32_t i = 0; i < inner; ++i) {
             InnerOccluder& simple = mesh.inner.emplace_back(memory);

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "sightline/base/bit_matrix.h"
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 
 namespace sightline {
 

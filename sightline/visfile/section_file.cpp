@@ -41,7 +41,7 @@ Error faultAt(std::string_view file, std::string_view what, uint64_t at) {
 }
 
 Array<char> SectionWriter::file() const {
-    Memory* memory = sections_.get_allocator().resource();
+    Memory* memory = sections_.memory();
     Array<char> hashed(memory), out(memory);
     ByteWriter table(hashed), head(out);
     uint64_t at = kHashedAt + kEntryBytes * sections_.size();

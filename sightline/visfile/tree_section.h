@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/base/result.h"
 #include "sightline/geom/leaf_tree.h"
 #include "sightline/visfile/placed_parts.h"

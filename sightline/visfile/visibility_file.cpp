@@ -43,7 +43,7 @@ Result<Section> eitherForm(const SectionFile& sections, uint32_t in_place, uint3
     if (!plain.empty() && !coded.empty())
         return faultAt(file, "a section that is there twice, packed and not", sections.placeOf(coded));
     if (coded.empty()) return Section{plain, sections.placeOf(plain)};
-    Result<Array<char>> bytes = unpack(coded, file, sections.placeOf(coded), unpacked.get_allocator().resource());
+    Result<Array<char>> bytes = unpack(coded, file, sections.placeOf(coded), unpacked.memory());
     if (!bytes) return bytes.error();
     unpacked = std::move(*bytes);
     return Section{unpacked, sections.placeOf(coded)};
@@ -170,7 +170,7 @@ Status VisibilityFile::openPlaces(const SectionFile& sections, std::string_view 
         return faultAt(file, "cells of both regions and a tree, or of neither", at(kCells));
     if (!tree_bytes.empty()) {
         const Result<PlacedTree> tree =
-            PlacedTree::open(tree_bytes, file, at(kTree), unpacked_rows_.get_allocator().resource());
+            PlacedTree::open(tree_bytes, file, at(kTree), unpacked_rows_.memory());
         if (!tree) return tree.error();
         if (tree->leaves() != cells->leaves()) return faultAt(file, "not a cell for each leaf", at(kTree));
         if (cells->outside() != CellGraph::kNoCell) return faultAt(file, "a tree with an outside", at(kCells));
@@ -200,7 +200,7 @@ Status VisibilityFile::openPlaces(const SectionFile& sections, std::string_view 
                        at(has_view_cells_ ? kViewTree : kViewRows));
     if (!has_view_cells_) return success();
     const Result<PlacedTree> tree =
-        PlacedTree::open(view_tree, file, at(kViewTree), unpacked_rows_.get_allocator().resource());
+        PlacedTree::open(view_tree, file, at(kViewTree), unpacked_rows_.memory());
     if (!tree) return tree.error();
     view_tree_ = *tree;
     const Result<PlacedObjectRows> rows =

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "sightline/base/bit_matrix.h"
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/base/result.h"
 #include "sightline/cells/cell_space.h"
 #include "sightline/visfile/cell_sections.h"

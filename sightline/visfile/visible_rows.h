@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "sightline/base/bit_matrix.h"
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/base/result.h"
 #include "sightline/visfile/placed_numbers.h"
 

@@ -32,7 +32,7 @@ Status checkMatrix(const BitMatrix& visible) {
 BitMatrix classMatrix(const BitMatrix& visible, const RowOrder& order) {
     constexpr uint16_t kNone = 65535;
     const size_t classes = order.classes();
-    Array<uint16_t> class_at(visible.rows(), kNone, order.first.get_allocator().resource());
+    Array<uint16_t> class_at(visible.rows(), kNone, order.first.memory());
     for (size_t of = 0; of < classes; ++of) class_at[order.cell_at[order.first[of]]] = static_cast<uint16_t>(of);
     BitMatrix matrix(classes, classes);
     for (size_t of = 0; of < classes; ++of) {

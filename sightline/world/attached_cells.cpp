@@ -112,7 +112,7 @@ AttachedCells::AttachedCells(const CellSpace& space, const VisibleRows* visible,
         for (const CellRegion& region : space.regions)
             if (region.bounds.finite()) box.grow(region.bounds);
     if (box.finite()) origin = box.center();
-    for (const CellDoor& door : space.doors) doors.emplace_back(door.name);
+    for (const CellDoor& door : space.doors) doors.emplace_back(door.name.begin(), door.name.end());
     if (!visible || space.row_of_cell.empty()) return;
     rows.from = *visible;
     first_of_row.assign(visible->cells() + 1, 0);

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/base/result.h"
 #include "sightline/cells/portal_graph.h"
 #include "sightline/cells/pvs.h"
@@ -39,7 +39,7 @@ struct AttachedCells {
     PortalGraph graph;
     FileRows rows;                  ///< empty: the stage of the PVS does nothing
     glm::dvec3 origin{0.0};         ///< what the boxes of CellLists are relative to
-    Array<std::pmr::string> doors;  ///< names
+    Array<Array<char>> doors;  ///< names
     Array<uint32_t> first_of_row,
         cell_of_row;                     ///< cells by row: those of row r from first_of_row[r] to before the next
     Array<uint32_t> without_row;         ///< cells that may be seen from everywhere

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/base/paged.h"
 #include "sightline/math/box.h"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/world/world_state.h"
 
 namespace sightline::detail {

@@ -8,6 +8,25 @@
 
 namespace sightline::detail {
 
+HeldOccluder::HeldOccluder(const Occluder& from, std::span<const InnerOccluder> levels, bool volumes, Memory* memory)
+    : Occluder(memory), inner(memory), parts(memory), faces(memory) {
+    Occluder::operator=(from);
+    inner.reserve(levels.size());
+    for (const InnerOccluder& level : levels) {
+        InnerOccluder& held = inner.emplace_back(memory);
+        held.occluder = level.occluder;
+        held.outside = level.outside;
+        held.error = level.error;
+    }
+    if (!volumes) return;
+    parts = findVolumeParts(from, memory);
+    Array<Box3d> boxes(parts.faces.size(), Box3d(), memory);
+    for (size_t i = 0; i < boxes.size(); ++i)
+        for (uint32_t k = 0; k < parts.faces[i].count; ++k)
+            boxes[i].grow(parts.corners[parts.outline[parts.faces[i].first + k]]);
+    if (!boxes.empty()) faces = buildBvh(boxes, memory);
+}
+
 HeldLods::HeldLods(std::span<const LodLevel> from, Memory* memory)
     : levels(memory), least_error(std::numeric_limits<double>::infinity()) {
     from = from.first(std::min<size_t>(from.size(), kMostLods));
@@ -15,6 +34,24 @@ HeldLods::HeldLods(std::span<const LodLevel> from, Memory* memory)
     for (size_t i = 1; i < levels.size(); ++i)
         if (levels[i].error < least_error) least_error = levels[i].error;
 }
+
+CellState::CellState(Memory* memory) : lists(memory), free(memory), claims(memory), strangers(memory) {}
+CellState::~CellState() = default;
+CellState::CellState(CellState&&) noexcept = default;
+CellState& CellState::operator=(CellState&&) = default;
+
+SnapshotState::SnapshotState(Memory* memory)
+    : objects(memory),
+      ids(memory),
+      occluders(memory),
+      clusters(memory),
+      lods(memory),
+      unbounded(memory),
+      bvh(memory),
+      placed(memory),
+      limits(memory),
+      cell_state(memory) {}
+SnapshotState::~SnapshotState() = default;
 
 Box3d worldBounds(const ObjectRecord& object) {
     constexpr double kLargest = 1e30;  // [world units]: float must hold it with room for sums

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "sightline/base/levelled_bits.h"
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/base/paged.h"
 #include "sightline/base/ranked_bits.h"
 #include "sightline/cells/portals.h"
@@ -78,24 +78,7 @@ struct HeldOccluder : Occluder {
     VolumeParts parts;           ///< none unless WorldDef::volumes
     Bvh faces;                   ///< over those of the parts
 
-    HeldOccluder(const Occluder& from, std::span<const InnerOccluder> levels, bool volumes, Memory* memory)
-        : Occluder(memory), inner(memory), parts(memory), faces(memory) {
-        Occluder::operator=(from);
-        inner.reserve(levels.size());
-        for (const InnerOccluder& level : levels) {
-            InnerOccluder& held = inner.emplace_back(memory);
-            held.occluder = level.occluder;
-            held.outside = level.outside;
-            held.error = level.error;
-        }
-        if (!volumes) return;
-        parts = findVolumeParts(from, memory);
-        Array<Box3d> boxes(parts.faces.size(), Box3d(), memory);
-        for (size_t i = 0; i < boxes.size(); ++i)
-            for (uint32_t k = 0; k < parts.faces[i].count; ++k)
-                boxes[i].grow(parts.corners[parts.outline[parts.faces[i].first + k]]);
-        if (!boxes.empty()) faces = buildBvh(boxes, memory);
-    }
+    HeldOccluder(const Occluder& from, std::span<const InnerOccluder> levels, bool volumes, Memory* memory);
 };
 
 using OccluderTable = Paged<std::shared_ptr<const HeldOccluder>, 64>;  // entry 0 is null
@@ -126,7 +109,10 @@ struct CellState {
 
     static constexpr uint32_t kNoRow = ~0u - 1;
 
-    explicit CellState(Memory* memory) : lists(memory), free(memory), claims(memory), strangers(memory) {}
+    explicit CellState(Memory* memory);
+    ~CellState();
+    CellState(CellState&&) noexcept;
+    CellState& operator=(CellState&&);
 };
 
 /// An immutable state of a world. Items are the living objects in the order of World::add; the hierarchy's are rows.
@@ -145,17 +131,10 @@ struct SnapshotState {
     uint32_t count = 0;                        ///< living objects
     uint32_t common_layers = ~0u;              ///< layers that every object is in
 
-    explicit SnapshotState(Memory* memory)
-        : objects(memory),
-          ids(memory),
-          occluders(memory),
-          clusters(memory),
-          lods(memory),
-          unbounded(memory),
-          bvh(memory),
-          placed(memory),
-          limits(memory),
-          cell_state(memory) {}
+    explicit SnapshotState(Memory* memory);
+    SnapshotState(const SnapshotState&) = delete;
+    SnapshotState& operator=(const SnapshotState&) = delete;
+    ~SnapshotState();
 
     uint32_t rowOf(uint32_t item) const { return living ? living->select(item) : item; }
     uint32_t itemOf(uint32_t row) const { return living ? living->rank(row) : row; }

@@ -28,7 +28,10 @@ struct Drawing {
     std::vector<Solid> solids;
     std::vector<Occluder> occluders;
 
-    explicit Drawing(const View& v) : view(v), screen(makeScreen(v, 4096)) { tiles.clear(screen.width, screen.height); }
+    explicit Drawing(const View& v, Memory* memory = defaultMemory())
+        : view(v), screen(makeScreen(v, 4096)), tiles(memory) {
+        tiles.clear(screen.width, screen.height);
+    }
     /// With all seams resolved.
     Drawing(const View& v, std::vector<Solid> what) : Drawing(v) { drawAndResolve(std::move(what)); }
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <memory_resource>
 #include <new>
 
 #include "tests/buffer/tiles_fixture.h"
@@ -150,35 +149,30 @@ TEST(Tiles, AreTheSameFarFromTheOrigin) {
 }
 
 /// Memory that does not keep what it held once it is given back.
-class ForgetfulMemory : public std::pmr::memory_resource {
-    void* do_allocate(size_t bytes, size_t alignment) override {
+class ForgetfulMemory final : public Memory {
+    void* allocate(size_t bytes, size_t alignment) override {
         return ::operator new (bytes, std::align_val_t{alignment});
     }
-    void do_deallocate(void* at, size_t bytes, size_t alignment) override {
+    void deallocate(void* at, size_t bytes, size_t alignment) override {
         std::memset(at, 0xff, bytes);
         ::operator delete (at, std::align_val_t{alignment});
     }
-    bool do_is_equal(const memory_resource& other) const noexcept override { return this == &other; }
 };
 
 TEST(Tiles, ResolveByPolygonsThatMakingMoreHasMoved) {
     ForgetfulMemory forgetful;
     const auto claims = [&](size_t room) {
-        std::pmr::memory_resource* before = std::pmr::set_default_resource(&forgetful);
         std::vector<float> depths;
-        {
-            Random random(16);
-            Drawing drawing(smallView());
-            drawing.draw({makeSheet(random, 40, 30, {-3, -3, -2}, {2, 3, -9}, 0.1f),
-                          makeSheet(random, 9, 9, {-5, -3, -6}, {5, 3, -6}, 0.2f)});
-            drawing.tiles.polygons.reserve(room);
-            for (uint32_t y = 0; y < drawing.tiles.height; ++y)
-                for (uint32_t x = 0; x < drawing.tiles.width; ++x) {
-                    drawing.resolve(x, y);
-                    depths.push_back(drawing.depth(x, y));
-                }
-        }
-        std::pmr::set_default_resource(before);
+        Random random(16);
+        Drawing drawing(smallView(), &forgetful);
+        drawing.draw({makeSheet(random, 40, 30, {-3, -3, -2}, {2, 3, -9}, 0.1f),
+                      makeSheet(random, 9, 9, {-5, -3, -6}, {5, 3, -6}, 0.2f)});
+        drawing.tiles.polygons.reserve(room);
+        for (uint32_t y = 0; y < drawing.tiles.height; ++y)
+            for (uint32_t x = 0; x < drawing.tiles.width; ++x) {
+                drawing.resolve(x, y);
+                depths.push_back(drawing.depth(x, y));
+            }
         return depths;
     };
     EXPECT_EQ(claims(0), claims(100000));

@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
-#include <memory_resource>
 #include <new>
 #include <vector>
 
@@ -71,21 +70,19 @@ namespace sightline::test {
 namespace {
 
 /// Counts what is in use; takes from the C library.
-class CountingMemory : public Memory {
+class CountingMemory final : public Memory {
 public:
     uint64_t allocations = 0, bytes = 0;
 
-private:
-    void* do_allocate(size_t size, size_t alignment) override {
+    void* allocate(size_t size, size_t alignment) override {
         ++allocations;
         bytes += size;
         return allocateAligned(size, alignment);
     }
-    void do_deallocate(void* place, size_t size, size_t) override {
+    void deallocate(void* place, size_t size, size_t) override {
         bytes -= size;
         freeAligned(place);
     }
-    bool do_is_equal(const Memory& other) const noexcept override { return this == &other; }
 };
 
 ObjectDef boxAt(const glm::dvec3& p, double size, OccluderId occluder = {}) {

@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "apps/cli/shell/help.h"
+#include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/verbs.h"
@@ -98,9 +99,16 @@ std::vector<const CLI::Option*> optionsOf(const CLI::App& verb) {
     });
 }
 
+/// True if the verb is of another program: this one knows its name alone.
+bool isElsewhere(const CLI::App& tool, const OtherVerb& other) {
+    return !tool.get_subcommand(std::string(other.name))->get_configurable();
+}
+
 /// That some verb has what an entry sets; and of files that lie here, that it is not written.
 Status checkEntry(const CLI::App& tool, const File& file, const Entry& entry, bool here) {
-    bool known = false, written = false;
+    // The program that has the verb checks the values that are for it.
+    if (const OtherVerb* other = findOtherVerb(entry.section); other && isElsewhere(tool, *other)) return success();
+    bool known = entry.section.empty() && !otherOwners(entry.key).empty(), written = false;
     Words keys;
     for (const CLI::App* verb : verbsOf(tool)) {
         if (!entry.section.empty() && entry.section != verb->get_name()) continue;
@@ -126,6 +134,8 @@ Status checkEntry(const CLI::App& tool, const File& file, const Entry& entry, bo
 Status checkFile(const CLI::App& tool, const File& file, bool here) {
     Words names;
     for (const CLI::App* verb : verbsOf(tool)) names.push_back(verb->get_name());
+    for (const OtherVerb& other : otherVerbs())
+        if (other.name != "config") names.emplace_back(other.name);
     std::vector<Entry> entries;
     for (const auto& [key, value] : file.table()) {
         const std::string name(key);
@@ -268,7 +278,8 @@ Status applyConfig(const CLI::App& tool, CLI::App& verb, const ConfigChoice& cho
 }
 
 void addConfig(CLI::App& tool, const SessionOptions& session, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("config", "every option of a configuration file, with what is in effect");
+    Command command(&tool);
+    CLI::App* verb = &addOtherVerb(command, "config")->cli();
     const auto only = std::make_shared<std::string>();
     verb->add_option("VERB", *only, "of this verb alone");
     verb->callback([&tool, &session, &exit_code, only] {

@@ -166,9 +166,11 @@ std::vector<std::string> longOptions(const CLI::App& app) {
 
 /// Of an option that a verb has not: which have it, or which of its own may have been meant.
 std::string meantOption(const CLI::App& tool, const CLI::App& verb, const std::string& option) {
-    Words owners;
+    Words owners = otherOwners(std::string_view(option).substr(std::min(option.find_first_not_of('-'), option.size())));
     for (const CLI::App* other : tool.get_subcommands({}))
-        if (other != &verb && other->get_option_no_throw(option)) owners.push_back(other->get_name());
+        if (other != &verb && other->get_option_no_throw(option) &&
+            std::find(owners.begin(), owners.end(), other->get_name()) == owners.end())
+            owners.push_back(other->get_name());
     if (owners.empty()) return suggestion(option, longOptions(verb));
     return fmt::format("; it belongs to {}", fmt::join(owners, ", "));
 }
@@ -259,17 +261,24 @@ void beginVerb(CLI::App& tool, const SessionOptions& session) {
     if (config.here && verb.get_configurable()) note("options are taken from ./" + config.file);
 }
 
-void addVerbs(CLI::App& tool, std::span<const OtherVerb> others, SessionOptions& session, int& exit_code) {
-    for (const auto add : {addCull, addVerify, addRender, addExplain, addSight, addReplay, addCheck, addVis, addBake,
-                           addExport, addCalibrate, addProfile, addAdvise, addReport, addInfo})
-        add(tool, exit_code);
-    for (const OtherVerb& other : others) {
-        if (other.add) other.add(tool, exit_code);
-        else tool.add_subcommand(other.name, other.about);  // what is said of it comes from the other program
+const HeldVerb* findHeld(std::span<const HeldVerb> held, std::string_view name) {
+    for (const HeldVerb& each : held)
+        if (each.name == name) return &each;
+    return nullptr;
+}
+
+void addVerbs(CLI::App& tool, std::span<const HeldVerb> held, SessionOptions& session, int& exit_code) {
+    Command command(&tool);
+    for (const auto add : {addCull, addVerify, addExplain, addBake, addVis, addInfo}) add(command, exit_code);
+    for (const OtherVerb& other : otherVerbs()) {
+        const HeldVerb* here = findHeld(held, other.name);
+        if (here && here->add) here->add(command, exit_code);
+        else if (!here) addOtherVerb(command, other.name);  // what is said of it comes from the other program
     }
-    for (CLI::App* verb : tool.get_subcommands({})) verb->configurable();
+    for (CLI::App* verb : tool.get_subcommands({}))
+        verb->configurable(!findOtherVerb(verb->get_name()) || findHeld(held, verb->get_name()));
     // What follows tells of the tool itself.
-    addConfig(tool, session, exit_code);
+    if (findHeld(held, "config")) addConfig(tool, session, exit_code);
     addCompletions(tool, exit_code);
     addSessionOptions(tool, session);
     for (CLI::App* verb : tool.get_subcommands({})) addSessionOptions(*verb, session);
@@ -309,22 +318,22 @@ int runBeside(const OtherVerb& verb, const std::vector<std::string>& words) {
 }
 
 /// What the verb's NAME may be.
-std::vector<std::string> casesOf(std::span<const OtherVerb> others) {
-    for (const OtherVerb& other : others)
-        if (other.names) return other.names();
+std::vector<std::string> casesOf(std::span<const HeldVerb> held) {
+    for (const HeldVerb& each : held)
+        if (each.names) return each.names();
     return {};
 }
 
-int runTool(std::vector<std::string> words, std::span<const OtherVerb> others) {
-    for (const OtherVerb& other : others)
-        if (!other.add && aboutVerb(words) == other.name) return runBeside(other, words);
+int runTool(std::vector<std::string> words, std::span<const HeldVerb> held) {
+    if (const OtherVerb* other = findOtherVerb(aboutVerb(words)); other && !findHeld(held, other->name))
+        return runBeside(*other, words);
     CLI::App tool("What can be seen, from any view of any world: conservative visibility, measured and proved.",
                   "sightline");
     tool.set_version_flag("--version", "sightline " SIGHTLINE_VERSION, "print the version");
     tool.require_subcommand(1);
     int exit_code = kDone;
     SessionOptions session;
-    addVerbs(tool, others, session, exit_code);
+    addVerbs(tool, held, session, exit_code);
     tool.parse_complete_callback([&] { beginVerb(tool, session); });
 
     if (words.empty()) {
@@ -332,7 +341,7 @@ int runTool(std::vector<std::string> words, std::span<const OtherVerb> others) {
         return kWrongArguments;
     }
     if (words.size() > 2 && words[0] == "completions" && words[1] == "--words") {
-        std::fputs(completionsOf(tool, {words.begin() + 2, words.end()}, casesOf(others)).c_str(), stdout);
+        std::fputs(completionsOf(tool, {words.begin() + 2, words.end()}, casesOf(held)).c_str(), stdout);
         return kDone;
     }
     if (words[0] == "help") {  // `help VERB` is `VERB --help`
@@ -358,11 +367,11 @@ int runTool(std::vector<std::string> words, std::span<const OtherVerb> others) {
 
 }  // namespace
 
-int toolMain(int count, char** words, std::initializer_list<OtherVerb> others) {
+int toolMain(int count, char** words, std::initializer_list<HeldVerb> held) {
     openSession();
     int exit_code = kDone;
     try {
-        exit_code = runTool({words + 1, words + std::max(count, 1)}, {others.begin(), others.size()});
+        exit_code = runTool({words + 1, words + std::max(count, 1)}, {held.begin(), held.size()});
     } catch (const std::bad_alloc&) {
         exit_code = report({Error::Kind::kInput, "not enough memory for this scene"});
     } catch (const std::exception& error) {

@@ -3,30 +3,13 @@
 #pragma once
 
 #include <initializer_list>
-#include <string>
-#include <vector>
 
-namespace CLI {
-class App;
-}
+#include "apps/cli/shell/other_verbs.h"
 
 namespace sightline::cli {
 
-/// A verb that is a program of its own, so that the tool can be built without it.
-struct OtherVerb {
-    const char* name = nullptr;
-    const char* about = nullptr;                            ///< for the list of verbs
-    const char* program = nullptr;                          ///< beside this one, which the words are handed to
-    void (*add)(CLI::App& tool, int& exit_code) = nullptr;  ///< not null: this program has it
-    std::vector<std::string> (*names)() = nullptr;          ///< what its NAME may be, where that is known here
-};
-
-inline constexpr OtherVerb kBenchVerb{"bench", "measures this machine: each technique beside its plain baseline",
-                                      "sightline-bench", nullptr, nullptr};
-inline constexpr OtherVerb kViewVerb{"view", "fly through a scene, leave the culling camera and look at what it left",
-                                     "sightline-view", nullptr, nullptr};
-
 /// All of main().
-int toolMain(int count, char** words, std::initializer_list<OtherVerb> others);
+/// @param held  verbs that this program has beside those of `sightline`
+int toolMain(int count, char** words, std::initializer_list<HeldVerb> held);
 
 }  // namespace sightline::cli

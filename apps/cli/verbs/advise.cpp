@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/bake_source.h"
@@ -196,7 +196,7 @@ void measureAll(AdvisedScene& advised, SceneFrames& base, AdviceRun& run) {
     }
 }
 
-Status runAdvise(const CLI::App& verb, RunOptions& options) {
+Status runAdvise(const Command& verb, RunOptions& options) {
     const Result<AskedFrames> asked = openFrames(verb, options);
     if (!asked) return asked.error();
     const Scene& scene = asked->scene;
@@ -228,9 +228,8 @@ Status runAdvise(const CLI::App& verb, RunOptions& options) {
 
 }  // namespace
 
-void addAdvise(CLI::App& tool, int& exit_code) {
-    CLI::App* verb =
-        tool.add_subcommand("advise", "what to turn on, bake, split or merge in a scene, each tried on its own frames");
+void addAdvise(Command& tool, int& exit_code) {
+    Command verb = addOtherVerb(tool, "advise");
     const auto options = std::make_shared<RunOptions>();
     options->repeat = 5;
     addFrameOptions(*verb, *options);

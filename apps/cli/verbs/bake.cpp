@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include <CLI/CLI.hpp>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
@@ -150,8 +150,8 @@ Result<int> runBake(SceneBakeOptions& options) {
 
 }  // namespace
 
-void addBake(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("bake", "cells, portals and visible sets of a scene as a file");
+void addBake(Command& tool, int& exit_code) {
+    Command verb = tool.add_subcommand("bake", "cells, portals and visible sets of a scene as a file");
     const auto options = std::make_shared<SceneBakeOptions>();
     addSceneChoice(*verb, options->scene);
     addBakeOptions(*verb, *options, "write the visibility file", true);
@@ -160,18 +160,18 @@ void addBake(CLI::App& tool, int& exit_code) {
             "of a scene without marked cells: the side of the smallest square of opaque surface that divides "
             "space [world "
             "units] (default: a 128th of the scene's diagonal, or a little more if hardly less is hidden then)")
-        ->check(CLI::Range(0.0, 1e9))
+        ->check(Range{0.0, 1e9})
         ->type_name("L");
     verb->add_option(
             "--smallest-hole", options->source.smallest_hole,
             "and how wide a hole must be to be one [world units]; larger than coordinates are exact it shuts "
             "holes that can be seen through, so that a cull may be false (default: 2^-23 of the scene's diagonal)")
-        ->check(CLI::Range(0.0, 1e9))
+        ->check(Range{0.0, 1e9})
         ->type_name("L");
     verb->add_option("--widest-gap", options->source.widest_gap,
                      "list the slits between walls that are no wider, which were probably meant to be shut [world "
                      "units]; 0: none (default: 2^-12 of the scene's diagonal)")
-        ->check(CLI::Range(0.0, 1e9))
+        ->check(Range{0.0, 1e9})
         ->type_name("L");
     verb->add_option("--moves", options->source.moves,
                      "of a scene: objects that may be elsewhere at run time, as doors that stand in no portal: they "
@@ -182,25 +182,25 @@ void addBake(CLI::App& tool, int& exit_code) {
     verb->add_option("--view-cells", options->source.view_cells,
                      "divide space into so many boxes and tell which objects may be seen from each, as 2048 (default: "
                      "none)")
-        ->check(CLI::Range(0u, 1u << 16))
+        ->check(Range{0u, 1u << 16})
         ->type_name("COUNT");
     verb->add_option(
             "--rays", options->rays,
             "look from each view cell with so many rays: what they see may be seen for sure, so that the cell's "
             "row is known from below, too (default: none)")
-        ->check(CLI::Range(0u, 1u << 30))
+        ->check(Range{0u, 1u << 30})
         ->type_name("COUNT");
     verb->add_option("--prepare", options->prepare,
                      "of a scene: what the file is to hold of its meshes, so that they need not be prepared again: "
                      "occluders, and with them inner, clusters or lods (default: nothing)")
         ->delimiter(',')
-        ->check(CLI::IsMember(kPrepareWords))
+        ->check(OneOf(kPrepareWords))
         ->type_name("LIST");
     verb->add_option(
             "--height", options->height,
             "of a scene without marked cells, with --report: the height at which plans cut the walls [world units] "
             "(default: of an eye on a floor of the scene)")
-        ->check(CLI::Range(-1e9, 1e9))
+        ->check(Range{-1e9, 1e9})
         ->type_name("Y");
     verb->callback([verb, options, &exit_code] {
         options->source.of_walls =

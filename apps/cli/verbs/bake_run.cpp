@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
 #include "sightline/bake/flow/bake_state.h"
@@ -59,7 +59,7 @@ VisCells visCellsOf(const std::string& word) {
     return word == "groups" ? VisCells::kGroups : VisCells::kClusters;
 }
 
-void addBakeOptions(CLI::App& verb, BakeOptions& options, const std::string& output, bool of_scenes) {
+void addBakeOptions(Command& verb, BakeOptions& options, const std::string& output, bool of_scenes) {
     std::vector<std::string> cells = {"clusters", "leaves", "groups"};
     if (of_scenes) cells.insert(cells.end(), {"walls", "none"});
     verb.add_option("-o,--output", options.output, output)->type_name("FILE");
@@ -70,24 +70,24 @@ void addBakeOptions(CLI::App& verb, BakeOptions& options, const std::string& out
             "clusters)" +
                 std::string(
                     of_scenes ? "; of a scene: walls, its own, although cells are marked; none, view cells alone" : ""))
-        ->check(CLI::IsMember(cells));
+        ->check(OneOf(cells));
     verb.add_flag("--objects", options.objects,
                   "tell also which objects each cell sees, of a .bsp its faces: takes longer than the cells do");
     verb.add_option("--threads", options.threads, "share the portals among so many threads (default: one a core)")
-        ->check(CLI::Range(1u, 1024u));
+        ->check(Range{1u, 1024u});
     verb.add_option("--budget", options.budget,
                     "portals that may be clipped for each portal and direction; what is not settled by then is "
                     "visible, and counted (default: no limit)")
         ->type_name("WORK");
     verb.add_option("--time-limit", options.time_limit,
                     "stop after so many seconds; what is not settled by then is visible")
-        ->check(CLI::Validator(
+        ->check(Validator{
             [](const std::string& text) -> std::string {
                 double seconds = 0;
-                const bool good = CLI::detail::lexical_cast(text, seconds) && seconds > 0;
+                const bool good = readNumber(text, seconds) && seconds > 0;
                 return good ? "" : text + " is no number of seconds above 0";
             },
-            "", "seconds"))
+            "seconds"})
         ->type_name("S");
     verb.add_option("--state", options.state,
                     "where a long bake writes down how far it is, to go on after its end (default: the output's name "

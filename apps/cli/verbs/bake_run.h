@@ -7,16 +7,13 @@
 #include <optional>
 #include <string>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/verbs/vis_map.h"
 #include "sightline/bake/bake.h"
 #include "sightline/base/result.h"
 #include "sightline/base/thread_pool.h"
-
-namespace CLI {
-class App;
-}
 
 namespace sightline::cli {
 using namespace bake;
@@ -38,7 +35,7 @@ VisCells visCellsOf(const std::string& word);
 
 /// @param output     what `-o` writes
 /// @param of_scenes  scenes are baked as well as maps
-void addBakeOptions(CLI::App& verb, BakeOptions& options, const std::string& output, bool of_scenes = false);
+void addBakeOptions(Command& verb, BakeOptions& options, const std::string& output, bool of_scenes = false);
 
 /// Names the state, and checks that what is written is apart from what is read and can be written.
 /// @param files  what is read, and what else the verb writes. Errors: kUsage, kOutput.

@@ -5,10 +5,10 @@
 #include <optional>
 #include <utility>
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/format.h>
 
+#include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/verbs.h"
@@ -19,7 +19,7 @@ using namespace tools;
 namespace {
 
 /// Checks what single options cannot.
-Status check(const CLI::App& verb, bench::Options& options, const std::string& size) {
+Status check(const Command& verb, bench::Options& options, const std::string& size) {
     const std::vector<std::string> names = bench::names();
     if (std::find(names.begin(), names.end(), options.name) == names.end())
         return usageError(
@@ -43,7 +43,7 @@ Status check(const CLI::App& verb, bench::Options& options, const std::string& s
 }
 
 /// Returns the exit code.
-Result<int> runBench(const CLI::App& verb, bench::Options options, const SceneChoice& choice, const std::string& size) {
+Result<int> runBench(const Command& verb, bench::Options options, const SceneChoice& choice, const std::string& size) {
     if (Status good = check(verb, options, size); !good) return good.error();
     std::optional<Progress> progress(std::in_place, options.proof.wanted ? "judging" : "measuring", "parts", 0);
     options.progress = [&](size_t done, size_t total) {
@@ -61,30 +61,30 @@ Result<int> runBench(const CLI::App& verb, bench::Options options, const SceneCh
     return *good ? kDone : kAnswerIsNo;
 }
 
-void addProofOptions(CLI::App& verb, bench::ProofOptions& proof, std::string& size) {
+void addProofOptions(Command& verb, bench::ProofOptions& proof, std::string& size) {
     verb.add_flag("--verify", proof.wanted,
                   "(occlusion) look for every hidden box by jittered samples and aimed rays, on every instruction set; "
                   "exit code 1 if one is seen. Takes minutes");
     verb.add_option("--size", size, "(--verify) of the viewport [pixels] (default: 1280x720 and 1920x1080)")
         ->type_name("WxH");
     verb.add_option("--jitters", proof.jitters, "(--verify) pictures of 4x4 samples a pixel, each shifted otherwise")
-        ->check(CLI::Range(0u, 1024u))
+        ->check(Range{0u, 1024u})
         ->type_name("N")
         ->capture_default_str();
     verb.add_option("--rays-per-box", proof.rays,
                     "(--verify) aimed at each hidden box, half of them past edges before it")
-        ->check(CLI::Range(0u, 1000000u))
+        ->check(Range{0u, 1000000u})
         ->type_name("N")
         ->capture_default_str();
     verb.add_option("--first-cameras", proof.cameras, "(--verify) only so many of each scene (default: all)")
-        ->check(CLI::Range(1u, 1000u))
+        ->check(Range{1u, 1000u})
         ->type_name("N");
 }
 
 }  // namespace
 
-void addBench(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("bench", "measures this machine: each technique beside its plain baseline");
+void addBench(Command& tool, int& exit_code) {
+    Command verb = addOtherVerb(tool, "bench");
     const auto options = std::make_shared<bench::Options>();
     const auto scene = std::make_shared<SceneChoice>();
     verb->add_option("NAME", options->name, fmt::format("one of: {}", fmt::join(bench::names(), ", ")))->required();
@@ -92,13 +92,13 @@ void addBench(CLI::App& tool, int& exit_code) {
     verb->add_option("--scene", scene->names, "measure on this scene instead of the case's own")->type_name("SCENE");
     addImportOptions(*verb, *scene);
     verb->add_option("--repeat", options->repeat, "measurements of each value")
-        ->check(CLI::Range(1, 100000))
+        ->check(Range{1, 100000})
         ->type_name("N");
     verb->add_option("--only", options->only, "(occlusion) these of the case's own scenes, separated by commas")
         ->delimiter(',')
         ->type_name("NAMES");
     verb->add_option("--occlusion-size", options->occlusion_size, "longer side of the occlusion buffer [pixels]")
-        ->check(CLI::Range(1u, 8192u))
+        ->check(Range{1u, 8192u})
         ->type_name("N");
     const auto size = std::make_shared<std::string>();
     addProofOptions(*verb, options->proof, *size);

@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/verbs.h"
@@ -39,8 +39,8 @@ Result<int> runCalibrate(const CalibrateOptions& options) {
 
 }  // namespace
 
-void addCalibrate(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("calibrate", "what a cluster's test and a triangle cost on this machine");
+void addCalibrate(Command& tool, int& exit_code) {
+    Command verb = addOtherVerb(tool, "calibrate");
     const auto options = std::make_shared<CalibrateOptions>();
     verb->add_option("--json", options->json, "write the figures as JSON (-: standard output): for --calibration")
         ->type_name("FILE");

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
@@ -251,9 +251,8 @@ Result<int> runCheck(CheckOptions& options) {
 
 }  // namespace
 
-void addCheck(CLI::App& tool, int& exit_code) {
-    CLI::App* verb =
-        tool.add_subcommand("check", "the certificates of a run or a recorded frame, each held to exact arithmetic");
+void addCheck(Command& tool, int& exit_code) {
+    Command verb = addOtherVerb(tool, "check");
     const auto options = std::make_shared<CheckOptions>();
     verb->add_option("FILE", options->file,
                      "of cull --remember --certificates --json, or the report's directory; or of cull --remember "
@@ -263,7 +262,7 @@ void addCheck(CLI::App& tool, int& exit_code) {
     addSceneChoice(*verb, options->scene);
     verb->get_option("SCENE")->required(false)->expected(0, 1000);
     verb->add_option("--threads", options->threads, "share the frames among so many (default: all cores)")
-        ->check(CLI::Range(1u, kMostThreads))
+        ->check(Range{1u, kMostThreads})
         ->type_name("N");
     verb->add_option("--json", options->json, "write the result as JSON (-: standard output)")->type_name("FILE");
     verb->callback([options, &exit_code] {

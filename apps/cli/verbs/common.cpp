@@ -10,10 +10,10 @@
 #include <thread>
 #include <utility>
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/format.h>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/setting_options.h"
 #include "apps/cli/verbs/verbs.h"
@@ -83,7 +83,7 @@ Status readSize(const std::string& option, const std::string& text, uint32_t& wi
     return usageError(fmt::format("{} {}: not WxH with sides from 1 to {}", option, text, kLargestSide));
 }
 
-void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& shared) {
+void addCameraOptions(Command& verb, RunOptions& options, const std::string& shared) {
     std::vector<std::string> paths;
     for (const auto& [word, kind] : kPathKinds) paths.emplace_back(word);
     addSceneChoice(verb, options.scene);
@@ -92,22 +92,22 @@ void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& sh
     verb.add_option("--path", options.path,
                     "a view of the whole and a walk through it; a walk, frame by frame; once around; the whole from "
                     "outside; or cameras that stand anywhere (default: the scene's own cameras, else tour)")
-        ->check(CLI::IsMember(paths))
+        ->check(OneOf(paths))
         ->type_name(fmt::format("{}", fmt::join(paths, "|")))
         ->group("Cameras");
     verb.add_option("--frames", walk.frames,
                     "so many cameras; a city without --path and --seed is walked along its streets")
-        ->check(CLI::Range(1u, kMostFrames))
+        ->check(Range{1u, kMostFrames})
         ->type_name("N")
         ->group("Cameras");
     verb.add_option("--seed", walk.seed, "of the path")->type_name("S")->capture_default_str()->group("Cameras");
     verb.add_option("--fps", walk.fps, "frames a second of a walk")
-        ->check(CLI::Range(1.0, 10000.0))
+        ->check(Range{1.0, 10000.0})
         ->type_name("N")
         ->capture_default_str()
         ->group("Cameras");
     verb.add_option("--speed", walk.speed, "of a walk [world units a second]")
-        ->check(CLI::Range(0.0, 1e9))
+        ->check(Range{0.0, 1e9})
         ->type_name("N")
         ->capture_default_str()
         ->group("Cameras");
@@ -116,16 +116,16 @@ void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& sh
         ->capture_default_str()
         ->group("Cameras");
     verb.add_option("--threads", options.threads, "share " + shared + " among so many threads (default: one a core)")
-        ->check(CLI::Range(1u, kMostThreads))
+        ->check(Range{1u, kMostThreads})
         ->type_name("N")
         ->group("General");
     verb.add_option("--json", options.json, "write the result as JSON (-: standard output)")->type_name("FILE");
 }
 
-void addSceneOptions(CLI::App& verb, RunOptions& options) {
+void addSceneOptions(Command& verb, RunOptions& options) {
     addCameraOptions(verb, options, "the frames");
     verb.add_option("--repeat", options.repeat, "queries a frame; times are their medians")
-        ->check(CLI::Range(1, 100000))
+        ->check(Range{1, 100000})
         ->type_name("N")
         ->capture_default_str()
         ->group("Culling");
@@ -141,13 +141,13 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
     addVisibilityOptions(verb, options);
     addClusterOptions(verb, options);
     verb.add_option("--jitter", options.jitter, "largest shift of the image that the answer must hold for")
-        ->check(CLI::Range(0.0, 1024.0))
+        ->check(Range{0.0, 1024.0})
         ->type_name("PX")
         ->capture_default_str()
         ->group("Culling");
     addOtherSettingOptions(verb, options.settings);
     verb.add_option("--rays", options.rays, "that the first witness casts for a frame")
-        ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
+        ->check(Range{uint64_t{1}, uint64_t{1} << 40})
         ->type_name("N")
         ->capture_default_str()
         ->group("Culling");
@@ -155,22 +155,22 @@ void addSceneOptions(CLI::App& verb, RunOptions& options) {
         ->group("Culling");
 }
 
-void addStereoOption(CLI::App& verb, RunOptions& options) {
+void addStereoOption(Command& verb, RunOptions& options) {
     constexpr double kLeast = 1e-9, kMost = 1e9;
     const auto check = [](const std::string& text) -> std::string {
         double value = 0;
-        if (!CLI::detail::lexical_cast(text, value)) return "\"" + text + "\" is not a number";
+        if (!readNumber(text, value)) return "\"" + text + "\" is not a number";
         if (value >= kLeast && value <= kMost) return {};
         return text + " is not a distance between the eyes, from 1e-9 to 1e9; for one eye leave it out";
     };
     verb.add_option("--stereo", options.stereo,
                     "two eyes so far apart [world units], each with a buffer of its own; pictures are the left one's")
-        ->check(CLI::Validator(check, "", "distance"))
+        ->check(Validator{check, "distance"})
         ->type_name("IPD")
         ->group("Culling");
 }
 
-void addRememberOption(CLI::App& verb, RunOptions& options) {
+void addRememberOption(Command& verb, RunOptions& options) {
     verb.add_flag_callback(
             "--remember", [&options] { options.settings.stateless = false; },
             "frames in order, by one query that remembers what hid and what was visible, as a game asks; "
@@ -178,7 +178,7 @@ void addRememberOption(CLI::App& verb, RunOptions& options) {
         ->group("Culling");
 }
 
-void addQueryOptions(CLI::App& verb, RunOptions& options) {
+void addQueryOptions(Command& verb, RunOptions& options) {
     addStereoOption(verb, options);
     addSettingOptions(verb, options.settings, {"bins", "hysteresis"});
     addRememberOption(verb, options);
@@ -193,7 +193,7 @@ void addQueryOptions(CLI::App& verb, RunOptions& options) {
             "does not count; needs --remember")
         ->group("Culling");
     verb.add_option("--query-threads", options.query_threads, "share the bins of each query among so many threads")
-        ->check(CLI::Range(1u, kMostThreads))
+        ->check(Range{1u, kMostThreads})
         ->type_name("N")
         ->capture_default_str()
         ->group("Culling");
@@ -202,7 +202,7 @@ void addQueryOptions(CLI::App& verb, RunOptions& options) {
 namespace {
 
 /// Checks what is asked of the cameras.
-Status finishPath(const CLI::App& verb, RunOptions& options) {
+Status finishPath(const Command& verb, RunOptions& options) {
     PathChoice& choice = options.choice;
     choice.seeded = verb.count("--seed") > 0;
     if (!choice.file.empty() && (choice.walk.frames > 0 || choice.seeded || !options.path.empty()))
@@ -219,7 +219,7 @@ Status finishPath(const CLI::App& verb, RunOptions& options) {
 
 }  // namespace
 
-Status finish(const CLI::App& verb, RunOptions& options) {
+Status finish(const Command& verb, RunOptions& options) {
     if (Status size = readSize("--size", options.size, options.width, options.height); !size) return size;
     if (std::isnan(options.jitter)) return usageError("--jitter: not a number");  // no range leaves it out
     if (std::isnan(options.stereo)) return usageError("--stereo: not a number");
@@ -228,7 +228,7 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     if (settings.hysteresis > 0 && !(settings.max_distance > 0) && !(settings.contribution > 0))
         return usageError("--hysteresis: there is no limit; see --distance and --contribution");
     if (!settings.stateless) {
-        const CLI::Option* const repeat = verb.get_option_no_throw("--repeat");
+        const Option repeat = verb.get_option_no_throw("--repeat");
         if (repeat && repeat->count() > 0 && options.repeat > 1)
             return usageError("--remember: each frame is asked once; --repeat would ask it again");
         options.repeat = 1;
@@ -251,7 +251,7 @@ Status finish(const CLI::App& verb, RunOptions& options) {
     if (Status cells = finishVisibilityOptions(options); !cells) return cells;
     if (Status path = finishPath(verb, options); !path) return path;
     if (options.threads == 0) options.threads = std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads);
-    const CLI::Option* const json = verb.get_option_no_throw("--json");  // not every verb has it
+    const Option json = verb.get_option_no_throw("--json");  // not every verb has it
     if (options.json.empty() && json && json->count() > 0) return usageError("--json: the name is empty");
     return success();
 }

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <string>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/quoted.h"
 #include "apps/cli/shell/session.h"
@@ -16,10 +17,6 @@
 #include "sightline/tools/scene/camera_path.h"
 #include "sightline/tools/scene/scene.h"
 
-namespace CLI {
-class App;
-}
-
 namespace sightline::cli {
 using namespace tools;
 
@@ -27,16 +24,16 @@ constexpr uint32_t kMostThreads = 1024;
 
 /// The scene, its cameras, the size, threads and JSON: what every verb has that looks at a scene.
 /// @param shared  what the threads share: "the frames"
-void addCameraOptions(CLI::App& verb, RunOptions& options, const std::string& shared);
+void addCameraOptions(Command& verb, RunOptions& options, const std::string& shared);
 /// These, and what culling needs.
-void addSceneOptions(CLI::App& verb, RunOptions& options);
+void addSceneOptions(Command& verb, RunOptions& options);
 /// --stereo.
-void addStereoOption(CLI::App& verb, RunOptions& options);
-void addRememberOption(CLI::App& verb, RunOptions& options);
+void addStereoOption(Command& verb, RunOptions& options);
+void addRememberOption(Command& verb, RunOptions& options);
 /// And what cull and verify may ask a query for besides: two eyes, strips of the image, a memory.
-void addQueryOptions(CLI::App& verb, RunOptions& options);
+void addQueryOptions(Command& verb, RunOptions& options);
 /// Checks what single options cannot: sizes, stage names. Errors are kUsage.
-Status finish(const CLI::App& verb, RunOptions& options);
+Status finish(const Command& verb, RunOptions& options);
 
 /// Reads "1920x1080".  [1 to 16384]
 /// @param option  what an error, kUsage, calls it

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
@@ -257,7 +257,7 @@ Status writeCullOutputs(const Scene& scene, const Snapshot& now, const CullRun& 
 }
 
 /// What --record, --certificates and --depth-images need of the other options.
-Status checkOcclusion(const CLI::App& verb, const CullOptions& options) {
+Status checkOcclusion(const Command& verb, const CullOptions& options) {
     if (verb.count("--frame") > 0 && options.recording.empty()) return usageError("--frame goes with --record");
     if (options.certificates) {
         if (options.settings.stateless)
@@ -274,7 +274,7 @@ Status checkOcclusion(const CLI::App& verb, const CullOptions& options) {
 }
 
 /// The whole verb. Returns the exit code.
-Result<int> runCull(const CLI::App& verb, CullOptions& options) {
+Result<int> runCull(const Command& verb, CullOptions& options) {
     if (Status good = finish(verb, options); !good) return good.error();
     if (Status good = checkOcclusion(verb, options); !good) return good.error();
     if (Status apart = checkCullApart(options); !apart) return apart.error();
@@ -316,8 +316,8 @@ Result<int> runCull(const CLI::App& verb, CullOptions& options) {
 
 }  // namespace
 
-void addCull(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("cull", "the visible set along a camera path");
+void addCull(Command& tool, int& exit_code) {
+    Command verb = tool.add_subcommand("cull", "the visible set along a camera path");
     const auto options = std::make_shared<CullOptions>();
     addSceneOptions(*verb, *options);
     addQueryOptions(*verb, *options);

@@ -7,10 +7,10 @@
 #include <optional>
 #include <set>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
@@ -38,7 +38,7 @@ bool readNumber(std::string_view text, uint32_t& out) {
 }
 
 /// Reads --frame and --at, and refuses what does not go together.
-Status readQuestion(const CLI::App& verb, ExplainOptions& options) {
+Status readQuestion(const Command& verb, ExplainOptions& options) {
     options.all_frames = options.frame == "all";
     if (!options.all_frames && !readNumber(options.frame, options.first_frame))
         return usageError(fmt::format("--frame {}: neither a number nor \"all\"", options.frame));
@@ -295,7 +295,7 @@ Status explainObjects(const ExplainOptions& options, const Scene& scene, const C
     return writeJson(options, scene, body);
 }
 
-Status runExplain(const CLI::App& verb, ExplainOptions& options, int& exit_code) {
+Status runExplain(const Command& verb, ExplainOptions& options, int& exit_code) {
     if (Status good = finish(verb, options); !good) return good;
     if (Status good = readQuestion(verb, options); !good) return good;
     Result<Scene> scene = loadScene(options.scene);
@@ -314,8 +314,8 @@ Status runExplain(const CLI::App& verb, ExplainOptions& options, int& exit_code)
 
 }  // namespace
 
-void addExplain(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("explain", "why an object is, or is not, in the visible set");
+void addExplain(Command& tool, int& exit_code) {
+    Command verb = tool.add_subcommand("explain", "why an object is, or is not, in the visible set");
     const auto options = std::make_shared<ExplainOptions>();
     options->repeat = 1;
     addSceneOptions(*verb, *options);
@@ -334,7 +334,7 @@ void addExplain(CLI::App& tool, int& exit_code) {
                      "draw from the side how the object lies in the shadows of those that hide it")
         ->type_name("FILE.png");
     verb->add_option("--top", options->top, "how many rows the lists of the whole path have")
-        ->check(CLI::Range(1u, 1000000u))
+        ->check(Range{1u, 1000000u})
         ->type_name("N")
         ->capture_default_str();
     verb->callback([verb, options, &exit_code] {

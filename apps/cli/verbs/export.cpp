@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/verbs/common.h"
@@ -44,7 +44,7 @@ struct Exported {
     bool keeps_textures = false;
 };
 
-Status checkExport(const CLI::App& verb, const ExportOptions& options) {
+Status checkExport(const Command& verb, const ExportOptions& options) {
     if (lower(std::filesystem::path(options.output).extension().string()) != ".glb")
         return usageError(fmt::format("-o {}: what is written is a .glb", options.output));
     for (const char* option : {"--cameras", "--path", "--frames", "--seed", "--fps", "--speed", "--size"})
@@ -123,7 +123,7 @@ std::string exportJson(const ExportOptions& options, const Exported& e) {
     return out.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-Result<int> runExport(const CLI::App& verb, ExportOptions& options) {
+Result<int> runExport(const Command& verb, ExportOptions& options) {
     if (Status good = finish(verb, options); !good) return good.error();
     if (Status good = checkExport(verb, options); !good) return good.error();
     Split split;
@@ -167,8 +167,8 @@ Result<int> runExport(const CLI::App& verb, ExportOptions& options) {
 
 }  // namespace
 
-void addExport(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("export", "the scene as glTF, cut into objects and without what is not seen");
+void addExport(Command& tool, int& exit_code) {
+    Command verb = addOtherVerb(tool, "export");
     const auto options = std::make_shared<ExportOptions>();
     options->repeat = 1;
     addCameraOptions(*verb, *options, "the frames");

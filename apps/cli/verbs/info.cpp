@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/info_map.h"
@@ -286,7 +286,7 @@ Status runPortals(const InfoOptions& options) {
     return writeText(options.json, report->json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-Status runInfo(const CLI::App& verb, const InfoOptions& options) {
+Status runInfo(const Command& verb, const InfoOptions& options) {
     if (options.json.empty() && verb.count("--json") > 0)
         return Error{Error::Kind::kUsage, "--json: the name is empty"};
     if (options.formats) return printFormats(options.json);
@@ -315,8 +315,8 @@ Status runInfo(const CLI::App& verb, const InfoOptions& options) {
 
 }  // namespace
 
-void addInfo(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("info", "what a scene or a visibility file holds, and what can be read");
+void addInfo(Command& tool, int& exit_code) {
+    Command verb = tool.add_subcommand("info", "what a scene or a visibility file holds, and what can be read");
     const auto options = std::make_shared<InfoOptions>();
     addSceneChoice(*verb, options->scene);
     verb->get_option("SCENE")->required(false);  // --formats needs none

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 
+#include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
@@ -130,7 +130,7 @@ ProfileRun profiled(const Scene& scene, const SceneFrames& frames, const Profile
     return run;
 }
 
-Status runProfile(const CLI::App& verb, ProfileOptions& options) {
+Status runProfile(const Command& verb, ProfileOptions& options) {
 #ifndef SIGHTLINE_GL
     if (options.renderer == "gl") return usageError("--renderer gl: this build has no GL (libepoxy-dev was not there)");
 #endif
@@ -145,21 +145,20 @@ Status runProfile(const CLI::App& verb, ProfileOptions& options) {
 
 }  // namespace
 
-void addProfile(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand(
-        "profile", "what limits a scene's frames, what its parts cost, and what each stage is worth there");
+void addProfile(Command& tool, int& exit_code) {
+    Command verb = addOtherVerb(tool, "profile");
     const auto options = std::make_shared<ProfileOptions>();
     options->repeat = 5;
     addFrameOptions(*verb, *options);
     verb->add_option("--renderer", options->renderer, "that is loaded: the z-buffer of `render`, or software GL")
-        ->check(CLI::IsMember({"reference", "gl"}))
+        ->check(OneOf{"reference", "gl"})
         ->capture_default_str()
         ->group("Measuring");
     verb->add_flag("--stream", options->stream,
                    "carry the meshes of what is drawn to the renderer each frame, not its transforms alone")
         ->group("Measuring");
     verb->add_option("--time-limit", options->time_limit, "for finding what limits [s]; what is known by then counts")
-        ->check(CLI::Range(0.1, 1e6))
+        ->check(Range{0.1, 1e6})
         ->capture_default_str()
         ->type_name("S")
         ->group("Measuring");

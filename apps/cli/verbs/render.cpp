@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
@@ -164,7 +164,7 @@ Status writeRenderOutputs(const RenderList& scene, const View& view, const Rende
     return success();
 }
 
-Status runRender(const CLI::App& verb, RenderOptions& options) {
+Status runRender(const Command& verb, RenderOptions& options) {
     if (Status good = finishRender(verb, options); !good) return good;
     const Result<Scene> scene = loadScene(options.scene);
     if (!scene) return scene.error();
@@ -195,8 +195,8 @@ Status runRender(const CLI::App& verb, RenderOptions& options) {
 
 }  // namespace
 
-void addRender(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("render", "one frame by any hidden-surface method, or by all of them");
+void addRender(Command& tool, int& exit_code) {
+    Command verb = addOtherVerb(tool, "render");
     const auto options = std::make_shared<RenderOptions>();
     addRenderOptions(*verb, *options);
     verb->callback([verb, options, &exit_code] {

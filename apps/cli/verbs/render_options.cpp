@@ -10,9 +10,9 @@
 #include <system_error>
 #include <utility>
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/shell/apart.h"
 #include "sightline/tools/report/output_file.h"
 
@@ -41,20 +41,20 @@ T chosen(const Words& all, const std::string& word) {
 
 bool isOn(const std::string& word) { return word == "on"; }
 
-void addWord(CLI::App& verb, const std::string& name, std::string& value, const Words& all, const std::string& help) {
-    verb.add_option(name, value, help)->check(CLI::IsMember(all))->capture_default_str();
+void addWord(Command& verb, const std::string& name, std::string& value, const Words& all, const std::string& help) {
+    verb.add_option(name, value, help)->check(OneOf(all))->capture_default_str();
 }
 
 /// Puts all options under a heading that have none and write nothing.
-void headRest(CLI::App& verb, const char* heading) {
-    for (CLI::Option* option : verb.get_options())
-        if (option->get_group() == "Options" && option->nonpositional() && option != verb.get_help_ptr() &&
+void headRest(Command& verb, const char* heading) {
+    for (Option option : verb.get_options())
+        if (option->get_group() == "Options" && option->nonpositional() && !verb.is_help(option) &&
             option->get_type_name().find("FILE") == std::string::npos &&
             option->get_type_name().find("DIR") == std::string::npos)
             option->group(heading);
 }
 
-void addOutputs(CLI::App& verb, RenderOptions& options) {
+void addOutputs(Command& verb, RenderOptions& options) {
     verb.add_option("-o,--output", options.image, "write the picture")->type_name("FILE.png");
     verb.add_option("--ids", options.ids, "write the object at each pixel: 24-bit colour = key + 1, black for none")
         ->type_name("FILE.png");
@@ -67,7 +67,7 @@ void addOutputs(CLI::App& verb, RenderOptions& options) {
     addWord(verb, "--shadows", options.shadows, kSwitch, "of the sun, in pictures");
 }
 
-void addMethods(CLI::App& verb, RenderOptions& options) {
+void addMethods(Command& verb, RenderOptions& options) {
     addWord(verb, "--painter-key", options.painter_key, kPainterKeys, "the depth that the painter sorts by");
     addWord(verb, "--free-samples", options.free_samples, kFreeSamples,
             "how bsp-front-to-back knows what is still free");
@@ -77,7 +77,7 @@ void addMethods(CLI::App& verb, RenderOptions& options) {
     addWord(verb, "--back-faces", options.back_faces, kBackFaces, "of single-sided triangles");
 }
 
-void addDepth(CLI::App& verb, RenderOptions& options) {
+void addDepth(Command& verb, RenderOptions& options) {
     addWord(verb, "--depth-format", options.depth_format, words(kDepthFormatNames), "of the z-buffer");
     addWord(verb, "--depth-comparison", options.depth_comparison, kComparisons,
             "of the depth that comes with the one there (nearer: as the format has it)");
@@ -112,7 +112,7 @@ Status checkRenderApart(const RenderOptions& options) {
 
 bool drawsZBuffer(const RenderOptions& options) { return options.all() || methodOf(options) == HiddenMethod::kZBuffer; }
 
-void addRenderOptions(CLI::App& verb, RenderOptions& options) {
+void addRenderOptions(Command& verb, RenderOptions& options) {
     options.repeat = 1;
     addCameraOptions(verb, options, "the work of one frame");
     Words methods = words(kHiddenMethodNames);
@@ -122,7 +122,7 @@ void addRenderOptions(CLI::App& verb, RenderOptions& options) {
         ->type_name("K")
         ->capture_default_str();
     verb.add_option("--repeat", options.repeat, "times are medians of so many")
-        ->check(CLI::Range(1, 100000))
+        ->check(Range{1, 100000})
         ->type_name("N")
         ->capture_default_str();
     addMethods(verb, options);
@@ -133,7 +133,7 @@ void addRenderOptions(CLI::App& verb, RenderOptions& options) {
     headRest(verb, "Depth");
 }
 
-Status finishRender(const CLI::App& verb, RenderOptions& options) {
+Status finishRender(const Command& verb, RenderOptions& options) {
     if (Status good = finish(verb, options); !good) return good;
     const std::pair<const char*, const std::string*> outputs[] = {{"-o", &options.image},
                                                                   {"--ids", &options.ids},
@@ -192,11 +192,11 @@ void applyOptions(const RenderOptions& options, RenderRun& run) {
     depth.compression = isOn(options.depth_compression);
 }
 
-std::string commandOf(const CLI::App& verb, const RenderOptions& options) {
+std::string commandOf(const Command& verb, const RenderOptions& options) {
     static const std::set<std::string> kOutputs = {"SCENE",      "-o",     "--output", "--ids",
                                                    "--heat-map", "--json", "--report", "--help"};
     std::string command = "sightline render " + options.scene.words();
-    for (const CLI::Option* option : verb.get_options()) {
+    for (const Option& option : verb.get_options()) {
         if (option->count() == 0 || kOutputs.count(option->get_name()) > 0) continue;
         command += " " + option->get_name();
         for (const std::string& word : option->results()) command += " " + quoted(word);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/verbs/common.h"
 #include "sightline/tools/report/run/render_run.h"
 
@@ -13,7 +14,7 @@ namespace sightline::cli {
 using namespace studies;
 using namespace tools;
 
-/// Words are those that CLI::IsMember has let through.
+/// Words are those that OneOf has let through.
 struct RenderOptions : RunOptions {
     uint32_t frame = 0;
     std::string method = "zbuffer", image, ids, heat_map;
@@ -30,10 +31,10 @@ struct RenderOptions : RunOptions {
 /// True if the z-buffer is among the methods asked for.
 bool drawsZBuffer(const RenderOptions& options);
 
-void addRenderOptions(CLI::App& verb, RenderOptions& options);
+void addRenderOptions(Command& verb, RenderOptions& options);
 
 /// Checks what single options cannot, and that all outputs have names. Errors are kUsage.
-Status finishRender(const CLI::App& verb, RenderOptions& options);
+Status finishRender(const Command& verb, RenderOptions& options);
 
 /// Whether all outputs are likely to be written; makes the report's directory. Errors are kOutput.
 Status checkOutputs(const RenderOptions& options);
@@ -45,6 +46,6 @@ void applyOptions(const RenderOptions& options, RenderRun& run);
 HiddenMethod methodOf(const RenderOptions& options);
 
 /// The command that repeats a run, without its outputs.
-std::string commandOf(const CLI::App& verb, const RenderOptions& options);
+std::string commandOf(const Command& verb, const RenderOptions& options);
 
 }  // namespace sightline::cli

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <hwy/targets.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
@@ -245,7 +245,7 @@ void tellFaults(const ReplayRun& run, const FrameRecording& recording, const Rep
     }
 }
 
-Result<int> runReplay(const CLI::App& verb, const ReplayOptions& options) {
+Result<int> runReplay(const Command& verb, const ReplayOptions& options) {
     if (verb.count("--rays") > 0 && !options.verify) return usageError("--rays goes with --verify");
     const Result<std::string> target = choose(options.target);
     if (!target) return target.error();
@@ -289,13 +289,12 @@ Result<int> runReplay(const CLI::App& verb, const ReplayOptions& options) {
 
 }  // namespace
 
-void addReplay(CLI::App& tool, int& exit_code) {
-    CLI::App* verb =
-        tool.add_subcommand("replay", "a recorded frame asked again: the same answer, and how long it takes");
+void addReplay(Command& tool, int& exit_code) {
+    Command verb = addOtherVerb(tool, "replay");
     const auto options = std::make_shared<ReplayOptions>();
     verb->add_option("FILE", options->file, "of cull --record, or of an engine")->required();
     verb->add_option("--repeat", options->repeat, "times are medians of so many")
-        ->check(CLI::Range(1, 100000))
+        ->check(Range{1, 100000})
         ->type_name("N")
         ->capture_default_str();
     verb->add_option("--target", options->target, "the instruction set to use, as AVX2 or SCALAR (default: the best)")
@@ -304,7 +303,7 @@ void addReplay(CLI::App& tool, int& exit_code) {
                    "let rays, an id-buffer and exact proofs judge the recorded answer and the new one; exit code 1 if "
                    "anything visible was culled");
     verb->add_option("--rays", options->rays, "for each answer, with --verify")
-        ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
+        ->check(Range{uint64_t{1}, uint64_t{1} << 40})
         ->type_name("N")
         ->capture_default_str();
     verb->add_option("--json", options->json, "write the result as JSON (-: standard output)")->type_name("FILE");

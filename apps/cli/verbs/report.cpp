@@ -6,9 +6,9 @@
 #include <memory>
 #include <optional>
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
@@ -111,7 +111,7 @@ Result<int> show(const ReportOptions& options, const std::vector<RunFile>& files
     return sound ? kDone : kAnswerIsNo;
 }
 
-Status checkReport(const CLI::App& verb, const ReportOptions& options) {
+Status checkReport(const Command& verb, const ReportOptions& options) {
     if (options.compare && options.runs.size() != 2) return usageError("--compare takes two runs, A and B");
     if (!options.compare && verb.count("--fail-if-slower") > 0)
         return usageError("--fail-if-slower goes with --compare");
@@ -131,7 +131,7 @@ Status checkReport(const CLI::App& verb, const ReportOptions& options) {
     return files.status();
 }
 
-Result<int> runReport(const CLI::App& verb, const ReportOptions& options) {
+Result<int> runReport(const Command& verb, const ReportOptions& options) {
     if (Status good = checkReport(verb, options); !good) return good.error();
     std::vector<RunFile> files;
     for (const std::string& name : options.runs) {
@@ -149,8 +149,8 @@ Result<int> runReport(const CLI::App& verb, const ReportOptions& options) {
 
 }  // namespace
 
-void addReport(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("report", "what cull's JSON holds, as a page; and two runs compared");
+void addReport(Command& tool, int& exit_code) {
+    Command verb = addOtherVerb(tool, "report");
     const auto options = std::make_shared<ReportOptions>();
     verb->add_option("RUN", options->runs, "files of cull --json, or directories of cull --report")->required();
     verb->add_flag(
@@ -160,7 +160,7 @@ void addReport(CLI::App& tool, int& exit_code) {
     verb->add_option("--json", options->json, "write the comparison as JSON (-: standard output)")->type_name("FILE");
     verb->add_option("--fail-if-slower", options->fail_if_slower,
                      "exit code 1 if B takes more than R times as long as A, by the median")
-        ->check(CLI::Range(0.01, 1000.0))
+        ->check(Range{0.01, 1000.0})
         ->type_name("R");
     verb->callback([verb, options, &exit_code] {
         const Result<int> done = runReport(*verb, *options);

@@ -12,9 +12,9 @@
 #include <string_view>
 #include <utility>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/quoted.h"
 #include "apps/cli/shell/session.h"
@@ -185,7 +185,7 @@ std::string SceneChoice::plainFile() const {
     return is_plain ? names.front() : std::string();
 }
 
-void addSceneChoice(CLI::App& verb, SceneChoice& choice) {
+void addSceneChoice(Command& verb, SceneChoice& choice) {
     verb.add_option("SCENE", choice.names,
                     "files (sightline info --formats lists what can be read) or procedural scenes, as city:1:100000, "
                     "building:1:3, terrain:1:256 or made:cycle; several are joined")
@@ -200,16 +200,16 @@ void addSceneChoice(CLI::App& verb, SceneChoice& choice) {
     addImportOptions(verb, choice);
 }
 
-void addImportOptions(CLI::App& verb, SceneChoice& choice) {
+void addImportOptions(Command& verb, SceneChoice& choice) {
     verb.add_option("--up", choice.up, "the axis of the files that points up")
-        ->check(CLI::IsMember({"x", "y", "z"}))
+        ->check(OneOf{"x", "y", "z"})
         ->type_name("x|y|z")
         ->group("Input");
     verb.add_option("--unit", choice.unit, "length of one unit of the files: m, cm, mm, km, in, ft or so many metres")
         ->type_name("UNIT")
         ->group("Input");
     verb.add_option("--sides", choice.sides, "which sides of surfaces are drawn (default: as the files say)")
-        ->check(CLI::IsMember({"file", "one", "both"}))
+        ->check(OneOf{"file", "one", "both"})
         ->type_name("file|one|both")
         ->group("Input");
     verb.add_option("--import-memory", choice.memory, "for readers of foreign formats (default: 8G)")

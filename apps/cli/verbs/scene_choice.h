@@ -5,13 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "apps/cli/shell/options.h"
 #include "sightline/base/result.h"
 #include "sightline/tools/scene/scene.h"
 #include "sightline/tools/scene/split.h"
-
-namespace CLI {
-class App;
-}
 
 namespace sightline::cli {
 using namespace tools;
@@ -33,9 +30,9 @@ struct SceneChoice {
 };
 
 /// SCENE and the options of importing.
-void addSceneChoice(CLI::App& verb, SceneChoice& choice);
+void addSceneChoice(Command& verb, SceneChoice& choice);
 /// The options of importing alone.
-void addImportOptions(CLI::App& verb, SceneChoice& choice);
+void addImportOptions(Command& verb, SceneChoice& choice);
 
 /// Whether a file is a recorded frame; what cannot be read is none.
 bool isRecordedFrame(const std::string& name);

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/verbs/common.h"
@@ -82,14 +82,14 @@ Result<std::vector<View>> chooseViews(const CameraPath& path, const RunOptions& 
 
 }  // namespace
 
-void addFrameOptions(CLI::App& verb, RunOptions& options) {
+void addFrameOptions(Command& verb, RunOptions& options) {
     addSceneOptions(verb, options);
     for (const char* name : {"--rays", "--no-proofs"}) verb.remove_option(verb.get_option(name));
     verb.get_option("--threads")->description("that the reference renderer draws with (default: 1)");
     verb.get_option("--repeat")->description("times of stages and costs are medians of so many");
 }
 
-Result<AskedFrames> openFrames(const CLI::App& verb, RunOptions& options) {
+Result<AskedFrames> openFrames(const Command& verb, RunOptions& options) {
     if (Status good = finish(verb, options); !good) return good.error();
     if (verb.count("--threads") == 0) options.threads = 1;
     if (Status writable = checkFrameOutput(options); !writable) return writable.error();

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/verbs/run_options.h"
 #include "sightline/base/result.h"
 #include "sightline/prepare/facing/draw_clusters.h"
@@ -17,16 +18,12 @@
 #include "sightline/tools/report/pictures/render_list.h"
 #include "sightline/tools/report/run/profile_run.h"
 
-namespace CLI {
-class App;
-}
-
 namespace sightline::cli {
 using namespace studies;
 using namespace tools;
 
 /// The scene, its cameras and the query, as of `cull`; --threads are the reference renderer's, and one without a word.
-void addFrameOptions(CLI::App& verb, RunOptions& options);
+void addFrameOptions(Command& verb, RunOptions& options);
 
 /// What a verb looks at.
 struct AskedFrames {
@@ -35,7 +32,7 @@ struct AskedFrames {
 };
 /// Checks the options and whether the JSON can be written, and reads all that is to be read. Of a path that nobody asked for
 /// four frames are looked at, evenly. Errors: of all these; a camera whose matrices are none.
-Result<AskedFrames> openFrames(const CLI::App& verb, RunOptions& options);
+Result<AskedFrames> openFrames(const Command& verb, RunOptions& options);
 
 /// The scene as a world with the stages that need preparing, and each object as an item. Every view stands by itself:
 /// queries are stateless.

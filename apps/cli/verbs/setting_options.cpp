@@ -7,9 +7,9 @@
 #include <iterator>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/shell/quoted.h"
 #include "sightline/tools/report/run/calibration_json.h"
@@ -25,8 +25,8 @@ DoorAsked readDoor(const std::string& text) {
     const size_t equals = text.rfind('=');
     DoorAsked door;
     const bool good = equals != std::string::npos && equals > 0 &&
-                      CLI::detail::lexical_cast(text.substr(equals + 1), door.open) && door.open >= 0 && door.open <= 1;
-    if (!good) throw CLI::ValidationError("--door", "wants NAME=OPEN, from 0 (shut) to 1 (open), not '" + text + "'");
+                      readNumber(text.substr(equals + 1), door.open) && door.open >= 0 && door.open <= 1;
+    if (!good) refuse("--door", "wants NAME=OPEN, from 0 (shut) to 1 (open), not '" + text + "'");
     door.name = text.substr(0, equals);
     return door;
 }
@@ -35,20 +35,19 @@ bool names(const std::vector<std::string>& list, Stage stage) {
     return std::find(list.begin(), list.end(), kStageNames[static_cast<int>(stage)]) != list.end();
 }
 
-CLI::ValidationError wrongPlane(const std::string& text) {
-    return CLI::ValidationError("--section",
-                                "wants four numbers A,B,C,D: Ax + By + Cz + D >= 0 is kept, not '" + text + "'");
+[[noreturn]] void refusePlane(const std::string& text) {
+    refuse("--section", "wants four numbers A,B,C,D: Ax + By + Cz + D >= 0 is kept, not '" + text + "'");
 }
 
 glm::dvec4 readPlane(const std::string& text) {
-    const std::vector<std::string> parts = CLI::detail::split(text, ',');
+    const std::vector<std::string> parts = splitAt(text, ',');
     glm::dvec4 plane(0.0);
-    if (parts.size() != 4) throw wrongPlane(text);
+    if (parts.size() != 4) refusePlane(text);
     for (int i = 0; i < 4; ++i)
-        if (!CLI::detail::lexical_cast(parts[static_cast<size_t>(i)], plane[i]) || !std::isfinite(plane[i]))
-            throw wrongPlane(text);
+        if (!readNumber(parts[static_cast<size_t>(i)], plane[i]) || !std::isfinite(plane[i]))
+            refusePlane(text);
     if (glm::dvec3(plane) == glm::dvec3(0.0))
-        throw CLI::ValidationError("--section", "A, B and C are all 0 in '" + text + "': that is no plane");
+        refuse("--section", "A, B and C are all 0 in '" + text + "': that is no plane");
     return plane;
 }
 
@@ -69,21 +68,21 @@ double readAbove(const std::string& option, const SettingRow<double>& row, std::
     const std::string given = text;
     if (text.size() > 2 && text.ends_with("px")) text.resize(text.size() - 2);
     double value = 0;
-    if (!CLI::detail::lexical_cast(text, value) || !(value > 0.0 && value <= row.most))
-        throw CLI::ValidationError(
+    if (!readNumber(text, value) || !(value > 0.0 && value <= row.most))
+        refuse(
             option, row.most < 1e9 ? fmt::format("wants {}, above 0 and up to {}, not '{}'", row.unit, row.most, given)
                                    : fmt::format("wants a distance above 0, not '{}'", given));
     return value;
 }
 
-void addSetting(CLI::App& verb, const SettingRow<bool>& row, QuerySettings& settings) {
+void addSetting(Command& verb, const SettingRow<bool>& row, QuerySettings& settings) {
     const bool standard = row.standard();
     verb.add_flag_callback(
             optionOf(row), [&settings, row, standard] { settings.*row.member = !standard; }, row.help)
         ->group("Culling");
 }
 
-void addSetting(CLI::App& verb, const SettingRow<PortalWindows>& row, QuerySettings& settings) {
+void addSetting(Command& verb, const SettingRow<PortalWindows>& row, QuerySettings& settings) {
     verb.add_option_function<std::string>(
             optionOf(row),
             [&settings, row](const std::string& name) {
@@ -91,33 +90,33 @@ void addSetting(CLI::App& verb, const SettingRow<PortalWindows>& row, QuerySetti
                 settings.*row.member = static_cast<PortalWindows>(found - std::begin(kWindowNames));
             },
             row.help)
-        ->check(CLI::IsMember(std::vector<std::string>(std::begin(kWindowNames), std::end(kWindowNames))))
+        ->check(OneOf(std::begin(kWindowNames), std::end(kWindowNames)))
         ->default_str(kWindowNames[static_cast<int>(row.standard())])
         ->group("Culling");
 }
 
-void addSetting(CLI::App& verb, const SettingRow<uint32_t>& row, QuerySettings& settings) {
+void addSetting(Command& verb, const SettingRow<uint32_t>& row, QuerySettings& settings) {
     verb.add_option(optionOf(row), settings.*row.member, helpOf(row))
-        ->check(CLI::Range(static_cast<uint32_t>(row.least), static_cast<uint32_t>(row.most)))
+        ->check(Range{static_cast<uint32_t>(row.least), static_cast<uint32_t>(row.most)})
         ->type_name("N")
         ->capture_default_str()
         ->group("Culling");
 }
 
-void addSetting(CLI::App& verb, const SettingRow<double>& row, QuerySettings& settings) {
+void addSetting(Command& verb, const SettingRow<double>& row, QuerySettings& settings) {
     const std::string option = optionOf(row);
     // Those that are off unless they are asked for want a number that means something.
     const bool off = row.member == &QuerySettings::max_distance || row.member == &QuerySettings::contribution;
     const bool gap = row.member == &QuerySettings::close_gaps;
     if (!off && !gap) {
         verb.add_option(option, settings.*row.member, helpOf(row))
-            ->check(CLI::Range(row.least, row.most))
+            ->check(Range{row.least, row.most})
             ->type_name("X")
             ->capture_default_str()
             ->group("Culling");
         return;
     }
-    CLI::Option* const added = verb.add_option_function<std::string>(
+    Option added = verb.add_option_function<std::string>(
         option,
         [&settings, row, option, gap](const std::string& text) {
             const bool alone = gap && (text.empty() || text == "true" || text == "{}");
@@ -138,7 +137,7 @@ std::string wordsOf(const SettingRow<Value>& row, Value value) {
 
 }  // namespace
 
-void addVisibilityOptions(CLI::App& verb, RunOptions& options) {
+void addVisibilityOptions(Command& verb, RunOptions& options) {
     VisibilityAsked& asked = options.visibility;
     verb.add_option("--visibility", asked.file, "what `sightline bake` made of this scene: its cells, portals and rows")
         ->type_name("FILE")
@@ -152,7 +151,7 @@ void addVisibilityOptions(CLI::App& verb, RunOptions& options) {
             },
             "how far a door is open: 0 is shut, 1 open [may be given many times; default: all are open]")
         ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->take_all()
         ->type_name("NAME=OPEN")
         ->group("Culling");
 }
@@ -177,12 +176,12 @@ std::string visibilityOptionsOf(const VisibilityAsked& asked) {
     return words;
 }
 
-void addClusterOptions(CLI::App& verb, RunOptions& options) {
+void addClusterOptions(Command& verb, RunOptions& options) {
     verb.add_option_function<double>(
             "--cluster-test",
             [&options](const double& test) {
                 if (!(test > 0.0) || std::isinf(test))
-                    throw CLI::ValidationError("--cluster-test", "wants a number above 0");
+                    refuse("--cluster-test", "wants a number above 0");
                 options.cluster_test = test;
             },
             "what a cluster's test costs, in triangles: for the stage clusters")
@@ -222,7 +221,7 @@ std::string clusterOptionsOf(double cluster_test) {
                : fmt::format(" --cluster-test {}", cluster_test);
 }
 
-void addSizeOptions(CLI::App& verb, RunOptions& options) {
+void addSizeOptions(Command& verb, RunOptions& options) {
     addSettingOptions(verb, options.settings, {"max_distance", "contribution"});
 }
 
@@ -245,18 +244,18 @@ Status finishSizeOptions(RunOptions& options) {
     return success();
 }
 
-void addSectionOptions(CLI::App& verb, RunOptions& options) {
+void addSectionOptions(Command& verb, RunOptions& options) {
     verb.add_option_function<std::vector<std::string>>(
             "--section",
             [&options](const std::vector<std::string>& planes) {
                 options.sections = {};
                 for (const std::string& plane : planes)
                     if (!options.sections.add(readPlane(plane)))
-                        throw CLI::ValidationError("--section", fmt::format("{} planes at most", ViewPlanes::kMost));
+                        refuse("--section", fmt::format("{} planes at most", ViewPlanes::kMost));
             },
             "cut the scene open: what is not on the side Ax + By + Cz + D >= 0 is not drawn [may be given 8 times]")
         ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->take_all()
         ->type_name("A,B,C,D")
         ->group("Culling");
 }
@@ -268,14 +267,14 @@ std::string sectionOptionsOf(const ViewPlanes& sections) {
     return words;
 }
 
-void addSettingOptions(CLI::App& verb, QuerySettings& settings, std::initializer_list<std::string_view> names) {
+void addSettingOptions(Command& verb, QuerySettings& settings, std::initializer_list<std::string_view> names) {
     for (const std::string_view name : names)
         forEachSetting([&](const auto& row) {
             if (name == row.name && row.option) addSetting(verb, row, settings);
         });
 }
 
-void addOtherSettingOptions(CLI::App& verb, QuerySettings& settings) {
+void addOtherSettingOptions(Command& verb, QuerySettings& settings) {
     // Of cells, of sizes, and of a path of frames: each stands among its like.
     constexpr std::string_view kElsewhere[] = {"windows",      "portal_depth", "max_distance",
                                                "contribution", "bins",         "hysteresis"};

@@ -6,26 +6,23 @@
 #include <string>
 #include <string_view>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/verbs/run_options.h"
 #include "sightline/base/result.h"
 #include "sightline/geom/query_settings.h"
 #include "sightline/tools/report/run/cull_run.h"
 
-namespace CLI {
-class App;
-}
-
 namespace sightline::cli {
 
 /// --visibility, --windows, --portal-depth and --door.
-void addVisibilityOptions(CLI::App& verb, RunOptions& options);
+void addVisibilityOptions(Command& verb, RunOptions& options);
 /// Checks them, after the stages are known: without a file the stages of cells are out of use. Errors are kUsage.
 Status finishVisibilityOptions(RunOptions& options);
 
 /// The options again, as a shell takes them, each with a space before it; what is default is left out.
 std::string visibilityOptionsOf(const VisibilityAsked& asked);
 
-void addClusterOptions(CLI::App& verb, RunOptions& options);
+void addClusterOptions(Command& verb, RunOptions& options);
 
 /// Reads the calibration, if one was given, into RunOptions::cluster_test.
 Status finishClusterOptions(RunOptions& options);
@@ -34,21 +31,21 @@ Status finishClusterOptions(RunOptions& options);
 std::string clusterOptionsOf(double cluster_test);
 
 /// --distance and --contribution.
-void addSizeOptions(CLI::App& verb, RunOptions& options);
+void addSizeOptions(Command& verb, RunOptions& options);
 
 /// Checks them against --use, and takes the stages out of RunOptions::settings that have nothing to do. Errors are kUsage.
 Status finishSizeOptions(RunOptions& options);
 
 /// --section, as often as there are planes.
-void addSectionOptions(CLI::App& verb, RunOptions& options);
+void addSectionOptions(Command& verb, RunOptions& options);
 
 /// " --section=A,B,C,D" of each.
 std::string sectionOptionsOf(const ViewPlanes& sections);
 
 /// Adds the options of some rows, by their names there.
-void addSettingOptions(CLI::App& verb, QuerySettings& settings, std::initializer_list<std::string_view> names);
+void addSettingOptions(Command& verb, QuerySettings& settings, std::initializer_list<std::string_view> names);
 /// Adds the options of all rows but those that verbs add by name.
-void addOtherSettingOptions(CLI::App& verb, QuerySettings& settings);
+void addOtherSettingOptions(Command& verb, QuerySettings& settings);
 
 /// What no range of a single option leaves out: numbers that are none. Errors are kUsage.
 Status checkSettings(const QuerySettings& settings);

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
@@ -31,11 +31,11 @@ struct SightOptions : RunOptions {
 };
 
 Result<glm::dvec3> readPoint(const char* option, const std::string& text) {
-    const std::vector<std::string> parts = CLI::detail::split(text, ',');
+    const std::vector<std::string> parts = splitAt(text, ',');
     glm::dvec3 point(0.0);
     bool good = parts.size() == 3;
     for (int axis = 0; axis < 3 && good; ++axis)
-        good = CLI::detail::lexical_cast(parts[static_cast<size_t>(axis)], point[axis]) && std::isfinite(point[axis]);
+        good = readNumber(parts[static_cast<size_t>(axis)], point[axis]) && std::isfinite(point[axis]);
     if (good) return point;
     return usageError(fmt::format("{} {}: not X,Y,Z of a point", option, text));
 }
@@ -131,28 +131,27 @@ Status runSight(SightOptions& options) {
 
 }  // namespace
 
-void addSight(CLI::App& tool, int& exit_code) {
-    CLI::App* verb =
-        tool.add_subcommand("sight", "whether two points see each other, the way between them, and what a region sees");
+void addSight(Command& tool, int& exit_code) {
+    Command verb = addOtherVerb(tool, "sight");
     const auto options = std::make_shared<SightOptions>();
     addSceneChoice(*verb, options->scene);
     verb->add_option("--from", options->from, "where one stands [world units]")->required()->type_name("X,Y,Z");
-    CLI::Option* to =
+    Option to =
         verb->add_option("--to", options->to, "a point: does an occluder stand in between?")->type_name("X,Y,Z");
     verb->add_option(
             "--within", options->within,
             "or so far around: which objects may be seen from somewhere in that box? [world units] (default: 0)")
-        ->check(CLI::Range(0.0, 1e9))
+        ->check(Range{0.0, 1e9})
         ->excludes(to)
         ->type_name("R");
-    CLI::Option* visibility =
+    Option visibility =
         verb->add_option(
                 "--visibility", options->visibility.file,
                 "cells and rows that `bake` made of this scene: what a region sees is answered by them, and by "
                 "which way one comes to the other point")
             ->type_name("FILE");
     verb->add_option("--narrowest", options->narrowest, "holes that are narrower are no way [world units] (default: 0)")
-        ->check(CLI::Range(0.0, 1e9))
+        ->check(Range{0.0, 1e9})
         ->needs(to)
         ->needs(visibility)
         ->type_name("W");

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <memory>
 
-#include <CLI/CLI.hpp>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/cull_path.h"
@@ -18,7 +18,7 @@ using namespace tools;
 namespace {
 
 /// The whole verb. Returns the exit code.
-Result<int> runVerify(const CLI::App& verb, RunOptions& options) {
+Result<int> runVerify(const Command& verb, RunOptions& options) {
     if (Status good = finish(verb, options); !good) return good.error();
     ApartFiles files = filesRead(options);
     files.write("--json", options.json);
@@ -45,8 +45,8 @@ Result<int> runVerify(const CLI::App& verb, RunOptions& options) {
 
 }  // namespace
 
-void addVerify(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("verify", "proof run: every cull checked by rays and an id-buffer");
+void addVerify(Command& tool, int& exit_code) {
+    Command verb = tool.add_subcommand("verify", "proof run: every cull checked by rays and an id-buffer");
     const auto options = std::make_shared<RunOptions>();
     options->repeat = 1;
     addSceneOptions(*verb, *options);

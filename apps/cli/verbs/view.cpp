@@ -12,9 +12,9 @@
 #include <string>
 #include <utility>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/tool.h"
@@ -202,7 +202,7 @@ Result<Loaded> loadBeside(viewer::Window& window, ViewOptions& options) {
     return status ? std::move(loaded) : Result<Loaded>(status.error());
 }
 
-Status runView(const CLI::App& verb, ViewOptions& options) {
+Status runView(const Command& verb, ViewOptions& options) {
     if (Status good = finish(verb, options); !good) return good;
     if (Status good = checkView(options); !good) return good;
     viewer::ViewerSettings shown;
@@ -241,8 +241,8 @@ Status runView(const CLI::App& verb, ViewOptions& options) {
 
 }  // namespace
 
-void addView(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand(kViewVerb.name, kViewVerb.about);
+void addView(Command& tool, int& exit_code) {
+    Command verb = addOtherVerb(tool, "view");
     const auto options = std::make_shared<ViewOptions>();
     addSceneOptions(*verb, *options);
     for (const char* name :
@@ -259,22 +259,22 @@ void addView(CLI::App& tool, int& exit_code) {
     verb->add_option("--object", options->object, "choose this object: its key, its name or a part of its path")
         ->type_name("OBJECT");
     verb->add_option("--colours", options->colours, "of what is visible")
-        ->check(CLI::IsMember(
+        ->check(OneOf(
             std::vector<std::string>(std::begin(viewer::kColourByNames), std::end(viewer::kColourByNames))))
         ->type_name("materials|objects|answer|levels")
         ->capture_default_str();
     verb->add_option("--culled", options->culled, "what was culled is shown as")
-        ->check(CLI::IsMember({"nothing", "boxes", "ghosts"}))
+        ->check(OneOf{"nothing", "boxes", "ghosts"})
         ->type_name("nothing|boxes|ghosts")
         ->capture_default_str();
     verb->add_flag("--x-ray", options->x_ray, "what is visible is see-through, and what was culled is shown");
     verb->add_option("--tree-level", options->tree_level, "show the boxes of a level of the hierarchy (-1: none)")
-        ->check(CLI::Range(-1, 12))
+        ->check(Range{-1, 12})
         ->type_name("N")
         ->capture_default_str();
     verb->add_option("--bsp", options->bsp,
                      "paint this part of the scene in the order of a BSP tree, the farthest first (0 to 1)")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(Range{0.0, 1.0})
         ->type_name("PART");
     verb->add_flag("--ways", options->ways, "show what other ways of culling keep of the same view");
     verb->add_flag("--clusters", options->clusters, "show the clusters of the chosen object's triangles (--object)");

@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/shell/options.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/bake_run.h"
@@ -307,8 +307,8 @@ Result<int> runVis(VisOptions& options) {
 
 }  // namespace
 
-void addVis(CLI::App& tool, int& exit_code) {
-    CLI::App* verb = tool.add_subcommand("vis", "which leaves of a Quake-family map see one another");
+void addVis(Command& tool, int& exit_code) {
+    Command verb = tool.add_subcommand("vis", "which leaves of a Quake-family map see one another");
     const auto options = std::make_shared<VisOptions>();
     verb->add_option("MAP", options->map.name,
                      "a .prt, a .bsp (which may be left out), a .bsp in a .pak or .pk3 (x.pk3:maps/y.bsp), or a .map")
@@ -327,7 +327,7 @@ void addVis(CLI::App& tool, int& exit_code) {
     verb->add_option("--farthest", options->farthest_given,
                      "sight ends so far from the eye, as at a far plane or in fog; 0: nowhere (default: _farplanedist "
                      "of the map's worldspawn, or nowhere)")
-        ->check(CLI::Range(0.0, 1e9))
+        ->check(Range{0.0, 1e9})
         ->type_name("UNITS");
     verb->add_flag("--opaque-water", options->map.water_is_opaque,
                    "nothing is seen from one kind of contents into another");
@@ -336,11 +336,11 @@ void addVis(CLI::App& tool, int& exit_code) {
     verb->add_option("--no-ambient", options->no_ambient,
                      "of a Quake map that is written: these ambient sounds are heard nowhere, separated by commas")
         ->delimiter(',')
-        ->check(CLI::IsMember({"all", "water", "sky", "slime", "lava"}))
+        ->check(OneOf{"all", "water", "sky", "slime", "lava"})
         ->type_name("LIST");
     verb->add_flag("--verify", options->verify, "hold the rows against rays through the map, and through its portals");
     verb->add_option("--rays", options->rays, "of --verify")
-        ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
+        ->check(Range{uint64_t{1}, uint64_t{1} << 40})
         ->capture_default_str();
     verb->add_option("--seed", options->seed, "of --rays: other seeds are other rays")->capture_default_str();
     verb->callback([options, &exit_code] {

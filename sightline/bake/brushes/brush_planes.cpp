@@ -10,10 +10,6 @@ namespace {
 constexpr double kSnapNormal = 1e-5;
 constexpr double kBucket = 1;  // of distances [world units]
 
-double heightOf(const glm::dvec4& plane, const glm::dvec3& point) {
-    return glm::dot(glm::dvec3(plane), point) + plane.w;
-}
-
 /// What lies behind a plane; `heights` are of the corners.
 void keepBehind(const std::vector<glm::dvec3>& outline, const std::vector<double>& heights,
                 std::vector<glm::dvec3>& kept) {

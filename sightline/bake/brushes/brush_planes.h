@@ -14,6 +14,11 @@
 
 namespace sightline::bake {
 
+/// The signed distance of a point from a plane with a unit normal.
+inline double heightOf(const glm::dvec4& plane, const glm::dvec3& point) {
+    return glm::dot(glm::dvec3(plane), point) + plane.w;
+}
+
 /// Planes that are told apart. Each is kept facing one way; a side is its number times 2, plus 1 if the side faces
 /// the other way.
 class BrushPlanes {

@@ -14,10 +14,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double heightOf(const glm::dvec4& plane, const glm::dvec3& point) {
-    return glm::dot(glm::dvec3(plane), point) + plane.w;
-}
-
 struct Brush {
     LeafContents contents = LeafContents::kSolid;
     std::vector<uint32_t> sides;

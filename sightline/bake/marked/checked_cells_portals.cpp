@@ -12,7 +12,7 @@ namespace sightline::bake {
 using namespace tools;
 namespace {
 
-constexpr uint32_t kNone = ScenePortal::kNone;
+constexpr uint32_t kNoDoor = ScenePortal::kNone;
 
 double heightOf(const glm::dvec4& plane, const glm::dvec3& point) {
     return glm::dot(glm::dvec3(plane), point) + plane.w;
@@ -147,7 +147,7 @@ bool CheckedCells::lies(uint32_t index, Lying& lying) {
 
 uint32_t CheckedCells::doorOf(uint32_t index, const Lying& lying) {
     const ScenePortal& portal = scene_.portals[index];
-    if (portal.door == kNone && portal.door_name.empty()) return kNone;
+    if (portal.door == kNoDoor && portal.door_name.empty()) return kNoDoor;
     if (portal.door < scene_.objects.size()) {
         const SceneObject& leaf = scene_.objects[portal.door];
         const Box3d box = transformBox(scene_.meshes[leaf.mesh].bounds, leaf.transform);
@@ -166,7 +166,7 @@ uint32_t CheckedCells::doorOf(uint32_t index, const Lying& lying) {
     finding.cells[1] = portal.cells[1];
     finding.place = lying.middle;
     report(std::move(finding));
-    return kNone;
+    return kNoDoor;
 }
 
 FlatPiece CheckedCells::addGate(uint32_t a, int face, uint32_t b, const FlatPiece& piece) {
@@ -274,14 +274,14 @@ bool CheckedCells::placePortal(uint32_t index, const Lying& lying) {
         whole.outline = own.frame.from(own.outline);
         join(index, whole, cell, face, passage, end, shut_by);
     };
-    if (door != kNone && least_a > thick_ && least_b > thick_) {
+    if (door != kNoDoor && least_a > thick_ && least_b > thick_) {
         // The leaf stands within the wall: it is seen from both sides when it is shut.
         const glm::dvec4 middle(lying.normal, -glm::dot(lying.normal, lying.middle));
         const uint32_t first = addPassage(index, lying, plane_a, -middle);
         const uint32_t second = addPassage(index, lying, middle, plane_b);
         if (first == kOutside || second == kOutside) return false;
-        joinEnd(a, lying.face[0], first, faceOf(first, 2), kNone);
-        joinEnd(b, lying.face[1], second, faceOf(second, 1), kNone);
+        joinEnd(a, lying.face[0], first, faceOf(first, 2), kNoDoor);
+        joinEnd(b, lying.face[1], second, faceOf(second, 1), kNoDoor);
         const int near_end = faceOf(first, 1), far_end = faceOf(second, 2);
         if (near_end < 0 || far_end < 0) return false;
         const CheckedFace& own = cells_[first].faces[static_cast<size_t>(near_end)];
@@ -293,8 +293,8 @@ bool CheckedCells::placePortal(uint32_t index, const Lying& lying) {
     const uint32_t passage = addPassage(index, lying, plane_a, plane_b);
     if (passage == kOutside) return false;
     const bool at_a = std::abs(out_a) <= std::abs(out_b);
-    joinEnd(a, lying.face[0], passage, faceOf(passage, 2), at_a ? door : kNone);
-    joinEnd(b, lying.face[1], passage, faceOf(passage, 1), at_a ? kNone : door);
+    joinEnd(a, lying.face[0], passage, faceOf(passage, 2), at_a ? door : kNoDoor);
+    joinEnd(b, lying.face[1], passage, faceOf(passage, 1), at_a ? kNoDoor : door);
     return true;
 }
 

@@ -62,9 +62,9 @@ FlatPiece hullOfBoth(const FlatPiece& a, const FlatPiece& b) {
     return hullOf(std::move(points));
 }
 
-double areaOf(const std::vector<FlatPiece>& pieces) {
+double areaOfAll(const std::vector<FlatPiece>& pieces) {
     double sum = 0;
-    for (const FlatPiece& piece : pieces) sum += sightline::bake::areaOf(piece);
+    for (const FlatPiece& piece : pieces) sum += areaOf(piece);
     return sum;
 }
 
@@ -83,10 +83,10 @@ void joinPairs(std::vector<FlatPiece>& pieces, double touching) {
         for (size_t i = 0; i < pieces.size() && !again; ++i)
             for (size_t k = i + 1; k < pieces.size() && !again; ++k) {
                 FlatPiece hull = hullOfBoth(pieces[i], pieces[k]);
-                const double both = sightline::bake::areaOf(pieces[i]) + sightline::bake::areaOf(pieces[k]);
+                const double both = areaOf(pieces[i]) + areaOf(pieces[k]);
                 const FlatBox box = boxOf(hull);
                 const double room = 1e-9 * both + touching * 1e-3 * glm::length(box.max - box.min);
-                if (sightline::bake::areaOf(hull) > both + room) continue;
+                if (areaOf(hull) > both + room) continue;
                 pieces[i] = std::move(hull);
                 pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(k));
                 again = true;
@@ -183,7 +183,7 @@ void FlatRest::take(const FlatPiece& taken) {
             glm::dvec3 line;
             if (!lineThrough(taken[i], taken[(i + 1) % taken.size()], line)) continue;
             FlatPiece out = clipPiece(rest, -line);
-            if (!out.empty() && sightline::bake::areaOf(out) > 0) next_.push_back(std::move(out));
+            if (!out.empty() && areaOf(out) > 0) next_.push_back(std::move(out));
             rest = clipPiece(rest, line);
         }
         if (!rest.empty()) continue;
@@ -227,7 +227,7 @@ std::vector<FlatHole> holesOf(const std::vector<FlatPiece>& pieces, double touch
         holes[hole_of[group[i]]].pieces.push_back(pieces[i]);
     }
     for (FlatHole& hole : holes) {
-        hole.area = areaOf(hole.pieces);
+        hole.area = areaOfAll(hole.pieces);
         joinPairs(hole.pieces, touching);
         all += hole.pieces.size();
     }
@@ -235,7 +235,7 @@ std::vector<FlatHole> holesOf(const std::vector<FlatPiece>& pieces, double touch
         const size_t count = hole.pieces.size();
         if (count == 1) continue;
         FlatPiece hull = hullOfAll(hole.pieces);
-        const bool nearly = sightline::bake::areaOf(hull) <= hole.area * 1.01;
+        const bool nearly = areaOf(hull) <= hole.area * 1.01;
         if (all <= most && count <= most && !nearly) continue;
         hole.merged = !nearly;
         hole.pieces.assign(1, std::move(hull));

@@ -10,7 +10,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/base/result.h"
 
 namespace sightline::bake {

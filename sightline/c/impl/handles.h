@@ -16,18 +16,16 @@ namespace sightline::c {
 class HookMemory final : public Memory {
 public:
     explicit HookMemory(const slAllocator& hook) : hook_(hook) {}
-
-private:
-    void* do_allocate(size_t bytes, size_t alignment) override {
+    void* allocate(size_t bytes, size_t alignment) override {
         return hook_.allocate ? hook_.allocate(hook_.user, bytes, alignment)
                               : defaultMemory()->allocate(bytes, alignment);
     }
-    void do_deallocate(void* memory, size_t bytes, size_t alignment) override {
+    void deallocate(void* memory, size_t bytes, size_t alignment) override {
         if (hook_.release) return hook_.release(hook_.user, memory, bytes, alignment);
         defaultMemory()->deallocate(memory, bytes, alignment);
     }
-    bool do_is_equal(const Memory& other) const noexcept override { return this == &other; }
 
+private:
     const slAllocator hook_;
 };
 

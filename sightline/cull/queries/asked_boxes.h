@@ -8,7 +8,7 @@
 
 #include <glm/glm.hpp>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/geom/view.h"
 #include "sightline/math/box.h"
 #include "sightline/tree/world_bvh.h"

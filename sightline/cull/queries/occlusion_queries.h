@@ -10,7 +10,7 @@
 #include <optional>
 #include <span>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/base/random.h"
 #include "sightline/cull/queries/asked_boxes.h"
 #include "sightline/cull/queries/query_device.h"

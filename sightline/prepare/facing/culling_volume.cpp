@@ -11,8 +11,6 @@
 namespace sightline {
 namespace {
 
-double sumOf(const glm::dvec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
-
 /// The largest n * q over the box of normals.
 double highest(const CullingVolume& volume, const glm::dvec3& q) {
     double sum = 0;
@@ -36,7 +34,7 @@ CullingVolume cullingVolumeAt(std::span<const Facet> facets, const glm::vec3& or
         least = glm::min(least, facet.normal);
         back = std::min(back, at);
         front = std::max(front, at);
-        reach = std::max(reach, sumOf(from));
+        reach = std::max(reach, taxicabLength(from));
     }
     if (facets.empty()) return volume;
     const double error = 2.0 * kNormalError * reach;
@@ -103,7 +101,7 @@ CullingVolume joinVolumes(const CullingVolume& a, const CullingVolume& b, const 
     for (const CullingVolume* one : {&a, &b}) {
         // n * (p - c') = n * (p - c) - n * (c' - c), whatever the normal.
         const glm::dvec3 moved = glm::dvec3(origin) - glm::dvec3(one->origin);
-        const double error = 0x1p-48 * sumOf(moved);
+        const double error = 0x1p-48 * taxicabLength(moved);
         back = std::min(back, one->back - highest(*one, moved) - error);
         front = std::max(front, one->front + highest(*one, -moved) + error);
     }

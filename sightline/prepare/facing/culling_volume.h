@@ -4,6 +4,7 @@
 // Andreas Johannsen, Michael Carter. Clustered Backface Culling. 1998.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include "sightline/prepare/facing/facets.h"
 
 namespace sightline {
+
+inline double taxicabLength(const glm::dvec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
 /// The volume around a given origin. O(facets). One without a normal makes it one that never culls.
 CullingVolume cullingVolumeAt(std::span<const Facet> facets, const glm::vec3& origin);

@@ -14,8 +14,6 @@
 namespace sightline {
 namespace {
 
-double sumOf(const glm::dvec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
-
 /// Sets a record's numbers in rows.
 struct Rows {
     Array<float>& numbers;
@@ -88,7 +86,7 @@ FacingClusters describeClusters(const MeshView& mesh, std::span<const uint32_t> 
     if (settings.cones) out.cones.assign(FacingClusters::kConeRows * out.stride, 0.0f);
     out.mask_steps = settings.mask_steps;
     const glm::dvec3 half = 0.5 * (box.max - box.min);
-    if (!triangles.empty()) out.reach = sumOf(half) * (1.0 + 1e-12);
+    if (!triangles.empty()) out.reach = taxicabLength(half) * (1.0 + 1e-12);
     const double longest = std::max({half.x, half.y, half.z});
     if (longest > 0) out.mask_shape = glm::max(half / longest, glm::dvec3(1.0 / 32));
     out.first.push_back(0);
@@ -100,7 +98,7 @@ FacingClusters describeClusters(const MeshView& mesh, std::span<const uint32_t> 
         if (settings.turned) setTurned({out.turned, out.stride, i}, makeTurnedBox(facets));
         if (settings.cones) {
             FacingCone cone = makeFacingCone(facets);
-            if (sumOf(glm::dvec3(cone.apex)) > 4.0 * out.reach) cone = {};  // what is so far away rounds too coarsely
+            if (taxicabLength(glm::dvec3(cone.apex)) > 4.0 * out.reach) cone = {};  // what is so far away rounds too coarsely
             setCone({out.cones, out.stride, i}, cone);
         }
         if (settings.mask_steps) {

@@ -10,14 +10,14 @@
 namespace sightline {
 namespace {
 
-constexpr uint32_t kNone = ~0u;
+constexpr uint32_t kNoRun = ~0u;
 
 /// A run of clusters that may become a node.
 struct Run {
     uint32_t first, count;
     CullingVolume volume;
-    uint32_t left = kNone, right = kNone;    ///< what it was made of; of no node: none
-    uint32_t before = kNone, after = kNone;  ///< in the row of those that are no part of another one
+    uint32_t left = kNoRun, right = kNoRun;    ///< what it was made of; of no node: none
+    uint32_t before = kNoRun, after = kNoRun;  ///< in the row of those that are no part of another one
     bool taken = false;
 };
 
@@ -48,7 +48,7 @@ public:
         const uint32_t count = static_cast<uint32_t>(clusters_.count());
         for (uint32_t i = 0; i < count; ++i)
             runs_.push_back(
-                {i, 1, clusters_.volume(i), kNone, kNone, i ? i - 1 : kNone, i + 1 < count ? i + 1 : kNone});
+                {i, 1, clusters_.volume(i), kNoRun, kNoRun, i ? i - 1 : kNoRun, i + 1 < count ? i + 1 : kNoRun});
         for (uint32_t i = 0; i + 1 < count; ++i) consider(i, i + 1);
         while (!queue_.empty()) {
             const Pair pair = queue_.top();
@@ -56,8 +56,8 @@ public:
             if (!runs_[pair.a].taken && !runs_[pair.b].taken) join(pair.a, pair.b);
         }
         for (uint32_t i = 0; i < runs_.size(); ++i)
-            if (!runs_[i].taken && runs_[i].before == kNone)
-                for (uint32_t at = i; at != kNone; at = runs_[at].after) write(tree, at);
+            if (!runs_[i].taken && runs_[i].before == kNoRun)
+                for (uint32_t at = i; at != kNoRun; at = runs_[at].after) write(tree, at);
     }
 
 private:
@@ -83,8 +83,8 @@ private:
         run.volume = volumeOf(run.first, run.count);
         runs_[a].taken = runs_[b].taken = true;
         runs_.push_back(run);
-        if (run.before != kNone) runs_[run.before].after = made, consider(run.before, made);
-        if (run.after != kNone) runs_[run.after].before = made, consider(made, run.after);
+        if (run.before != kNoRun) runs_[run.before].after = made, consider(run.before, made);
+        if (run.after != kNoRun) runs_[run.after].before = made, consider(made, run.after);
     }
 
     void write(FacingTree& tree, uint32_t at) const {
@@ -92,7 +92,7 @@ private:
         while (!todo.empty()) {
             const Run& run = runs_[todo.back()];
             todo.pop_back();
-            if (run.left == kNone) continue;
+            if (run.left == kNoRun) continue;
             tree.nodes.push_back({run.volume, run.first, run.count, 0});
             todo.push_back(run.right);
             todo.push_back(run.left);

@@ -19,7 +19,7 @@
 namespace sightline {
 namespace {
 
-constexpr uint32_t kNone = ~0u;
+constexpr uint32_t kNoPlane = ~0u;
 
 /// A facet as the merging reads it: its plane.
 struct Plane {
@@ -33,8 +33,8 @@ struct Cluster {
     glm::dvec3 most, least;  ///< of the normals
     Box3d box;
     double probability = 0;
-    uint32_t count = 0, first = kNone, last = kNone;  ///< planes in a list
-    uint32_t parent = kNone;                          ///< the cluster that it has become part of
+    uint32_t count = 0, first = kNoPlane, last = kNoPlane;  ///< planes in a list
+    uint32_t parent = kNoPlane;                          ///< the cluster that it has become part of
     std::vector<uint32_t> neighbours;
 };
 
@@ -79,7 +79,7 @@ private:
             return;
         }
         const uint32_t number = static_cast<uint32_t>(planes_.size());
-        planes_.push_back({facet.normal, glm::dot(facet.normal, facet.corner[0]), t, kNone});
+        planes_.push_back({facet.normal, glm::dot(facet.normal, facet.corner[0]), t, kNoPlane});
         Cluster& cluster = clusters_.emplace_back();
         cluster.most = cluster.least = facet.normal;
         for (const glm::dvec3& p : facet.corner) cluster.box.grow(p);
@@ -105,7 +105,7 @@ private:
         double back = 1e300;
         for (const Cluster* one : {&a, b}) {
             if (!one) continue;
-            for (uint32_t i = one->first; i != kNone; i = planes_[i].next)
+            for (uint32_t i = one->first; i != kNoPlane; i = planes_[i].next)
                 back = std::min(back, planes_[i].offset - glm::dot(planes_[i].normal, origin));
         }
         volume.back = static_cast<float>(back);
@@ -172,7 +172,7 @@ private:
         while (!queue_.empty()) {
             const Candidate next = queue_.top();
             queue_.pop();
-            if (clusters_[next.a].parent != kNone || clusters_[next.b].parent != kNone) continue;
+            if (clusters_[next.a].parent != kNoPlane || clusters_[next.b].parent != kNoPlane) continue;
             join(next.a, next.b);
         }
     }
@@ -210,9 +210,9 @@ private:
     }
 
     uint32_t rootOf(uint32_t cluster) {
-        while (clusters_[cluster].parent != kNone) {
+        while (clusters_[cluster].parent != kNoPlane) {
             const uint32_t up = clusters_[cluster].parent;
-            if (clusters_[up].parent != kNone) clusters_[cluster].parent = clusters_[up].parent;
+            if (clusters_[up].parent != kNoPlane) clusters_[cluster].parent = clusters_[up].parent;
             cluster = up;
         }
         return cluster;
@@ -220,7 +220,7 @@ private:
 
     size_t alive() const {
         size_t count = 0;
-        for (const Cluster& cluster : clusters_) count += cluster.parent == kNone;
+        for (const Cluster& cluster : clusters_) count += cluster.parent == kNoPlane;
         return count;
     }
 
@@ -234,7 +234,7 @@ private:
         const glm::dvec3 size = eyes_.max - eyes_.min;
         for (uint32_t i = 0; i < clusters_.size(); ++i) {
             const Cluster& cluster = clusters_[i];
-            if (cluster.parent != kNone) continue;
+            if (cluster.parent != kNoPlane) continue;
             const glm::dvec3 ahead = cluster.most + cluster.least, center = cluster.box.center();
             const uint64_t face = ahead == glm::dvec3(0.0) ? 24 : static_cast<uint64_t>(normalClass(ahead, 2));
             uint64_t key = 0;
@@ -261,7 +261,7 @@ private:
             // One that saves less than its share of a test where it fills up a full cluster is none.
             const double fill = static_cast<double>(cluster.count) / limits_.triangles;
             const bool worth = cluster.probability * cluster.count >= cost_.test * (1.0 - fill);
-            for (uint32_t i = cluster.first; i != kNone; i = planes_[i].next)
+            for (uint32_t i = cluster.first; i != kNoPlane; i = planes_[i].next)
                 (worth ? out.triangles : loose).push_back(planes_[i].triangle);
             if (!worth) continue;
             out.sizes.push_back(cluster.count);

@@ -12,7 +12,7 @@
 namespace sightline {
 namespace {
 
-constexpr size_t kMostNear = 4096;  // triangles near one: beyond that the solid is given up
+constexpr size_t kMostNearSolid = 4096;  // triangles near one: beyond that the solid is given up
 
 struct HalfSide {
     uint32_t low, high, triangle;
@@ -113,7 +113,7 @@ private:
                 for (int axis = 0; axis < 3; ++axis)
                     if (beside.min[axis] > box.max[axis] || beside.max[axis] < box.min[axis]) return true;
                 const glm::vec3 b[3] = {at(other, 0), at(other, 1), at(other, 2)};
-                apart = ++met < kMostNear && meetInCornersOnly(a, b);
+                apart = ++met < kMostNearSolid && meetInCornersOnly(a, b);
                 return apart;
             });
             if (!apart) return false;

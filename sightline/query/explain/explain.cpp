@@ -308,7 +308,7 @@ void Explainer::Impl::tryWithout(uint32_t item, OcclusionReason& out) {
     Array<uint32_t> gone(memory);
     for (const Hider& hider : out.hiders) gone.push_back(find(hider.id));
     std::sort(gone.begin(), gone.end());
-    std::erase_if(items, [&](uint32_t i) { return std::binary_search(gone.begin(), gone.end(), i); });
+    erase_if(items, [&](uint32_t i) { return std::binary_search(gone.begin(), gone.end(), i); });
     const auto others = detail::stateOfSome(state, items, memory);
     if (frame.candidates) left.takeSome(*frame.candidates, items, *others);
     if (frame.candidates) narrowTo(&left);

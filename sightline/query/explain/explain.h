@@ -7,7 +7,7 @@
 #include <limits>
 #include <span>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/frame/size_reason.h"
 #include "sightline/geom/image_rect.h"
 #include "sightline/geom/lod.h"

@@ -6,7 +6,7 @@
 
 #include <glm/glm.hpp>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/geom/query_settings.h"
 #include "sightline/geom/view.h"
 #include "sightline/query/explain/hider.h"

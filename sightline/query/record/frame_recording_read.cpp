@@ -127,7 +127,7 @@ private:
 
     void readForms() {
         ByteCursor& from = sections_[kForms];
-        Memory* const memory = out_.forms.get_allocator().resource();
+        Memory* const memory = out_.forms.memory();
         out_.forms.reserve(records(kForms));
         while (good() && from.left() > 0) {
             const uint64_t at = from.at(), count = from.take<uint32_t>();

@@ -79,7 +79,9 @@ private:
     const detail::TraversalState& state_;
     const detail::TraversalRecord& record_;
     Array<const Occluder*> met_;
-    std::pmr::unordered_map<const Occluder*, uint32_t> index_;  ///< into met_
+    using Index = std::unordered_map<const Occluder*, uint32_t, std::hash<const Occluder*>, std::equal_to<>,
+                                     MemoryAllocator<std::pair<const Occluder* const, uint32_t>>>;
+    Index index_;  ///< into met_
     Array<Drawn> drawn_;
     Array<uint32_t> first_;  ///< per occluder of the recording: into drawn_
 };

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/base/result.h"
 #include "sightline/buffer/tile_log.h"
 #include "sightline/geom/occluder.h"

@@ -11,7 +11,7 @@
 
 #include <glm/glm.hpp>
 
-#include "sightline/base/memory.h"
+#include "sightline/base/array.h"
 #include "sightline/cull/hierarchy.h"
 #include "sightline/math/box.h"
 #include "sightline/tree/bvh.h"

@@ -263,8 +263,8 @@ Result<Scene> loadForeign(const std::string& file, std::string_view suffix, cons
     const std::string worker = findImportWorker(settings);
     if (worker.empty())
         return failed(
-            fmt::format("this build does not read .{} files ({} is missing: install libassimp-dev and build "
-                        "again)",
+            fmt::format("{1}, which reads .{0} files, is not beside this program: `./run.sh info FILE.{0}` builds it, "
+                        "if libassimp-dev is installed",
                         suffix, kProgram));
     WorkerProcess process;
     if (Status started = process.start(commandOf(worker, file, suffix, settings), settings.time_limit); !started)

@@ -1,6 +1,6 @@
 // The tree of names of a scene as a hierarchy of bounds: what a scene's author put together is culled together.
 // SPDX-License-Identifier: MIT
-#include "sightline/tools/load/scene_tree.h"
+#include "bench/scene_tree.h"
 
 #include <algorithm>
 

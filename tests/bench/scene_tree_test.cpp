@@ -1,6 +1,6 @@
 // The hierarchy of a scene's names: every object in its place, whatever the names look like.
 // SPDX-License-Identifier: MIT
-#include "sightline/tools/load/scene_tree.h"
+#include "bench/scene_tree.h"
 
 #include <gtest/gtest.h>
 
