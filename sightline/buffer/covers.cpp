@@ -6,10 +6,12 @@
 #include <bit>
 #include <cmath>
 
+#include "sightline/base/ablate.h"
+
 namespace sightline {
 
 void noteCover(DepthTiles& tiles, uint32_t tile, uint64_t mask, const PlaneSet& planes) {
-    if (planes.empty()) return;
+    if (detail::kAblate.planes || planes.empty()) return;
     TileCover* const covers = tiles.covers.data() + DepthTiles::kCovers * size_t{tile};
     uint8_t& count = tiles.cover_count[tile];
     TileCover* const end = covers + count;

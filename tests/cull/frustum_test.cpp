@@ -14,10 +14,12 @@ namespace sightline {
 namespace {
 
 /// A point inside the view volume by the definition of clip space, in double, found by unprojecting.
-glm::dvec3 pointInside(Random& random, const View& view) {
+/// @param jittered  or beside it, where a jittered image shows it
+glm::dvec3 pointInside(Random& random, const View& view, bool jittered = false) {
     const glm::dmat4 inverse = glm::inverse(view.projection);
+    const double shift = jittered ? 2 * view.jitter : 0, x = 1 + shift / view.width, y = 1 + shift / view.height;
     const glm::dvec4 p =
-        inverse * glm::dvec4(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 0.999), 1.0);
+        inverse * glm::dvec4(random.uniform(-x, x), random.uniform(-y, y), random.uniform(-1, 0.999), 1.0);
     const glm::dvec3 in_eye = glm::dvec3(p) / p.w;
     return eyePosition(view) + glm::transpose(glm::dmat3(view.view)) * in_eye;
 }
@@ -45,7 +47,7 @@ TEST(Frustum, KeepsEveryBoxThatHoldsAPointOfTheView) {
             Box3d boxes[8];
             for (Box3d& box : boxes) {
                 // The box touches the point with its corner, edge or face: as near to being outside as can be.
-                const glm::dvec3 p = pointInside(random, view);
+                const glm::dvec3 p = pointInside(random, view, far == 0.0);
                 box = {p, p};
                 for (int axis = 0; axis < 3; ++axis) {
                     const double reach = random.uniform(0, 20);

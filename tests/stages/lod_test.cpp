@@ -87,7 +87,7 @@ View movedBy(const View& view, const glm::dvec3& step) {
     return moved;
 }
 
-constexpr uint64_t kLodWorlds = rounds(6, 2);
+const uint64_t kLodWorlds = rounds(6, 2);
 
 int countUnsound(bool lie, const QuerySettings& settings, uint64_t& coarse) {
     int unsound = 0;

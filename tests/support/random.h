@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -14,14 +16,21 @@
 
 namespace sightline::test {
 
+/// A number of repetitions times SIGHTLINE_TEST_ROUNDS, a factor that tools/mutate --rounds sets; at least one.
+inline uint64_t scaledRounds(uint64_t count) {
+    const char* share = std::getenv("SIGHTLINE_TEST_ROUNDS");
+    if (!share || !*share) return count;
+    return static_cast<uint64_t>(std::max(1.0, std::round(static_cast<double>(count) * std::strtod(share, nullptr))));
+}
+
 /// What takes a few seconds, or with SIGHTLINE_LONG_TESTS=1 as many as the promise says.
 inline size_t casesToMake(size_t shorter, size_t longer = 10000000) {
     const char* wish = std::getenv("SIGHTLINE_LONG_TESTS");
-    return wish && *wish && *wish != '0' ? longer : shorter;
+    return wish && *wish && *wish != '0' ? longer : scaledRounds(shorter);
 }
 
 /// How often a test repeats. What sanitizers look for shows in few rounds, and they cost five to a hundred times as much.
-constexpr uint64_t rounds(uint64_t whole, uint64_t sanitized) { return kSanitized ? sanitized : whole; }
+inline uint64_t rounds(uint64_t whole, uint64_t sanitized) { return scaledRounds(kSanitized ? sanitized : whole); }
 
 /// Each coordinate is between -size and size of its axis.
 inline glm::dvec3 randomVector(Random& random, const glm::dvec3& size) {

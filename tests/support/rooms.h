@@ -15,7 +15,8 @@ struct Rooms : MadeWorld {
     static constexpr int kSide = 4;
     std::vector<size_t> walls, things, mounds;
 
-    explicit Rooms(uint64_t seed) {
+    /// @param single_sided  no face of a mound is drawn from behind; else some are
+    explicit Rooms(uint64_t seed, bool single_sided = false) {
         Random random(seed);
         shapes = true;
         const uint32_t columns = seed % 2 ? 6 : 21;  // one body, or many clusters
@@ -25,7 +26,10 @@ struct Rooms : MadeWorld {
                 other.positions.push_back({u, 16 * u * (1 - u) * v * (1 - v), 1 - v});
             }
         other.addGrid(columns, columns);
-        for (size_t t = 0; t < other.indices.size() / 3; ++t) other_double_sided.push_back(random.below(4) == 0);
+        for (size_t t = 0; t < other.indices.size() / 3; ++t) {
+            const bool both = random.below(4) == 0;
+            other_double_sided.push_back(both && !single_sided);
+        }
         const OccluderId mound = world.addOccluder(prepareOccluder(other.view(), {}, other_double_sided));
         const auto wall = [&](double x0, double z0, double x1, double z1, double low, double high) {
             walls.push_back(transforms.size());

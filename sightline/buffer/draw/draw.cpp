@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/ablate.h"
 #include "sightline/buffer/draw/loose.h"
 
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
@@ -135,6 +136,7 @@ Corners cornersBefore(const ClusterDraw& c, const Windings& windings, int p) {
 /// @returns false if they do not
 bool drawAsOutline(const ClusterDraw& c, const Windings& windings, const OpenEdges& open, int8_t turn, uint32_t source,
                    bool& seams) {
+    if (detail::kAblate.outlines) return false;
     JoinedOutline outline;
     if ((turn > 0 ? windings.forward : windings.backward) > ConvexDepth::kMost || !outline.gather(open)) return false;
     FrontPlanes planes;
@@ -207,7 +209,7 @@ bool drawJoinedKernel(DepthTiles& tiles, const DrawnCluster& cluster, const Scre
         keepDrawn(c, turn, first, projected.regular);
     };
     const int8_t back = static_cast<int8_t>(-c.front);
-    if (projected.regular && isDense(c, projected.extent)) {
+    if (!detail::kAblate.dense && projected.regular && isDense(c, projected.extent)) {
         DenseDraw dense(c, projected);
         if (dense.begin()) {
             drawTurn(c.front, [&](int8_t turn, uint32_t name) { return dense.draw(turn, name, false); });

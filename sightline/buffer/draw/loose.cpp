@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/base/ablate.h"
+
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sightline/buffer/draw/loose.cpp"
@@ -179,7 +181,7 @@ void drawLooseKernel(DepthTiles& tiles, const DrawnCluster& cluster, const Scree
     const uint32_t polygons = source.polygon_count + source.ring_count;
     const bool panels = polygons <= kPanels || source.ring_count > 0;
     SmallPolygons small;
-    const bool together = !panels && polygons <= OccluderCluster::kMaxLoose;
+    const bool together = !detail::kAblate.batch && !panels && polygons <= OccluderCluster::kMaxLoose;
     if (together) {
         drawSmall(tiles, cluster, object, front < 0, small);
         if (small.large_count == 0) return;

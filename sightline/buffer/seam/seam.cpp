@@ -13,6 +13,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/ablate.h"
 #include "sightline/buffer/covers.h"
 #include "sightline/buffer/seam/seam.h"
 #include "sightline/buffer/seam/union.h"
@@ -292,9 +293,10 @@ public:
 
     /// The nearness of what covers the pixel; -infinity if it is open.
     double resolve() {
+        if (detail::kAblate.unite) return joinAll();
         bool all = true;
         const double nearness = uniteAll(all);
-        return all ? nearness : std::max(nearness, joinAll());
+        return all || detail::kAblate.joiner ? nearness : std::max(nearness, joinAll());
     }
 
 private:
@@ -399,6 +401,7 @@ bool resolveSeam(DepthTiles& tiles, uint32_t tile, int bit, float wanted) {
     const float before = claims[bit];
     if (before > wanted) return true;
     if (tiles.seams[tile] == DepthTiles::kNone || !(tiles.seam_mask[tile] & ~tiles.tried[tile] & pixel)) return false;
+    if (detail::kAblate.seams) return false;
     PixelSeam seam(tiles, tile, bit, before);
     const Corners corners = seam.gather(wanted);
     if (corners == Corners::kOpenNow) return false;

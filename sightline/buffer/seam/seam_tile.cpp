@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/ablate.h"
 #include "sightline/buffer/covers.h"
 #include "sightline/buffer/seam/seam.h"
 
@@ -112,7 +113,7 @@ uint64_t polygonsIn(const float* boxes, uint32_t count, const SeamRect& rect) {
 void pairSeams(DepthTiles& tiles, uint32_t tile) {
     constexpr int kMost = 96;       // work cap: of more polygons the last drawn are paired
     constexpr float kLeast = 0.5f;  // [pixels]: what smaller ones may cover between them is left to resolveSeam()
-    if (tiles.seams[tile] == DepthTiles::kNone) return;
+    if (detail::kAblate.seams || detail::kAblate.pairs || tiles.seams[tile] == DepthTiles::kNone) return;
     const SeamChunk& last = tiles.chunks[tiles.seams[tile]];
     const uint32_t all = last.before + last.count, known = tiles.paired[tile];
     if (known == all) return;
@@ -156,6 +157,7 @@ void pairSeams(DepthTiles& tiles, uint32_t tile) {
 /// there; of those that lie in the next tile nothing is known. One polygon alone covers what it covers when it is drawn,
 /// and no more, but where gaps are closed: it is drawn a little smaller there.
 SeamMasks lookAtSeams(DepthTiles& tiles, uint32_t tile, uint64_t pixels, float wanted) {
+    if (detail::kAblate.masks) return {0, ~uint64_t{0}};
     constexpr uint64_t kFirst = 0x0101010101010101ull, kLast = kFirst << 7, kLow = 0xff, kHigh = kLow << 56;
     const uint64_t covered = tiles.coveredBits(tile);
     uint64_t once = 0, twice = 0, more = 0, corners[4] = {};
