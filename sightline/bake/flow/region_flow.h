@@ -70,7 +70,7 @@ public:
     /// Whether a plane of edges() is crossed by all segments from its region to another window, too.
     static bool divides(const glm::dvec4& plane, std::span<const glm::dvec3> window, double slack);
 
-    static constexpr size_t kMostPassed = 12;  ///< that are handed on; more hardly cut more (docs/measurements.md)
+    static constexpr size_t kMostPassed = 12;  ///< that are handed on; more hardly cut more
 
 private:
     static constexpr size_t kMost = 16;
