@@ -26,7 +26,7 @@ Homogeneous project(const Screen& object, double x, double y, double z) {
 
 /// Corners of a polygon on the screen.
 struct Corners {
-    static constexpr int kMost = 5;
+    static constexpr int kMost = 6;  // the near plane may cross all four sides of a quadrangle that is not quite flat
     double x[kMost], y[kMost], d[kMost];
     int count = 0;
 };
