@@ -37,6 +37,9 @@ function(sightline_settings target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -ffp-contract=off
     $<$<BOOL:${SIGHTLINE_WERROR}>:-Werror>)
+  if(SIGHTLINE_DEBUG_ASSERTS)
+    target_compile_definitions(${target} PRIVATE SIGHTLINE_DEBUG_ASSERTS)
+  endif()
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)")
     # Processors that have SSSE3 and not SSE4 are older than 2008. Each set costs a fifth of what kernels take to compile.
     if(SIGHTLINE_FEW_TARGETS)

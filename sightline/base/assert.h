@@ -19,3 +19,11 @@ void setAssertHook(AssertHook hook);
 /// Holds in every build: a broken invariant stops the program instead of hiding something visible.
 #define SIGHTLINE_ASSERT(expression) \
     ((expression) ? (void)0 : ::sightline::assertFailed(#expression, __FILE__, __LINE__))
+
+/// A precondition or an invariant that is checked in debug builds alone, so that it may stand in hot code. Elsewhere the
+/// expression is compiled and never evaluated: it must have no side effect.
+#ifdef SIGHTLINE_DEBUG_ASSERTS
+#define SIGHTLINE_DEBUG_ASSERT(expression) SIGHTLINE_ASSERT(expression)
+#else
+#define SIGHTLINE_DEBUG_ASSERT(expression) ((void)sizeof(!(expression)))
+#endif

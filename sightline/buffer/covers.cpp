@@ -7,13 +7,16 @@
 #include <cmath>
 
 #include "sightline/base/ablate.h"
+#include "sightline/base/assert.h"
 
 namespace sightline {
 
 void noteCover(DepthTiles& tiles, uint32_t tile, uint64_t mask, const PlaneSet& planes) {
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.base.size() && mask != 0);
     if (detail::kAblate.planes || planes.empty()) return;
     TileCover* const covers = tiles.covers.data() + DepthTiles::kCovers * size_t{tile};
     uint8_t& count = tiles.cover_count[tile];
+    SIGHTLINE_DEBUG_ASSERT(count <= DepthTiles::kCovers);
     TileCover* const end = covers + count;
     if (TileCover* const same = std::find_if(covers, end, [&](const TileCover& c) { return c.planes == planes; });
         same != end) {
@@ -32,6 +35,7 @@ void noteCover(DepthTiles& tiles, uint32_t tile, uint64_t mask, const PlaneSet& 
 
 uint32_t findPlane(const DepthTiles& tiles, const double* x, const double* y, const double* d, int count, double error,
                    size_t first, size_t most) {
+    SIGHTLINE_DEBUG_ASSERT(count >= 3 && error >= 0);
     const size_t end = tiles.planes.size(), stop = std::max(first, end - std::min(end, most));
     for (size_t i = end; i-- > stop;) {
         const BufferPlane& plane = tiles.planes[i];
@@ -45,6 +49,8 @@ uint32_t findPlane(const DepthTiles& tiles, const double* x, const double* y, co
 }
 
 uint64_t openToBox(const DepthTiles& tiles, uint32_t tile, uint64_t open, const OccludeeBox& box) {
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.base.size() && open != 0);
+    SIGHTLINE_DEBUG_ASSERT(tiles.cover_count[tile] <= DepthTiles::kCovers);
     if (isBehindBase(tiles, tile, box)) return 0;
     const TileCover* const covers = tiles.covers.data() + DepthTiles::kCovers * size_t{tile};
     for (uint32_t i = 0; i < tiles.cover_count[tile] && open; ++i)

@@ -5,6 +5,7 @@
 // stays true, so covers may come in any order, and any of them may be forgotten. Their use is in ask/occludee_box.h.
 #pragma once
 
+#include "sightline/base/assert.h"
 #include "sightline/buffer/ask/occludee_box.h"
 
 namespace sightline {
@@ -30,6 +31,7 @@ uint64_t openToBox(const DepthTiles& tiles, uint32_t tile, uint64_t open, const 
 
 /// Whether one plane covers all of a tile.
 inline bool hasBasePlane(const DepthTiles& tiles, uint32_t tile) {
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.base.size());
     return tiles.base[tile] > DepthTiles::kOpen && tiles.plane[tile] != DepthTiles::kNone;
 }
 
@@ -41,6 +43,7 @@ inline bool isBehindBase(const DepthTiles& tiles, uint32_t tile, const OccludeeB
 /// The pixels of a tile that some planes cover.
 inline uint64_t coveredByPlanes(const DepthTiles& tiles, uint32_t tile) {
     if (hasBasePlane(tiles, tile)) return ~uint64_t{0};
+    SIGHTLINE_DEBUG_ASSERT(tiles.cover_count[tile] <= DepthTiles::kCovers);
     uint64_t all = 0;
     const TileCover* const covers = tiles.covers.data() + DepthTiles::kCovers * size_t{tile};
     for (uint32_t i = 0; i < tiles.cover_count[tile]; ++i) all |= covers[i].mask;

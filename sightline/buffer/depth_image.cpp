@@ -12,6 +12,7 @@ namespace sightline {
 void readDepthImage(DepthTiles& tiles, Seams seams, std::span<float> nearness, std::span<uint8_t> covered, float open) {
     const size_t pixels = size_t{tiles.width} * tiles.height;
     SIGHTLINE_ASSERT(nearness.size() >= pixels && (covered.empty() || covered.size() >= pixels));
+    SIGHTLINE_DEBUG_ASSERT(tiles.end_column <= tiles.columns && tiles.columns <= tiles.stride);
     TileLog* const log = std::exchange(tiles.log, nullptr);  // looking is not what the frame did
     float nothing_is_nearer[64], claims[64];
     std::fill(std::begin(nothing_is_nearer), std::end(nothing_is_nearer), std::numeric_limits<float>::infinity());

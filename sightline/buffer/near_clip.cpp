@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/assert.h"
+
 namespace sightline {
 namespace {
 
@@ -18,7 +20,9 @@ Corner project(const Screen& object, double x, double y, double z) {
 }
 
 Corner cornerAt(const Screen& object, const Occluder& occluder, const OccluderCluster& cluster, uint8_t vertex) {
+    SIGHTLINE_DEBUG_ASSERT(vertex < cluster.vertex_count);
     const size_t at = size_t{cluster.first_vertex} + vertex;
+    SIGHTLINE_DEBUG_ASSERT(at < occluder.x.size());
     return project(object, occluder.x[at], occluder.y[at], occluder.z[at]);
 }
 
@@ -30,6 +34,7 @@ Corner cut(const Corner& in, const Corner& out, double guard) {
 }
 
 void emit(ClippedPolygon& out, const Corner& corner, uint8_t from, uint8_t to, bool open) {
+    SIGHTLINE_DEBUG_ASSERT(out.count < ClippedPolygon::kMaxCorners);
     const int i = out.count++;
     out.x[i] = corner.w > 0.0 ? corner.x / corner.w : std::numeric_limits<double>::quiet_NaN();
     out.y[i] = corner.y / corner.w;
@@ -43,6 +48,7 @@ void emit(ClippedPolygon& out, const Corner& corner, uint8_t from, uint8_t to, b
 
 bool clipAtNear(const Screen& object, const Occluder& occluder, const OccluderCluster& cluster, const uint8_t* vertices,
                 int count, ClippedPolygon& out) {
+    SIGHTLINE_DEBUG_ASSERT(count == 3 || count == 4);
     Corner corner[4];
     bool inside[4];
     int crossings = 0;
@@ -69,6 +75,7 @@ bool clipAtNear(const Screen& object, const Occluder& occluder, const OccluderCl
 
 bool cutAtNear(const Screen& object, const Occluder& occluder, const OccluderCluster& cluster, uint8_t inside,
                uint8_t outside, double& x, double& y) {
+    SIGHTLINE_DEBUG_ASSERT(inside != outside);
     const Corner at = cut(cornerAt(object, occluder, cluster, inside), cornerAt(object, occluder, cluster, outside),
                           object.near_guard);
     x = at.x / at.w;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/base/assert.h"
+
 namespace sightline {
 namespace {
 
@@ -14,6 +16,7 @@ constexpr double kLeastHeight = 0.125;      // [pixels]: a triangle that covers 
 constexpr double kEvaluation = 0x1p-14;     // [pixels]: bound on the error of an edge function in float
 
 EdgeFunction makeEdge(double x0, double y0, double x1, double y1, double length) {
+    SIGHTLINE_DEBUG_ASSERT(length > 0);
     EdgeFunction e;
     const double scale = 1.0 / length;
     e.a = (y0 - y1) * scale;
@@ -28,6 +31,7 @@ EdgeFunction makeEdge(double x0, double y0, double x1, double y1, double length)
 
 /// The plane through three corners.
 void makePlane(const double* x, const double* y, const double* d, double area2, int c, RasterPolygon& out) {
+    SIGHTLINE_DEBUG_ASSERT((c == 2 || c == 3) && area2 > 0);
     const double ux = x[c - 1] - x[0], uy = y[c - 1] - y[0], ud = d[c - 1] - d[0];
     const double vx = x[c] - x[0], vy = y[c] - y[0], vd = d[c] - d[0];
     const double scale = 1.0 / area2;
@@ -62,6 +66,9 @@ void makeBand(const double* x, const double* y, int count, double area2, double 
 
 bool makeRasterPolygon(const double* x, const double* y, const double* d, int count, double position_error,
                        double depth_error, uint32_t width, uint32_t height, RasterPolygon& out) {
+    SIGHTLINE_DEBUG_ASSERT(count == 3 || count == 4);
+    SIGHTLINE_DEBUG_ASSERT(position_error >= 0 && depth_error >= 0);
+    SIGHTLINE_DEBUG_ASSERT(width > 0 && height > 0);
     const double slack = position_error + kEvaluation;
     double x_min = x[0], x_max = x[0], y_min = y[0], y_max = y[0], d_min = d[0], d_max = d[0];
     for (int i = 1; i < count; ++i) {
@@ -79,6 +86,8 @@ bool makeRasterPolygon(const double* x, const double* y, const double* d, int co
     out.y0 = static_cast<int32_t>(std::max(0.0, y_min - slack));
     out.x1 = static_cast<int32_t>(std::min(width - 1.0, x_max + slack));
     out.y1 = static_cast<int32_t>(std::min(height - 1.0, y_max + slack));
+    SIGHTLINE_DEBUG_ASSERT(0 <= out.x0 && out.x0 <= out.x1 && static_cast<uint32_t>(out.x1) < width);
+    SIGHTLINE_DEBUG_ASSERT(0 <= out.y0 && out.y0 <= out.y1 && static_cast<uint32_t>(out.y1) < height);
 
     const double size = std::max(std::abs(d_min), std::abs(d_max));
     const double corner_error = size * 0x1p-36 + depth_error;
@@ -123,6 +132,7 @@ bool makeRasterPolygon(const double* x, const double* y, const double* d, int co
     } else {
         out.covers = false;
     }
+    SIGHTLINE_DEBUG_ASSERT(out.edges <= 4 && (!out.complete || out.edges == count));
     out.depth_error = static_cast<float>(depth_error_sum * (1.0 + 0x1p-20));
     return true;
 }

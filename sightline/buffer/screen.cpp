@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/base/assert.h"
+
 namespace sightline {
 namespace {
 
@@ -27,6 +29,7 @@ double nearestW(const glm::dmat4& p, bool perspective) {
 }  // namespace
 
 Screen makeScreen(const View& view, uint32_t max_size) {
+    SIGHTLINE_DEBUG_ASSERT(isUsable(view));
     Screen screen;
     screen.eye = eyePosition(view);
     screen.perspective = !isOrthographic(view);
@@ -38,6 +41,7 @@ Screen makeScreen(const View& view, uint32_t max_size) {
     };
     screen.width = pixels(view.width);
     screen.height = pixels(view.height);
+    SIGHTLINE_DEBUG_ASSERT(screen.width % 8 == 0 && screen.height % 8 == 0);
 
     const glm::dmat4 m = view.projection * glm::dmat4(glm::dmat3(view.view));
     const auto row = [&](int r) { return glm::dvec4(m[0][r], m[1][r], m[2][r], m[3][r]); };

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "sightline/base/assert.h"
 #include "sightline/buffer/ask/occludee_box.h"
 
 namespace sightline {
@@ -53,6 +54,7 @@ struct TileLog {
     }
     void note(uint32_t tile, uint64_t window, const float (&at)[64], Seams seams, const OccludeeBox* box,
               uint64_t open) {
+        SIGHTLINE_DEBUG_ASSERT((open & ~window) == 0);
         calls.push_back(Call::kTile);
         tiles.push_back({tile, indexOf(box), seams, window, open});
         for (uint64_t left = window; left; left &= left - 1) nearest.push_back(at[std::countr_zero(left)]);

@@ -15,6 +15,7 @@
 
 #include <hwy/highway.h>
 
+#include "sightline/base/assert.h"
 #include "sightline/buffer/tiles.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -71,6 +72,7 @@ HWY_INLINE Vec planeDepth(D d, const TilePlane& plane, int row, Vec x) {
 /// A plane's depths at the pixels of a tile from the i-th on.
 template <class D>
 HWY_INLINE hn::Vec<D> planeDepths(D d, const TilePlane& plane, size_t i) {
+    SIGHTLINE_DEBUG_ASSERT(i < 64 && i % hn::Lanes(d) == 0);
     alignas(64) static constexpr float kColumn[16] = {-3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f,
                                                       -3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f};
     alignas(64) static constexpr float kRow[16] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1};
@@ -98,6 +100,8 @@ HWY_INLINE uint64_t pixelsNearer(const float* depths, float nearness) {
 
 /// Bits of the pixels of a tile that an inclusive pixel rectangle meets; it must meet the tile.
 HWY_INLINE uint64_t windowBits(int32_t x0, int32_t y0, int32_t x1, int32_t y1, int32_t tile_x, int32_t tile_y) {
+    SIGHTLINE_DEBUG_ASSERT(tile_x % 8 == 0 && x0 <= tile_x + 7 && tile_x <= x1 && x0 <= x1);
+    SIGHTLINE_DEBUG_ASSERT(tile_y % 8 == 0 && y0 <= tile_y + 7 && tile_y <= y1 && y0 <= y1);
     const int left = std::max(0, x0 - tile_x), right = std::min(7, x1 - tile_x);
     const int low = std::max(0, y0 - tile_y), high = std::min(7, y1 - tile_y);
     const uint64_t columns = (0xffu >> (7 - right)) & (0xffu << left) & 0xffu;
@@ -107,15 +111,18 @@ HWY_INLINE uint64_t windowBits(int32_t x0, int32_t y0, int32_t x1, int32_t y1, i
 
 /// Gives a tile a block, in which nothing is written yet.
 inline float* newBlock(DepthTiles& tiles, uint32_t tile) {
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.block.size());
     const size_t first = 64 * size_t{tiles.block_count};
     if (tiles.blocks.size() < first + 64) tiles.blocks.resize(2 * first + 64 * size_t{64});
     tiles.block[tile] = tiles.block_count++;
+    SIGHTLINE_DEBUG_ASSERT(tiles.blocks.size() >= 64 * size_t{tiles.block_count});
     return tiles.blocks.data() + first;
 }
 
 /// A tile's block, or null.
 HWY_INLINE float* blockOf(DepthTiles& tiles, uint32_t tile) {
     if (!(tiles.layer[tile] > DepthTiles::kOpen) || tiles.block[tile] == DepthTiles::kNone) return nullptr;
+    SIGHTLINE_DEBUG_ASSERT(tiles.block[tile] < tiles.block_count);
     return tiles.blocks.data() + 64 * size_t{tiles.block[tile]};
 }
 
@@ -143,6 +150,7 @@ HWY_INLINE void settleBlock(DepthTiles& tiles, uint32_t tile, const float* depth
 template <class DepthOf>
 HWY_INLINE void raiseBlockTo(DepthTiles& tiles, uint32_t tile, uint64_t mask, const DepthOf& depthOf) {
     const F16 d;
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.base.size());
     const bool layered = tiles.layer[tile] > DepthTiles::kOpen, old_block = blockOf(tiles, tile) != nullptr;
     float* const block = old_block ? blockOf(tiles, tile) : newBlock(tiles, tile);
     auto greatest = hn::Set(d, DepthTiles::kOpen);
@@ -169,6 +177,8 @@ HWY_INLINE void raiseBlockBy(DepthTiles& tiles, uint32_t tile, uint64_t mask, co
 
 /// Covers a whole tile.
 HWY_INLINE void coverWhole(DepthTiles& tiles, uint32_t tile, float z, uint32_t plane) {
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.base.size() && !std::isnan(z));
+    SIGHTLINE_DEBUG_ASSERT(plane == DepthTiles::kNone || plane < tiles.planes.size());
     if (!(z > tiles.base[tile])) return;
     tiles.base[tile] = z;
     tiles.plane[tile] = plane;
@@ -179,6 +189,8 @@ HWY_INLINE void coverWhole(DepthTiles& tiles, uint32_t tile, float z, uint32_t p
 /// or, where less is lost so, without the farther one. What is lost at a pixel counts as nearness lost, down to the base.
 HWY_INLINE void mergeLayers(DepthTiles& tiles, uint32_t tile, uint64_t near_mask, float near, uint64_t far_mask,
                             float far) {
+    SIGHTLINE_DEBUG_ASSERT(near >= far);
+    SIGHTLINE_DEBUG_ASSERT((far_mask & ~near_mask) != 0);
     // An open pixel is as good as one at infinity, where nearness is 1/w; else it is worse than any.
     const float ground = std::max(tiles.base[tile], far > 0.0f ? 0.0f : DepthTiles::kOpen);
     const float by_merging = (near - far) * static_cast<float>(std::popcount(near_mask));
@@ -192,6 +204,8 @@ HWY_INLINE void mergeLayers(DepthTiles& tiles, uint32_t tile, uint64_t near_mask
 ///
 /// What two layers claim together is what each of them claims, at the farther of their depths.
 inline void coverPixels(DepthTiles& tiles, uint32_t tile, uint64_t mask, float z) {
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.base.size() && !std::isnan(z));
+    SIGHTLINE_DEBUG_ASSERT(mask != 0 || tiles.detail == Detail::kMasked);
     if (!(z > tiles.base[tile])) return;
     const float layer = tiles.layer[tile];
     if (layer == DepthTiles::kOpen) {
@@ -229,6 +243,7 @@ inline void coverPixels(DepthTiles& tiles, uint32_t tile, uint64_t mask, float z
 /// Covers the pixels of a mask by a plane, each at its own depth: for tiles that get a block.
 inline void coverPixelsByPlane(DepthTiles& tiles, uint32_t tile, uint64_t mask, const BufferPlane& plane,
                                uint32_t column, uint32_t row) {
+    SIGHTLINE_DEBUG_ASSERT(tile == row * tiles.stride + column && column < tiles.columns);
     const TilePlane here = planeInTile(plane, column, row);
     raiseBlockTo(tiles, tile, mask, [&](size_t i) HWY_ATTR { return planeDepths(F16(), here, i); });
 }
@@ -237,6 +252,8 @@ inline void coverPixelsByPlane(DepthTiles& tiles, uint32_t tile, uint64_t mask, 
 /// not to be.
 inline uint64_t openTilePixels(const DepthTiles& tiles, uint32_t tile, uint32_t column, uint32_t row, uint64_t window,
                                float nearness) {
+    SIGHTLINE_DEBUG_ASSERT(tile == row * tiles.stride + column && tile < tiles.base.size());
+    SIGHTLINE_DEBUG_ASSERT(!(tiles.base[tile] > nearness));
     uint64_t open = window;
     if (tiles.layer[tile] > nearness) {
         if (tiles.block[tile] == DepthTiles::kNone) open &= ~tiles.layer_mask[tile];
@@ -253,6 +270,7 @@ inline uint64_t openTilePixels(const DepthTiles& tiles, uint32_t tile, uint32_t 
 /// What a tile claims, pixel by pixel.
 HWY_INLINE void claimsOfTile(const DepthTiles& tiles, uint32_t tile, float* claims) {
     const F16 d;
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.base.size());
     const float base = tiles.base[tile];
     const bool planar = base > DepthTiles::kOpen && tiles.plane[tile] != DepthTiles::kNone;
     if (planar)

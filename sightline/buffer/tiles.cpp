@@ -4,9 +4,12 @@
 
 #include <utility>
 
+#include "sightline/base/assert.h"
+
 namespace sightline {
 
 void DepthTiles::clear(uint32_t new_width, uint32_t new_height, Detail new_detail) {
+    SIGHTLINE_DEBUG_ASSERT(new_width % 8 == 0 && new_height % 8 == 0);
     width = new_width;
     height = new_height;
     columns = (width + 7) / 8;
@@ -46,6 +49,8 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height, Detail new_detai
 }
 
 void DepthTiles::keepColumns(uint32_t first, uint32_t end) {
+    SIGHTLINE_DEBUG_ASSERT(first <= end && end <= columns);
+    SIGHTLINE_DEBUG_ASSERT(first_column == 0 && end_column == columns);
     first_column = first;
     end_column = end;
     for (size_t row = 0; row < rows; ++row)

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "sightline/base/array.h"
+#include "sightline/base/assert.h"
 #include "sightline/buffer/polygon.h"
 #include "sightline/buffer/screen.h"
 #include "sightline/geom/occluder.h"
@@ -91,7 +92,10 @@ struct alignas(64) SeamChunk {
     uint32_t count = 0;
     uint32_t before = 0;  ///< how many those are
 
-    SeamEntry entry(uint32_t i) const { return {mask[i], source[i], nearest[i]}; }
+    SeamEntry entry(uint32_t i) const {
+        SIGHTLINE_DEBUG_ASSERT(i < count && count <= kMost);
+        return {mask[i], source[i], nearest[i]};
+    }
 };
 
 /// The depth of a plane: nearness at buffer point (x, y) is no less than max(floor, d0 + dx x + dy y) - error.
@@ -115,6 +119,7 @@ struct PlaneSet {
     uint32_t alone() const { return plane[1] == kNone ? plane[0] : kNone; }
     /// @returns false if there is no room
     bool add(uint32_t index) {
+        SIGHTLINE_DEBUG_ASSERT(index != kNone);
         for (uint32_t& place : plane)
             if (place == index || place == kNone) {
                 place = index;
@@ -220,11 +225,15 @@ struct DepthTiles {
 
     /// Pixels of a tile that claim a depth.
     uint64_t coveredBits(uint32_t tile) const {
+        SIGHTLINE_DEBUG_ASSERT(tile < base.size());
         return base[tile] > kOpen ? ~uint64_t{0} : layer[tile] > kOpen ? layer_mask[tile] : 0;
     }
 
     /// Pixels of a tile that open edges touch.
-    uint64_t seamBits(uint32_t tile) const { return seams[tile] == kNone ? 0 : seam_mask[tile]; }
+    uint64_t seamBits(uint32_t tile) const {
+        SIGHTLINE_DEBUG_ASSERT(tile < seams.size());
+        return seams[tile] == kNone ? 0 : seam_mask[tile];
+    }
 
     /// Makes the buffer empty. Allocates only when it grows.
     void clear(uint32_t width, uint32_t height, Detail detail = Detail::kFull);
@@ -235,6 +244,7 @@ struct DepthTiles {
 
     /// Makes a rectangle smaller by what lies beside the columns that matter; false if nothing is left.
     bool clip(PixelRect& rect) const {
+        SIGHTLINE_DEBUG_ASSERT(first_column <= end_column && end_column <= columns);
         rect.x0 = std::max(rect.x0, static_cast<int32_t>(8 * first_column));
         rect.x1 = std::min(rect.x1, static_cast<int32_t>(8 * end_column) - 1);
         return rect.x0 <= rect.x1;

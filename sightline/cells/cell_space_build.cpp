@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "sightline/base/assert.h"
 #include "sightline/geom/convex_region.h"
 #include "sightline/math/finite.h"
 
@@ -102,6 +103,7 @@ Status CellSpaceBuilder::addPortal(std::string_view name, uint32_t a, uint32_t b
 
 /// How much higher above a plane the middle of a is than that of b; where one is the outside, than the plane.
 double CellSpaceBuilder::rise(uint32_t a, uint32_t b, const glm::dvec4& plane) const {
+    SIGHTLINE_DEBUG_ASSERT(middles_.size() == space_.graph.cells && a < middles_.size() && b < middles_.size());
     const auto height = [&](uint32_t cell) {
         return cell == space_.outside ? 0.0 : glm::dot(plane, glm::dvec4(middles_[cell], 1.0));
     };

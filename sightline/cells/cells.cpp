@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/base/assert.h"
 #include "sightline/geom/outline_hull.h"
 
 namespace sightline {
@@ -72,6 +73,7 @@ bool CellGraph::addPortal(uint32_t a, uint32_t b, std::span<const glm::dvec3> ou
 }
 
 void CellGraph::addPortal(uint32_t a, uint32_t b, std::span<const glm::dvec3> outline, const glm::dvec4& plane) {
+    SIGHTLINE_DEBUG_ASSERT(outline.size() >= 3);
     CellPortal portal;
     portal.cells[0] = a;
     portal.cells[1] = b;
@@ -89,6 +91,8 @@ CellFaults checkCells(const CellGraph& graph, double tolerance) {
     std::vector<std::vector<uint32_t>> of_cell(graph.cells);
     for (uint32_t i = 0; i < graph.portals.size(); ++i) {
         const CellPortal& portal = graph.portals[i];
+        SIGHTLINE_DEBUG_ASSERT(portal.cells[0] < graph.cells && portal.cells[1] < graph.cells);
+        SIGHTLINE_DEBUG_ASSERT(size_t{portal.first} + portal.count <= graph.points.size());
         for (const uint32_t cell : portal.cells) of_cell[cell].push_back(i);
         faults.bent_portals += portal.thickness > tolerance;
         faults.worst_bend = std::max(faults.worst_bend, portal.thickness);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/base/assert.h"
 #include "sightline/cells/window_polygon.h"
 
 namespace sightline {
@@ -87,6 +88,7 @@ Passages::Passages(const PortalGraph& graph, Memory* memory)
 }
 
 void Passages::add(const DirectedPortal& portal, uint32_t from, std::span<const glm::dvec3> outline) {
+    SIGHTLINE_DEBUG_ASSERT(outline.size() >= 3 && from != portal.to);
     Passage passage;
     passage.cells[0] = from;
     passage.cells[1] = portal.to;
@@ -136,6 +138,7 @@ void Passages::addShared(const PortalGraph& graph, uint32_t from, const Directed
 }
 
 bool Passages::isInside(const Passage& passage, const glm::dvec3& foot) const {
+    SIGHTLINE_DEBUG_ASSERT(passage.count >= 3 && size_t{passage.first} + passage.count <= points_.size());
     const auto outline = outlineOf(passage);
     for (size_t i = 0; i < outline.size(); ++i) {
         const glm::dvec3 edge = outline[i + 1 == outline.size() ? 0 : i + 1] - outline[i];
@@ -146,6 +149,7 @@ bool Passages::isInside(const Passage& passage, const glm::dvec3& foot) const {
 }
 
 glm::dvec3 Passages::nearestTo(uint32_t number, const glm::dvec3& point) const {
+    SIGHTLINE_DEBUG_ASSERT(number < all_.size());
     const Passage& passage = all_[number];
     const glm::dvec3 foot = point - heightOver(passage.plane, point) * glm::dvec3(passage.plane);
     if (isInside(passage, foot)) return foot;
@@ -166,6 +170,7 @@ glm::dvec3 Passages::nearestTo(uint32_t number, const glm::dvec3& point) const {
 }
 
 glm::dvec3 Passages::between(uint32_t number, const glm::dvec3& from, const glm::dvec3& to) const {
+    SIGHTLINE_DEBUG_ASSERT(number < all_.size());
     const Passage& passage = all_[number];
     const double heights[2] = {heightOver(passage.plane, from), heightOver(passage.plane, to)};
     const glm::dvec3 feet[2] = {from - heights[0] * glm::dvec3(passage.plane),
@@ -205,6 +210,7 @@ glm::dvec3 Passages::between(uint32_t number, const glm::dvec3& from, const glm:
 }
 
 bool Passages::passes(uint32_t number, const glm::dvec3& from, const glm::dvec3& to, glm::dvec3& at) const {
+    SIGHTLINE_DEBUG_ASSERT(number < all_.size());
     const Passage& passage = all_[number];
     const double a = heightOver(passage.plane, from), b = heightOver(passage.plane, to);
     if ((a > slack_ && b > slack_) || (a < -slack_ && b < -slack_)) return false;

@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 
 #include "sightline/base/array.h"
+#include "sightline/base/assert.h"
 #include "sightline/cells/portal_graph.h"
 
 namespace sightline {
@@ -20,7 +21,10 @@ struct Passage {
     uint32_t door = CellPortal::kNone;
     double width = 0;  ///< between the two parallel lines in the plane that are the nearest and hold it  [world units]
 
-    uint32_t beyond(uint32_t cell) const { return cells[cells[0] == cell ? 1 : 0]; }
+    uint32_t beyond(uint32_t cell) const {
+        SIGHTLINE_DEBUG_ASSERT(cells[0] == cell || cells[1] == cell);
+        return cells[cells[0] == cell ? 1 : 0];
+    }
 };
 
 /// Made once of a graph; immutable. What a wall closes from one side alone is closed: of the portals that lead one way and
@@ -31,9 +35,13 @@ public:
     Passages(const PortalGraph& graph, Memory* memory);
 
     uint32_t size() const { return static_cast<uint32_t>(all_.size()); }
-    const Passage& operator[](uint32_t passage) const { return all_[passage]; }
+    const Passage& operator[](uint32_t passage) const {
+        SIGHTLINE_DEBUG_ASSERT(passage < all_.size());
+        return all_[passage];
+    }
     /// The passages of a cell.
     std::span<const uint32_t> of(uint32_t cell) const {
+        SIGHTLINE_DEBUG_ASSERT(size_t{cell} + 1 < first_.size());
         return {of_cell_.data() + first_[cell], first_[cell + 1] - first_[cell]};
     }
     /// The point of a passage that is the nearest to a point.

@@ -8,6 +8,8 @@
 
 #include <glm/glm.hpp>
 
+#include "sightline/base/assert.h"
+
 namespace sightline {
 
 /// A body is the hull of its points. What a plane leaves of it is the hull of the points that it leaves and of where
@@ -18,7 +20,10 @@ struct PointBody {
     glm::dvec3 points[kMost];
     uint32_t count = 0;
 
-    std::span<const glm::dvec3> all() const { return {points, count}; }
+    std::span<const glm::dvec3> all() const {
+        SIGHTLINE_DEBUG_ASSERT(count <= kMost);
+        return {points, count};
+    }
 };
 
 /// Points of a plane, of which the corners of their hull are kept when they grow many. As outlineHull(), but it takes no
@@ -94,6 +99,7 @@ inline bool cutBody(std::span<const glm::dvec3> body, const glm::dvec4& plane, d
                 return false;
     if (out.count + cut.all().size() > kFew) cut.keepHull();
     if (out.count + cut.all().size() > PointBody::kMost) return false;
+    SIGHTLINE_DEBUG_ASSERT(out.points != body.data());
     std::copy(cut.all().begin(), cut.all().end(), out.points + out.count);
     out.count += static_cast<uint32_t>(cut.all().size());
     return true;

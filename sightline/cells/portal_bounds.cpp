@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "sightline/base/assert.h"
+
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sightline/cells/portal_bounds.cpp"
@@ -33,6 +35,7 @@ uint32_t lookKernel(const PortalEye& eye, const PortalCorners& corners, std::spa
         const DirectedPortal& portal = portals[i];
         if (!eye.passes(portal.plane, portal.thickness)) continue;
         ++faced;
+        SIGHTLINE_DEBUG_ASSERT(count <= i && portal.count >= 3);
         PortalLook& look = looks[count];
         look.portal = i;
         look.near = true;
@@ -94,6 +97,8 @@ HWY_EXPORT(lookKernel);
 
 uint32_t lookThroughPortals(const PortalEye& eye, const PortalCorners& corners, std::span<const DirectedPortal> portals,
                             const WindowBounds& window, int sides, PortalLook* looks, uint64_t& faced) {
+    SIGHTLINE_DEBUG_ASSERT(sides == 4 || sides == 8);
+    SIGHTLINE_DEBUG_ASSERT(looks != nullptr || portals.empty());
     return HWY_DYNAMIC_DISPATCH(lookKernel)(eye, corners, portals, window, sides, looks, faced);
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/cells/portal_eye.h"
 
+#include "sightline/base/assert.h"
 #include "sightline/math/finite.h"
 
 #include <algorithm>
@@ -17,6 +18,7 @@ glm::dmat3 matrixOfRows(const glm::dvec3& a, const glm::dvec3& b, const glm::dve
 }  // namespace
 
 bool makePortalEye(const View& view, double tolerance, double reach, PortalEye& eye) {
+    SIGHTLINE_DEBUG_ASSERT(isUsable(view) && tolerance >= 0 && reach >= 0);
     eye.origin = eyePosition(view);
     // Relative to the eye the view is a rotation: no large translation enters the rows.
     glm::dmat4 m = view.projection * glm::dmat4(glm::dmat3(view.view));
@@ -85,6 +87,7 @@ bool makePortalEye(const View& view, double tolerance, double reach, PortalEye& 
     eye.image = WindowBounds::nothing();
     for (int i = 0; i < 4; ++i) eye.image.grow((i & 1 ? 1 : -1) * eye.wide[0], (i & 2 ? 1 : -1) * eye.wide[1]);
     eye.image.widen(eye.slack[0], eye.slack[1]);
+    SIGHTLINE_DEBUG_ASSERT(!eye.image.isEmpty(8) && eye.near_w > 0 && eye.position >= tolerance);
     return true;
 }
 

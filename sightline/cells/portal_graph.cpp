@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "sightline/base/assert.h"
 #include "sightline/math/round_outward.h"
 
 namespace sightline {
@@ -62,8 +63,11 @@ void PortalGraph::layPortals(const CellSpace& space) {
     const CellGraph& graph = space.graph;
     first_.assign(cells_ + 1, 0);
     size_t ways = 0;
-    for (const CellPortal& portal : graph.portals)
+    for (const CellPortal& portal : graph.portals) {
+        SIGHTLINE_DEBUG_ASSERT(portal.cells[0] < cells_ && portal.cells[1] < cells_);
+        SIGHTLINE_DEBUG_ASSERT(portal.count >= 3 && size_t{portal.first} + portal.count <= graph.points.size());
         for (uint32_t side = 0; side < waysOf(portal); ++side, ++ways) ++first_[portal.cells[side] + 1];
+    }
     for (uint32_t cell = 0; cell < cells_; ++cell) first_[cell + 1] += first_[cell];
     directed_.resize(ways);
     std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
@@ -99,7 +103,9 @@ void PortalGraph::layTree(const CellSpace& space) {
     std::vector<uint32_t> hangs(cells_, 0);
     const auto childOf = [&](uint32_t child) {
         if ((child & Node::kLeaf) == 0) return child;
+        SIGHTLINE_DEBUG_ASSERT((child & ~Node::kLeaf) < cell_of_leaf.size());
         const uint32_t cell = cell_of_leaf[child & ~Node::kLeaf];
+        SIGHTLINE_DEBUG_ASSERT(cell == kNoCell || cell < cells_);
         return cell == kNoCell ? Node::kSolid : Node::kLeaf | cell;
     };
     nodes_.resize(tree.nodes.size());
@@ -109,6 +115,7 @@ void PortalGraph::layTree(const CellSpace& space) {
             const uint32_t child = childOf(tree.nodes[i].child[side]);
             nodes_[i].child[side] = child;
             if ((child & Node::kLeaf) == 0) {
+                SIGHTLINE_DEBUG_ASSERT(child != i && child < nodes_.size());
                 nodes_[child].parent = i;
             } else if (child != Node::kSolid) {
                 parent_of_cell_[child & ~Node::kLeaf] = i;
@@ -137,6 +144,7 @@ void PortalGraph::layRegions(const CellSpace& space) {
 
 void PortalGraph::splitBoxes(uint32_t node, uint32_t first, uint32_t count) {
     constexpr uint32_t kFew = 4;
+    SIGHTLINE_DEBUG_ASSERT(node < boxes_.size() && count > 0 && size_t{first} + count <= order_.size());
     Box3d box, middles;
     for (uint32_t i = first; i < first + count; ++i) {
         box.grow(regions_[order_[i]].bounds);

@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 
 #include "sightline/base/array.h"
+#include "sightline/base/assert.h"
 #include "sightline/cells/cell_space.h"
 #include "sightline/math/box.h"
 
@@ -55,7 +56,10 @@ public:
     uint32_t doors() const { return static_cast<uint32_t>(slides_.size()); }
     uint32_t outside() const { return outside_; }  ///< CellSpace::outside
     /// kNoCell: it has none
-    uint32_t rowOf(uint32_t cell) const { return row_of_cell_.empty() ? kNoCell : row_of_cell_[cell]; }
+    uint32_t rowOf(uint32_t cell) const {
+        SIGHTLINE_DEBUG_ASSERT(cell < cells_);
+        return row_of_cell_.empty() ? kNoCell : row_of_cell_[cell];
+    }
 
     /// The cells that a convex body meets, or comes as close to as the space's tolerance: points and a radius around
     /// their hull.
@@ -70,11 +74,15 @@ public:
 
     /// The portals that leave a cell.
     std::span<const DirectedPortal> portalsFrom(uint32_t cell) const {
+        SIGHTLINE_DEBUG_ASSERT(cell < cells_);
         return {directed_.data() + first_[cell], first_[cell + 1] - first_[cell]};
     }
     PortalCorners corners() const { return {x_.data(), y_.data(), z_.data()}; }
     /// Of a door: CellDoor::slide.
-    const glm::dvec3& slideOf(uint32_t door) const { return slides_[door]; }
+    const glm::dvec3& slideOf(uint32_t door) const {
+        SIGHTLINE_DEBUG_ASSERT(door < slides_.size());
+        return slides_[door];
+    }
     /// How far anything may be off: the space's tolerance and what rounding to doubles of this size moves.
     double tolerance() const { return tolerance_; }
     /// The largest coordinate.
@@ -82,7 +90,11 @@ public:
 
     /// The tree from its root, if a cell hangs in it once; else none: cells then have no order.
     std::span<const Node> nodes() const { return ordered_ ? std::span<const Node>(nodes_) : std::span<const Node>(); }
-    uint32_t parentOf(uint32_t cell) const { return parent_of_cell_[cell]; }  ///< the node above; kNoCell: none
+    /// The node above a cell; kNoCell: none.
+    uint32_t parentOf(uint32_t cell) const {
+        SIGHTLINE_DEBUG_ASSERT(cell < parent_of_cell_.size());
+        return parent_of_cell_[cell];
+    }
 
 private:
     /// Of a tree over the boxes of regions: both children stand side by side.

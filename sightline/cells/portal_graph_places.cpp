@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/base/assert.h"
 #include "sightline/cells/point_body.h"
 #include "sightline/cells/portal_graph.h"
 
@@ -72,6 +73,7 @@ public:
     bool down(uint32_t child, std::span<const glm::dvec3> points, int depth) {
         PointBody rest, part;
         while ((child & Node::kLeaf) == 0) {
+            SIGHTLINE_DEBUG_ASSERT(child < nodes_.size());
             const Node& node = nodes_[child];
             const Heights heights = heightsOf(points, node.plane);
             const bool behind = heights.least <= reach_, front = heights.most >= -reach_;
@@ -115,6 +117,7 @@ void PortalGraph::visitRegions(const Box3d& box, Visit visit) const {
         const BoxNode& node = boxes_[stack[--open]];
         if (!meet(node.box, box)) continue;
         if (node.count == 0) {
+            SIGHTLINE_DEBUG_ASSERT(open + 2 <= std::size(stack) && size_t{node.first} + 1 < boxes_.size());
             stack[open++] = node.first + 1;
             stack[open++] = node.first;
             continue;
@@ -145,6 +148,7 @@ bool PortalGraph::isCovered(std::span<const glm::dvec3> points, std::span<const 
     if (points.empty()) return true;
     if (regions.empty()) return false;
     const double rounding = std::min(tolerance_, 0x1p-40 * reach_);  // of planes that two regions share
+    SIGHTLINE_DEBUG_ASSERT(regions[0] < regions_.size());
     const CellRegion& region = regions_[regions[0]];
     PointBody rest, part;
     for (uint32_t i = region.first_plane; i < region.first_plane + region.plane_count; ++i) {

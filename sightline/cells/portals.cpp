@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/base/assert.h"
+
 namespace sightline {
 namespace {
 
@@ -45,6 +47,8 @@ PortalFlood::PortalFlood(Memory* memory)
 
 bool PortalFlood::run(const PortalGraph& graph, const View& view, const PortalSettings& settings,
                       std::span<const DoorState> doors, std::span<const uint64_t> rows) {
+    SIGHTLINE_DEBUG_ASSERT(isUsable(view));
+    SIGHTLINE_DEBUG_ASSERT(doors.empty() || doors.size() == graph.doors());
     graph_ = &graph;
     settings_ = settings;
     doors_ = doors;
@@ -92,6 +96,7 @@ bool PortalFlood::start(const PortalGraph& graph, const View& view) {
 
 void PortalFlood::reach(uint32_t cell, const WindowBounds& window, uint32_t from, uint32_t portal, uint32_t depth,
                         double key) {
+    SIGHTLINE_DEBUG_ASSERT(cell < graph_->cells() && settings_.windows != PortalWindows::kPolygons);
     CellState& state = states_[cell];
     if (state.view != view_) {
         state = {window, view_, static_cast<uint32_t>(order_.size()), depth, from, portal};
@@ -107,6 +112,7 @@ void PortalFlood::reach(uint32_t cell, const WindowBounds& window, uint32_t from
 
 void PortalFlood::wait(uint32_t cell, double key) {
     CellState& state = states_[cell];
+    SIGHTLINE_DEBUG_ASSERT(state.view == view_);
     if (state.waits) return;
     state.waits = true;
     if (graph_->nodes().empty()) {
@@ -124,6 +130,7 @@ void PortalFlood::wait(uint32_t cell, double key) {
 /// From the outside walls hide nothing, because they may be drawn from within alone: all cells are seen through its
 /// windows.
 void PortalFlood::lookBackIn(uint32_t outside) {
+    SIGHTLINE_DEBUG_ASSERT(outside == graph_->outside());
     const uint32_t depth = settings_.depth;
     const auto isTooDeep = [&](uint32_t of) {
         stats_.too_deep += depth != 0 && of >= depth;
@@ -150,6 +157,7 @@ void PortalFlood::lookBackIn(uint32_t outside) {
 }
 
 bool PortalFlood::enter(uint32_t cell) {
+    SIGHTLINE_DEBUG_ASSERT(cell < graph_->cells() && states_[cell].view == view_ && states_[cell].waits);
     if (++stats_.cells > settings_.work) return false;
     states_[cell].waits = false;
     if (cell == graph_->outside()) {
@@ -168,6 +176,7 @@ bool PortalFlood::enter(uint32_t cell) {
 
 bool PortalFlood::floodTree() {
     const auto nodes = graph_->nodes();
+    SIGHTLINE_DEBUG_ASSERT(!nodes.empty());
     // Front to back: what is seen from a cell comes after it. Only for cells within the tolerance of the eye's own
     // planes is that not certain: a cell that is reached too late is left for another round.
     while (flagged_[0] == view_) {
@@ -229,6 +238,7 @@ void PortalFlood::lookThroughAll(uint32_t cell) {
     if (looks_.size() < portals.size()) looks_.resize(portals.size());
     const uint32_t count = lookThroughPortals(eye_, graph_->corners(), portals, states_[cell].window, sides(),
                                               looks_.data(), stats_.portals);
+    SIGHTLINE_DEBUG_ASSERT(count <= portals.size());
     for (uint32_t i = 0; i < count; ++i) {
         PortalLook& look = looks_[i];
         const DirectedPortal& portal = portals[look.portal];
@@ -243,6 +253,7 @@ PortalFlood::Projection PortalFlood::project(const DirectedPortal& portal) {
     const float open = openOf(portal);
     if (open <= 0) return projection;
 
+    SIGHTLINE_DEBUG_ASSERT(portal.count >= 3);
     const PortalCorners& corners = graph_->corners();
     const auto cornerAt = [&](uint32_t i) { return glm::dvec3(corners.x[i], corners.y[i], corners.z[i]); };
     const double position = eye_.position + portal.thickness;
@@ -307,6 +318,7 @@ void PortalFlood::lookThrough(uint32_t cell, const DirectedPortal& portal) {
 }
 
 void PortalFlood::pass(uint32_t cell, const DirectedPortal& portal, WindowBounds& window, double key) {
+    SIGHTLINE_DEBUG_ASSERT(portal.to != cell && states_[cell].view == view_);
     if (window.isEmpty(sides())) return;
     if (sides() == 8) {
         window.tighten();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/base/assert.h"
 #include "sightline/cells/portals.h"
 
 namespace sightline {
@@ -92,6 +93,7 @@ void PortalFlood::lookThroughPolygons(uint32_t cell, const DirectedPortal& porta
 }
 
 void PortalFlood::reach(uint32_t cell, Polygon polygon, double key) {
+    SIGHTLINE_DEBUG_ASSERT(cell < graph_->cells() && polygon.cell == cell && polygon.shape.count >= 3);
     CellState& state = states_[cell];
     if (state.view != view_) {
         state = {};
@@ -102,6 +104,7 @@ void PortalFlood::reach(uint32_t cell, Polygon polygon, double key) {
     uint32_t count = 0;
     const auto drop = [&](uint32_t* link) {
         Polygon& gone = polygons_[*link];
+        SIGHTLINE_DEBUG_ASSERT(!gone.gone && gone.cell == cell);
         gone.gone = true;
         gone.became = self;
         *link = gone.next;
@@ -164,8 +167,10 @@ void PortalFlood::writePolygons() {
     for (const Polygon& polygon : polygons_) count += polygon.gone ? 0 : 1;
     for (size_t i = polygons_.size(); i-- > 0;) {
         Polygon& polygon = polygons_[i];
+        SIGHTLINE_DEBUG_ASSERT(!polygon.gone || (polygon.became > i && polygon.became < polygons_.size()));
         polygon.became = polygon.gone ? polygons_[polygon.became].became : --count;
     }
+    SIGHTLINE_DEBUG_ASSERT(count == 0);
     for (const Polygon& polygon : polygons_) {
         if (polygon.gone) continue;
         const WindowPolygon& shape = polygon.shape;

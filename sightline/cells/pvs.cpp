@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/base/assert.h"
+
 namespace sightline {
 
 bool startCells(const PortalGraph& graph, const View& view, Array<uint32_t>& cells) {
+    SIGHTLINE_DEBUG_ASSERT(isUsable(view));
     const glm::dvec3 eye = eyePosition(view);
     const glm::dmat4 back = glm::inverse(view.projection * glm::dmat4(glm::dmat3(view.view)));
     const double wide_x = 1.0 + 2.0 * view.jitter / view.width, wide_y = 1.0 + 2.0 * view.jitter / view.height;
@@ -41,6 +44,8 @@ bool PotentiallyVisible::update(const PortalGraph& graph, const RowSource& sourc
     union_.assign(words, 0);
     known_ = !start.empty();
     uint32_t last = PortalGraph::kNoCell;
+    for (size_t i = 0; i < start.size(); ++i)
+        SIGHTLINE_DEBUG_ASSERT(start[i] < graph.cells() && (i == 0 || start[i - 1] < start[i]));
     for (const uint32_t cell : start) {
         const uint32_t row = graph.rowOf(cell);
         if (row == PortalGraph::kNoCell) {

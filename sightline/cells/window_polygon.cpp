@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/base/assert.h"
+
 namespace sightline {
 namespace {
 
@@ -28,6 +30,7 @@ double WindowPolygon::area() const {
 }
 
 bool WindowPolygon::isWithin(const WindowPolygon& other, double slack) const {
+    SIGHTLINE_DEBUG_ASSERT(count <= kMost && other.count <= kMost);
     for (int i = 0; i < 8; ++i)
         if (bounds.most[i] > other.bounds.most[i] + slack) return false;
     for (uint32_t i = 0; i < other.count; ++i) {
@@ -40,6 +43,7 @@ bool WindowPolygon::isWithin(const WindowPolygon& other, double slack) const {
 }
 
 void cutPolygon(WindowPolygon& polygon, const WindowLine& line) {
+    SIGHTLINE_DEBUG_ASSERT(polygon.count <= WindowPolygon::kMost);
     double heights[WindowPolygon::kMost];
     bool all = true, none = true;
     for (uint32_t i = 0; i < polygon.count; ++i) {
@@ -95,6 +99,8 @@ WindowPolygon polygonOf(const WindowBounds& bounds) {
 }
 
 WindowPolygon hullOf(const WindowPolygon& a, const WindowPolygon& b) {
+    SIGHTLINE_DEBUG_ASSERT(a.count > 0 && a.count <= WindowPolygon::kMost && b.count > 0 &&
+                           b.count <= WindowPolygon::kMost);
     glm::dvec2 points[2 * WindowPolygon::kMost], hull[4 * WindowPolygon::kMost + 1];
     std::copy(a.points, a.points + a.count, points);
     std::copy(b.points, b.points + b.count, points + a.count);

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <span>
 
+#include "sightline/base/assert.h"
+
 namespace sightline::detail {
 
 /// Bytes of answers to `count` questions that are asked sixteen at a time.
@@ -23,6 +25,7 @@ inline uint64_t countBits(uint64_t word) {
 /// Clears the bits behind the last of `count` answers, and returns how many answers are set.
 inline size_t finishAnswers(size_t count, std::span<uint8_t> bits) {
     const size_t bytes = answerBytes(count);
+    SIGHTLINE_DEBUG_ASSERT(bits.size() >= bytes);
     if (count % 16) {
         const uint32_t kept = (1u << count % 16) - 1;
         bits[bytes - 2] &= static_cast<uint8_t>(kept);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/assert.h"
+
 namespace sightline {
 namespace {
 
@@ -80,6 +82,7 @@ Reach reachOf(const Dop& dop, const glm::dvec3& eye, const glm::dvec3& n) {
 
 template <class Bound>
 BoundAnswer test(const ViewVolume& volume, const Bound& bound, uint32_t active) {
+    SIGHTLINE_DEBUG_ASSERT(volume.count <= ViewVolume::kMostPlanes);
     BoundAnswer answer;
     answer.outside = volume.empty;
     for (uint32_t i = 0; i < volume.count; ++i) {
@@ -153,6 +156,7 @@ BoundAnswer testBound(const ViewVolume& volume, const OrientedBox& box, uint32_t
 BoundAnswer testBound(const ViewVolume& volume, const Dop& dop, uint32_t active) { return test(volume, dop, active); }
 
 double distanceTo(const ViewVolume& volume, const glm::dvec3& point) {
+    SIGHTLINE_DEBUG_ASSERT(volume.count <= ViewVolume::kMostPlanes);
     const glm::dvec4* planes = volume.planes;
     double depth[ViewVolume::kMostPlanes];  // how far outside
     double farthest = 0.0;
@@ -225,6 +229,7 @@ RefinedVolume refineVolume(const ViewVolume& volume, Refinement refinement) {
             if (supportPlane(volume, normal, plane)) refined.axes[refined.axis_count++] = plane;
         }
     }
+    SIGHTLINE_DEBUG_ASSERT(refined.axis_count <= std::size(refined.axes));
     if (refinement == Refinement::kCorners) return refined;
     PlanePair edges[3 * ViewVolume::kMostPlanes];
     const uint32_t count = edgesOf(volume, edges);
@@ -239,6 +244,8 @@ RefinedVolume refineVolume(const ViewVolume& volume, Refinement refinement) {
 }
 
 bool separated(const RefinedVolume& refined, const Box3d& box, Refinement refinement) {
+    SIGHTLINE_DEBUG_ASSERT(refined.axis_count <= std::size(refined.axes) &&
+                           refined.crossed_count <= RefinedVolume::kMostCrossed);
     if (refinement == Refinement::kNone) return false;
     for (uint32_t i = 0; i < refined.axis_count; ++i)
         if (beyond(refined.axes[i], box, refined.volume.eye)) return true;

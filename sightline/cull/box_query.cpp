@@ -116,6 +116,7 @@ size_t queryBox(const Box3d& box, const PlacedBvh& tree, HierarchyScratch& scrat
 }
 
 size_t queryBox(const Box3d& box, const BoxArrays& boxes, std::span<uint32_t> kept) {
+    SIGHTLINE_DEBUG_ASSERT(kept.size() >= (boxes.count + 15) / 16 * 16);
     if (isEmpty(box)) return 0;
     return HWY_DYNAMIC_DISPATCH(takeFlat)(roundOutward(box, boxes.origin), boxes, kept.data());
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/assert.h"
+
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sightline/cull/contribution.cpp"
@@ -78,6 +80,7 @@ namespace sightline {
 HWY_EXPORT(squaredRadiiKernel);
 
 ContributionMeasure makeContributionMeasure(const View& view) {
+    SIGHTLINE_DEBUG_ASSERT(isUsable(view));
     const glm::dmat4 m = view.projection * glm::dmat4(glm::dmat3(view.view));
     const auto row = [&](int r) { return glm::dvec3(m[0][r], m[1][r], m[2][r]); };
     const glm::dvec3 across = glm::cross(row(0), row(1));
@@ -104,6 +107,7 @@ ContributionMeasure makeContributionMeasure(const View& view) {
 }
 
 void squaredRadii(const ContributionMeasure& measure, const EyeBoxes& boxes, uint32_t leaves, float* squares) {
+    SIGHTLINE_DEBUG_ASSERT(leaves <= 0xff && squares != nullptr);
     HWY_DYNAMIC_DISPATCH(squaredRadiiKernel)(measure, boxes, leaves, squares);
 }
 

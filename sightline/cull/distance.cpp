@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "sightline/base/assert.h"
 #include "sightline/cull/contribution.h"
 
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
@@ -53,6 +54,7 @@ namespace sightline {
 HWY_EXPORT(squaredDistancesKernel);
 
 DistanceMeasure makeDistanceMeasure(const View& view) {
+    SIGHTLINE_DEBUG_ASSERT(isUsable(view));
     DistanceMeasure measure;
     measure.perspective = !isOrthographic(view);
     if (!measure.perspective) measure.toward = makeContributionMeasure(view).toward;
@@ -60,6 +62,7 @@ DistanceMeasure makeDistanceMeasure(const View& view) {
 }
 
 double distanceZoom(const View& view, double fov) {
+    SIGHTLINE_DEBUG_ASSERT(isUsable(view));
     if (!(fov > 0.0) || isOrthographic(view)) return 1.0;
     // A thing looks as large as it would at the same share of the limit under the angle that the limit is meant for. The
     // height alone counts: a wider image does not enlarge. Of y only the part across w moves things in the image.

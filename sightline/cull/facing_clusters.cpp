@@ -143,6 +143,12 @@ HWY_EXPORT(conesKernel);
 
 /// False if nothing can be said.
 bool placeEye(const FacingClusters& clusters, const FacingEye& eye, detail::ClusterEye& out) {
+    SIGHTLINE_DEBUG_ASSERT(clusters.stride % FacingClusters::kPadding == 0 && clusters.stride >= clusters.count());
+    SIGHTLINE_DEBUG_ASSERT(clusters.volumes.size() == FacingClusters::kVolumeRows * clusters.stride);
+    SIGHTLINE_DEBUG_ASSERT(clusters.turned.empty() ||
+                           clusters.turned.size() == FacingClusters::kTurnedRows * clusters.stride);
+    SIGHTLINE_DEBUG_ASSERT(clusters.cones.empty() ||
+                           clusters.cones.size() == FacingClusters::kConeRows * clusters.stride);
     const glm::dvec3 q = eye.point - eye.w * clusters.origin;
     const double size = std::abs(q.x) + std::abs(q.y) + std::abs(q.z) + eye.w * 8.0 * clusters.reach;
     const double far_away = glm::length(eye.point) + eye.w * glm::length(clusters.origin);
@@ -172,12 +178,14 @@ int sideOf(const CullingVolume& volume, const detail::ClusterEye& eye) {
 }
 
 void setBits(std::span<uint8_t> bits, uint32_t first, uint32_t count) {
+    SIGHTLINE_DEBUG_ASSERT(size_t{first} + count <= 8 * bits.size());
     for (uint32_t i = first; i < first + count; ++i) bits[i / 8] |= static_cast<uint8_t>(1u << i % 8);
 }
 
 }  // namespace
 
 size_t findBackClusters(const FacingClusters& clusters, const FacingEye& eye, uint32_t tests, std::span<uint8_t> back) {
+    SIGHTLINE_DEBUG_ASSERT((tests & ~uint32_t{kAllFacingTests}) == 0);
     const size_t bytes = detail::answerBytes(clusters.count());
     SIGHTLINE_ASSERT(back.size() >= bytes);
     detail::ClusterEye placed;
@@ -224,6 +232,8 @@ size_t walkFacingTree(const FacingTree& tree, const FacingClusters& clusters, co
     const size_t nodes = tree.nodes.size();
     for (size_t i = 0; i < nodes;) {
         const FacingNode& node = tree.nodes[i];
+        SIGHTLINE_DEBUG_ASSERT(node.next > i && node.next <= nodes &&
+                               size_t{node.first} + node.count <= clusters.count());
         askUpTo(node.first);
         const int side = sideOf(node.volume, placed);
         ++tested;
@@ -237,6 +247,7 @@ size_t walkFacingTree(const FacingTree& tree, const FacingClusters& clusters, co
 
 size_t remainingRanges(const FacingClusters& clusters, std::span<const uint8_t> back, uint32_t gap,
                        std::span<TriangleRange> ranges) {
+    SIGHTLINE_DEBUG_ASSERT(8 * back.size() >= clusters.count());
     size_t count = 0;
     for (size_t i = 0; i < clusters.count(); ++i) {
         if (back[i / 8] >> (i % 8) & 1 || clusters.size(i) == 0) continue;
@@ -253,6 +264,7 @@ size_t remainingRanges(const FacingClusters& clusters, std::span<const uint8_t> 
 
 const uint64_t* backTriangles(const FacingClusters& clusters, size_t cluster, const FacingEye& eye) {
     if (clusters.mask_steps == 0 || !eye.known() || eye.front == FrontFace::kClockwise) return nullptr;
+    SIGHTLINE_DEBUG_ASSERT(cluster < clusters.count() && clusters.masks.size() == clusters.count());
     const TriangleMasks& masks = clusters.masks[cluster];
     const glm::dvec3 shape = clusters.mask_shape;
     const glm::dvec3 q = (eye.point - eye.w * (clusters.origin + glm::dvec3(masks.center))) / shape;
@@ -270,6 +282,7 @@ const uint64_t* backTriangles(const FacingClusters& clusters, size_t cluster, co
     };
     const uint32_t face = static_cast<uint32_t>(2 * axis) + (q[axis] < 0 ? 1 : 0);
     const uint32_t sector = (face * steps + step(axis + 2)) * steps + step(axis + 1);
+    SIGHTLINE_DEBUG_ASSERT(sector < clusters.sectors());
     return clusters.mask_words.data() + masks.first_word + sector * ((clusters.size(cluster) + 63) / 64);
 }
 

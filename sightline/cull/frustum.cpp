@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "sightline/base/assert.h"
+
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sightline/cull/frustum.cpp"
@@ -150,12 +152,14 @@ EyeBoxes eyeBoxes(const float (&min)[3][8], const float (&max)[3][8], const glm:
 EyeBoxes eyeBoxes(const BvhNode& node, const glm::dvec3& offset) { return eyeBoxes(node.min, node.max, offset); }
 
 FrustumAnswer testFrustum(const Frustum& frustum, const EyeBoxes& boxes, uint32_t active) {
+    SIGHTLINE_DEBUG_ASSERT(frustum.count <= std::size(frustum.planes));
     FrustumAnswer answer;
     HWY_DYNAMIC_DISPATCH(testPlanesKernel)(frustum.planes, frustum.count, boxes, active, answer);
     return answer;
 }
 
 FrustumAnswer testViewVolume(const ViewVolume& volume, const EyeBoxes& boxes, uint32_t active) {
+    SIGHTLINE_DEBUG_ASSERT(volume.count <= ViewVolume::kMostPlanes);
     FrustumAnswer answer;
     HWY_DYNAMIC_DISPATCH(testPlanesKernel)(volume.planes, volume.count, boxes, active, answer);
     return answer;
@@ -166,6 +170,8 @@ uint32_t outsideAny(std::span<const glm::dvec4> planes, const EyeBoxes& boxes) {
 }
 
 size_t cullFrustum(const Frustum& frustum, const BoxArrays& boxes, std::span<uint32_t> kept) {
+    SIGHTLINE_DEBUG_ASSERT(frustum.count <= std::size(frustum.planes));
+    SIGHTLINE_DEBUG_ASSERT(kept.size() >= (boxes.count + 15) / 16 * 16);
     return HWY_DYNAMIC_DISPATCH(cullFrustumKernel)(frustum, boxes, kept.data());
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 
+#include "sightline/base/assert.h"
 #include "sightline/geom/frustum.h"
 #include "sightline/geom/view_volume.h"
 #include "sightline/tree/bvh.h"
@@ -22,6 +23,7 @@ struct EyeBoxes {
 
 /// One of them.
 inline Box3f boxOf(const EyeBoxes& boxes, int which) {
+    SIGHTLINE_DEBUG_ASSERT(which >= 0 && which < 8);
     return {{boxes.min[0][which], boxes.min[1][which], boxes.min[2][which]},
             {boxes.max[0][which], boxes.max[1][which], boxes.max[2][which]}};
 }

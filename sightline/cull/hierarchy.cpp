@@ -58,6 +58,7 @@ struct FrustumBits {
     uint64_t groups[kMostFrusta / 8] = {};  ///< of eight frusta each: a byte per slot
 
     HWY_INLINE void set(uint32_t frustum, uint32_t slots) {
+        SIGHTLINE_DEBUG_ASSERT(frustum < kMostFrusta);
         groups[frustum / 8] |= spread(slots & 0xff) << (frustum % 8);
     }
     /// Writes a mask per slot, with the bits of `every` in each.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/base/assert.h"
 #include "sightline/cull/occluder_volumes.h"
 
 namespace sightline {
@@ -54,8 +55,14 @@ struct Maker {
     uint32_t kept_count = 0;
     double farthest = 0;  ///< corner of the outline
 
-    const VolumeFace& face(uint32_t i) const { return place.parts->faces[place.parts->members[part.first_face + i]]; }
-    glm::dvec3 corner(uint32_t i) const { return place.linear * place.parts->corners[i] + place.shift; }
+    const VolumeFace& face(uint32_t i) const {
+        SIGHTLINE_DEBUG_ASSERT(i < part.face_count && part.first_face + i < place.parts->members.size());
+        return place.parts->faces[place.parts->members[part.first_face + i]];
+    }
+    glm::dvec3 corner(uint32_t i) const {
+        SIGHTLINE_DEBUG_ASSERT(i < place.parts->corners.size());
+        return place.linear * place.parts->corners[i] + place.shift;
+    }
 
     bool make();
     bool addAllBut(const VolumeFace& face, uint32_t side, bool& reverse);
@@ -73,6 +80,7 @@ struct Maker {
 };
 
 void Maker::look() {
+    SIGHTLINE_DEBUG_ASSERT(part.face_count > 0 && part.face_count <= VolumePart::kMaxFaces);
     seen = 0;
     for (uint32_t i = 0; i < part.face_count; ++i) {
         fronts[i] = frontOf(view, place, face(i), false);
@@ -85,6 +93,7 @@ void Maker::look() {
 bool Maker::traceFace() {
     const VolumeFace& only = face(0);
     const bool reverse = place.flips != fronts[0].flipped;
+    SIGHTLINE_DEBUG_ASSERT(only.count >= 3 && only.count <= OccluderVolume::kMaxOutline);
     for (uint32_t i = 0; i < only.count; ++i)
         outline.corner[i] = corner(place.parts->outline[only.first + (reverse ? only.count - 1 - i : i)]);
     outline.count = only.count;
@@ -96,6 +105,7 @@ bool Maker::traceBody() {
     struct Directed {
         uint32_t from, to;
     };
+    SIGHTLINE_DEBUG_ASSERT(part.first_edge + part.edge_count <= place.parts->edges.size());
     Directed open[OccluderVolume::kMaxOutline];
     uint32_t count = 0;
     const auto isSeen = [&](uint8_t f) { return f != VolumeEdge::kNone && (seen >> f & 1); };
@@ -152,6 +162,7 @@ double Maker::lost(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c
 
 /// Leaves out the corners that matter least, until there are few enough sides.
 void Maker::thin() {
+    SIGHTLINE_DEBUG_ASSERT(outline.count >= 3 && outline.count <= OccluderVolume::kMaxOutline);
     kept_count = outline.count;
     for (uint32_t i = 0; i < kept_count; ++i) kept[i] = static_cast<uint8_t>(i);
     while (kept_count > OccluderVolume::kMaxSides) {
@@ -170,6 +181,7 @@ void Maker::thin() {
 /// @param still  slack that is the same everywhere  [world units]
 /// @param turn   slack per distance from the eye
 bool Maker::addPlane(const glm::dvec3& normal, double distance, double still, double turn) {
+    SIGHTLINE_DEBUG_ASSERT(volume.planes <= OccluderVolume::kMaxPlanes);
     if (volume.planes == OccluderVolume::kMaxPlanes) return false;
     if (!(turn < kWorstTurn) || !std::isfinite(distance) || !std::isfinite(still)) return false;
     // As in the frustum's test: ten roundings of 2^-24 stay under 2^-19 of the sum of the sizes.
@@ -187,6 +199,7 @@ bool Maker::addPlane(const glm::dvec3& normal, double distance, double still, do
 /// With the true corners a + da and b + db, the plane's determinant at p is that of a and b, but for at most
 /// |p| (|da| |b| + |a| |db| + |da| |db|); divided by the length of b x a that is the slack's turn.
 bool Maker::addSide(uint32_t from, uint32_t to) {
+    SIGHTLINE_DEBUG_ASSERT(from < outline.count && to < outline.count && from != to);
     const glm::dvec3 a = outline.corner[from], b = outline.corner[to];
     const double length_a = glm::length(a), length_b = glm::length(b), apart = glm::length(b - a), e = place.error;
     const bool perspective = view.screen.perspective;
@@ -266,6 +279,7 @@ bool Maker::make() {
 /// The planes of a face, but for that of a side.
 /// @param reverse  receives whether its outline is seen to run the other way round
 bool Maker::addAllBut(const VolumeFace& of, uint32_t side, bool& reverse) {
+    SIGHTLINE_DEBUG_ASSERT(side < of.count);
     Front front = frontOf(view, place, of, false);
     if (!front.seen && of.double_sided) front = frontOf(view, place, of, true);
     if (!front.seen || of.count > OccluderVolume::kMaxSides) return false;
@@ -286,6 +300,7 @@ bool Maker::addAllBut(const VolumeFace& of, uint32_t side, bool& reverse) {
 }  // namespace
 
 VolumeView makeVolumeView(const View& view, const Screen& screen, const glm::dvec3& offset) {
+    SIGHTLINE_DEBUG_ASSERT(isUsable(view));
     VolumeView out;
     out.screen = screen;
     const glm::dvec3 x(screen.x), y(screen.y), w(screen.w), near(screen.near);
@@ -340,6 +355,7 @@ VolumePlace placeParts(const VolumeView& view, const VolumeParts& parts, const B
 }
 
 double roughPixels(const VolumeView& view, const VolumePlace& place, uint32_t index) {
+    SIGHTLINE_DEBUG_ASSERT(index < place.parts->parts.size());
     const VolumePart& part = place.parts->parts[index];
     const double away = glm::length(part.center - place.eye) - part.radius;
     double sum = 0;
@@ -363,6 +379,7 @@ double roughPixels(const VolumeView& view, const VolumePlace& place, uint32_t in
 bool makeVolume(const VolumeView& view, const VolumePlace& place, uint32_t part, OccluderVolume& volume,
                 VolumeOutline& outline) {
     if (!place.usable) return false;
+    SIGHTLINE_DEBUG_ASSERT(view.usable && part < place.parts->partCount());
     Maker maker{view, place, place.parts->part(part), volume, outline};
     return maker.make();
 }
@@ -370,6 +387,7 @@ bool makeVolume(const VolumeView& view, const VolumePlace& place, uint32_t part,
 bool makeSeamVolume(const VolumeView& view, const VolumePlace& one, const VolumePlace& other, const VolumeSeam& seam,
                     OccluderVolume& volume) {
     if (!one.usable || !other.usable || !view.screen.perspective) return false;
+    SIGHTLINE_DEBUG_ASSERT(seam.face[0] < one.parts->faces.size() && seam.face[1] < other.parts->faces.size());
     VolumeOutline outline;
     volume.planes = 0;
     Maker makers[2] = {{view, one, VolumePart(), volume, outline}, {view, other, VolumePart(), volume, outline}};
@@ -381,6 +399,7 @@ bool makeSeamVolume(const VolumeView& view, const VolumePlace& one, const Volume
 double visiblePixels(const VolumeView& view, const VolumeOutline& outline) {
     glm::dvec4 points[2][OccluderVolume::kMaxOutline + 8];
     uint32_t count = outline.count;
+    SIGHTLINE_DEBUG_ASSERT(count <= OccluderVolume::kMaxOutline);
     for (uint32_t i = 0; i < count; ++i) {
         const glm::dvec4 q(outline.corner[i], 1.0);
         points[0][i] = {glm::dot(view.screen.x, q), glm::dot(view.screen.y, q), glm::dot(view.screen.w, q),

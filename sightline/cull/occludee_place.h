@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "sightline/base/assert.h"
 #include "sightline/buffer/ask/occludee_box.h"
 #include "sightline/math/box.h"
 
@@ -17,9 +18,15 @@ struct OccludeePlace {
 
     /// Bound on the error of a projected point.  [pixels]
     /// @param w  no point asked about has less  [> 0]
-    double positionError(double w) const { return 0x1p-36 + pixel_error / w; }
+    double positionError(double w) const {
+        SIGHTLINE_DEBUG_ASSERT(w > 0);
+        return 0x1p-36 + pixel_error / w;
+    }
     /// Of its nearness.
-    double depthError(double w) const { return screen.perspective ? depth_error / (w * w) : depth_error; }
+    double depthError(double w) const {
+        SIGHTLINE_DEBUG_ASSERT(w > 0);
+        return screen.perspective ? depth_error / (w * w) : depth_error;
+    }
 };
 
 /// @param screen     makeScreen()

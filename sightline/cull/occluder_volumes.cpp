@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/cull/occluder_volumes.h"
 
+#include "sightline/base/assert.h"
+
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sightline/cull/occluder_volumes.cpp"
@@ -98,12 +100,15 @@ HWY_EXPORT(testVolumeKernel);
 HWY_EXPORT(shadowSharesKernel);
 
 VolumeAnswer testVolume(const OccluderVolume& volume, const EyeBoxes& boxes, uint32_t active, uint32_t wanted) {
+    SIGHTLINE_DEBUG_ASSERT(volume.planes <= OccluderVolume::kMaxPlanes && wanted <= 0xff);
     VolumeAnswer answer;
     HWY_DYNAMIC_DISPATCH(testVolumeKernel)(volume, boxes, active, wanted, answer);
     return answer;
 }
 
 void shadowShares(const OccluderVolume& volume, const EyeBoxes& boxes, float* share) {
+    SIGHTLINE_DEBUG_ASSERT(volume.planes <= OccluderVolume::kMaxPlanes);
+    SIGHTLINE_DEBUG_ASSERT(reinterpret_cast<uintptr_t>(share) % 64 == 0);
     HWY_DYNAMIC_DISPATCH(shadowSharesKernel)(volume, boxes, share);
 }
 

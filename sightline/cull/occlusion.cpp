@@ -8,6 +8,8 @@
 #include <cstring>
 #include <limits>
 
+#include "sightline/base/assert.h"
+#include "sightline/buffer/validate_tiles.h"
 #include "sightline/cull/frustum.h"
 
 #ifndef SIGHTLINE_CULL_CORNER_BOUNDS
@@ -201,6 +203,8 @@ Fit toPixels(const Screen& screen, double x0, double y0, double x1, double y1, P
     rect.y1 = static_cast<int32_t>(std::min(y1, height - 1.0));
     rect.x0 = std::min(rect.x0, rect.x1);
     rect.y0 = std::min(rect.y0, rect.y1);
+    SIGHTLINE_DEBUG_ASSERT(0 <= rect.x0 && static_cast<uint32_t>(rect.x1) < screen.width);
+    SIGHTLINE_DEBUG_ASSERT(0 <= rect.y0 && static_cast<uint32_t>(rect.y1) < screen.height);
     return Fit::kInside;
 }
 
@@ -226,6 +230,7 @@ ScreenAnswer projectBoxes(const Screen& screen, const EyeBoxes& boxes) {
 }
 
 ScreenAnswer projectClusters(const Screen& object, const Occluder& occluder, uint32_t first) {
+    SIGHTLINE_DEBUG_ASSERT(first < occluder.clusters.size());
     const size_t last = occluder.clusters.size() - 1;
     EyeBoxes boxes;
     for (size_t i = 0; i < 8; ++i) {
@@ -321,6 +326,8 @@ OccluderInstance makeOccluderInstance(const Screen& screen, const Occluder& occl
 }
 
 bool placeCluster(const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box, DrawnCluster& drawn) {
+    SIGHTLINE_DEBUG_ASSERT(instance.occluder && instance.transform && cluster < instance.occluder->clusters.size());
+    SIGHTLINE_DEBUG_ASSERT(!box.outside);
     const Screen& screen = instance.screen;
     double w = screen.near_w;
     if (screen.perspective && !box.doubt) w = std::max(w, 1.0 / box.rect.nearness);
@@ -339,6 +346,8 @@ uint32_t drawOccluder(DepthTiles& tiles, const OccluderInstance& instance, uint3
     DrawnCluster drawn;
     if (!placeCluster(instance, cluster, box, drawn)) return 0;
     drawCluster(tiles, drawn, instance.screen, instance.flips);
+    const int32_t right = static_cast<int32_t>(tiles.width) - 1, top = static_cast<int32_t>(tiles.height) - 1;
+    validateTiles(tiles, box.doubt ? PixelRect{0, 0, right, top, 0} : box.rect);
     return instance.occluder->clusters[cluster].triangle_count;
 }
 

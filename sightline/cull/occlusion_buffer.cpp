@@ -43,6 +43,7 @@ ViewProblem OcclusionBuffer::begin(const View& view) {
 }
 
 const glm::dmat4& OcclusionBuffer::keep(const glm::dmat4& transform) {
+    SIGHTLINE_DEBUG_ASSERT(transforms_used_ <= transforms_.size());
     if (transforms_used_ == transforms_.size()) transforms_.emplace_back();
     return transforms_[transforms_used_++] = transform;
 }

@@ -4,9 +4,12 @@
 
 #include <cmath>
 
+#include "sightline/base/assert.h"
+
 namespace sightline {
 
 RelativePlanes relativePlanes(const Frustum& frustum, const glm::dvec3& origin, float reach) {
+    SIGHTLINE_DEBUG_ASSERT(frustum.count <= std::size(frustum.planes) && reach >= 0);
     constexpr float kRounding = 0x1p-19f;  // as in cullFrustum()
     RelativePlanes planes;
     planes.count = frustum.count;

@@ -25,6 +25,7 @@ glm::dvec3 cornerOf(const Box3d& box, int corner) {
 }  // namespace
 
 LightGrid makeLightGrid(const View& light) {
+    SIGHTLINE_DEBUG_ASSERT(isUsable(light));
     LightGrid grid;
     grid.width = light.width;
     grid.height = light.height;
@@ -54,6 +55,7 @@ LightGrid makeLightGrid(const View& light) {
 }
 
 void ReceiverMask::begin(const LightGrid& grid, double spread, double bias) {
+    SIGHTLINE_DEBUG_ASSERT(spread >= 0 && bias >= 0 && grid.width > 0 && grid.height > 0);
     grid_ = grid;
     spread_ = spread;
     bias_ = bias;
@@ -151,9 +153,11 @@ void ReceiverMask::addReceiver(const Box3d& box, std::span<const glm::dvec4> cut
         std::fill(farthest_.begin(), farthest_.end(), grid_.perspective ? 0.0 : -kInfinity);
         return;
     }
+    SIGHTLINE_DEBUG_ASSERT(farthest_.size() == size_t{grid_.width} * grid_.height);
     Along planes[kMostPlanes];
     uint32_t count = planesOf(box, planes);
     for (const glm::dvec4& cut : cuts) planes[count++] = along(cut);
+    SIGHTLINE_DEBUG_ASSERT(count <= kMostPlanes);
     const Rect rect = rectOf(box, spread_);
     bool any = false;
     for (int32_t y = rect.y0; y <= rect.y1; ++y)

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/assert.h"
+
 namespace sightline {
 namespace {
 
@@ -22,6 +24,7 @@ Sight toPixels(const Screen& screen, double x0, double y0, double x1, double y1,
     rect.y0 = static_cast<int32_t>(std::clamp(y0, 0.0, screen.height - 1.0));
     rect.x1 = static_cast<int32_t>(std::clamp(x1, 0.0, screen.width - 1.0));
     rect.y1 = static_cast<int32_t>(std::clamp(y1, 0.0, screen.height - 1.0));
+    SIGHTLINE_DEBUG_ASSERT(rect.x0 <= rect.x1 && rect.y0 <= rect.y1);
     return Sight::kOccluded;
 }
 
@@ -70,6 +73,7 @@ Sight asked(bool hidden) { return hidden ? Sight::kOccluded : Sight::kVisible; }
 /// touches the sphere. False if the eye's plane does not leave it whole on one side.
 bool sphereBounds(const glm::dvec4& row, const glm::dvec4& w, const glm::dvec3& center, double radius, double& low,
                   double& high) {
+    SIGHTLINE_DEBUG_ASSERT(radius >= 0);
     // |(row - s w).(c, 1)| = r |row - s w|, squared: a s^2 - 2 b s + c = 0.
     const glm::dvec4 h(center, 1.0);
     const glm::dvec3 n(row), m(w);
@@ -89,6 +93,7 @@ bool sphereBounds(const glm::dvec4& row, const glm::dvec4& w, const glm::dvec3& 
 /// The hull of points of the plane, counter-clockwise, in place; returns how many are left.
 /// A. M. Andrew. Another Efficient Algorithm for Convex Hulls in Two Dimensions. 1979.
 size_t hullOf(Array<glm::dvec2>& points, Array<glm::dvec2>& hull) {
+    SIGHTLINE_DEBUG_ASSERT(!points.empty());
     std::sort(points.begin(), points.end(),
               [](const glm::dvec2& p, const glm::dvec2& q) { return p.x != q.x ? p.x < q.x : p.y < q.y; });
     hull.resize(2 * points.size() + 1);
@@ -148,6 +153,7 @@ Sight makeBoxFaces(const OccludeePlace& place, const Box3d& box, BoxFaces& out) 
                                                place.screen.width, place.screen.height, out.faces[out.count]);
         if (made == Sight::kVisible) return made;
         out.count += made == Sight::kOccluded;
+        SIGHTLINE_DEBUG_ASSERT(out.count <= 6);
     }
     return out.count > 0 ? sight : Sight::kOutside;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "sightline/base/assert.h"
 #include "sightline/cull/hierarchy_scratch.h"
 #include "sightline/tree/bvh_node.h"
 #include "sightline/tree/world_bvh.h"
@@ -79,6 +80,8 @@ HWY_INLINE size_t takeItems(const BvhNode& node, uint32_t slots, uint32_t* kept,
 /// @param slots  at least one
 HWY_INLINE size_t takePlaced(const PlacedBvh& tree, const BvhNode& node, uint32_t slots, uint32_t* kept) {
     constexpr uint32_t kPage = PlacedBvh::kOrderPage;
+    static_assert((kPage & (kPage - 1)) == 0);
+    SIGHTLINE_DEBUG_ASSERT(slots != 0 && slots <= 0xff);
     const U8 u;
     const uint32_t page = node.first[std::countr_zero(slots)] / kPage;
     uint32_t elsewhere = 0;
@@ -104,6 +107,7 @@ HWY_INLINE size_t takeBelow(const PlacedBvh& tree, const BvhNode& node, int slot
     const U8 u;
     size_t count = 0;
     uint32_t place = node.first[slot];
+    SIGHTLINE_DEBUG_ASSERT(place + node.count[slot] <= tree.order.size() && node.empty[slot] <= node.count[slot]);
     const uint32_t end = place + node.count[slot];
     while (place < end) {
         const std::span<const uint32_t> run = tree.order.run(place, end - place);
@@ -145,6 +149,7 @@ HWY_INLINE size_t walkTree(const PlacedBvh& tree, Question& question, Array<Visi
     for (size_t at = 0; at < visits.size(); ++at) {
         for (; fetched < std::min(visits.size(), at + kAhead); ++fetched) prefetch(tree.nodes[visits[fetched].node]);
         const Visit visit = visits[at];
+        SIGHTLINE_DEBUG_ASSERT(visit.node < tree.nodes.size());
         const BvhNode& node = tree.nodes[visit.node];
         ++stats.nodes;
         const SlotKinds used = kindsOf(node);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/assert.h"
 #include "sightline/cull/occlusion.h"
 
 namespace sightline {
@@ -25,7 +26,7 @@ Homogeneous project(const Screen& object, double x, double y, double z) {
 
 /// Corners of a polygon on the screen.
 struct Corners {
-    static constexpr int kMost = 5;
+    static constexpr int kMost = 6;  // the near plane may cross all four sides of a quadrangle that is not quite flat
     double x[kMost], y[kMost], d[kMost];
     int count = 0;
 };
@@ -36,12 +37,14 @@ bool clipAtNear(const Screen& object, const Homogeneous* corner, int count, Corn
     const double guard = -object.near_guard;
     const auto emit = [&](const Homogeneous& p) {
         if (!(p.w > 0.0)) return false;
+        SIGHTLINE_DEBUG_ASSERT(out.count < Corners::kMost);
         const int i = out.count++;
         out.x[i] = p.x / p.w;
         out.y[i] = p.y / p.w;
         out.d[i] = p.d / p.w;
         return true;
     };
+    SIGHTLINE_DEBUG_ASSERT(count == 3 || count == 4);
     out.count = 0;
     for (int i = 0; i < count; ++i) {
         const Homogeneous &a = corner[i], &b = corner[i + 1 < count ? i + 1 : 0];
@@ -80,7 +83,9 @@ struct ClusterWalk {
         position_error = place.positionError(w);
         depth_error = place.depthError(w);
         if (!(position_error < kWorstPosition)) return false;
+        SIGHTLINE_DEBUG_ASSERT(cluster.vertex_count <= OccluderCluster::kMaxVertices);
         const size_t first = cluster.first_vertex;
+        SIGHTLINE_DEBUG_ASSERT(first + (cluster.vertex_count + 7u) / 8 * 8 <= shape.x.size());
         projectOccludee(place.screen, shape.x.data() + first, shape.y.data() + first, shape.z.data() + first,
                         cluster.vertex_count, vertices);
         return true;
@@ -98,6 +103,7 @@ private:
 /// kOutside also for what is surely turned away, and so not drawn.
 Sight ClusterWalk::make(const double* x, const double* y, const double* d, int count, bool both,
                         OccludeePolygon& out) const {
+    SIGHTLINE_DEBUG_ASSERT(count >= 3);
     if (!both) {
         double perimeter = 0, widest = -std::numeric_limits<double>::infinity();
         for (int i = 0; i < count; ++i) {
@@ -146,6 +152,7 @@ Sight ClusterWalk::polygon(const OccluderPolygon& polygon, OccludeePolygon& out)
     const int count = polygon.corners();
     int before = 0, behind = 0;
     for (int k = 0; k < count; ++k) {
+        SIGHTLINE_DEBUG_ASSERT(polygon.vertex[k] < cluster.vertex_count);
         x[k] = vertices.x[polygon.vertex[k]];
         y[k] = vertices.y[polygon.vertex[k]];
         d[k] = vertices.d[polygon.vertex[k]];
@@ -191,6 +198,7 @@ uint64_t gatherClusters(DepthTiles& tiles, const OccludeePlace& place, const Occ
 
 /// The least w of what may be drawn of a cluster, 0 if that is not known; less than 0: it lies outside of the view.
 double leastW(const OccludeePlace& place, const Occluder& shape, uint32_t cluster) {
+    SIGHTLINE_DEBUG_ASSERT(cluster < shape.clusters.size());
     if (shape.clusters.size() == 1) return 0.0;
     const BoxAnswer box(projectClusters(place.screen, shape, cluster), 0);
     if (box.outside) return -1.0;
@@ -262,6 +270,7 @@ Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder
             scratch.names.push_back(look.open);
         }
     }
+    SIGHTLINE_DEBUG_ASSERT(scratch.undecided.size() == scratch.names.size());
     // Only if nothing is open for good are seams worth resolving.
     for (size_t i = 0; i < scratch.undecided.size(); ++i) {
         look.open = scratch.names[i];
@@ -272,6 +281,8 @@ Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder
 }
 
 bool isOpen(DepthTiles& tiles, const OccludeePlace& place, const Occluder& shape, const OpenPolygon& polygon) {
+    SIGHTLINE_DEBUG_ASSERT(polygon.cluster < shape.clusters.size());
+    SIGHTLINE_DEBUG_ASSERT(polygon.polygon < shape.clusters[polygon.cluster].polygon_count);
     ClusterWalk walk(place, shape, polygon.cluster);
     OccludeePolygon occludee;
     if (!walk.begin(0.0)) return true;

@@ -7,6 +7,7 @@
 #include <span>
 #include <tuple>
 
+#include "sightline/base/assert.h"
 #include "sightline/math/exact_product.h"
 
 namespace sightline {
@@ -127,6 +128,7 @@ void Finder::weld() {
 }
 
 glm::dvec3 Finder::vectorArea(const Array<uint32_t>& outline) const {
+    SIGHTLINE_DEBUG_ASSERT(outline.size() >= 3);
     glm::dvec3 sum(0.0);
     const glm::dvec3 o = corners[outline[0]];
     for (size_t i = 1; i + 1 < outline.size(); ++i)
@@ -149,6 +151,7 @@ bool Finder::isConvex(const Array<uint32_t>& outline, const glm::dvec3& normal, 
 
 /// Joins two patches along all of the sides that they share, if those hang together.
 bool Finder::tryJoin(uint32_t a, uint32_t b) {
+    SIGHTLINE_DEBUG_ASSERT(a != b && patch_of[a] == a && patch_of[b] == b);
     Patch &one = patches[a], &other = patches[b];
     if (one.double_sided != other.double_sided) return false;
     const double length_a = one.length(), length_b = other.length();
@@ -185,6 +188,7 @@ bool Finder::tryJoin(uint32_t a, uint32_t b) {
     for (uint32_t corner : outline)
         if (std::abs(glm::dot(normal, corners[corner] - at)) > kFlat * size) return false;
     if (!isConvex(outline, normal, kConvex * size)) return false;
+    SIGHTLINE_DEBUG_ASSERT(outline.size() == n + m - 2 * chain);
     one.outline = std::move(outline);
     one.area = area;
     other.outline.clear();

@@ -7,6 +7,7 @@
 #include <span>
 #include <tuple>
 
+#include "sightline/base/assert.h"
 #include "sightline/cull/volume_faces.h"
 
 namespace sightline {
@@ -98,10 +99,12 @@ void PartMaker::growBodies() {
         if (faces.size() < 2) continue;
         for (uint32_t face : faces) body_of[face] = static_cast<uint32_t>(out.parts.size());
         addPart(faces);
+        SIGHTLINE_DEBUG_ASSERT(out.parts.size() <= VolumeParts::kMaxParts / 2);
     }
 }
 
 VolumePart PartMaker::makePart(std::span<const uint32_t> faces) {
+    SIGHTLINE_DEBUG_ASSERT(!faces.empty() && faces.size() <= VolumePart::kMaxFaces);
     VolumePart part;
     part.first_face = static_cast<uint32_t>(out.members.size());
     part.face_count = static_cast<uint32_t>(faces.size());
@@ -154,6 +157,7 @@ VolumeParts findVolumeParts(const Occluder& occluder, Memory* memory) {
     VolumeParts out(memory);
     findVolumeFaces(occluder, memory, out);
     PartMaker{out, memory}.listFaces();
+    SIGHTLINE_DEBUG_ASSERT(out.parts.size() <= VolumeParts::kMaxParts && out.faces.size() <= VolumeParts::kMaxFaces);
     return out;
 }
 

@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 
 #include "sightline/base/array.h"
+#include "sightline/base/assert.h"
 
 namespace sightline {
 
@@ -56,9 +57,15 @@ struct VolumeParts {
     static constexpr uint32_t kMaxFaces = 1024;
 
     /// One of `parts` or, behind them, of `more`.
-    const VolumePart& part(uint32_t i) const { return i < parts.size() ? parts[i] : more[i - parts.size()]; }
+    const VolumePart& part(uint32_t i) const {
+        SIGHTLINE_DEBUG_ASSERT(i < partCount());
+        return i < parts.size() ? parts[i] : more[i - parts.size()];
+    }
     /// The part that is a face alone.
-    uint32_t partOf(uint32_t face) const { return partCount() - static_cast<uint32_t>(faces.size()) + face; }
+    uint32_t partOf(uint32_t face) const {
+        SIGHTLINE_DEBUG_ASSERT(face < faces.size() && faces.size() <= partCount());
+        return partCount() - static_cast<uint32_t>(faces.size()) + face;
+    }
     uint32_t partCount() const { return static_cast<uint32_t>(parts.size() + more.size()); }
 
     explicit VolumeParts(Memory* memory = defaultMemory())

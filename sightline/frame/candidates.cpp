@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "sightline/base/assert.h"
+
 namespace sightline::detail {
 
 void WindowRect::grow(const WindowRect& other) {
@@ -23,6 +25,7 @@ void Candidates::begin(const SnapshotState& state, uint32_t layers) {
     layers_ = layers;
     every_layer_ = (state.common_layers & layers) != 0;
     stages_ = 0;
+    SIGHTLINE_DEBUG_ASSERT(state.placed.size() == state.bvh.order.size());
     const uint32_t places = state.placed.size();
     pvs_.clear(places);
     windowed_.clear(places);
@@ -37,7 +40,9 @@ void Candidates::begin(const SnapshotState& state, uint32_t layers) {
 }
 
 void Candidates::admitByPvs(uint32_t row) {
+    SIGHTLINE_DEBUG_ASSERT(state_ && has_pvs_);
     const uint32_t place = state_->bvh.placeOf(row);
+    SIGHTLINE_DEBUG_ASSERT(place != PlacedBvh::kNone);
     if (isInLayers(place)) in_pvs_ += pvs_.insert(place);
 }
 
@@ -51,6 +56,7 @@ void Candidates::beginWindows() {
 }
 
 void Candidates::noteNode(uint32_t slot) {
+    SIGHTLINE_DEBUG_ASSERT(slot / 8 < node_at_.size());
     uint32_t& at = node_at_[slot / 8];
     if (at == 0) {
         nodes_.push_back({slot / 8, 0});
@@ -60,7 +66,9 @@ void Candidates::noteNode(uint32_t slot) {
 }
 
 void Candidates::admit(uint32_t row, const WindowRect& rect) {
+    SIGHTLINE_DEBUG_ASSERT(state_ && row < state_->bvh.slot.size());
     const uint32_t slot = state_->bvh.slot[row];
+    SIGHTLINE_DEBUG_ASSERT(slot != PlacedBvh::kNone);
     const uint32_t place = state_->bvh.nodes[slot / 8].first[slot % 8];
     if (windowed_.has(place)) return rects_[rect_of_[place]].grow(rect);
     if (!isInLayers(place) || (has_pvs_ && !pvs_.has(place))) return;
@@ -72,8 +80,10 @@ void Candidates::admit(uint32_t row, const WindowRect& rect) {
 }
 
 void Candidates::finish(uint32_t stages) {
+    SIGHTLINE_DEBUG_ASSERT(stages != 0 && (stages & ~kCellStages) == 0);
     stages_ = stages;
     const uint64_t left = uses(Stage::kPvs) ? in_pvs_ : attached_;
+    SIGHTLINE_DEBUG_ASSERT(left <= attached_ && (!uses(Stage::kPortals) || in_windows_ <= left));
     by_pvs_ = attached_ - left;
     by_portals_ = uses(Stage::kPortals) ? left - in_windows_ : 0;
 }
@@ -86,7 +96,9 @@ void Candidates::takeSome(const Candidates& from, std::span<const uint32_t> item
     for (uint32_t place = 0; place < places; ++place) {
         const uint32_t row = some.bvh.order[place];
         if (row == PlacedBvh::kNone) continue;
+        SIGHTLINE_DEBUG_ASSERT(row < items.size());
         const uint32_t before = from.state_->bvh.placeOf(from.state_->rowOf(items[row]));
+        SIGHTLINE_DEBUG_ASSERT(before != PlacedBvh::kNone);
         const bool free = from.isFree(before);
         if (from.uses(Stage::kPvs) && (free || from.pvs_.has(before))) admitByPvs(row);
         if (!from.uses(Stage::kPortals) || !from.admits(before)) continue;
@@ -97,10 +109,12 @@ void Candidates::takeSome(const Candidates& from, std::span<const uint32_t> item
 }
 
 Stage Candidates::stageOf(uint32_t place) const {
+    SIGHTLINE_DEBUG_ASSERT(!admits(place));
     return uses(Stage::kPvs) && !pvs_.has(place) ? Stage::kPvs : Stage::kPortals;
 }
 
 uint64_t Candidates::count(uint32_t first, uint32_t end) const {
+    SIGHTLINE_DEBUG_ASSERT(first <= end && end <= state_->placed.size());
     uint64_t count = 0;
     decided().forEachWord(first, end,
                           [&](uint32_t, uint64_t bits) { count += static_cast<uint64_t>(std::popcount(bits)); });

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "sightline/base/assert.h"
 #include "sightline/base/levelled_bits.h"
 #include "sightline/base/array.h"
 #include "sightline/geom/view.h"
@@ -56,8 +57,12 @@ public:
     uint64_t culled(Stage stage) const { return stage == Stage::kPvs ? by_pvs_ : by_portals_; }
     uint64_t attached() const { return attached_; }  ///< objects that stand in cells
 
-    bool admits(uint32_t place) const { return decided().has(place) || isFree(place); }
+    bool admits(uint32_t place) const {
+        SIGHTLINE_DEBUG_ASSERT(stages_ != 0 && place < state_->placed.size());
+        return decided().has(place) || isFree(place);
+    }
     bool any(uint32_t first, uint32_t end) const {
+        SIGHTLINE_DEBUG_ASSERT(stages_ != 0 && first <= end && end <= state_->placed.size());
         return decided().any(first, end) || (free_ && free_->any(first, end));
     }
     /// Which stage culls the object at a place that is no candidate.
@@ -69,6 +74,7 @@ public:
     void forEach(uint32_t first, uint32_t end, Visit&& visit) const;
     /// Where in the image the object at a place may be seen; null: anywhere.
     const WindowRect* window(uint32_t place) const {
+        SIGHTLINE_DEBUG_ASSERT(place < state_->placed.size());
         return uses(Stage::kPortals) && decided().has(place) ? &rects_[rect_of_[place]] : nullptr;
     }
     /// The nodes that hold candidates; empty: the descent had better begin at the root.
@@ -98,6 +104,7 @@ private:
 template <class Visit>
 void Candidates::forEach(uint32_t first, uint32_t end, Visit&& visit) const {
     if (first >= end) return;
+    SIGHTLINE_DEBUG_ASSERT(stages_ != 0 && end <= state_->placed.size());
     const uint32_t low = first / 64, behind = bit_levels::wordsOf(end);
     const auto next = [&](uint32_t from) {
         const uint32_t word = decided().nextWord(from, behind);

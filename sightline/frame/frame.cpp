@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/base/assert.h"
 #include "sightline/frame/image_part.h"
 #include "sightline/math/stretch.h"
 
@@ -42,12 +43,15 @@ void Frame::begin(const SnapshotState* now, const View& from, const QuerySetting
 }
 
 Box3d Frame::boundsAt(uint32_t place) const {
+    SIGHTLINE_DEBUG_ASSERT(place < world->bvh.order.size() && world->bvh.order[place] != PlacedBvh::kNone);
     const uint32_t at = world->bvh.slot[world->bvh.order[place]];
     const Box3f box = slotBox(world->bvh.nodes[at / 8], static_cast<int>(at % 8));
     return {world->bvh.origin + glm::dvec3(box.min), world->bvh.origin + glm::dvec3(box.max)};
 }
 
 bool Frame::errsLittle(uint32_t place) const {
+    SIGHTLINE_DEBUG_ASSERT(world->placed[place].coarser.index > 0 &&
+                           world->placed[place].coarser.index < world->lods.size());
     const HeldLods& held = *world->lods[world->placed[place].coarser.index];
     if (settings.budget > 0.0) return held.levels.size() > 1;
     const double unit = largestStretch(world->objectAt(place).transform) * pixelsOfUnit(lods, boundsAt(place));
@@ -55,11 +59,13 @@ bool Frame::errsLittle(uint32_t place) const {
 }
 
 void Frame::narrowTo(const Candidates* left) {
+    SIGHTLINE_DEBUG_ASSERT(!left || (left->stages() & ~kCellStages) == 0);
     candidates = left;
     stages &= ~kCellStages | (left ? left->stages() : 0);
 }
 
 uint64_t Frame::countObjects(const PlaceRange& places) const {
+    SIGHTLINE_DEBUG_ASSERT(places.first + places.count <= world->placed.size() && places.empty <= places.count);
     if (candidates) return candidates->count(places.first, places.first + places.count);
     if (every_layer) return places.count - places.empty;
     uint64_t within = 0;
@@ -79,6 +85,7 @@ uint32_t Frame::candidateSlots(const BvhNode& node) const {
 PixelRect Frame::inWindow(uint32_t place, PixelRect rect) const {
     const WindowRect* const window = candidates ? candidates->window(place) : nullptr;
     if (!window) return rect;
+    SIGHTLINE_DEBUG_ASSERT(usable);
     // A thousandth of a pixel is far more than rounding, in float, moves it.
     const auto pixel = [](float at, double wide, uint32_t size, double more) {
         const double x = 0.5 * size * (static_cast<double>(at) / wide + 1.0) + more;
@@ -93,6 +100,8 @@ PixelRect Frame::inWindow(uint32_t place, PixelRect rect) const {
 }
 
 uint32_t allPlanes(const Frame& frame) {
+    SIGHTLINE_DEBUG_ASSERT(frame.frustum.count <= kLimitBit);
+    SIGHTLINE_DEBUG_ASSERT(frame.limits.volume.count <= 32 - kLimitBit);
     return ((1u << frame.frustum.count) - 1) | (frame.limits.volume.allPlanes() << kLimitBit);
 }
 

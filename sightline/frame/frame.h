@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "sightline/base/assert.h"
 #include "sightline/buffer/screen.h"
 #include "sightline/buffer/tiles.h"
 #include "sightline/cull/occluder_volumes.h"
@@ -54,12 +55,16 @@ struct Frame {
     void narrowTo(const Candidates* left);
 
     bool uses(Stage stage) const { return stages & stageBit(stage); }
-    bool isInLayers(uint32_t place) const { return world->placed[place].layers & view.layers; }
+    bool isInLayers(uint32_t place) const {
+        SIGHTLINE_DEBUG_ASSERT(world && place < world->placed.size());
+        return world->placed[place].layers & view.layers;
+    }
     /// How many objects of a range of places are within the view's layers, and candidates.
     uint64_t countObjects(const PlaceRange& places) const;
     /// Whether another level than the finest may be drawn of the object at a place, one in which neither its occluder
     /// nor its shape hold.
     bool mayBeCoarse(uint32_t place) const {
+        SIGHTLINE_DEBUG_ASSERT(world && place < world->placed.size());
         return uses(Stage::kLod) && world->placed[place].coarser.index != 0 && errsLittle(place);
     }
     /// The bounds of the object at a place, as the hierarchy has them.

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "sightline/base/assert.h"
 #include "sightline/cull/occlusion.h"
 
 namespace sightline::detail {
@@ -28,6 +29,7 @@ struct ImagePart {
 /// A part of equal width.
 /// @param columns  of the buffer  [tiles]
 inline ImagePart imagePart(uint32_t index, uint32_t count, uint32_t columns) {
+    SIGHTLINE_DEBUG_ASSERT(index < count && count <= ImagePart::kMost && count <= columns);
     const auto border = [&](uint64_t i) { return static_cast<uint32_t>(columns * i / count); };
     return {border(index), border(index + 1), index == 0, index + 1 == count};
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "sightline/base/array.h"
+#include "sightline/base/assert.h"
 #include "sightline/cull/occlusion.h"
 #include "sightline/frame/place_range.h"
 
@@ -38,6 +39,7 @@ public:
     }
 
     void push(const Pending& entry) {
+        SIGHTLINE_DEBUG_ASSERT(entry.rect.nearness == entry.rect.nearness);
         const uint32_t serial = static_cast<uint32_t>(entries_.size());
         entries_.push_back(entry);
         entries_.back().serial = serial;
@@ -46,9 +48,11 @@ public:
     }
 
     Pending pop() {
+        SIGHTLINE_DEBUG_ASSERT(!heap_.empty());
         std::pop_heap(heap_.begin(), heap_.end());
         const uint32_t serial = ~static_cast<uint32_t>(heap_.back());
         heap_.pop_back();
+        SIGHTLINE_DEBUG_ASSERT(serial < entries_.size() && entries_[serial].serial == serial);
         return entries_[serial];
     }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "sightline/base/assert.h"
 #include "sightline/tree/bvh.h"
 
 namespace sightline::detail {
@@ -16,6 +17,7 @@ struct PlaceRange {
 };
 
 inline PlaceRange placesBelow(const BvhNode& node, int slot) {
+    SIGHTLINE_DEBUG_ASSERT(slot >= 0 && slot < 8 && node.count[slot] > 0 && node.empty[slot] < node.count[slot]);
     return {node.first[slot], node.count[slot], node.empty[slot]};
 }
 

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 
+#include "sightline/base/assert.h"
 #include "sightline/cull/occluder_volumes.h"
 #include "sightline/cull/proofs/image_frame.h"
 #include "sightline/cull/proofs/uncovered.h"
@@ -36,7 +37,10 @@ struct Certificate {
     bool closely = false;    ///< of an object: polygon by polygon
     uint32_t hiders[kMost];  ///< of ProofMemory
 
-    std::span<const uint32_t> all() const { return {hiders, count}; }
+    std::span<const uint32_t> all() const {
+        SIGHTLINE_DEBUG_ASSERT(count <= kMost);
+        return {hiders, count};
+    }
 };
 
 /// What one traversal remembers of who hid what, and what it has made for the view at hand.
@@ -127,7 +131,10 @@ public:
     /// The parts whose shadows hid a node or an object by the last certificate that held or was found; good until the
     /// next call.
     Certificate certificateOf(Pending::Kind kind, uint32_t index) const;
-    HidingPart hider(uint32_t number) const { return hiders_[number].part; }
+    HidingPart hider(uint32_t number) const {
+        SIGHTLINE_DEBUG_ASSERT(number < hiders_.size());
+        return hiders_[number].part;
+    }
     /// Calls visit(object, part) for each part that a certificate names, and the object that it is of; of a seam both.
     template <class Visitor>
     void forEachNamed(const Frame& frame, const Certificate& certificate, Visitor visit) const {
@@ -136,7 +143,7 @@ public:
             if (at != PlacedBvh::kNone && part != HidingPart::kNone) visit(frame.world->placed[at].visible, part);
         };
         for (const uint32_t number : certificate.all()) {
-            const HidingPart& part = hiders_[number].part;
+            const HidingPart part = hider(number);
             name(part.object, part.part);
             name(part.other, part.other_part);
         }
@@ -153,6 +160,9 @@ public:
     uint64_t polygons = 0;  ///< of occludees that were turned towards the eye or away from it
 
 private:
+#ifdef SIGHTLINE_DEBUG_ASSERTS
+    friend void validateProofs(const ProofMemory& proofs);
+#endif
     bool teaches() const { return isBefore(teaches_until_); }
     bool isBefore(uint32_t answer) const { return static_cast<int32_t>(answer - answer_) > 0; }
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/assert.h"
+
 namespace sightline::detail {
 namespace {
 
@@ -46,6 +48,7 @@ void SizeLimits::begin(const SnapshotState& state, const View& view, const Query
     max_distance_ = zoom_ * settings.max_distance;
     eye_radius_ = view.eye_radius;
     least_radius_ = settings.contribution;
+    SIGHTLINE_DEBUG_ASSERT(state.limits.empty() || state.limits.objects.size() == state.placed.size());
     stays_ = !shown.empty() && settings.hysteresis > 0.0 ? std::min(settings.hysteresis, 1.0) : 0.0;
 }
 
@@ -56,6 +59,7 @@ bool SizeLimits::wasShown(uint32_t place) const {
 }
 
 double SizeLimits::farthest(uint32_t place) const {
+    SIGHTLINE_DEBUG_ASSERT(place < state_->placed.size());
     double limit = max_distance_;
     if (!state_->limits.empty()) {
         const PlacedLimits::One& one = state_->limits.objects[place];
@@ -66,12 +70,14 @@ double SizeLimits::farthest(uint32_t place) const {
 }
 
 double SizeLimits::smallest(uint32_t place) const {
+    SIGHTLINE_DEBUG_ASSERT(place < state_->placed.size());
     double limit = least_radius_;
     if (!state_->limits.empty()) limit /= state_->limits.objects[place].factor;
     return stays_ > 0.0 && wasShown(place) ? limit * (1.0 - stays_) : limit;
 }
 
 double SizeLimits::farthestBelow(uint32_t node, int slot) const {
+    SIGHTLINE_DEBUG_ASSERT(node < state_->bvh.nodes.size() && slot >= 0 && slot < 8);
     double limit = max_distance_;
     if (!state_->limits.empty()) {
         const PlacedLimits::Below& below = state_->limits.nodes[node].below[slot];
@@ -82,6 +88,7 @@ double SizeLimits::farthestBelow(uint32_t node, int slot) const {
 }
 
 double SizeLimits::smallestBelow(uint32_t node, int slot) const {
+    SIGHTLINE_DEBUG_ASSERT(node < state_->bvh.nodes.size() && slot >= 0 && slot < 8);
     double limit = least_radius_;
     if (!state_->limits.empty()) limit /= state_->limits.nodes[node].below[slot].factor;
     return limit * (1.0 - stays_);
@@ -89,6 +96,7 @@ double SizeLimits::smallestBelow(uint32_t node, int slot) const {
 
 uint32_t SizeLimits::far(uint32_t node, const EyeBoxes& boxes, uint32_t left) const {
     if (!by_distance_) return 0;
+    SIGHTLINE_DEBUG_ASSERT(left <= 0xff);
     const BvhNode& from = state_->bvh.nodes[node];
     alignas(64) float squares[8];
     squaredDistances(distance_, boxes, squares);
@@ -104,6 +112,7 @@ uint32_t SizeLimits::far(uint32_t node, const EyeBoxes& boxes, uint32_t left) co
 
 uint32_t SizeLimits::small(uint32_t node, const EyeBoxes& boxes, uint32_t left) const {
     if (!by_contribution_) return 0;
+    SIGHTLINE_DEBUG_ASSERT(left <= 0xff);
     const BvhNode& from = state_->bvh.nodes[node];
     alignas(64) float squares[8];
     squaredRadii(contribution_, boxes, leavesOf(from), squares);
@@ -120,6 +129,7 @@ uint32_t SizeLimits::small(uint32_t node, const EyeBoxes& boxes, uint32_t left) 
 SizeReason SizeLimits::reasonFor(uint32_t place) const {
     SizeReason reason{0, kInfinity, kInfinity, 0};
     if (!inUse()) return reason;
+    SIGHTLINE_DEBUG_ASSERT(place < state_->placed.size() && state_->bvh.order[place] != PlacedBvh::kNone);
     const uint32_t at = state_->bvh.slot[state_->bvh.order[place]];
     const EyeBoxes boxes = eyeBoxes(state_->bvh.nodes[at / 8], offset_);
     alignas(64) float squares[8];
@@ -134,6 +144,7 @@ SizeReason SizeLimits::reasonFor(uint32_t place) const {
 
 bool SizeLimits::drops(uint32_t place) const {
     if (!inUse()) return false;
+    SIGHTLINE_DEBUG_ASSERT(place < state_->placed.size() && state_->bvh.order[place] != PlacedBvh::kNone);
     const uint32_t at = state_->bvh.slot[state_->bvh.order[place]];
     const EyeBoxes boxes = eyeBoxes(state_->bvh.nodes[at / 8], offset_);
     const uint32_t bit = 1u << at % 8;
@@ -141,6 +152,7 @@ bool SizeLimits::drops(uint32_t place) const {
 }
 
 void LastShown::mark(std::span<const Visible> last, bool wanted) {
+    SIGHTLINE_DEBUG_ASSERT(!marked_);
     marked_ = wanted;
     if (!wanted) return;
     uint32_t end = 1;  // not empty, even where nothing was shown
@@ -152,7 +164,10 @@ void LastShown::mark(std::span<const Visible> last, bool wanted) {
 void LastShown::unmark(std::span<const Visible> last) {
     if (!marked_) return;
     marked_ = false;
-    for (const Visible& object : last) generation_[object.id.index] = 0;
+    for (const Visible& object : last) {
+        SIGHTLINE_DEBUG_ASSERT(generation_[object.id.index] == object.id.generation);
+        generation_[object.id.index] = 0;
+    }
 }
 
 }  // namespace sightline::detail

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "sightline/base/assert.h"
+
 namespace sightline::detail {
 namespace {
 
@@ -21,6 +23,8 @@ void Turns::begin(const Frame& frame, bool by_proofs) {
     if (frame.settings.stateless || !frame.screen.perspective) return;
     most_ = std::min((by_proofs ? 4 : 1) * frame.settings.unasked_answers, kEyes - 1);
     little_ = by_proofs ? kLittleProved : kLittle;
+    SIGHTLINE_DEBUG_ASSERT(frame.world && frame.usable);
+    SIGHTLINE_DEBUG_ASSERT(most_ < kEyes);
     eyes_[++answer_ % kEyes] = frame.frustum.eye;
     // What was not proved to be hidden may well be: drawing asks it.
     const bool other_way = by_proofs_ && !by_proofs;
@@ -38,12 +42,14 @@ void Turns::begin(const Frame& frame, bool by_proofs) {
 
 bool Turns::mayStand(const Pending& entry) const {
     if (most_ == 0) return false;
+    SIGHTLINE_DEBUG_ASSERT(entry.kind != Pending::Kind::kCluster);
     const Array<Turn>& turns = entry.kind == Pending::Kind::kNode ? nodes_ : objects_;
     if (entry.index >= turns.size() || !turns[entry.index].kept) return false;
     const Turn turn = turns[entry.index];
     const uint32_t age = static_cast<uint16_t>(answer_ - turn.answer);
     const uint32_t spread = entry.index * 0x9e3779b9u >> 24 & turn.wait;
     if (age > std::min({most_, turn.wait + spread, answer_ - since_})) return false;
+    SIGHTLINE_DEBUG_ASSERT(age <= most_);
     const double moved = glm::length(eyes_[answer_ % kEyes] - eyes_[(answer_ - age) % kEyes]);
     if (entry.testable) return moved * static_cast<double>(entry.rect.nearness) <= little_;
     return moved <= little_ * glm::length(glm::dvec3(entry.box.max) - glm::dvec3(entry.box.min));
@@ -51,7 +57,9 @@ bool Turns::mayStand(const Pending& entry) const {
 
 void Turns::note(const Pending& entry, bool kept) {
     if (most_ == 0) return;
+    SIGHTLINE_DEBUG_ASSERT(entry.kind != Pending::Kind::kCluster);
     const bool node = entry.kind == Pending::Kind::kNode;
+    SIGHTLINE_DEBUG_ASSERT(entry.index < (node ? node_count_ : places_));
     Array<Turn>& turns = node ? nodes_ : objects_;
     if (entry.index >= turns.size()) turns.resize(node ? node_count_ : places_);
     Turn& turn = turns[entry.index];

@@ -8,6 +8,7 @@
 #include "sightline/base/assert.h"
 #include "sightline/buffer/depth_image.h"
 #include "sightline/frame/stopwatch.h"
+#include "sightline/frame/validate_proofs.h"
 #include "sightline/query/explain/shadows.h"
 #include "sightline/query/traversal.h"
 
@@ -33,6 +34,7 @@ void Answer::begin(const Snapshot& now, const View& view, const QuerySettings& s
 }
 
 void Answer::run(uint32_t part) {
+    SIGHTLINE_DEBUG_ASSERT(part < count_ && count_ <= parts_.size());
     const Stopwatch watch;
     TraversalState& state = *parts_[part];
     ProofMemory& proofs = state.proofs;
@@ -52,11 +54,13 @@ void Answer::run(uint32_t part) {
     state.stats.proof_rays = proofs.rays;
     state.stats.proof_cuts = proofs.cuts();
     proofs.noteAnswered(state.stats, state.visible.size());
+    validateProofs(proofs);
     state.stats.nanoseconds = watch.nanoseconds();
 }
 
 /// Notes a place; false if it has been in this answer.
 bool Answer::countOnce(uint32_t place) {
+    SIGHTLINE_DEBUG_ASSERT(place < counted_.size());
     if (counted_[place] == answer_) return false;
     counted_[place] = answer_;
     return true;
@@ -70,6 +74,9 @@ void Answer::mergeVisible() {
         merged_.push_back({object.key, object.id});
         ++stats.of(Stage::kFrustum).doubt;
     }
+    SIGHTLINE_DEBUG_ASSERT(count_ <= ImagePart::kMost);
+    for (uint32_t part = 0; part < count_; ++part)
+        SIGHTLINE_DEBUG_ASSERT(parts_[part]->kept.size() == parts_[part]->visible.size());
     uint32_t at[ImagePart::kMost] = {};
     for (;;) {
         uint32_t best = count_;
@@ -128,6 +135,7 @@ void Answer::addStages() {
         if (count_ > 1 && static_cast<Stage>(i) == Stage::kOcclusion) stage.culled = left - stats.visible;
         stage.tested = frame_.uses(static_cast<Stage>(i)) ? left : 0;
         if (frame_.settings.time_stages) stage.nanoseconds += choose_nanoseconds_[i];
+        SIGHTLINE_DEBUG_ASSERT(stage.culled <= left);
         left -= stage.culled;
     }
     SIGHTLINE_ASSERT(left == stats.visible);
@@ -152,6 +160,7 @@ void Answer::refine(Stage last) {
         const Stopwatch watch;
         row.of_answer(frame_, memory_of_stages_, answer);
         const uint64_t took = watch.nanoseconds();
+        SIGHTLINE_DEBUG_ASSERT(stats.visible == visible().size());
         for (int i = static_cast<int>(row.stage) + 1; i < kStageCount; ++i)
             if (frame_.uses(static_cast<Stage>(i))) stats.stages[i].tested -= stats.of(row.stage).culled;
         stats.nanoseconds += took;
@@ -222,6 +231,7 @@ bool Answer::certificateOf(ObjectId id, Array<HiderOutline>& outlines, Array<glm
 }
 
 void Answer::depthImage(Seams seams, std::span<float> nearness, std::span<uint8_t> covered) {
+    SIGHTLINE_DEBUG_ASSERT(covered.empty() || covered.size() == nearness.size());
     for (uint32_t part = 0; part < count_; ++part) readDepthImage(parts_[part]->tiles, seams, nearness, covered, 0.0f);
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "sightline/base/assert.h"
 #include "sightline/cells/passages.h"
 #include "sightline/math/finite.h"
 #include "sightline/world/world_state.h"
@@ -62,6 +63,7 @@ struct ConnectivityQuery::Impl {
 
     bool isOpen(uint32_t passage) const {
         const Passage& at = (*passages)[passage];
+        SIGHTLINE_DEBUG_ASSERT(at.door == CellPortal::kNone || !doors || at.door < doors->size());
         if (at.width < settings.narrowest) return false;
         return at.door == CellPortal::kNone || !doors || (*doors)[at.door].open > 0;
     }
@@ -84,8 +86,10 @@ ConnectivityQuery& ConnectivityQuery::operator=(ConnectivityQuery&&) noexcept = 
 bool ConnectivityQuery::Impl::passAll(const glm::dvec3& from, const glm::dvec3& to, uint32_t last,
                                       uint32_t count) const {
     glm::dvec3 at;
-    for (; count > 0; --count, last = found[last].before)
+    for (; count > 0; --count, last = found[last].before) {
+        SIGHTLINE_DEBUG_ASSERT(last < found.size());
         if (!passages->passes(last, from, to, at)) return false;
+    }
     return true;
 }
 
@@ -95,6 +99,7 @@ bool ConnectivityQuery::Impl::passAll(const glm::dvec3& from, const glm::dvec3& 
 template <class Nearest>
 Reached ConnectivityQuery::Impl::after(uint32_t passage, const Nearest& nearest, double enough) const {
     constexpr uint32_t kMostStraight = 16;  // passages that are looked at again
+    SIGHTLINE_DEBUG_ASSERT(passage < found.size() && found[passage].search == search && found[passage].straight > 0);
     const Found& at = found[passage];
     Reached out;
     out.before = passage;
@@ -121,6 +126,7 @@ Reached ConnectivityQuery::Impl::after(uint32_t passage, const Nearest& nearest,
 }
 
 void ConnectivityQuery::Impl::arrive(uint32_t passage, uint32_t into, const Reached& reached) {
+    SIGHTLINE_DEBUG_ASSERT(passage < found.size() && found.size() == passages->size());
     Found& at = found[passage];
     if (at.search == search && (at.settled || at.distance <= reached.distance)) return;
     if (!(reached.distance <= settings.farthest)) return;
@@ -134,6 +140,7 @@ void ConnectivityQuery::Impl::arrive(uint32_t passage, uint32_t into, const Reac
 
 /// Takes the nearest passage that waits, and goes on from it; kNone: it had been taken before.
 uint32_t ConnectivityQuery::Impl::settleNext() {
+    SIGHTLINE_DEBUG_ASSERT(!queue.empty());
     const auto [negative, inverse] = queue.front();
     std::pop_heap(queue.begin(), queue.end());
     queue.pop_back();
@@ -258,6 +265,7 @@ void ConnectivityQuery::Impl::layWay(const glm::dvec3& to, const Reached& last) 
 /// Moves each point to where the way is the shortest between its neighbours, until all rest.
 void ConnectivityQuery::Impl::pull() {
     constexpr int kMostSweeps = 64;
+    SIGHTLINE_DEBUG_ASSERT(points.size() == chain.size() + 2);
     const double enough = 1e-9 * lengthOf(points);
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
         double moved = 0;
@@ -273,6 +281,7 @@ void ConnectivityQuery::Impl::pull() {
 
 /// Leaves the ends and the bends of a way.
 void ConnectivityQuery::Impl::keepBends() {
+    SIGHTLINE_DEBUG_ASSERT(points.size() >= 2);
     const double straight = 1e-6 * lengthOf(points);
     size_t kept = 1;
     for (size_t i = 1; i + 1 < points.size(); ++i) {

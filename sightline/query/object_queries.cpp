@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/query/object_queries.h"
 
+#include "sightline/base/assert.h"
 #include "sightline/world/world_state.h"
 
 namespace sightline {
@@ -16,6 +17,7 @@ public:
     void draw(std::span<const uint32_t> rows) override {
         const size_t before = drawn_.size();
         for (const uint32_t row : rows) {
+            SIGHTLINE_DEBUG_ASSERT(row < state_.objects.size());
             const detail::ObjectRecord& object = state_.objects[row];
             if ((object.layers & layers_) != 0) drawn_.push_back({object.key, object.id});
         }
@@ -38,8 +40,9 @@ ObjectQueries::ObjectQueries(Memory* memory) : queries_(memory), drawn_(memory) 
 
 std::span<const Visible> ObjectQueries::draw(const Snapshot& now, const View& view, ObjectDevice& device,
                                              const OcclusionQuerySettings& settings) {
-    const detail::SnapshotState& state = now.state();
     drawn_.clear();
+    if (!now) return drawn_;
+    const detail::SnapshotState& state = now.state();
     RowDevice rows(state, view.layers, device, drawn_);
     if (!state.unbounded.empty()) rows.draw(state.unbounded);
     queries_.draw(state.bvh, view, rows, settings);

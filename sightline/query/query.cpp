@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/base/assert.h"
 #include "sightline/frame/stopwatch.h"
 #include "sightline/query/answer.h"
 #include "sightline/query/explain/explain.h"
@@ -60,6 +61,7 @@ void Query::Impl::takeUp(bool pair) {
 /// together. The eyes share the elapsed time in proportion to their work.
 void Query::Impl::ask(std::span<detail::Answer* const> eyes_asked, const Snapshot& now,
                       std::span<const View* const> views, const QuerySettings& settings) {
+    SIGHTLINE_DEBUG_ASSERT(eyes_asked.size() == views.size() && (views.size() == 1 || views.size() == 2));
     const detail::Stopwatch watch;
     const auto remembered = shown.generations();
     uint32_t parts = 0;
@@ -142,7 +144,10 @@ void Query::Impl::mergeEyes() {
     for (const auto* set : {&left.visible(), &right->visible()})
         for (const Visible& v : *set) last = std::max(last, v.id.index);
     if (mark.size() <= last) mark.resize(last + 1, 0);
-    for (const Visible& v : left.visible()) mark[v.id.index] = kLeftEye;
+    for (const Visible& v : left.visible()) {
+        SIGHTLINE_DEBUG_ASSERT(mark[v.id.index] == 0);
+        mark[v.id.index] = kLeftEye;
+    }
     for (const Visible& v : right->visible()) mark[v.id.index] |= kRightEye;
     both.clear();
     eyes.clear();
@@ -160,6 +165,7 @@ void Query::Impl::mergeEyes() {
         size_t end = at;
         if (mark[v.id.index] & kTaken) continue;
         do {
+            SIGHTLINE_DEBUG_ASSERT(end < left.visible().size());
             take(left.visible()[end]);
             mark[left.visible()[end].id.index] |= kTaken;
         } while (left.visible()[end++].id != v.id);
@@ -167,6 +173,7 @@ void Query::Impl::mergeEyes() {
     }
     for (; at < left.visible().size(); ++at) take(left.visible()[at]);
     for (const Visible& v : both) mark[v.id.index] = 0;
+    SIGHTLINE_DEBUG_ASSERT(both.size() == eyes.size());
 }
 
 namespace {
@@ -229,7 +236,10 @@ VisibleChanges Query::changes() {
     for (const auto* set : {&impl.before, &impl.last()})
         for (const Visible& v : *set) last = std::max(last, v.id.index);
     if (impl.mark.size() <= last) impl.mark.resize(last + 1, 0);
-    for (size_t i = 0; i < impl.before.size(); ++i) impl.mark[impl.before[i].id.index] = static_cast<uint32_t>(i + 1);
+    for (size_t i = 0; i < impl.before.size(); ++i) {
+        SIGHTLINE_DEBUG_ASSERT(impl.mark[impl.before[i].id.index] == 0);
+        impl.mark[impl.before[i].id.index] = static_cast<uint32_t>(i + 1);
+    }
     for (const Visible& v : impl.last()) {
         uint32_t& mark = impl.mark[v.id.index];
         if (mark > 0 && impl.before[mark - 1].id == v.id) mark = 0;

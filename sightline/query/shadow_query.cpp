@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/assert.h"
 #include "sightline/cull/contribution.h"
 #include "sightline/cull/shadow_casters.h"
 #include "sightline/frame/stopwatch.h"
@@ -27,7 +28,10 @@ struct Cuts {
     uint32_t count = 0;
     glm::dvec3 origin{0.0};
 
-    void add(const glm::dvec3& n, double d) { planes[count++] = glm::dvec4(n, d); }
+    void add(const glm::dvec3& n, double d) {
+        SIGHTLINE_DEBUG_ASSERT(count < 8);
+        planes[count++] = glm::dvec4(n, d);
+    }
     /// The same from another origin.
     Cuts from(const glm::dvec3& other) const {
         Cuts out = *this;
@@ -39,6 +43,7 @@ struct Cuts {
 
 /// @param begin, end  distances along the direction of view between which a cascade lies
 Cuts cutsOf(const View& view, double begin, double end) {
+    SIGHTLINE_DEBUG_ASSERT(isUsable(view));
     const Frustum frustum = makeFrustum(view);
     Cuts cuts;
     cuts.origin = frustum.eye;
@@ -150,6 +155,7 @@ void ShadowQuery::Impl::begin(const SnapshotState& state) {
 /// False: no receiver lies there.
 bool ShadowQuery::Impl::fitSun(const SnapshotState& state, std::span<const Visible> receivers, const Light& light,
                                const Cuts& cuts, const CasterSettings& settings, View& out) const {
+    SIGHTLINE_DEBUG_ASSERT(!state.bvh.nodes.empty() && settings.mask_size > 0);
     const glm::dmat3 axes = sunAxes(light.direction);
     Box3d lit;
     for (const Visible& receiver : receivers) {
@@ -185,6 +191,7 @@ bool ShadowQuery::Impl::fitSun(const SnapshotState& state, std::span<const Visib
 
 /// Notes how far each object comes by the mask; whole subtrees where the mask culls a node.
 void ShadowQuery::Impl::walkMask(const SnapshotState& state) {
+    SIGHTLINE_DEBUG_ASSERT(why.size() == state.placed.size());
     const auto note = [&](const BvhNode& node, int slot, uint8_t answer) {
         for (uint32_t place = node.first[slot]; place < node.first[slot] + node.count[slot]; ++place) {
             why[place] = std::max<uint8_t>(why[place], answer);
@@ -218,6 +225,7 @@ void ShadowQuery::Impl::walkMask(const SnapshotState& state) {
 void ShadowQuery::Impl::addLight(const Snapshot& now, const View& light, std::span<const Visible> receivers,
                                  const Cuts& cuts, const CasterSettings& settings, uint32_t bit) {
     const SnapshotState& state = now.state();
+    SIGHTLINE_DEBUG_ASSERT(bit != 0 && isUsable(light));
     const LightGrid grid = makeLightGrid(light);
     const double texel = glm::length(grid.step[0]);  // of a parallel view, or at distance one
     mask.begin(grid, settings.filter / texel, settings.bias);
@@ -296,6 +304,8 @@ void ShadowQuery::Impl::keepAll(const SnapshotState& state, uint32_t layers) {
 
 CasterStats ShadowQuery::Impl::collect(const SnapshotState& state, uint32_t layers) {
     CasterStats stats;
+    SIGHTLINE_DEBUG_ASSERT(bits.size() == state.placed.size() && in_light.size() == bits.size() &&
+                           why.size() == bits.size());
     for (uint32_t place = 0; place < bits.size(); ++place) {
         const detail::PlacedObject& object = state.placed[place];
         if (!(object.layers & layers)) continue;

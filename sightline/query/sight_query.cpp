@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "sightline/base/assert.h"
 #include "sightline/cells/pvs.h"
 #include "sightline/math/finite.h"
 #include "sightline/tree/descend.h"
@@ -56,6 +57,7 @@ public:
     /// counter-clockwise. Where it goes round no side of the outline the wrong way, the outline winds around it, and so
     /// it meets a triangle; it does so between its ends, for these are on both sides of both planes.
     bool passes(const glm::dvec3* corners, int count) const {
+        SIGHTLINE_DEBUG_ASSERT((count == 3 || count == 4) && error_ >= 0);
         const double way = farOf(way_);
         double size = 0, far = way;
         for (int i = 0; i < count; ++i) {
@@ -98,6 +100,7 @@ bool blocks(const Occluder& occluder, const glm::dmat4& transform, const glm::dv
             glm::dvec3 corners[4];
             for (int i = 0; i < polygon.corners(); ++i) {
                 const uint32_t v = cluster.first_vertex + polygon.vertex[i];
+                SIGHTLINE_DEBUG_ASSERT(polygon.vertex[i] < cluster.vertex_count && v < occluder.x.size());
                 corners[i] = glm::dvec3(transform * glm::dvec4(occluder.x[v], occluder.y[v], occluder.z[v], 1));
             }
             if (mirrored) std::reverse(corners, corners + polygon.corners());
@@ -194,7 +197,10 @@ void SightQuery::Impl::takeAll(const SnapshotState& now, uint32_t layers) {
 /// Writes the objects that the rows show, those that are in no cell, and those without bounds.
 void SightQuery::Impl::takeSeen(const SnapshotState& now, uint32_t layers) {
     rows.assign((now.objects.size() + 63) / 64, 0);
-    const auto take = [&](uint32_t row) { rows[row / 64] |= uint64_t{1} << row % 64; };
+    const auto take = [&](uint32_t row) {
+        SIGHTLINE_DEBUG_ASSERT(row < now.objects.size());
+        rows[row / 64] |= uint64_t{1} << row % 64;
+    };
     detail::forEachSeenObject(now.cell_state, by_cells, by_objects, take);
     for (const uint32_t row : now.unbounded) take(row);
     if (now.cell_state.free_count > 0)

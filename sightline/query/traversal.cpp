@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "sightline/base/assert.h"
+#include "sightline/buffer/validate_tiles.h"
 #include "sightline/query/observers.h"
 #include "sightline/stages/occlusion.h"
 #include "sightline/stages/pipeline.h"
@@ -55,6 +57,7 @@ public:
         if (state_.part.whole())
             for (const uint32_t row : frame_.world->unbounded) keepInDoubt(frame_.world->objects[row]);
         if (!frame_.world->bvh.nodes.empty()) in_order ? runInOrder() : runInAnyOrder();
+        validateTiles(state_.tiles);
         state_.stats.seam_pixels = state_.tiles.seam_pixels;
         state_.stats.closed_gaps = state_.tiles.closed_gaps;
     }
@@ -82,6 +85,7 @@ private:
 
     /// Keeps the candidates at the given places of the hierarchy.
     void keep(uint32_t first, uint32_t count) {
+        SIGHTLINE_DEBUG_ASSERT(count > 0 && first + count <= frame_.world->placed.size());
         const auto keepOne = [&](const PlacedObject& placed) {
             if (placed.layers & frame_.view.layers) state_.visible.push_back(placed.visible);
         };
@@ -110,6 +114,7 @@ private:
             observer_.enter();
             const uint32_t gone = (by_rect ? row.by_rect : row.by_box)(frame_, state_, group, live);
             observer_.leave(row.stage, state_);
+            SIGHTLINE_DEBUG_ASSERT((gone & ~live) == 0);
             forEachSlot(gone, [&](int slot) {
                 const PlaceRange places = placesBelow(group.node, slot);
                 noteCulled(places, row.stage);
@@ -128,6 +133,7 @@ private:
     }
 
     Group groupOf(uint32_t index, uint32_t planes) {
+        SIGHTLINE_DEBUG_ASSERT(index < frame_.world->bvh.nodes.size());
         ++state_.stats.nodes_visited;
         const PlacedBvh& bvh = frame_.world->bvh;
         const BvhNode& node = bvh.nodes[index];
@@ -169,6 +175,7 @@ private:
 
     /// Lets the stages look at a node's children and queues those that are left.
     void open(uint32_t index, uint32_t planes, uint32_t slots) {
+        SIGHTLINE_DEBUG_ASSERT(slots <= 0xff && (planes & ~rootPlanes()) == 0);
         Group group = groupOf(index, planes);
         uint32_t live = narrow(rows_.by_box, rows_.boxes, false, group, slots);
         if (!live) return;
@@ -208,6 +215,7 @@ private:
 
     void takeTurn(const Pending& entry) {
         if (entry.kind == Pending::Kind::kCluster) return takeTurnOfCluster(entry);
+        SIGHTLINE_DEBUG_ASSERT(waiting_ > 0);
         --waiting_;
         TurnAnswer answer;
         for (uint32_t i = 0; i < rows_.turns; ++i) {
@@ -229,6 +237,7 @@ private:
 
     /// @param look  the last that it was asked by; triangles: it will be
     void keepObject(const Pending& entry, Look look) {
+        SIGHTLINE_DEBUG_ASSERT(entry.kind == Pending::Kind::kObject && entry.index == entry.below.first);
         keep(entry.index, 1);
         if (!state_.part.whole() && state_.kept.size() < state_.visible.size())
             state_.kept.push_back({entry.index, entry.rect.nearness});
@@ -273,6 +282,7 @@ private:
     }
 
     void takeTurnOfCluster(const Pending& entry) {
+        SIGHTLINE_DEBUG_ASSERT(drawn_ && entry.owner < state_.instances.size());
         BoxAnswer box;
         box.rect = entry.rect;
         box.doubt = !entry.testable;
@@ -280,6 +290,7 @@ private:
     }
 
     void draw(uint32_t instance, uint32_t cluster, const BoxAnswer& box) {
+        SIGHTLINE_DEBUG_ASSERT(drawn_ && instance < state_.instances.size());
         uint32_t triangles = 0;
         if (drawCluster(frame_, state_, state_.instances[instance], cluster, box, triangles))
             observer_.drawn(instance, cluster, box, triangles);
@@ -289,6 +300,7 @@ private:
     void lookAgain() {
         size_t gone = 0;
         for (const SecondLook& next : state_.second) {
+            SIGHTLINE_DEBUG_ASSERT(rows_.at_end && next.visible < state_.visible.size());
             const TurnAnswer answer = rows_.at_end->at_end(frame_, state_, next);
             state_.turns.note(next.entry, !answer.culled);
             if (answer.culled) {
@@ -307,6 +319,7 @@ private:
 
     /// Closes the gaps that objects without an id leave.
     void removeTaken() {
+        SIGHTLINE_DEBUG_ASSERT(state_.kept.empty() || state_.kept.size() == state_.visible.size());
         size_t left = 0;
         for (size_t i = 0; i < state_.visible.size(); ++i) {
             if (state_.visible[i].id == ObjectId()) continue;

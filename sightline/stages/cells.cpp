@@ -1,5 +1,6 @@
 // What the stages of cells keep from view to view: where the eye is, the rows and windows seen from there, and the candidates.
 // SPDX-License-Identifier: MIT
+#include "sightline/base/assert.h"
 #include "sightline/stages/stage_memory.h"
 
 namespace sightline::detail {
@@ -35,7 +36,9 @@ void CellMemory::begin(const Frame& frame) {
 
 /// Keeps everything, and counts it as doubt.
 void CellMemory::giveUp(Stage stage, const Frame& frame) {
+    SIGHTLINE_DEBUG_ASSERT(stage == Stage::kPvs || stage == Stage::kPortals);
     if (!uses(stage)) return;
+    SIGHTLINE_DEBUG_ASSERT(frame.world && frame.world == &now_.state());
     const SnapshotState& state = *frame.world;
     uint64_t objects = state.count - state.unbounded.size();
     if (!(state.common_layers & frame.view.layers)) {

@@ -1,5 +1,6 @@
 // The closer looks at objects that their boxes' rectangles would keep: by the boxes' faces, and at the end by triangles.
 // SPDX-License-Identifier: MIT
+#include "sightline/base/assert.h"
 #include "sightline/cull/shapes.h"
 #include "sightline/stages/pipeline.h"
 
@@ -29,6 +30,7 @@ OpenPolygon lastLook(const Frame& frame, const TraversalState& state, uint32_t p
 /// Notes what was found of the object at a place.
 void note(const Frame& frame, TraversalState& state, uint32_t place, const OpenPolygon& open) {
     if (frame.settings.stateless) return;
+    SIGHTLINE_DEBUG_ASSERT(place < frame.world->placed.size());
     if (place >= state.open_at.size())
         state.open_at.resize(frame.world->placed.size(), OpenPolygon{OpenPolygon::kNone});
     state.open_at[place] = open;
@@ -48,6 +50,7 @@ TurnAnswer askFaces(const Frame& frame, TraversalState& state, const OccludeePla
 TurnAnswer cullByFaces(const Frame& frame, TraversalState& state, const Pending& entry) {
     const Look by_box = frame.settings.faces && entry.testable ? Look::kFaces : Look::kBox;
     if (entry.kind != Pending::Kind::kObject) return {};
+    SIGHTLINE_DEBUG_ASSERT(entry.index < frame.world->placed.size());
     const ObjectRecord& object = frame.world->objectAt(entry.index);
     const bool in_layers = object.layers & frame.view.layers;
     const bool again =
@@ -71,15 +74,19 @@ TurnAnswer cullByFaces(const Frame& frame, TraversalState& state, const Pending&
 /// Objects that are culled here were drawn, and may have hidden others. That is sound: along each ray the nearest point
 /// of all that was drawn has nothing in front of it, so that its object is kept, and it hides what they hid.
 TurnAnswer cullByTriangles(const Frame& frame, TraversalState& state, const SecondLook& kept) {
+    SIGHTLINE_DEBUG_ASSERT(kept.entry.kind == Pending::Kind::kObject && kept.visible < state.visible.size());
     const ObjectRecord& object = frame.world->objectAt(kept.entry.index);
+    SIGHTLINE_DEBUG_ASSERT(object.shape.index > 0 && object.shape.index < frame.world->occluders.size());
     const OccludeePlace place = makeOccludeePlace(frame.screen, object.transform, object.bounds);
     TriangleLook look;
+    SIGHTLINE_DEBUG_ASSERT(state.stats.second_look_polygons <= frame.settings.second_look_polygons);
     look.most_polygons = frame.settings.second_look_polygons - state.stats.second_look_polygons;
     const OpenPolygon last = lastLook(frame, state, kept.entry.index);
     look.first = last;
     ++state.stats.second_looks;
     const Sight sight =
         askTriangles(state.tiles, place, *frame.world->occluders[object.shape.index], state.looks, look);
+    SIGHTLINE_DEBUG_ASSERT(look.spent || look.polygons <= look.most_polygons);
     state.stats.second_look_polygons += look.polygons;
     state.stats.second_look_spent |= look.spent;
     TurnAnswer answer = settle(frame, state, Look::kTriangles, sight);

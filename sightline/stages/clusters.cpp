@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Andreas Johannsen, Michael Carter. Clustered Backface Culling. 1998.
+#include "sightline/base/assert.h"
 #include "sightline/stages/stage_memory.h"
 
 #include <algorithm>
@@ -15,6 +16,7 @@ namespace {
 
 /// Eight clusters' bounds from one on.
 EyeBoxes boundsOf(const DrawClusters& clusters, size_t first) {
+    SIGHTLINE_DEBUG_ASSERT(first % 8 == 0 && first + 8 <= clusters.stride);
     EyeBoxes boxes;
     for (int axis = 0; axis < 3; ++axis) {
         std::copy_n(clusters.row(DrawClusters::kMin + axis) + first, 8, boxes.min[axis]);
@@ -45,10 +47,12 @@ bool seesOutside(const Box3f& box, const Screen* object, const View& view) {
 void ClusterMemory::findFacing(const DrawClusters& clusters, const ObjectRecord& object, const View& view,
                                const Screen* screen, QueryStats& stats) {
     const size_t count = clusters.count();
+    SIGHTLINE_DEBUG_ASSERT(clusters.first.size() == count + 1 && clusters.facing.count() <= count);
     // The facing tests write whole sixteens.
     left_.assign((std::max(count, clusters.facing.count()) + 15) / 16 * 2, 0);
     findBackClusters(clusters.facing, facingEye(view, object.transform), kAllFacingTests, left_);
     for (const ClosedClusters& solid : clusters.closed) {
+        SIGHTLINE_DEBUG_ASSERT(size_t{solid.first} + solid.count <= clusters.facing.count());
         if (seesOutside(solid.box, screen, view)) continue;
         for (uint32_t i = solid.first; i < solid.first + solid.count; ++i)
             left_[i / 8] &= static_cast<uint8_t>(~(1u << i % 8));
@@ -63,6 +67,7 @@ void ClusterMemory::findSeen(const DrawClusters& clusters, const Frame& frame, c
                              QueryStats& stats) {
     const bool frustum = frame.uses(Stage::kFrustum), occlusion = frame.uses(Stage::kOcclusion);
     if (!frustum && !occlusion) return;
+    SIGHTLINE_DEBUG_ASSERT(8 * left_.size() >= clusters.count());
     for (size_t byte = 0; 8 * byte < clusters.count(); ++byte) {
         if (left_[byte] == 0) continue;
         const ScreenAnswer on_screen = projectBoxes(screen, boundsOf(clusters, 8 * byte));
@@ -89,6 +94,7 @@ void ClusterMemory::addRanges(const DrawClusters& clusters, uint32_t gap, uint32
     for (size_t i = 0; i < clusters.count(); ++i) {
         if (!(left_[i / 8] >> i % 8 & 1)) continue;
         const uint32_t first = clusters.first[i], end = clusters.first[i + 1], part = clusters.part[i];
+        SIGHTLINE_DEBUG_ASSERT(first <= end && end <= clusters.triangles.size());
         if (ranges_.size() > begin) {
             DrawRange& last = ranges_.back();
             if (last.part == part && first - (last.first + last.count) <= gap) {
@@ -118,6 +124,7 @@ bool ClusterMemory::select(const Frame& frame, const DrawClusters& clusters, con
 
 QueryStats ClusterMemory::look(const Frame& frame, uint32_t row, AnswerView& answer) {
     QueryStats stats;
+    SIGHTLINE_DEBUG_ASSERT(frame.world && row < frame.world->objects.size());
     const ObjectRecord& object = frame.world->objects[row];
     if (object.clusters.index == 0 || !frame.usable || !frame.uses(Stage::kClusters)) return stats;
     const size_t before = ranges_.size();
@@ -132,11 +139,14 @@ void ClusterMemory::clear() {
 }
 
 void ClusterMemory::run(const Frame& frame, AnswerView& answer) {
+    SIGHTLINE_DEBUG_ASSERT(answer.lods.empty() || answer.lods.size() == answer.visible.size());
+    SIGHTLINE_DEBUG_ASSERT(ranges_.empty() && culled_.empty());
     size_t left = 0;
     for (size_t i = 0; i < answer.visible.size(); ++i) {
         const Visible v = answer.visible[i];
         const bool coarse = !answer.lods.empty() && (answer.lods[i].level > 0 || answer.lods[i].from > 0);
         const uint32_t row = frame.world->find(v.id);
+        SIGHTLINE_DEBUG_ASSERT(row != IdSlot::kNowhere);
         const ObjectRecord& object = frame.world->objects[row];
         const DrawClusters* clusters = frame.world->clusters[object.clusters.index].get();
         if (!answer.lods.empty()) answer.lods[left] = answer.lods[i];
@@ -147,6 +157,7 @@ void ClusterMemory::run(const Frame& frame, AnswerView& answer) {
     }
     answer.visible.resize(left);
     answer.stats.of(Stage::kClusters).culled = culled_.size();
+    SIGHTLINE_DEBUG_ASSERT(answer.stats.visible >= culled_.size());
     answer.stats.visible -= culled_.size();
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/assert.h"
 #include "sightline/math/stretch.h"
 #include "sightline/stages/pipeline.h"
 #include "sightline/stages/stage_memory.h"
@@ -41,6 +42,7 @@ double focusOf(const LodMeasure& measure, const Box3d& box) {
 }  // namespace
 
 std::span<const LodLevel> LodMemory::levelsOf(const SnapshotState& world, uint32_t row) const {
+    SIGHTLINE_DEBUG_ASSERT(row < world.objects.size() && world.objects[row].lods.index < world.lods.size());
     const HeldLods* held = world.lods[world.objects[row].lods.index].get();
     return held ? std::span<const LodLevel>(held->levels) : std::span<const LodLevel>();
 }
@@ -51,6 +53,7 @@ void LodMemory::ask(std::span<const Frame* const> frames, const Visible& object)
     const SnapshotState& world = *frame.world;
     Asked asked;
     asked.row = world.find(object.id);
+    SIGHTLINE_DEBUG_ASSERT(asked.row != IdSlot::kNowhere);
     const ObjectRecord& record = world.objects[asked.row];
     const uint32_t place = world.bvh.placeOf(asked.row);
     LodItem item;
@@ -83,6 +86,7 @@ void LodMemory::ask(std::span<const Frame* const> frames, const Visible& object)
     item.finest = levelIn(asked.range, asked.last.level);
     if (!asked.known) item.finest = asked.range.coarsest;
     item.last = asked.known ? asked.last.level : LodItem::kNone;
+    SIGHTLINE_DEBUG_ASSERT(item.finest < std::max<size_t>(item.levels.size(), 1));
     asked_.push_back(asked);
     items_.push_back(item);
     chosen_.push_back(item.finest);
@@ -103,6 +107,9 @@ void LodMemory::spendBudget(const QuerySettings& settings, bool may_leave_out, Q
 /// Lets one more answer pass for each object, and takes those away that there is no time for.
 void LodMemory::settle(const Frame& frame, Array<Visible>& visible, QueryStats& stats) {
     const LodRule rule = ruleOfFades(frame.settings);
+    SIGHTLINE_DEBUG_ASSERT(asked_.size() == visible.size() && items_.size() == visible.size() &&
+                           chosen_.size() == visible.size());
+    SIGHTLINE_DEBUG_ASSERT(lods_.empty() && culled_.empty());
     size_t left = 0;
     for (size_t i = 0; i < visible.size(); ++i) {
         const Asked& asked = asked_[i];
@@ -111,6 +118,7 @@ void LodMemory::settle(const Frame& frame, Array<Visible>& visible, QueryStats& 
             continue;
         }
         const std::span<const LodLevel> levels = items_[i].levels;
+        SIGHTLINE_DEBUG_ASSERT(chosen_[i] < std::max<size_t>(levels.size(), 1));
         LodState state{chosen_[i], chosen_[i], 0};
         if (asked.known) state = nextState(asked.last, chosen_[i], levels, asked.unit, rule);
         const ObjectId id = visible[i].id;
@@ -129,11 +137,14 @@ void LodMemory::settle(const Frame& frame, Array<Visible>& visible, QueryStats& 
     }
     visible.resize(left);
     stats.of(Stage::kLod).culled = culled_.size();
+    SIGHTLINE_DEBUG_ASSERT(stats.visible >= culled_.size() && lods_.size() == visible.size());
     stats.visible -= culled_.size();
 }
 
 void LodMemory::run(std::span<const Frame* const> frames, Array<Visible>& visible, QueryStats& stats) {
+    SIGHTLINE_DEBUG_ASSERT(frames.size() == 1 || frames.size() == 2);
     const Frame& frame = *frames[0];
+    SIGHTLINE_DEBUG_ASSERT(frame.world && frame.usable);
     ++answer_;
     items_.clear();
     asked_.clear();

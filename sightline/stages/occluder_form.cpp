@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sightline/base/assert.h"
 #include "sightline/cull/occlusion.h"
 
 namespace sightline::detail {
@@ -15,6 +16,7 @@ const Occluder& formFor(const HeldOccluder& occluder, const Screen& screen, cons
     object.near.w -= 2.0 * object.near_guard;
     const BoxAnswer box = projectBox(object, occluder.inner.front().outside);
     if (box.doubt || box.outside) return occluder;
+    SIGHTLINE_DEBUG_ASSERT(!screen.perspective || box.rect.nearness > 0);
     // How far a step of one unit goes on the screen at most, about.
     const double stretch = glm::length(transform[0]) + glm::length(transform[1]) + glm::length(transform[2]);
     const glm::dvec3 across = glm::dvec3(screen.x) - 0.5 * screen.width * glm::dvec3(screen.w);
@@ -37,6 +39,7 @@ bool isWhole(const ViewLimits& limits, const Occluder& occluder, const OccluderC
              const glm::dmat4& transform) {
     if (!sightline::isWhole(limits, cluster.bounds, transform)) return false;
     if (cluster.ring_count == 0) return true;
+    SIGHTLINE_DEBUG_ASSERT(size_t{cluster.first_vertex} + cluster.vertex_count <= occluder.x.size());
     for (uint32_t i = cluster.first_vertex; i < cluster.first_vertex + cluster.vertex_count; ++i)
         if (!sightline::isWhole(limits, glm::vec3(occluder.x[i], occluder.y[i], occluder.z[i]), transform))
             return false;

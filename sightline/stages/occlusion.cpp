@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sightline/base/assert.h"
 #include "sightline/stages/occluder_form.h"
 #include "sightline/stages/pipeline.h"
 
@@ -14,6 +15,7 @@ bool isHiddenHere(TraversalState& state, PixelRect rect, Seams seams, const Occl
 }
 
 bool isSmall(const Screen& screen, const PixelRect& rect) {
+    SIGHTLINE_DEBUG_ASSERT(rect.x0 <= rect.x1 && rect.y0 <= rect.y1);
     const auto least = static_cast<int32_t>(std::max(screen.width, screen.height) / 32);
     return rect.x1 - rect.x0 < least && rect.y1 - rect.y0 < least;
 }
@@ -39,10 +41,12 @@ TurnAnswer cullHidden(const Frame& frame, TraversalState& state, const Pending& 
 }
 
 OfferedOccluder occluderOf(const Frame& frame, uint32_t place) {
+    SIGHTLINE_DEBUG_ASSERT(place < frame.world->placed.size());
     const PlacedObject& placed = frame.world->placed[place];
     if (placed.occluder.index == 0 || !(placed.layers & frame.view.layers)) return {};
     if (frame.mayBeCoarse(place)) return {};
     const glm::dmat4& transform = frame.world->objectAt(place).transform;
+    SIGHTLINE_DEBUG_ASSERT(placed.occluder.index < frame.world->occluders.size());
     const HeldOccluder& held = *frame.world->occluders[placed.occluder.index];
     if (frame.limits.cut() && !isWhole(frame.limits, held, transform)) return {&held, true};
     // A simpler form hides in the name of all that is drawn of the object.
@@ -51,6 +55,7 @@ OfferedOccluder occluderOf(const Frame& frame, uint32_t place) {
 
 bool mayDraw(const Frame& frame, const TraversalState& state, const OfferedOccluder& offered,
              const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box) {
+    SIGHTLINE_DEBUG_ASSERT(offered.occluder && cluster < offered.occluder->clusters.size());
     const OccluderCluster& of = offered.occluder->clusters[cluster];
     if (box.outside) return false;
     if (!state.part.whole()) {
@@ -62,6 +67,7 @@ bool mayDraw(const Frame& frame, const TraversalState& state, const OfferedOcclu
 
 bool drawCluster(const Frame& frame, TraversalState& state, const OccluderInstance& instance, uint32_t cluster,
                  const BoxAnswer& box, uint32_t& triangles) {
+    SIGHTLINE_DEBUG_ASSERT(!box.outside && cluster < instance.occluder->clusters.size());
     if (!box.doubt && isSmall(frame.screen, box.rect)) return false;
     if (state.stats.occluder_triangles >= frame.settings.occluder_triangles) {
         state.stats.budget_spent = true;

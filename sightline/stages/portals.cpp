@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // David Luebke, Chris Georges. Portals and Mirrors: Simple, Fast Evaluation of Potentially Visible Sets. 1995.
+#include "sightline/base/assert.h"
 #include "sightline/cells/portals.h"
 
 #include <bit>
@@ -30,6 +31,7 @@ void CellMemory::findWindows(const Frame& frame) {
     const bool rows = uses(Stage::kPvs);
     if (uses(Stage::kPortals)) {
         const CellState& cells = frame.world->cell_state;
+        SIGHTLINE_DEBUG_ASSERT(cells.cells && cells.doors && cells.doors->size() == cells.cells->graph.doors());
         const PortalSettings settings{frame.settings.windows, frame.settings.portal_work, frame.settings.portal_depth};
         flooded_ = flood_.run(cells.cells->graph, frame.view, settings, *cells.doors,
                               rows && pvs_.known() ? pvs_.rows() : std::span<const uint64_t>());
@@ -58,7 +60,10 @@ bool CellMemory::showMost() const {
     constexpr uint64_t kFew = 1024;
     const CellLists& lists = now_.state().cell_state.lists;
     uint64_t stands = 0;
-    for (const SeenCell& seen : flood_.cells()) stands += lists.count[seen.cell];
+    for (const SeenCell& seen : flood_.cells()) {
+        SIGHTLINE_DEBUG_ASSERT(seen.cell < lists.count.size());
+        stands += lists.count[seen.cell];
+    }
     return stands > kFew && 2 * stands > lists.stands;
 }
 
@@ -67,10 +72,13 @@ void CellMemory::fillWindows(const glm::dvec3& eye) {
     const CellState& cells = now_.state().cell_state;
     const glm::dvec3 offset = cells.cells->origin - eye;
     for (const SeenCell& seen : flood_.cells()) {
+        SIGHTLINE_DEBUG_ASSERT(seen.cell < cells.lists.first.size());
+        SIGHTLINE_DEBUG_ASSERT(size_t{seen.first_plane} + seen.plane_count <= flood_.planes().size());
         const WindowRect rect = rectOf(seen);
         const std::span<const glm::dvec4> planes = flood_.planes().subspan(seen.first_plane, seen.plane_count);
         for (uint32_t at = cells.lists.first[seen.cell]; at != CellBlock::kNone;) {
             const CellBlock& block = cells.lists.blocks[at];
+            SIGHTLINE_DEBUG_ASSERT(block.used > 0 && block.used <= 8);
             uint32_t inside = (1u << block.used) - 1;
             if (!planes.empty()) inside &= ~outsideAny(planes, eyeBoxes(block.min, block.max, offset));
             for (; inside; inside &= inside - 1) candidates_.admit(block.row[std::countr_zero(inside)], rect);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/base/assert.h"
+
 namespace sightline::detail {
 namespace {
 
@@ -15,6 +17,7 @@ Box3d doubled(const Box3f& box) { return {glm::dvec3(box.min), glm::dvec3(box.ma
 /// Whether the eye is surely behind a polygon.
 /// @param corner  relative to the eye, each off by `error` at most
 bool facesAway(const OccluderPolygon& polygon, const glm::dvec3 (&corner)[4], double flips, double error) {
+    SIGHTLINE_DEBUG_ASSERT(error >= 0);
     for (int k = 2; k < polygon.corners(); ++k) {
         const glm::dvec3 a = corner[k - 1] - corner[0], b = corner[k] - corner[0];
         // Positive: the eye is in front. A volume of three edges, each off by twice the error, summed from six products.
@@ -31,8 +34,10 @@ bool facesAway(const OccluderPolygon& polygon, const glm::dvec3 (&corner)[4], do
 
 /// The polygons of an object, if what is drawn of it is no more than these; else null.
 const Occluder* ProofMemory::shapeAt(const Frame& frame, uint32_t place) const {
+    SIGHTLINE_DEBUG_ASSERT(place < frame.world->placed.size());
     const OccluderId shape = frame.world->placed[place].shape;
     if (shape.index == 0 || !frame.settings.second_look || frame.mayBeCoarse(place)) return nullptr;
+    SIGHTLINE_DEBUG_ASSERT(shape.index < frame.world->occluders.size());
     return frame.world->occluders[shape.index].get();
 }
 
@@ -61,6 +66,7 @@ void ProofMemory::takeUpObject(const Frame& frame, uint32_t place, const Body& b
     const bool one = body.end - body.first == 1;
     if (!shape || body.form == Body::kWhole || (!one && shape->polygons.size() > kMostPolygons))
         return setBox(object.bounds);
+    SIGHTLINE_DEBUG_ASSERT(body.first < body.end && body.end <= shape->clusters.size());
     if (body.form == Body::kBox) return setBox(doubled(shape->clusters[body.first].bounds));
     Box3d bounds;
     bool many = false;
@@ -89,12 +95,14 @@ void ProofMemory::takeUpObject(const Frame& frame, uint32_t place, const Body& b
             if (!many) corners_.at[corners_.count++] = linear * at(v) + shift;
         }
     }
+    SIGHTLINE_DEBUG_ASSERT(corners_.count <= Uncovered::kMostCorners);
     corners_.box = false;
     if (many) setBox(bounds);
 }
 
 /// Finds the corners of a node's box, or of a body of an object.
 void ProofMemory::takeUp(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, const Body& body) {
+    SIGHTLINE_DEBUG_ASSERT(kind != Pending::Kind::kCluster);
     if (kind == Pending::Kind::kObject) return takeUpObject(frame, index, body);
     corners_.box = true;
     corners_.error = view_.place_error;
@@ -109,6 +117,7 @@ void ProofMemory::takeUp(const Frame& frame, Pending::Kind kind, uint32_t index,
 /// told from the eye: then `rest_` has nothing.
 bool ProofMemory::hiddenBy(const Frame& frame, const Certificate& certificate, const Body& body) {
     rest_.clear();
+    SIGHTLINE_DEBUG_ASSERT(possible_ && corners_.count <= Uncovered::kMostCorners && corners_.error >= 0);
     if (corners_.count == 0) return true;
     for (const uint32_t hider : certificate.all()) {
         const Shadow* const shadow = shadowOf(frame, hider);

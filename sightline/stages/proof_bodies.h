@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "sightline/base/assert.h"
 #include "sightline/frame/proof_memory.h"
 
 namespace sightline::detail {
@@ -13,6 +14,7 @@ namespace sightline::detail {
 /// @returns false if one is not hidden
 template <class Try>
 bool ProofMemory::forEachBody(const Frame& frame, Pending::Kind kind, uint32_t index, bool closely, Try hides) const {
+    SIGHTLINE_DEBUG_ASSERT(kind != Pending::Kind::kCluster);
     const Occluder* const shape = kind == Pending::Kind::kObject ? shapeAt(frame, index) : nullptr;
     const uint32_t parts = clustersOf(frame, kind, index);
     if (shape && hides({.form = Body::kWhole})) return true;

@@ -1,5 +1,6 @@
 // Whether an answer rests on certificates: what they miss, and what they cost beside drawing.
 // SPDX-License-Identifier: MIT
+#include "sightline/base/assert.h"
 #include "sightline/frame/proof_memory.h"
 
 #include <algorithm>
@@ -85,6 +86,7 @@ bool ProofMemory::hasFailed(Pending::Kind kind, uint32_t index) const {
 /// Looks for certificates for a node or an object that is hidden, or else for what is below it.
 /// @returns how many objects are left without
 uint32_t ProofMemory::seekBelow(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box) {
+    SIGHTLINE_DEBUG_ASSERT(possible_ && kind != Pending::Kind::kCluster);
     const uint32_t share = teaches() ? kTeachersShare : 1;
     if (cuts() - cuts_of_proposals_ >= share * kMostCuts) {
         spent_ = true;
@@ -106,6 +108,7 @@ uint32_t ProofMemory::seekBelow(const Frame& frame, Pending::Kind kind, uint32_t
     }
     if (kind == Pending::Kind::kObject) return 1;
     const PlacedBvh& bvh = frame.world->bvh;
+    SIGHTLINE_DEBUG_ASSERT(index < bvh.nodes.size());
     const BvhNode& node = bvh.nodes[index];
     const EyeBoxes boxes = eyeBoxes(node, bvh.origin - frame.frustum.eye);
     uint32_t slots = frame.candidateSlots(node) & usedSlots(node);
@@ -122,6 +125,7 @@ uint32_t ProofMemory::seekBelow(const Frame& frame, Pending::Kind kind, uint32_t
 }
 
 void ProofMemory::seekAll(const Frame& frame, const QueryStats& stats, size_t visible) {
+    SIGHTLINE_DEBUG_ASSERT(way_ == Way::kTilesAndSeek);
     const double unasked = static_cast<double>(stats.unasked);
     const bool follows = unasked >= kLeastUnasked * static_cast<double>(visible);
     if (frame.settings.unasked_answers > 0 && !follows && !teaches()) return;
@@ -150,6 +154,7 @@ double ProofMemory::workOf(const QueryStats& stats) const {
     const auto n = [](uint64_t count) { return static_cast<double>(count); };
     if (way_ != Way::kProofs)
         return 0.18 * n(stats.occluder_triangles) + 0.4 * n(stats.second_look_polygons) + 6 * n(stats.nodes_visited);
+    SIGHTLINE_DEBUG_ASSERT(stats.proof_cuts >= cuts_of_proposals_ && stats.proof_rays >= rays_of_proposals_);
     return 0.55 * n(stats.proof_cuts - cuts_of_proposals_) + 0.03 * n(polygons) +
            6 * n(stats.proof_rays - rays_of_proposals_) + n(stats.proved) + 3 * n(stats.nodes_visited);
 }

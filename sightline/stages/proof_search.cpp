@@ -1,5 +1,6 @@
 // Finds certificates: by the parts that hid something just now, then by rays through what is left of the outline.
 // SPDX-License-Identifier: MIT
+#include "sightline/base/assert.h"
 #include "sightline/frame/proof_memory.h"
 
 #include <algorithm>
@@ -61,9 +62,11 @@ ObjectId idAt(const Frame& frame, uint32_t place) { return frame.world->placed[p
 void ProofMemory::meet(const Frame& frame, uint32_t at, const glm::dvec3& direction, double far) {
     const Place& place = placeAt(frame, at);
     if (!place.hides) return;
+    SIGHTLINE_DEBUG_ASSERT(place.at.parts && place.occluder && place.at.parts == &place.occluder->parts);
     const VolumeParts& parts = *place.at.parts;
     const glm::dvec3 along = glm::transpose(place.at.covector) * direction;
     const auto meetFace = [&](uint32_t index) {
+        SIGHTLINE_DEBUG_ASSERT(index < parts.faces.size());
         const VolumeFace& face = parts.faces[index];
         const double over = glm::dot(face.normal, place.at.eye), fall = glm::dot(face.normal, along);
         const double height = fall < 0 ? over - face.high : face.low - over;
@@ -93,6 +96,7 @@ void ProofMemory::meet(const Frame& frame, uint32_t at, const glm::dvec3& direct
 
 /// Finds the parts along a ray, the nearest first.
 void ProofMemory::shoot(const Frame& frame, const glm::dvec3& direction, double far) {
+    SIGHTLINE_DEBUG_ASSERT(possible_ && far >= 0);
     ++rays;
     hit_count_ = 0;
     const SnapshotState& state = *frame.world;
@@ -126,6 +130,7 @@ double ProofMemory::shareOf(const Frame& frame, uint32_t hider, const Certificat
 bool ProofMemory::take(const Frame& frame, const HidingPart& part, Certificate& certificate) {
     const uint32_t hider = numberOf(part);
     if (!(shareOf(frame, hider, certificate) > kLeastTaken)) return false;
+    SIGHTLINE_DEBUG_ASSERT(certificate.count < Certificate::kMost);
     rest_.remove(*shadowOf(frame, hider));
     certificate.hiders[certificate.count++] = hider;
     return true;
@@ -138,6 +143,7 @@ bool ProofMemory::takeHit(const Frame& frame, double enters, Certificate& certif
     double most = kLeastTaken;
     for (uint32_t i = 0; i < hit_count_; ++i) {
         const Hit hit = hits_[i];
+        SIGHTLINE_DEBUG_ASSERT(i == 0 || hits_[i - 1].t <= hit.t);
         if (hit.t > enters && ++tries > kMostTries) break;
         const ObjectId id = idAt(frame, hit.place);
         const uint32_t body = placeAt(frame, hit.place).at.parts->part(hit.part).body;
@@ -180,6 +186,7 @@ bool ProofMemory::hiddenByLast(const Frame& frame, Certificate& out) {
         if (last == kNone || out.count == Certificate::kMost) continue;
         const Shadow* const shadow = shadowOf(frame, last);
         if (!shadow || !shadow->holds(corners_.at, corners_.count, corners_.error)) continue;
+        SIGHTLINE_DEBUG_ASSERT(out.count < Certificate::kMost);
         out.hiders[out.count++] = last;
         return true;
     }
@@ -212,6 +219,7 @@ bool ProofMemory::seekBody(const Frame& frame, Pending::Kind kind, uint32_t inde
 }
 
 bool ProofMemory::seek(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, bool closely) {
+    SIGHTLINE_DEBUG_ASSERT(possible_ && kind != Pending::Kind::kCluster);
     ++sought;
     Certificate out;
     last_ray_ = glm::dvec3(0.0);
@@ -235,6 +243,8 @@ bool ProofMemory::seek(const Frame& frame, Pending::Kind kind, uint32_t index, c
 /// Nothing was found for a node or an object: while views are drawn nobody asks again for some answers.
 bool ProofMemory::noteFailed(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, bool closely) {
     makeRoom(frame, kind, index);
+    SIGHTLINE_DEBUG_ASSERT(index < numbers(kind).size());
+    forget(kind, index);
     numbers(kind)[index] = kFailed | (closely ? kClosely : 0) | (answer_ & (kClosely - 1));
     if (last_ray_ == glm::dvec3(0.0)) return false;
     uint32_t at = kTrusts;
@@ -258,6 +268,7 @@ bool ProofMemory::isStillSeen(const Frame& frame, Pending::Kind kind, uint32_t i
         const double part = (at >> (20 - 10 * axis) & 1023) / 1023.0;
         q[axis] = box.min[axis] + part * (static_cast<double>(box.max[axis]) - box.min[axis]);
     }
+    SIGHTLINE_DEBUG_ASSERT(at >> 30 > 0);
     at -= 1u << 30;
     const double far = glm::dot(image_.w, q);
     if (!(far > 0)) return false;

@@ -1,5 +1,6 @@
 // Culling by certificates: what hid something before is held against it first, where it stands now.
 // SPDX-License-Identifier: MIT
+#include "sightline/base/assert.h"
 #include "sightline/frame/proof_memory.h"
 
 #include <algorithm>
@@ -56,6 +57,7 @@ void ProofMemory::makeRoom(const Frame& frame, Pending::Kind kind, uint32_t inde
 /// There is room for it.
 void ProofMemory::write(Pending::Kind kind, uint32_t index, const Certificate& certificate) {
     Array<uint32_t>& of = numbers(kind);
+    SIGHTLINE_DEBUG_ASSERT(index < of.size() && certificate.count <= Certificate::kMost);
     if (!hasCertificate(kind, index)) {
         if (free_.empty()) {
             certificates_.push_back({});
@@ -65,10 +67,12 @@ void ProofMemory::write(Pending::Kind kind, uint32_t index, const Certificate& c
             free_.pop_back();
         }
     }
+    SIGHTLINE_DEBUG_ASSERT(of[index] > 0 && of[index] <= certificates_.size());
     certificates_[of[index] - 1] = certificate;
 }
 
 void ProofMemory::learn(ProofMemory& teacher) {
+    SIGHTLINE_DEBUG_ASSERT(&teacher != this);
     const bool alone = isBefore(alone_until_);
     teacher.teaches_until_ = teacher.answer_ + (alone ? 0 : kTaught);
     if (alone) return;
@@ -113,6 +117,7 @@ uint32_t ProofMemory::numberOf(const HidingPart& part) {
             number_[at] = i + 1;
         }
     }
+    SIGHTLINE_DEBUG_ASSERT((number_.size() & (number_.size() - 1)) == 0 && 2 * hiders_.size() < number_.size());
     size_t at = slotOf(part);
     for (; number_[at] != 0; at = (at + 1) & (number_.size() - 1))
         if (hiders_[number_[at] - 1].part == part) return number_[at] - 1;
@@ -127,6 +132,7 @@ void ProofMemory::lookAt(const Frame& frame, uint32_t place, Place& out) const {
     out.place = place;
     out.hides = false;
     const SnapshotState& state = *frame.world;
+    SIGHTLINE_DEBUG_ASSERT(place < state.placed.size());
     const PlacedObject& placed = state.placed[place];
     if (placed.occluder.index == 0 || !frame.isInLayers(place) || !frame.isCandidate(place)) return;
     if (frame.mayBeCoarse(place) || frame.sizes.drops(place)) return;
@@ -141,6 +147,7 @@ void ProofMemory::lookAt(const Frame& frame, uint32_t place, Place& out) const {
 }
 
 const ProofMemory::Place& ProofMemory::placeAt(const Frame& frame, uint32_t place) {
+    SIGHTLINE_DEBUG_ASSERT(places_.size() == kPlaces);
     Place& out = places_[place % kPlaces];
     if (out.answer != answer_ || out.place != place) lookAt(frame, place, out);
     return out;
@@ -173,6 +180,8 @@ bool ProofMemory::makeVolumeOf(const Frame& frame, const HidingPart& part, Occlu
     const VolumePart &a = one.at.parts->part(part.part), &b = other.at.parts->part(part.other_part);
     if (a.face_count != 1 || b.face_count != 1) return false;
     VolumeSeam seam;
+    SIGHTLINE_DEBUG_ASSERT(a.first_face < one.at.parts->members.size() &&
+                           b.first_face < other.at.parts->members.size());
     seam.face[0] = one.at.parts->members[a.first_face];
     seam.face[1] = other.at.parts->members[b.first_face];
     return findSeam(*one.at.parts, world.objectAt(at).transform, *other.at.parts, world.objectAt(other_at).transform,
@@ -181,7 +190,9 @@ bool ProofMemory::makeVolumeOf(const Frame& frame, const HidingPart& part, Occlu
 }
 
 const Shadow* ProofMemory::shadowOf(const Frame& frame, uint32_t hider) {
+    SIGHTLINE_DEBUG_ASSERT(hider < hiders_.size());
     Hider& h = hiders_[hider];
+    SIGHTLINE_DEBUG_ASSERT(h.answer != answer_ || h.shadow == kNone || h.shadow < shadows_.size());
     if (h.answer == answer_) return h.shadow == kNone ? nullptr : &shadows_[h.shadow];
     h.answer = answer_;
     h.shadow = kNone;
@@ -203,6 +214,7 @@ bool ProofMemory::holds(const Frame& frame, Pending::Kind kind, uint32_t index, 
 
 /// What hides a node no longer may still hide most of what is below it.
 void ProofMemory::handDown(const Frame& frame, uint32_t node, const Certificate& certificate) {
+    SIGHTLINE_DEBUG_ASSERT(node < frame.world->bvh.nodes.size());
     const BvhNode& of = frame.world->bvh.nodes[node];
     forEachSlot(usedSlots(of), [&](int slot) {
         const bool leaf = of.child[slot] & BvhNode::kLeaf;
@@ -234,6 +246,7 @@ bool ProofMemory::isProposed(const Pending& entry) const {
 
 /// Whether a proposed object has a certificate, or one is found.
 bool ProofMemory::proveProposed(const Frame& frame, const Pending& entry) {
+    SIGHTLINE_DEBUG_ASSERT(isProposed(entry));
     const uint64_t rays_before = rays, cuts_before = cuts();
     bool proved = holds(frame, entry.kind, entry.index, entry.box);
     if (!proved && proposals_tried_ < kMostSought) {

@@ -3,6 +3,7 @@
 //
 // John Airey, John Rohlf, Frederick Brooks. Towards Image Realism with Interactive Update Rates in Complex Virtual
 // Building Environments. 1990.
+#include "sightline/base/assert.h"
 #include "sightline/cells/pvs.h"
 
 #include "sightline/stages/pipeline.h"
@@ -33,6 +34,7 @@ void CellMemory::findRows(const Frame& frame) {
 
 /// Admits all that the rows of the view cells show or, without these, what stands in cells that the rows of cells show.
 void CellMemory::fillRows() {
+    SIGHTLINE_DEBUG_ASSERT(now_ && uses(Stage::kPvs));
     const CellState& cells = now_.state().cell_state;
     candidates_.begin(now_.state(), layers_);
     candidates_.beginPvs();

@@ -15,6 +15,7 @@
 #include <memory>
 #include <span>
 
+#include "sightline/base/assert.h"
 #include "sightline/cells/portals.h"
 #include "sightline/cells/pvs.h"
 #include "sightline/cull/occluder_volumes.h"
@@ -58,7 +59,10 @@ public:
     const Candidates* candidates() { return stages_ ? &candidates_ : nullptr; }
 
     /// How many objects were kept in the last view because the eye is in no cell or the work was spent.
-    uint64_t doubt(Stage stage) const { return doubt_[static_cast<int>(stage)]; }
+    uint64_t doubt(Stage stage) const {
+        SIGHTLINE_DEBUG_ASSERT(stage == Stage::kPvs || stage == Stage::kPortals);
+        return doubt_[static_cast<int>(stage)];
+    }
     /// The cells that the eye may be in; empty if it is in none, or if the stages are off.
     std::span<const uint32_t> start() const { return start_; }
     /// The view cells that the eye may be in; empty if their rows decided nothing.

@@ -1,5 +1,6 @@
 // The stage of occluder volumes: chooses the few that hide most from a view, and culls what lies in one of them.
 // SPDX-License-Identifier: MIT
+#include "sightline/base/assert.h"
 #include "sightline/stages/stage_memory.h"
 
 #include <algorithm>
@@ -19,6 +20,7 @@ constexpr double kLeastObjects = 0.5;        // that a volume holds, about
 
 /// How large a box looks from the eye, at most about.  [pixels]
 double boxPixels(const EyeBoxes& boxes, int slot, const VolumeView& view) {
+    SIGHTLINE_DEBUG_ASSERT(slot >= 0 && slot < 8);
     double size = 0, away = 0;
     for (int axis = 0; axis < 3; ++axis) {
         const double low = boxes.min[axis][slot], high = boxes.max[axis][slot];
@@ -43,6 +45,7 @@ double squaredDistance(const Box3f& box, const glm::dvec3& p) {
 }  // namespace
 
 void VolumeChooser::choose(Frame& frame) {
+    SIGHTLINE_DEBUG_ASSERT(frame.world && frame.usable);
     volumes_.clear();
     owners_.clear();
     const uint32_t most = std::min(frame.settings.occluder_volumes, kMostVolumes);
@@ -91,6 +94,7 @@ void VolumeChooser::gather(const Frame& frame, const VolumeView& shared) {
 void VolumeChooser::openNode(const Frame& frame, const VolumeView& shared, const Met& from) {
     const SnapshotState& state = *frame.world;
     const Frustum& frustum = frame.frustum;
+    SIGHTLINE_DEBUG_ASSERT(!from.leaf && from.index < state.bvh.nodes.size());
     const BvhNode& node = state.bvh.nodes[from.index];
     const EyeBoxes boxes = eyeBoxes(node, state.bvh.origin - frustum.eye);
     const FrustumAnswer answer = testFrustum(frustum, boxes, from.planes);
@@ -118,11 +122,13 @@ void VolumeChooser::openNode(const Frame& frame, const VolumeView& shared, const
 
 void VolumeChooser::lookAt(const Frame& frame, const VolumeView& shared, uint32_t place) {
     const SnapshotState& state = *frame.world;
+    SIGHTLINE_DEBUG_ASSERT(place < state.placed.size());
     const PlacedObject& placed = state.placed[place];
     if (!frame.isInLayers(place) || frame.mayBeCoarse(place)) return;
     const HeldOccluder& occluder = *state.occluders[placed.occluder.index];
     const VolumeParts& parts = occluder.parts;
     if (parts.parts.empty()) return;
+    SIGHTLINE_DEBUG_ASSERT(parts.parts.size() <= VolumeParts::kMaxParts && VolumeParts::kMaxParts <= 64);
     const ObjectRecord& record = state.objectAt(place);
     if (!isWhole(frame.limits, occluder, record.transform)) return;
     if (!reachesWindow(frame.limits, record.bounds, record.transform)) return;
@@ -136,6 +142,8 @@ void VolumeChooser::lookAt(const Frame& frame, const VolumeView& shared, uint32_
     for (uint32_t i = 0; i < parts.parts.size() && asked < kMostOfObject; ++i) {
         const VolumePart& part = parts.parts[i];
         const bool single = part.face_count == 1;
+        SIGHTLINE_DEBUG_ASSERT(part.face_count > 0 &&
+                               (part.body == VolumePart::kNone || part.body < parts.parts.size()));
         if (single && part.body != VolumePart::kNone && (seen_bodies >> part.body & 1)) continue;
         // Faces lie by falling area: none that follows can look larger than this.
         if (single && away > 0 && part.area * shared.pixels_at_one < least_ * away) break;
@@ -165,6 +173,7 @@ void VolumeChooser::take(const VolumeView& shared, uint32_t most) {
         uint32_t made;
     } rank[3 * kMostVolumes + 4];
     for (size_t i = 0; i < tries; ++i) {
+        SIGHTLINE_DEBUG_ASSERT(candidates_[i].owner < places_.size() && count < std::size(rank));
         Made& made = made_[count];
         if (!makeVolume(shared, places_[candidates_[i].owner], candidates_[i].part, made.volume, made.outline))
             continue;
@@ -205,6 +214,7 @@ void chooseVolumes(Frame& frame, StageMemory& memory) {
 /// The volumes that may hide a node's children: the test of its parent found that they cross the node.
 OpenVolumes::Run runOf(const Frame& frame, OpenVolumes& open, uint32_t node) {
     if (open.of_node.size() < frame.world->bvh.nodes.size()) open.of_node.resize(frame.world->bvh.nodes.size());
+    SIGHTLINE_DEBUG_ASSERT(node < open.of_node.size() && frame.volumes.size() <= VolumeChooser::kMostVolumes);
     const OpenVolumes::Run& noted = open.of_node[node];
     if (noted.answer == open.answer) return noted;
     if (open.crossing.empty())
@@ -215,10 +225,13 @@ OpenVolumes::Run runOf(const Frame& frame, OpenVolumes& open, uint32_t node) {
 uint32_t cullInVolumes(const Frame& frame, TraversalState& state, Group& group, uint32_t live) {
     OpenVolumes& open = state.volumes;
     const OpenVolumes::Run run = runOf(frame, open, group.index);
+    SIGHTLINE_DEBUG_ASSERT(live <= 0xff && size_t{run.first} + run.count <= open.crossing.size());
+    SIGHTLINE_DEBUG_ASSERT(frame.volumes.size() == frame.volume_owners.size());
     uint32_t counts[8] = {}, gone = 0;
     OpenVolumes::One crossing[8][VolumeChooser::kMostVolumes];
     for (uint32_t i = run.first; i < run.first + run.count && live; ++i) {
         const OpenVolumes::One one = open.crossing[i];
+        SIGHTLINE_DEBUG_ASSERT(one.volume < frame.volumes.size());
         const VolumeAnswer answer = testVolume(frame.volumes[one.volume], group.boxes, one.planes, live);
         for (uint32_t bits = live & ~answer.outside; bits; bits &= bits - 1) {
             const int slot = std::countr_zero(bits);

@@ -4,6 +4,7 @@
 // Ingo Wald. On fast Construction of SAH-based Bounding Volume Hierarchies. 2007.
 #include "sightline/tree/bvh.h"
 
+#include "sightline/base/assert.h"
 #include "sightline/math/round_outward.h"
 #include "sightline/tree/bvh_node.h"
 #include "sightline/tree/bvh_split.h"
@@ -22,7 +23,10 @@ Bvh buildBvh(std::span<const Box3d> boxes, Memory* memory) {
     const uint32_t count = static_cast<uint32_t>(boxes.size());
     if (count == 0) return bvh;
     Box3d world;
-    for (const Box3d& box : boxes) world.grow(box);
+    for (const Box3d& box : boxes) {
+        SIGHTLINE_DEBUG_ASSERT(box.finite() && !box.empty());
+        world.grow(box);
+    }
     bvh.origin = world.center();
     bvh.order.resize(count);
     BvhSplitter builder(bvh.order, memory);
@@ -47,11 +51,13 @@ Bvh buildBvh(std::span<const Box3d> boxes, Memory* memory) {
         if (job.parent != ~0u) bvh.nodes[job.parent / kWidth].child[job.parent % kWidth] = index;
         BvhRange parts[kWidth];
         const int used = builder.splitToEight(job.range, parts);
+        SIGHTLINE_DEBUG_ASSERT(used > 0 && used <= kWidth);
         for (int slot = used - 1; slot >= 0; --slot) {
             BvhNode& node = bvh.nodes[index];
             setSlot(node, slot, parts[slot].bounds);
             node.first[slot] = parts[slot].first;
             node.count[slot] = parts[slot].count();
+            SIGHTLINE_DEBUG_ASSERT(node.count[slot] > 0);
             if (parts[slot].count() == 1) node.child[slot] = BvhNode::kLeaf | parts[slot].first;
             else jobs.push_back({parts[slot], index * kWidth + static_cast<uint32_t>(slot)});
         }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "sightline/base/assert.h"
 #include "sightline/math/box.h"
 
 namespace sightline {
@@ -31,6 +32,7 @@ inline float halfArea(const Box3f& box) {
 }
 
 inline void setSlot(BvhNode& node, int slot, const Box3f& box) {
+    SIGHTLINE_DEBUG_ASSERT(slot >= 0 && slot < 8);
     for (int axis = 0; axis < 3; ++axis) {
         node.min[axis][slot] = box.min[axis];
         node.max[axis][slot] = box.max[axis];
@@ -38,6 +40,7 @@ inline void setSlot(BvhNode& node, int slot, const Box3f& box) {
 }
 
 inline Box3f slotBox(const BvhNode& node, int slot) {
+    SIGHTLINE_DEBUG_ASSERT(slot >= 0 && slot < 8);
     Box3f box;
     for (int axis = 0; axis < 3; ++axis) {
         box.min[axis] = node.min[axis][slot];

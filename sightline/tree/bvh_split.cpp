@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "sightline/base/assert.h"
 #include "sightline/math/curves.h"
 #include "sightline/tree/bvh_node.h"
 
@@ -37,6 +38,7 @@ glm::vec3 splitCenter(const Box3f& box) {
 }
 
 Box3f BvhSplitter::boundsOf(uint32_t first, uint32_t last) const {
+    SIGHTLINE_DEBUG_ASSERT(first <= last && last <= order.size());
     Box3f box;
     for (uint32_t i = first; i < last; ++i) box.grow(boxes[order[i]]);
     return box;
@@ -44,11 +46,14 @@ Box3f BvhSplitter::boundsOf(uint32_t first, uint32_t last) const {
 
 /// Splits small ranges so that the nodes below are full: a multiple of eight goes to the left.
 uint32_t BvhSplitter::middleOf(const BvhRange& range) const {
+    SIGHTLINE_DEBUG_ASSERT(range.count() > 1);
     const uint32_t half = range.count() / 2;
     return range.first + (range.count() > kWidth ? std::max(8u, (half + 4) / 8 * 8) : half);
 }
 
 void BvhSplitter::split(const BvhRange& range, BvhRange& left, BvhRange& right) {
+    SIGHTLINE_DEBUG_ASSERT(range.last <= order.size() && range.count() > 1);
+    SIGHTLINE_DEBUG_ASSERT(boxes.size() == centers.size());
     Box3f extent;
     for (uint32_t i = range.first; i < range.last; ++i) extent.grow(centers[order[i]]);
     if (range.count() > 64 && splitByBins(range, extent, left, right)) return;
@@ -61,6 +66,7 @@ uint32_t BvhSplitter::splitAtMedian(const BvhRange& range, const Box3f& extent) 
     const glm::vec3 size = extent.size();
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const uint32_t middle = middleOf(range);
+    SIGHTLINE_DEBUG_ASSERT(range.first < middle && middle < range.last);
     std::nth_element(order.begin() + range.first, order.begin() + middle, order.begin() + range.last,
                      [&](uint32_t a, uint32_t b) {
                          const float ca = centers[a][axis], cb = centers[b][axis];
@@ -122,10 +128,12 @@ bool BvhSplitter::splitByBins(const BvhRange& range, const Box3f& extent, BvhRan
     left.first = range.first;
     left.last = right.first = static_cast<uint32_t>(middle - order.begin());
     right.last = range.last;
+    SIGHTLINE_DEBUG_ASSERT(left.first < left.last && right.first < right.last);
     return true;
 }
 
 int BvhSplitter::splitToEight(const BvhRange& range, BvhRange (&parts)[kWidth]) {
+    SIGHTLINE_DEBUG_ASSERT(range.first < range.last && range.last <= order.size());
     const uint32_t whole = range.count() > kWidth ? kWidth : 1;
     int count = 1;
     parts[0] = range;
@@ -150,6 +158,7 @@ int BvhSplitter::splitToEight(const BvhRange& range, BvhRange (&parts)[kWidth]) 
 }
 
 void BvhSplitter::sortAlongCurve() {
+    SIGHTLINE_DEBUG_ASSERT(centers.size() >= order.size());
     Box3f around;
     for (const uint32_t item : order) around.grow(centers[item]);
     const glm::vec3 size = around.size();
@@ -166,11 +175,13 @@ void BvhSplitter::sortAlongCurve() {
 }
 
 int BvhSplitter::cutToEight(const BvhRange& range, BvhRange (&parts)[kWidth]) const {
+    SIGHTLINE_DEBUG_ASSERT(range.first < range.last && range.last <= order.size());
     constexpr uint32_t kFill = 6;
     uint32_t size = range.count() <= kFill ? 1 : kFill;
     while (range.count() > kWidth * uint64_t{size}) size *= kWidth;
     int count = 0;
     for (uint32_t first = range.first; first < range.last; ++count) {
+        SIGHTLINE_DEBUG_ASSERT(count < kWidth);
         const uint32_t last = first + std::min(size, range.last - first);
         parts[count] = {first, last, boundsOf(first, last)};
         first = last;

@@ -8,6 +8,7 @@
 
 #include <hwy/cache_control.h>
 
+#include "sightline/base/assert.h"
 #include "sightline/tree/bvh.h"
 
 namespace sightline {
@@ -22,6 +23,7 @@ inline uint32_t usedSlots(const BvhNode& node) {
 /// Calls visit(slot) for each bit, the lowest first.
 template <class Visit>
 void forEachSlot(uint32_t slots, Visit&& visit) {
+    SIGHTLINE_DEBUG_ASSERT(slots <= 0xff);
     for (; slots; slots &= slots - 1) visit(std::countr_zero(slots));
 }
 
@@ -38,6 +40,7 @@ void descendByLevels(const Nodes& nodes, Line& line, Open&& open) {
             for (size_t byte = 0; byte < sizeof(BvhNode); byte += 64) hwy::Prefetch(ahead + byte);
         }
         const auto entry = line[at];
+        SIGHTLINE_DEBUG_ASSERT(entry.node < nodes.size());
         open(entry);
     }
 }

@@ -34,6 +34,7 @@ bool isEmpty(const BvhNode& node) {
 
 /// Empties a slot. If the slot keeps a place, that is a spare one.
 void vacate(BvhNode& node, uint32_t slot, uint32_t place) {
+    SIGHTLINE_DEBUG_ASSERT(slot < 8);
     clearSlot(node, static_cast<int>(slot));
     node.first[slot] = place;
 }
@@ -107,6 +108,7 @@ uint32_t WorldBvh::newNode() {
     if (!free_nodes_.empty()) {
         const uint32_t index = free_nodes_.back();
         free_nodes_.pop_back();
+        SIGHTLINE_DEBUG_ASSERT(index < now_.nodes.size() && !marked_[index]);
         now_.nodes.set(index, nodeWithoutPlaces());
         return index;
     }
@@ -114,22 +116,26 @@ uint32_t WorldBvh::newNode() {
     parent_.push_back(kNone);
     fresh_.push_back(0.0f);
     marked_.push_back(0);
+    SIGHTLINE_DEBUG_ASSERT(parent_.size() == now_.nodes.size() && fresh_.size() == parent_.size());
     return now_.nodes.size() - 1;
 }
 
 void WorldBvh::freeNode(uint32_t index) {
+    SIGHTLINE_DEBUG_ASSERT(index > 0 && index < now_.nodes.size());
     marked_[index] = 0;
     free_nodes_.push_back(index);
 }
 
 /// Notes that a child, which is a node or an item's place, is in a slot.
 void WorldBvh::hang(uint32_t parent, uint32_t child) {
+    SIGHTLINE_DEBUG_ASSERT(parent / 8 < now_.nodes.size());
     if (!isLeaf(child)) parent_[child] = parent;
     else now_.slot.set(now_.order[child & ~BvhNode::kLeaf], parent);
 }
 
 /// Puts a root above the tree that has been the only one.
 void WorldBvh::openRoot() {
+    SIGHTLINE_DEBUG_ASSERT(trees_.size() == 1 && !now_.nodes.empty());
     const uint32_t below = newNode();
     const BvhNode node = now_.nodes[0];
     now_.nodes.set(below, node);
@@ -152,7 +158,9 @@ void WorldBvh::openRoot() {
 }
 
 uint32_t WorldBvh::placesOf(size_t tree) const {
+    SIGHTLINE_DEBUG_ASSERT(tree < trees_.size());
     const uint32_t end = tree + 1 < trees_.size() ? trees_[tree + 1].first : now_.order.size();
+    SIGHTLINE_DEBUG_ASSERT(end >= trees_[tree].first);
     return end - trees_[tree].first;
 }
 
@@ -162,6 +170,9 @@ uint32_t WorldBvh::placesOf(size_t tree) const {
 /// @param spare   places that nodes may have besides those of their items
 void WorldBvh::growTree(uint32_t root, uint32_t parent, uint32_t first, uint32_t spare, Growth growth) {
     const uint32_t count = static_cast<uint32_t>(items_.size());
+    SIGHTLINE_DEBUG_ASSERT(count > 0 && boxes_.size() == count);
+    SIGHTLINE_DEBUG_ASSERT(root < now_.nodes.size() && isEmpty(now_.nodes[root]));
+    SIGHTLINE_DEBUG_ASSERT(first + count + spare <= now_.order.size());
     sorted_.resize(count);
     BvhSplitter splitter(sorted_, memory_);
     splitter.boxes.assign(boxes_.begin(), boxes_.end());
@@ -201,6 +212,7 @@ void WorldBvh::growTree(uint32_t root, uint32_t parent, uint32_t first, uint32_t
                 continue;
             }
             const uint32_t item = items_[sorted_[parts[part].first]];
+            SIGHTLINE_DEBUG_ASSERT(next < first + count + spare);
             node.first[part] = next;
             node.child[part] = BvhNode::kLeaf | next;
             now_.order.set(next++, item);
@@ -215,6 +227,7 @@ void WorldBvh::growTree(uint32_t root, uint32_t parent, uint32_t first, uint32_t
             to_spare -= has;
         }
     }
+    SIGHTLINE_DEBUG_ASSERT(next <= first + count + spare && met == count);
     for (size_t i = made.size(); i-- > 1;) {
         const uint32_t above = parent_[made[i]];
         BvhNode& node = now_.nodes.change(above / 8);
@@ -226,6 +239,7 @@ void WorldBvh::growTree(uint32_t root, uint32_t parent, uint32_t first, uint32_t
             places += std::max(below.count[slot], 1u);
             empty += below.count[slot] == 0 ? 1 : below.empty[slot];
         }
+        SIGHTLINE_DEBUG_ASSERT(begins >= first && begins + places <= first + count + spare && empty < places);
         node.first[above % 8] = begins;
         node.count[above % 8] = places;
         node.empty[above % 8] = empty;
@@ -242,6 +256,8 @@ void WorldBvh::setSlotOf(uint32_t item, uint32_t slot) {
 uint32_t WorldBvh::hangTree(Growth growth) {
     const uint32_t slot = static_cast<uint32_t>(trees_.size()), first = now_.order.size();
     const uint32_t count = static_cast<uint32_t>(items_.size()), spare = count > 1 ? count / kItemsToSpare : 0;
+    SIGHTLINE_DEBUG_ASSERT(slot > 0 && slot < kTrees);
+    SIGHTLINE_DEBUG_ASSERT(count > 0 && boxes_.size() == count);
     trees_.push_back({first});
     for (uint32_t i = 0; i < count + spare; ++i) now_.order.push_back(kNone);
     Box3f bounds;
@@ -270,7 +286,10 @@ void WorldBvh::build(std::span<const Box3d> boxes, std::span<const uint32_t> ite
     clear();
     if (boxes.empty()) return;
     Box3d world;
-    for (const Box3d& box : boxes) world.grow(box);
+    for (const Box3d& box : boxes) {
+        SIGHTLINE_DEBUG_ASSERT(box.finite() && !box.empty());
+        world.grow(box);
+    }
     now_.origin = world.center();
     items_.assign(items.begin(), items.end());
     boxes_.reserve(boxes.size());
@@ -287,10 +306,13 @@ void WorldBvh::build(std::span<const Box3d> boxes, std::span<const uint32_t> ite
 /// over them must be built at once: till then their slots are wrong.
 void WorldBvh::gather(uint32_t child, const Box3f& box) {
     if (isLeaf(child)) {
+        SIGHTLINE_DEBUG_ASSERT((child & ~BvhNode::kLeaf) < now_.order.size() &&
+                               now_.order[child & ~BvhNode::kLeaf] != kNone);
         items_.push_back(now_.order[child & ~BvhNode::kLeaf]);
         boxes_.push_back(box);
         return;
     }
+    SIGHTLINE_DEBUG_ASSERT(child < now_.nodes.size());
     const BvhNode node = now_.nodes[child];
     for (int slot = 0; slot < 8; ++slot)
         if (node.count[slot] > 0) gather(node.child[slot], slotBox(node, slot));
@@ -315,10 +337,12 @@ uint32_t WorldBvh::append(std::span<const Box3d> boxes, std::span<const uint32_t
 
 /// Takes all items of the last batch into items_ and boxes_, and its places away.
 void WorldBvh::takeInLast() {
+    SIGHTLINE_DEBUG_ASSERT(trees_.size() > 1 && items_.size() == boxes_.size());
     const uint32_t slot = static_cast<uint32_t>(trees_.size() - 1), before = static_cast<uint32_t>(items_.size());
     const BvhNode root = now_.nodes[0];
     if (root.count[slot] > 0) gather(root.child[slot], slotBox(root, static_cast<int>(slot)));
     vacate(now_.nodes.change(0), slot, kNone);
+    SIGHTLINE_DEBUG_ASSERT(living_ >= items_.size() - before);
     living_ -= static_cast<uint32_t>(items_.size()) - before;
     now_.order.resize(trees_.back().first);
     trees_.pop_back();
@@ -346,6 +370,7 @@ uint32_t WorldBvh::renewBatches(std::span<const Box3d> boxes, std::span<const ui
 
 /// Makes the bounds above a node tight again, and takes it away if nothing is below it.
 void WorldBvh::tightenAbove(uint32_t index) {
+    SIGHTLINE_DEBUG_ASSERT(index < parent_.size());
     while (parent_[index] != kNone) {
         const uint32_t above = parent_[index];
         const int slot = static_cast<int>(above % 8);
@@ -365,6 +390,7 @@ void WorldBvh::tightenAbove(uint32_t index) {
 }
 
 void WorldBvh::noteDecay(uint32_t index, uint32_t places, const Box3f& box) {
+    SIGHTLINE_DEBUG_ASSERT(index < marked_.size());
     if (marked_[index] || places < kFewestMended || places > kMostMended) return;
     if (halfArea(box) <= kDecayed * fresh_[index]) return;
     marked_[index] = 1;
@@ -373,12 +399,16 @@ void WorldBvh::noteDecay(uint32_t index, uint32_t places, const Box3f& box) {
 
 /// Adds to how many places above a node are empty.
 void WorldBvh::countEmpty(uint32_t index, uint32_t more) {
-    for (uint32_t above = parent_[index]; above != kNone; above = parent_[above / 8])
-        now_.nodes.change(above / 8).empty[above % 8] += more;
+    for (uint32_t above = parent_[index]; above != kNone; above = parent_[above / 8]) {
+        BvhNode& node = now_.nodes.change(above / 8);
+        node.empty[above % 8] += more;
+        SIGHTLINE_DEBUG_ASSERT(node.empty[above % 8] <= node.count[above % 8]);
+    }
 }
 
 uint32_t WorldBvh::insert(uint32_t item, const Box3d& box, Among among) {
     SIGHTLINE_ASSERT(!contains(item));
+    SIGHTLINE_DEBUG_ASSERT(box.finite() && !box.empty());
     if (trees_.empty() || (among == Among::kBatches && trees_.size() == 1)) return kNone;
     const Box3f bounds = roundOutward(box, now_.origin);
     uint32_t index = 0, found = kNone;
@@ -407,6 +437,7 @@ uint32_t WorldBvh::insert(uint32_t item, const Box3d& box, Among among) {
     const uint32_t slot = spareSlot(now_.nodes[found]);
     BvhNode& node = now_.nodes.change(found);
     const uint32_t place = node.first[slot];
+    SIGHTLINE_DEBUG_ASSERT(place < now_.order.size() && now_.order[place] == kNone);
     setSlot(node, static_cast<int>(slot), bounds);
     node.child[slot] = BvhNode::kLeaf | place;
     node.count[slot] = 1;
@@ -421,6 +452,7 @@ uint32_t WorldBvh::insert(uint32_t item, const Box3d& box, Among among) {
 
 /// Builds all below a node anew in the places that it has.
 void WorldBvh::rebuildBelow(uint32_t index) {
+    SIGHTLINE_DEBUG_ASSERT(parent_[index] != kNone);
     const uint32_t above = parent_[index], first = now_.nodes[above / 8].first[above % 8];
     const uint32_t count = now_.nodes[above / 8].count[above % 8];
     items_.clear();
@@ -428,6 +460,7 @@ void WorldBvh::rebuildBelow(uint32_t index) {
     const BvhNode node = now_.nodes[index];
     for (int slot = 0; slot < 8; ++slot)
         if (node.count[slot] > 0) gather(node.child[slot], slotBox(node, slot));
+    SIGHTLINE_DEBUG_ASSERT(!items_.empty() && items_.size() <= count);
     for (uint32_t place = first; place < first + count; ++place) now_.order.set(place, kNone);
     now_.nodes.set(index, nodeWithoutPlaces());
     growTree(index, above, first, count - static_cast<uint32_t>(items_.size()), Growth::kGood);
@@ -454,6 +487,7 @@ std::span<const WorldBvh::Places> WorldBvh::mend(uint32_t most) {
 
 bool WorldBvh::move(uint32_t item, const Box3d& box) {
     SIGHTLINE_ASSERT(contains(item));
+    SIGHTLINE_DEBUG_ASSERT(box.finite() && !box.empty());
     const Box3f bounds = roundOutward(box, now_.origin);
     const uint32_t at = now_.slot[item];
     const Box3f before = slotBox(now_.nodes[at / 8], static_cast<int>(at % 8));
@@ -477,6 +511,7 @@ bool WorldBvh::move(uint32_t item, const Box3d& box) {
 uint32_t WorldBvh::remove(uint32_t item) {
     SIGHTLINE_ASSERT(contains(item));
     const uint32_t at = now_.slot[item], place = now_.nodes[at / 8].first[at % 8];
+    SIGHTLINE_DEBUG_ASSERT(now_.order[place] == item && living_ > 0);
     now_.slot.set(item, kNone);
     now_.order.set(place, kNone);
     const bool is_tree = at / 8 == 0 && trees_.size() > 1;

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "sightline/base/array.h"
+#include "sightline/base/assert.h"
 #include "sightline/base/paged.h"
 #include "sightline/tree/bvh.h"
 
@@ -31,6 +32,7 @@ struct PlacedBvh {
     /// The place of an item, or kNone.
     uint32_t placeOf(uint32_t item) const {
         const uint32_t at = item < slot.size() ? slot[item] : kNone;
+        SIGHTLINE_DEBUG_ASSERT(at == kNone || at / 8 < nodes.size());
         return at == kNone ? kNone : nodes[at / 8].first[at % 8];
     }
     /// Items that are here.
@@ -73,6 +75,7 @@ public:
     /// True if an item is in a batch, and false if it is in the tree that was built.
     /// @pre it is here
     bool isInBatch(uint32_t item) const {
+        SIGHTLINE_DEBUG_ASSERT(contains(item));
         return trees_.size() > 1 && now_.nodes[slotOf(item) / 8].first[slotOf(item) % 8] >= trees_[1].first;
     }
     /// Items in batches.

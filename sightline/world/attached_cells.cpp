@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/world/attached_cells.h"
 
+#include "sightline/base/assert.h"
 #include "sightline/math/finite.h"
 
 #include <algorithm>
@@ -126,11 +127,13 @@ AttachedCells::AttachedCells(const CellSpace& space, const VisibleRows* visible,
         if (row == kNoCell) without_row.push_back(cell);
         else cell_of_row[next[row]++] = cell;
     }
+    SIGHTLINE_DEBUG_ASSERT(cell_of_row.size() + without_row.size() == space.row_of_cell.size());
 }
 
 uint32_t AttachedCells::objectOf(uint64_t key, const Box3d& box) const {
     if (objects.size() == 0) return kNone;
     const auto [first, end] = objects.find(key);
+    SIGHTLINE_DEBUG_ASSERT(first <= end && end <= objects.size());
     if (end - first != 1) return kNone;
     const Box3d baked = objects.bounds(first);
     for (int axis = 0; axis < 3; ++axis) {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "sightline/base/array.h"
+#include "sightline/base/assert.h"
 #include "sightline/base/result.h"
 #include "sightline/cells/portal_graph.h"
 #include "sightline/cells/pvs.h"
@@ -56,6 +57,7 @@ struct AttachedCells {
     /// Calls visit(cell) for each cell that a set of rows, given as bits, shows.
     template <class Visit>
     void forEachCell(std::span<const uint64_t> seen, Visit&& visit) const {
+        SIGHTLINE_DEBUG_ASSERT(first_of_row.size() == size_t{rows.columns()} + 1);
         for (const uint32_t cell : without_row) visit(cell);
         for (size_t word = 0; word < seen.size(); ++word)
             for (uint64_t bits = seen[word]; bits; bits &= bits - 1) {

@@ -8,6 +8,7 @@ namespace sightline::detail {
 namespace {
 
 void setBox(CellBlock& block, uint32_t lane, const Box3f& box) {
+    SIGHTLINE_DEBUG_ASSERT(lane < 8);
     for (int axis = 0; axis < 3; ++axis) {
         block.min[axis][lane] = box.min[axis];
         block.max[axis][lane] = box.max[axis];
@@ -43,6 +44,7 @@ void CellObjects::reset(uint32_t cells) {
 bool CellObjects::standsIn(uint32_t row, std::span<const uint32_t> cells) const {
     uint32_t at = row < first_of_.size() ? first_of_[row] : kNone;
     for (const uint32_t cell : cells) {
+        SIGHTLINE_DEBUG_ASSERT(at == kNone || at < stands_.size());
         if (at == kNone || stands_[at].cell != cell) return false;
         at = stands_[at].next;
     }
@@ -50,6 +52,8 @@ bool CellObjects::standsIn(uint32_t row, std::span<const uint32_t> cells) const 
 }
 
 void CellObjects::put(uint32_t row, const Box3f& box, std::span<const uint32_t> cells) {
+    for (size_t i = 0; i < cells.size(); ++i)
+        SIGHTLINE_DEBUG_ASSERT(cells[i] < now_.first.size() && (i == 0 || cells[i - 1] < cells[i]));
     if (standsIn(row, cells)) {
         for (uint32_t at = cells.empty() ? kNone : first_of_[row]; at != kNone; at = stands_[at].next) {
             const uint32_t block = stands_[at].at / 8, lane = stands_[at].at % 8;
@@ -68,6 +72,7 @@ void CellObjects::take(uint32_t row) {
     first_of_[row] = kNone;
     while (at != kNone) {
         const Stand stand = stands_[at];
+        SIGHTLINE_DEBUG_ASSERT(stand.at / 8 < now_.blocks.size() && now_.blocks[stand.at / 8].row[stand.at % 8] == row);
         free_stands_.push_back(at);
         removeAt(stand.cell, stand.at);
         at = stand.next;
@@ -76,6 +81,8 @@ void CellObjects::take(uint32_t row) {
 
 /// Puts an object at the end of a cell's first block, and before its other cells.
 void CellObjects::add(uint32_t row, const Box3f& box, uint32_t cell) {
+    SIGHTLINE_DEBUG_ASSERT(cell < now_.first.size() && row < first_of_.size());
+    SIGHTLINE_DEBUG_ASSERT(first_of_[row] == kNone || stands_[first_of_[row]].cell > cell);
     uint32_t block = now_.first[cell];
     if (block == CellBlock::kNone || now_.blocks[block].used == 8) {
         CellBlock fresh;
@@ -93,6 +100,7 @@ void CellObjects::add(uint32_t row, const Box3f& box, uint32_t cell) {
     ++now_.count.change(cell);
     ++now_.stands;
     CellBlock& in = now_.blocks.change(block);
+    SIGHTLINE_DEBUG_ASSERT(in.used < 8);
     const uint32_t lane = in.used++;
     in.row[lane] = row;
     setBox(in, lane, box);
@@ -108,10 +116,12 @@ void CellObjects::add(uint32_t row, const Box3f& box, uint32_t cell) {
 
 /// Fills a place with the last one of the cell's first block.
 void CellObjects::removeAt(uint32_t cell, uint32_t at) {
+    SIGHTLINE_DEBUG_ASSERT(now_.count[cell] > 0 && now_.stands > 0);
     --now_.count.change(cell);
     --now_.stands;
     const uint32_t first = now_.first[cell];
     CellBlock& from = now_.blocks.change(first);
+    SIGHTLINE_DEBUG_ASSERT(from.used > 0 && from.used <= 8);
     const uint32_t lane = --from.used;
     if (at != 8 * first + lane) {
         const uint32_t row = from.row[lane];
@@ -132,6 +142,7 @@ void CellObjects::removeAt(uint32_t cell, uint32_t at) {
 }
 
 CellObjects::Stand& CellObjects::standOf(uint32_t row, uint32_t cell) {
+    SIGHTLINE_DEBUG_ASSERT(row < first_of_.size());
     uint32_t at = first_of_[row];
     while (at != kNone && stands_[at].cell != cell) at = stands_[at].next;
     SIGHTLINE_ASSERT(at != kNone);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "sightline/base/assert.h"
+
 namespace sightline::detail {
 namespace {
 
@@ -15,6 +17,7 @@ void add(const PlacedLimits::Below& from, PlacedLimits::Below& to) {
 }
 
 PlacedLimits::Below noteNode(const PlacedBvh& bvh, uint32_t index, PlacedLimits& limits) {
+    SIGHTLINE_DEBUG_ASSERT(index < bvh.nodes.size() && limits.nodes.size() == bvh.nodes.size());
     const BvhNode& node = bvh.nodes[index];
     PlacedLimits::Below all;
     for (int slot = 0; slot < 8; ++slot) {
@@ -45,6 +48,7 @@ PlacedLimits::One placedLimits(const ObjectLimits& limits) {
 }
 
 void noteLimitsBelow(const PlacedBvh& bvh, PlacedLimits& limits) {
+    SIGHTLINE_DEBUG_ASSERT(limits.objects.size() == bvh.order.size());
     limits.nodes.resize(bvh.nodes.size());
     if (!bvh.nodes.empty()) noteNode(bvh, 0, limits);
 }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "sightline/base/assert.h"
 #include "sightline/cells/pvs.h"
 #include "sightline/world/world_state.h"
 
@@ -19,9 +20,11 @@ namespace sightline::detail {
 template <class Visit>
 void forEachSeenObject(const CellState& cells, const PotentiallyVisible& by_cells, const PotentiallyVisible& by_objects,
                        Visit&& visit) {
+    SIGHTLINE_DEBUG_ASSERT(cells.cells && (cells.cells->views ? by_objects : by_cells).known());
     const auto visitAll = [&](const CellLists& lists, uint32_t cell) {
         for (uint32_t at = lists.first[cell]; at != CellBlock::kNone;) {
             const CellBlock& block = lists.blocks[at];
+            SIGHTLINE_DEBUG_ASSERT(block.used > 0 && block.used <= 8);
             for (uint32_t lane = 0; lane < block.used; ++lane) visit(block.row[lane]);
             at = block.next;
         }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/world/world_cells.h"
 
+#include "sightline/base/assert.h"
+
 namespace sightline::detail {
 
 void WorldCells::attach(std::shared_ptr<const AttachedCells> cells) {
@@ -42,11 +44,13 @@ void WorldCells::setFree(uint32_t row, bool free) {
     if (isFree(row) == free) return;
     if (free_rows_.size() <= row / 64) free_rows_.resize(row / 64 + 1, 0);
     free_rows_[row / 64] ^= uint64_t{1} << row % 64;
+    SIGHTLINE_DEBUG_ASSERT(free || free_count_ > 0);
     free ? ++free_count_ : --free_count_;
     rows_.push_back(row);
 }
 
 void WorldCells::put(uint32_t row, const ObjectRecord& object) {
+    SIGHTLINE_DEBUG_ASSERT(cells_ && object.id.index != 0);
     const Box3d box = worldBounds(object);
     if (!box.finite()) return take(row);
     unclaim(row);
@@ -54,6 +58,7 @@ void WorldCells::put(uint32_t row, const ObjectRecord& object) {
 }
 
 void WorldCells::putByBox(uint32_t row, const Box3d& box) {
+    SIGHTLINE_DEBUG_ASSERT(box.finite() && !box.empty());
     const bool any = cells_->graph.cellsOf(box, cells_scratch_);
     if (any) objects_.put(row, roundOutward(box, cells_->origin), cells_scratch_);
     else objects_.take(row);
@@ -76,6 +81,7 @@ bool WorldCells::putAsBaked(uint32_t row, const ObjectRecord& object, const Box3
     if (claims_[baked] != kNobody) {
         // Two objects have this key and these bounds: nobody knows which of them was baked.
         const uint32_t other = claims_[baked];
+        SIGHTLINE_DEBUG_ASSERT(other < claimed_.size() && claimed_[other] == baked && other != row);
         unclaim(other);
         claims_.set(baked, kMany);
         Box3d either = cells_->objects.bounds(baked);
@@ -101,12 +107,15 @@ bool WorldCells::putAsBaked(uint32_t row, const ObjectRecord& object, const Box3
 /// Notes that an object is no longer the one of the file that it stood for.
 void WorldCells::unclaim(uint32_t row) {
     if (row >= claimed_.size() || claimed_[row] == kNobody) return;
+    SIGHTLINE_DEBUG_ASSERT(claims_[claimed_[row]] == row);
     claims_.set(claimed_[row], kNobody);
     claimed_walls_ -= cells_->objects.isWall(claimed_[row]);
+    SIGHTLINE_DEBUG_ASSERT(claimed_walls_ <= walls_);
     claimed_[row] = kNobody;
 }
 
 void WorldCells::take(uint32_t row) {
+    SIGHTLINE_DEBUG_ASSERT(cells_);
     unclaim(row);
     objects_.take(row);
     if (cells_->views) strangers_.take(row);
@@ -114,6 +123,7 @@ void WorldCells::take(uint32_t row) {
 }
 
 void WorldCells::finish(const PlacedBvh& bvh) {
+    SIGHTLINE_DEBUG_ASSERT(cells_);
     const auto look = [&](uint32_t place) {
         const uint32_t row = bvh.order[place];
         free_.set(place, row != PlacedBvh::kNone && isFree(row));
@@ -139,6 +149,7 @@ void WorldCells::finish(const PlacedBvh& bvh) {
 }
 
 void WorldCells::share(CellState& state) {
+    SIGHTLINE_DEBUG_ASSERT(ranges_.empty() && rows_.empty());
     if (!cells_) return;
     if (!shared_doors_) shared_doors_ = makeShared<Array<DoorState>>(memory_, doors_);
     state.cells = cells_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "sightline/base/assert.h"
+#include "sightline/world/validate_world.h"
 
 namespace sightline::detail {
 namespace {
@@ -53,6 +54,7 @@ ObjectId WorldState::newId() {
     }
     const uint32_t index = free_ids_.back();
     free_ids_.pop_back();
+    SIGHTLINE_DEBUG_ASSERT(index > 0 && index <= ids_.size() && ids_[index - 1].row == IdSlot::kNowhere);
     IdSlot& slot = ids_.change(index - 1);
     slot.row = objects_.size();
     return {index, ++slot.generation};
@@ -95,6 +97,7 @@ ObjectId WorldState::add(const ObjectDef& object) {
 bool WorldState::move(ObjectId id, const glm::dmat4& transform) {
     const uint32_t row = find(id);
     if (row == IdSlot::kNowhere) return false;
+    SIGHTLINE_DEBUG_ASSERT(row < objects_.size() && lives(row));
     ObjectRecord& object = objects_.change(row);
     object.moved |= object.transform != transform;
     object.transform = transform;
@@ -104,8 +107,10 @@ bool WorldState::move(ObjectId id, const glm::dmat4& transform) {
 }
 
 void WorldState::noteMove(uint32_t row, ObjectRecord& object) {
+    SIGHTLINE_DEBUG_ASSERT(row < committed_ && object.moved_in <= commit_);
     const Box3d box = worldBounds(object);
     if (object.moved_in == commit_) {
+        SIGHTLINE_DEBUG_ASSERT(object.moved_number < moved_.size() && moved_[object.moved_number].row == row);
         moved_[object.moved_number].box = box;
         return;
     }
@@ -118,6 +123,8 @@ void WorldState::noteMove(uint32_t row, ObjectRecord& object) {
 bool WorldState::remove(ObjectId id) {
     const uint32_t row = find(id);
     if (row == IdSlot::kNowhere) return false;
+    SIGHTLINE_DEBUG_ASSERT(lives(row) && objects_[row].id == id);
+    SIGHTLINE_DEBUG_ASSERT(limited_ > 0 || objects_[row].limits == ObjectLimits());
     limited_ -= objects_[row].limits != ObjectLimits();
     objects_.set(row, {});
     clearBit(living_, row);
@@ -142,6 +149,7 @@ void WorldState::compact() {
         setBit(living_, packed.size());
         packed.push_back(object);
     }
+    SIGHTLINE_DEBUG_ASSERT(packed.size() == size());
     objects_ = std::move(packed);
     gaps_ = 0;
     cells_.renumber();
@@ -151,6 +159,7 @@ void WorldState::compact() {
 void WorldState::takeOut(uint32_t row) {
     if (bvh_.contains(row)) {
         const uint32_t place = bvh_.remove(row);
+        SIGHTLINE_DEBUG_ASSERT(place < placed_.size());
         cells_.notePlaces(place, place + 1);
         return placed_.set(place, {});
     }
@@ -162,6 +171,7 @@ void WorldState::takeOut(uint32_t row) {
 /// Notes an object for the hierarchy, or puts it among the unbounded.
 /// @param box  its bounds in the world
 void WorldState::putIn(uint32_t row, const Box3d& box, bool restless) {
+    SIGHTLINE_DEBUG_ASSERT(lives(row));
     if (box.finite()) {
         boxes_.push_back(box);
         rows_.push_back(row);
@@ -173,6 +183,7 @@ void WorldState::putIn(uint32_t row, const Box3d& box, bool restless) {
 
 /// Writes down what stands in a range of the hierarchy's places.
 void WorldState::place(uint32_t first, uint32_t end) {
+    SIGHTLINE_DEBUG_ASSERT(first <= end && end <= placed_.size() && placed_.size() == bvh_.now().order.size());
     cells_.notePlaces(first, end);
     const auto& order = bvh_.now().order;
     for (uint32_t at = first; at < end; ++at) {
@@ -199,6 +210,7 @@ void WorldState::noteLimits() {
     if (limited_ == 0) return limits_.clear();
     const auto& order = bvh_.now().order;
     for (uint32_t at = limits_.objects.size(); at < order.size(); ++at) limits_.objects.push_back(limitsAt(order[at]));
+    SIGHTLINE_DEBUG_ASSERT(limits_.objects.size() == order.size());
     noteLimitsBelow(bvh_.now(), limits_);
 }
 
@@ -215,6 +227,7 @@ void WorldState::build() {
         common_layers_ &= objects_[row].layers;
         putIn(row, worldBounds(objects_[row]));
     }
+    SIGHTLINE_DEBUG_ASSERT(boxes_.size() + unbounded_.size() == size());
     bvh_.build(boxes_, rows_);
     limits_.clear();
     placed_.clear();
@@ -236,6 +249,7 @@ void WorldState::moveAll() {
     sortMoved();
     for (const uint64_t place : places_) {
         const auto& [row, restless, box] = moved_[static_cast<uint32_t>(place)];
+        SIGHTLINE_DEBUG_ASSERT(row < committed_);
         if (!lives(row)) continue;
         if (box.finite() && bvh_.contains(row)) {
             const bool with_movers = bvh_.isInBatch(row);
@@ -253,6 +267,7 @@ void WorldState::moveAll() {
 
 /// Finds places for what has strayed in the trees of movers: where that is most of them, these are built anew.
 void WorldState::renewMovers() {
+    SIGHTLINE_DEBUG_ASSERT(strays_.size() == stray_boxes_.size());
     if (!strays_.empty() && 2 * strays_.size() >= bvh_.inBatches())
         return placeFrom(bvh_.renewBatches(stray_boxes_, strays_));
     for (size_t i = 0; i < strays_.size(); ++i) {
@@ -263,6 +278,7 @@ void WorldState::renewMovers() {
 
 /// Puts what waits in rows_ and boxes_ into the hierarchy. False: building it anew is better.
 bool WorldState::enterAll() {
+    SIGHTLINE_DEBUG_ASSERT(rows_.size() == boxes_.size() && rows_.size() == restless_.size());
     size_t left = 0;
     for (size_t i = 0; i < rows_.size(); ++i) {
         const bool apart = movers_apart_ && restless_[i];
@@ -356,6 +372,7 @@ std::shared_ptr<const SnapshotState> WorldState::commit() {
     cells_.share(state->cell_state);
     state->count = size();
     state->common_layers = common_layers_;
+    validateWorld(*state);
     last_ = state;
     return last_;
 }

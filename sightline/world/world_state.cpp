@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/assert.h"
+
 namespace sightline::detail {
 
 HeldOccluder::HeldOccluder(const Occluder& from, std::span<const InnerOccluder> levels, bool volumes, Memory* memory)
@@ -68,6 +70,8 @@ std::shared_ptr<SnapshotState> stateOfSome(const SnapshotState& from, std::span<
     ObjectTable objects(memory);
     Array<Box3d> boxes(memory);
     Array<uint32_t> rows(memory);
+    for (size_t i = 0; i < items.size(); ++i)
+        SIGHTLINE_DEBUG_ASSERT(items[i] < from.count && (i == 0 || items[i - 1] < items[i]));
     for (const uint32_t item : items) {
         const uint32_t row = objects.size();
         objects.push_back(from.object(item));

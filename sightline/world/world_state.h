@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "sightline/base/assert.h"
 #include "sightline/base/levelled_bits.h"
 #include "sightline/base/array.h"
 #include "sightline/base/paged.h"
@@ -136,10 +137,19 @@ struct SnapshotState {
     SnapshotState& operator=(const SnapshotState&) = delete;
     ~SnapshotState();
 
-    uint32_t rowOf(uint32_t item) const { return living ? living->select(item) : item; }
-    uint32_t itemOf(uint32_t row) const { return living ? living->rank(row) : row; }
+    uint32_t rowOf(uint32_t item) const {
+        SIGHTLINE_DEBUG_ASSERT(item < count);
+        return living ? living->select(item) : item;
+    }
+    uint32_t itemOf(uint32_t row) const {
+        SIGHTLINE_DEBUG_ASSERT(row < objects.size() && objects[row].id.index != 0);
+        return living ? living->rank(row) : row;
+    }
     const ObjectRecord& object(uint32_t item) const { return objects[rowOf(item)]; }
-    const ObjectRecord& objectAt(uint32_t place) const { return objects[bvh.order[place]]; }
+    const ObjectRecord& objectAt(uint32_t place) const {
+        SIGHTLINE_DEBUG_ASSERT(place < bvh.order.size() && bvh.order[place] != PlacedBvh::kNone);
+        return objects[bvh.order[place]];
+    }
     uint32_t itemAt(uint32_t place) const { return itemOf(bvh.order[place]); }
 
     /// The row of an object, or IdSlot::kNowhere.

@@ -40,8 +40,10 @@ struct Drawing {
         for (const Solid& solid : solids) occluders.push_back(prepareOccluder(solid.view(), {}, solid.double_sided));
         for (size_t i = 0; i < solids.size(); ++i) {
             const OccluderInstance instance = makeOccluderInstance(screen, occluders[i], solids[i].transform);
-            for (uint32_t c = 0; c < occluders[i].clusters.size(); ++c)
-                drawOccluder(tiles, instance, c, projectBox(instance.screen, occluders[i].clusters[c].bounds));
+            for (uint32_t c = 0; c < occluders[i].clusters.size(); ++c) {
+                const BoxAnswer box = projectBox(instance.screen, occluders[i].clusters[c].bounds);
+                if (!box.outside) drawOccluder(tiles, instance, c, box);
+            }
         }
     }
 

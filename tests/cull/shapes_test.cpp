@@ -177,5 +177,23 @@ TEST(Shapes, WhatHoldsTheEyeOrMeetsTheNearPlaneIsVisible) {
     EXPECT_EQ(askSphere(drawing.tiles, drawing.screen, {0, 0, -3}, 1), Sight::kOccluded);
 }
 
+/// The clipped polygon has six corners: two of the quadrangle, and one on each of its sides.
+TEST(Shapes, AQuadrangleWhoseSidesAllCrossTheNearPlaneIsVisible) {
+    Drawing drawing(smallView());
+    constexpr float kWarp = 2e-5f;  // less than what makes two triangles of it
+    const std::vector<glm::vec3> corners = {
+        {-1, -1, -0.1f + kWarp}, {1, -1, -0.1f - kWarp}, {1, 1, -0.1f + kWarp}, {-1, 1, -0.1f - kWarp}};
+    const std::vector<uint32_t> indices = {0, 1, 2, 0, 2, 3};
+    const std::vector<uint8_t> both = {1, 1};
+    const Occluder shape = prepareOccluder({corners, indices}, {}, both);
+    ASSERT_EQ(shape.polygons.size(), 1u);
+    const OccludeePlace place =
+        makeOccludeePlace(drawing.screen, glm::dmat4(1), {glm::dvec3(shape.bounds.min), glm::dvec3(shape.bounds.max)});
+    TriangleScratch scratch(defaultMemory());
+    TriangleLook look;
+    EXPECT_EQ(askTriangles(drawing.tiles, place, shape, scratch, look), Sight::kVisible);
+    EXPECT_FALSE(look.in_doubt);
+}
+
 }  // namespace
 }  // namespace sightline::test

@@ -107,5 +107,11 @@ TEST(ObjectQueries, KeepToLayersAndDrawFirstWhatHasNoBounds) {
     EXPECT_TRUE(keysIn(4).empty());
 }
 
+TEST(ObjectQueries, DrawNothingOfNoSnapshot) {
+    SimulatedGpu gpu({});
+    KeyDevice device(gpu);
+    EXPECT_TRUE(ObjectQueries().draw(Snapshot(), viewFrom({0, 0, 0}, {0, 0, -1}), device).empty());
+}
+
 }  // namespace
 }  // namespace sightline::test

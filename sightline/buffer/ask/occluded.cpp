@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/assert.h"
 #include "sightline/buffer/covers.h"
 #include "sightline/buffer/seam/seam.h"
 #include "sightline/buffer/tile_log.h"
@@ -24,6 +25,7 @@ namespace HWY_NAMESPACE {
 /// What a tile leaves open of a rectangle: pixels that are not surely nearer than the rectangle.
 HWY_INLINE uint64_t openInTile(const DepthTiles& tiles, uint32_t tile, const PixelRect& rect, int32_t column,
                                int32_t row) {
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.base.size() && column >= 0 && row >= 0);
     if (tiles.base[tile] > rect.nearness) return 0;
     const uint64_t window = windowBits(rect.x0, rect.y0, rect.x1, rect.y1, 8 * column, 8 * row);
     return openTilePixels(tiles, tile, static_cast<uint32_t>(column), static_cast<uint32_t>(row), window,
@@ -42,6 +44,8 @@ template <class Look>
 HWY_INLINE bool forOpenTiles(DepthTiles& tiles, const PixelRect& rect, Look look) {
     const F16 d;
     const auto limit = hn::Set(d, rect.nearness);
+    SIGHTLINE_DEBUG_ASSERT(0 <= rect.x0 && rect.x0 <= rect.x1 && static_cast<uint32_t>(rect.x1) < tiles.width);
+    SIGHTLINE_DEBUG_ASSERT(0 <= rect.y0 && rect.y0 <= rect.y1 && static_cast<uint32_t>(rect.y1) < tiles.height);
     const int32_t first = rect.x0 >> 3, last = rect.x1 >> 3;
     for (int32_t row = rect.y0 >> 3; row <= rect.y1 >> 3; ++row) {
         const float* base = tiles.base.data() + static_cast<size_t>(row) * tiles.stride;
@@ -67,6 +71,7 @@ struct Undecided {
     int count = 0;
 
     HWY_INLINE void add(uint32_t which, uint64_t pixels) {
+        SIGHTLINE_DEBUG_ASSERT(pixels != 0);
         if (count < kMost) {
             tile[count] = which;
             open[count] = pixels;
@@ -77,6 +82,7 @@ struct Undecided {
 
 /// Whether seams close the pixels of a tile that are open to what lies at a nearness.
 bool closeSeams(DepthTiles& tiles, uint32_t tile, uint64_t open, float nearness, const OccludeeBox* box) {
+    SIGHTLINE_DEBUG_ASSERT(open != 0);
     pairSeams(tiles, tile);
     alignas(64) float claims[64];
     claimsOfTile(tiles, tile, claims);
@@ -97,6 +103,7 @@ bool closeSeams(DepthTiles& tiles, uint32_t tile, uint64_t open, float nearness,
 /// @param sure  set if a pixel stays open whatever the seams are, else cleared
 HWY_INLINE uint64_t leaveOpen(DepthTiles& tiles, uint32_t tile, uint64_t open, const PixelRect& rect, Seams seams,
                               const OccludeeBox* box, bool& sure) {
+    SIGHTLINE_DEBUG_ASSERT(open != 0);
     const uint64_t undecided = seams == Seams::kLeave ? 0 : undecidedPixels(tiles, tile, rect.nearness);
     sure = (open & ~undecided) != 0;
     if (!box || (open & ~undecided & ~coveredByPlanes(tiles, tile))) return open;
@@ -177,6 +184,7 @@ HWY_EXPORT(readClaimsKernel);
 HWY_EXPORT(raiseClaimsKernel);
 
 bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams, const OccludeeBox* box) {
+    SIGHTLINE_DEBUG_ASSERT(tiles.width > 0 && tiles.height > 0);
     const bool hidden = HWY_DYNAMIC_DISPATCH(isHiddenKernel)(tiles, rect, seams, box);
     if (tiles.log) tiles.log->note(rect, seams, box, hidden);
     return hidden;
@@ -184,20 +192,24 @@ bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams, const Occlu
 
 uint64_t openPixels(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64], Seams seams,
                     const OccludeeBox* box) {
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.stride * tiles.rows);
     const uint64_t open = HWY_DYNAMIC_DISPATCH(openPixelsKernel)(tiles, tile, window, nearest, seams, box);
     if (tiles.log) tiles.log->note(tile, window, nearest, seams, box, open);
     return open;
 }
 
 uint64_t undecidedSeams(const DepthTiles& tiles, uint32_t tile) {
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.seams.size());
     return tiles.seams[tile] == DepthTiles::kNone ? 0 : tiles.seam_mask[tile] & ~tiles.tried[tile];
 }
 
 void readClaims(const DepthTiles& tiles, uint32_t tile, float (&claims)[64]) {
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.base.size());
     HWY_DYNAMIC_DISPATCH(readClaimsKernel)(tiles, tile, claims);
 }
 
 void raiseClaims(DepthTiles& tiles, uint32_t tile, uint64_t mask, const float (&depths)[64]) {
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.base.size() && mask != 0);
     HWY_DYNAMIC_DISPATCH(raiseClaimsKernel)(tiles, tile, mask, depths);
 }
 

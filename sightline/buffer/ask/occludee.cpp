@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/assert.h"
+
 #define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sightline/buffer/ask/occludee.cpp"
@@ -24,6 +26,7 @@ namespace HWY_NAMESPACE {
 constexpr float kReach = 4.0f;  // [pixels]: from a tile's centre to its sides, by |a| + |b| = 1
 
 uint64_t occludeePixelsKernel(const OccludeePolygon& polygon, int32_t column, int32_t row, float* nearest) {
+    SIGHTLINE_DEBUG_ASSERT(polygon.edges >= 0 && polygon.edges <= OccludeePolygon::kMaxEdges);
     const double x = 8.0 * column + 4.0, y = 8.0 * row + 4.0;
     float c[4] = {1e30f, 1e30f, 1e30f, 1e30f}, a[4] = {}, b[4] = {};
     const float touches = -0.5f - polygon.slack;
@@ -66,6 +69,7 @@ uint64_t occludeePixelsKernel(const OccludeePolygon& polygon, int32_t column, in
 
 /// How near a polygon may be over the pixels of a rectangle: its plane, in double, at the nearest corner.
 HWY_INLINE float nearestOver(const OccludeePolygon& polygon, const PixelRect& over) {
+    SIGHTLINE_DEBUG_ASSERT(over.x0 <= over.x1 && over.y0 <= over.y1);
     const double x = polygon.dx > 0 ? over.x1 + 1.0 : over.x0, y = polygon.dy > 0 ? over.y1 + 1.0 : over.y0;
     const double z = polygon.d0 + polygon.dx * x + polygon.dy * y;
     const double error = polygon.depth_error + 0x1p-20 * std::abs(z);
@@ -79,6 +83,8 @@ template <class Look>
 HWY_INLINE bool forOccludeeTiles(DepthTiles& tiles, const OccludeePolygon& polygon, const OccludeeBox* box,
                                  bool& inside, Look look) {
     const PixelRect& rect = polygon.rect;
+    SIGHTLINE_DEBUG_ASSERT(0 <= rect.x0 && rect.x0 <= rect.x1 && static_cast<uint32_t>(rect.x1) < tiles.width);
+    SIGHTLINE_DEBUG_ASSERT(0 <= rect.y0 && rect.y0 <= rect.y1 && static_cast<uint32_t>(rect.y1) < tiles.height);
     const int32_t first = rect.x0 >> 3, last = rect.x1 >> 3, low = rect.y0 >> 3, high = rect.y1 >> 3;
     alignas(64) float nearest[64];
     for (int32_t row = low; row <= high; ++row) {
@@ -172,6 +178,7 @@ constexpr double kEvaluation = 0x1p-14;     // [pixels]: bound on the error of a
 /// The plane of the widest triangle among the corners, in front of all of them; left level where there is none.
 void boundDepth(const double* x, const double* y, const double* d, int count, double perimeter, double error,
                 OccludeePolygon& out) {
+    SIGHTLINE_DEBUG_ASSERT(count >= 3 && error >= 0);
     double best = 0;
     int widest = 0;
     for (int i = 2; i < count; ++i) {
@@ -206,6 +213,9 @@ HWY_EXPORT(projectOccludeeKernel);
 
 Sight makeOccludeePolygon(const double* x, const double* y, const double* d, int count, double position_error,
                           double depth_error, uint32_t width, uint32_t height, OccludeePolygon& out) {
+    SIGHTLINE_DEBUG_ASSERT(count >= 3 && count <= OccludeePolygon::kMaxCorners);
+    SIGHTLINE_DEBUG_ASSERT(position_error >= 0 && depth_error >= 0);
+    SIGHTLINE_DEBUG_ASSERT(width > 0 && height > 0);
     double x_min = x[0], x_max = x[0], y_min = y[0], y_max = y[0], d_max = d[0], area2 = 0;
     for (int i = 1; i < count; ++i) {
         x_min = std::min(x_min, x[i]);
@@ -227,6 +237,7 @@ Sight makeOccludeePolygon(const double* x, const double* y, const double* d, int
     out.rect.y0 = static_cast<int32_t>(std::clamp(y_min - slack, 0.0, height - 1.0));
     out.rect.x1 = static_cast<int32_t>(std::clamp(x_max + slack, 0.0, width - 1.0));
     out.rect.y1 = static_cast<int32_t>(std::clamp(y_max + slack, 0.0, height - 1.0));
+    SIGHTLINE_DEBUG_ASSERT(out.rect.x0 <= out.rect.x1 && out.rect.y0 <= out.rect.y1);
     const double error = depth_error + std::abs(d_max) * 0x1p-36;
     out.rect.nearness = static_cast<float>(d_max + error + std::abs(d_max) * 0x1p-22);
     out.edges = 0;
@@ -252,6 +263,7 @@ Sight makeOccludeePolygon(const double* x, const double* y, const double* d, int
         out.c[at] = -least;
         ++out.edges;
     }
+    SIGHTLINE_DEBUG_ASSERT(out.edges <= OccludeePolygon::kMaxEdges);
     out.d0 = d_max;
     out.dx = out.dy = 0;
     out.depth_error = static_cast<float>(error * (1.0 + 0x1p-20));
@@ -260,6 +272,8 @@ Sight makeOccludeePolygon(const double* x, const double* y, const double* d, int
 }
 
 uint64_t occludeePixels(const OccludeePolygon& polygon, int32_t column, int32_t row, float (&nearest)[64]) {
+    SIGHTLINE_DEBUG_ASSERT(polygon.rect.x0 <= 8 * column + 7 && 8 * column <= polygon.rect.x1);
+    SIGHTLINE_DEBUG_ASSERT(polygon.rect.y0 <= 8 * row + 7 && 8 * row <= polygon.rect.y1);
     return HWY_DYNAMIC_DISPATCH(occludeePixelsKernel)(polygon, column, row, nearest);
 }
 
@@ -278,6 +292,7 @@ bool isPolygonHidden(DepthTiles& tiles, const OccludeePolygon& polygon, const Oc
 
 void projectOccludee(const Screen& object, const float* x, const float* y, const float* z, uint32_t count,
                      OccludeeVertices& out) {
+    SIGHTLINE_DEBUG_ASSERT(count <= OccluderCluster::kMaxVertices);
     HWY_DYNAMIC_DISPATCH(projectOccludeeKernel)(object, x, y, z, count, out);
 }
 

@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "sightline/base/ablate.h"
+#include "sightline/base/assert.h"
 
 namespace sightline {
 
 void OccludeeBox::makeImage() const {
+    SIGHTLINE_DEBUG_ASSERT(screen_ != nullptr);
     const Screen& screen = *std::exchange(screen_, nullptr);
     const glm::dvec3 center = 0.5 * (box_.min + box_.max), half = 0.5 * (box_.max - box_.min);
     const glm::dvec4* const rows[4] = {&screen.x, &screen.y, &screen.w, &screen.d};
@@ -32,6 +34,7 @@ void OccludeeBox::makeImage() const {
 bool OccludeeBox::decide(const DepthTiles& tiles, uint32_t plane) const {
     const Image& at = image();
     const BufferPlane& from = tiles.planes[plane];
+    SIGHTLINE_DEBUG_ASSERT(from.error >= 0);
     const double factor[4] = {from.dx, from.dy, from.d0 - static_cast<double>(from.error), -1.0};
     double sum[4] = {}, error = 0;
     for (int i = 0; i < 4; ++i) {

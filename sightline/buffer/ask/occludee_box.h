@@ -10,6 +10,7 @@
 // them is hidden there, whatever their depths. A part of it before the near plane is not drawn and does no harm.
 #pragma once
 
+#include "sightline/base/assert.h"
 #include "sightline/buffer/tiles.h"
 #include "sightline/math/box.h"
 
@@ -46,6 +47,7 @@ public:
         return !planes.empty();
     }
     bool isBehind(const DepthTiles& tiles, uint32_t plane) const {
+        SIGHTLINE_DEBUG_ASSERT(plane < tiles.planes.size());
         const uint64_t known = known_[plane % kKnown];
         return known >> 1 == uint64_t{plane} + 1 ? known & 1 : decide(tiles, plane);
     }

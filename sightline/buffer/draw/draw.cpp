@@ -1,5 +1,6 @@
 // Draws occluder clusters into the depth tiles: projection, which polygons are drawn, patches of them.
 // SPDX-License-Identifier: MIT
+#include "sightline/base/assert.h"
 #include "sightline/buffer/tiles.h"
 
 #include <algorithm>
@@ -190,6 +191,9 @@ bool drawJoined(const ClusterDraw& c, const Projected& projected, const Windings
 /// @returns false, with nothing drawn, if it is a loose one
 bool drawJoinedKernel(DepthTiles& tiles, const DrawnCluster& cluster, const Screen& object, bool flips) {
     const OccluderCluster& source = cluster.occluder->clusters[cluster.cluster];
+    SIGHTLINE_DEBUG_ASSERT(source.vertex_count <= OccluderCluster::kMaxVertices && source.first_vertex % 8 == 0);
+    SIGHTLINE_DEBUG_ASSERT(source.polygon_count <= OccluderCluster::kMaxOwn);
+    SIGHTLINE_DEBUG_ASSERT(source.polygon_count + source.ring_count <= OccluderCluster::kMaxPolygons);
     if (source.edge_count == 0 || source.edge_count + kMaxAtOnce > OpenEdges::kMost) return false;
     const size_t first = roomForVertices(tiles, source);
     const Projected projected = projectVertices(object, *cluster.occluder, source, tiles.px.data() + first,
@@ -246,6 +250,10 @@ namespace sightline {
 HWY_EXPORT(drawJoinedKernel);
 
 void drawCluster(DepthTiles& tiles, const DrawnCluster& cluster, const Screen& object, bool flips) {
+    SIGHTLINE_DEBUG_ASSERT(cluster.occluder != nullptr && cluster.transform != nullptr);
+    SIGHTLINE_DEBUG_ASSERT(cluster.cluster < cluster.occluder->clusters.size());
+    SIGHTLINE_DEBUG_ASSERT(cluster.position_error >= 0 && cluster.depth_error >= 0);
+    SIGHTLINE_DEBUG_ASSERT(tiles.width > 0 && tiles.height > 0);
     if (!HWY_DYNAMIC_DISPATCH(drawJoinedKernel)(tiles, cluster, object, flips))
         drawLooseCluster(tiles, cluster, object, flips);
 }

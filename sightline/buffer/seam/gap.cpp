@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sightline/base/assert.h"
+
 namespace sightline {
 namespace {
 
@@ -21,6 +23,8 @@ struct GapSide {
 };
 
 bool sideOf(const GapPolygon& polygon, int i, GapSide& side) {
+    SIGHTLINE_DEBUG_ASSERT(polygon.count == 3 || polygon.count == 4);
+    SIGHTLINE_DEBUG_ASSERT(i >= 0 && i < polygon.count);
     const int j = i + 1 < polygon.count ? i + 1 : 0;
     const double dx = polygon.x[j] - polygon.x[i], dy = polygon.y[j] - polygon.y[i];
     const double length = std::sqrt(dx * dx + dy * dy);
@@ -58,6 +62,7 @@ struct Ends {
 /// Between two sides that face each other: lines across, at right angles to the direction halfway between theirs.
 /// @param ends  gets those of the bridge, if it is given
 bool bridgeSides(const GapSide& p, const GapSide& q, double gap, double wide, Bridge& out, Ends* ends) {
+    SIGHTLINE_DEBUG_ASSERT(gap > 0 && wide > 0);
     constexpr double kFacing = -0.5;  // cosine
     if (p.dx * q.dx + p.dy * q.dy > kFacing) return false;
     double ux = p.dx - q.dx, uy = p.dy - q.dy;
@@ -136,6 +141,8 @@ bool bridgeTouch(double x, double y, const GapSide& side, double wide, Bridge& o
 }  // namespace
 
 int makeBridges(const GapPolygon* polygons, int count, double gap, Bridge* out, int most) {
+    SIGHTLINE_DEBUG_ASSERT(count >= 0 && most >= 0);
+    SIGHTLINE_DEBUG_ASSERT(gap > 0);
     int made = 0;
     Ends ends;
     double wide = 0;
@@ -176,6 +183,7 @@ int makeBridges(const GapPolygon* polygons, int count, double gap, Bridge* out, 
                 if (made < most && bridgeTouch(x, y, sides[j].side, wide, out[made])) ++made;
             }
         }
+    SIGHTLINE_DEBUG_ASSERT(made <= most && side_count <= kMostSides);
     return made;
 }
 

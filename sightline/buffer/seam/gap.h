@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "sightline/base/assert.h"
 #include "sightline/buffer/polygon.h"
 
 namespace sightline {
@@ -18,7 +19,10 @@ struct Bridge {
     EdgeFunction edge[4];
     int edges = 0;
 
-    void add(double a, double b, double c) { edge[edges++] = {a, b, c}; }
+    void add(double a, double b, double c) {
+        SIGHTLINE_DEBUG_ASSERT(edges < 4);
+        edge[edges++] = {a, b, c};
+    }
 };
 
 /// Finds the bridges between polygons that reach into the pixel.

@@ -14,6 +14,7 @@
 #include <limits>
 
 #include "sightline/base/ablate.h"
+#include "sightline/base/assert.h"
 #include "sightline/buffer/covers.h"
 #include "sightline/buffer/seam/seam.h"
 #include "sightline/buffer/seam/union.h"
@@ -43,6 +44,9 @@ struct Side {
 };
 
 void loadPiece(const DepthTiles& tiles, const SeamPolygon& polygon, Piece& piece) {
+    SIGHTLINE_DEBUG_ASSERT(polygon.drawn < tiles.drawn.size());
+    SIGHTLINE_DEBUG_ASSERT(polygon.corners == 3 || polygon.corners == 4);
+    SIGHTLINE_DEBUG_ASSERT(polygon.clipped == SeamPolygon::kWhole || polygon.clipped < tiles.clipped.size());
     const DrawnCluster& drawn = tiles.drawn[polygon.drawn];
     piece.polygon = &polygon;
     piece.error = drawn.position_error + kMargin;
@@ -54,6 +58,7 @@ void loadPiece(const DepthTiles& tiles, const SeamPolygon& polygon, Piece& piece
             piece.y[i] = tiles.clipped[polygon.clipped].y[i];
         } else {
             const size_t at = size_t{drawn.first_vertex} + polygon.vertex[i];
+            SIGHTLINE_DEBUG_ASSERT(at < tiles.vertex_count);
             piece.x[i] = tiles.px[at];
             piece.y[i] = tiles.py[at];
         }
@@ -62,6 +67,7 @@ void loadPiece(const DepthTiles& tiles, const SeamPolygon& polygon, Piece& piece
 
 /// The edge function of side i at a point, scaled as in RasterPolygon; NaN for a side too short for a direction.
 double sideAt(const Piece& p, int i, double x, double y) {
+    SIGHTLINE_DEBUG_ASSERT(i >= 0 && i < p.count);
     const int j = i + 1 < p.count ? i + 1 : 0;
     const double a = p.y[i] - p.y[j], b = p.x[j] - p.x[i];
     const double length = std::abs(a) + std::abs(b);
@@ -121,6 +127,7 @@ struct Joiner {
 
     /// Lists the sides that meet the pixel. A piece with an open one there cannot help.
     void collectSides(double x, double y) {
+        SIGHTLINE_DEBUG_ASSERT(piece_count >= 0 && piece_count <= kMaxPolygons);
         side_count = 0;
         for (int p = 0; p < piece_count; ++p) {
             Piece& piece = pieces[p];
@@ -132,6 +139,7 @@ struct Joiner {
                     piece.alive = false;
                     break;
                 }
+                SIGHTLINE_DEBUG_ASSERT(side_count < 4 * kMaxPolygons);
                 sides[side_count++] = {piece.polygon->side_key[i], p, i, (piece.polygon->forward >> i & 1) != 0};
             }
             if (!piece.alive) side_count = first;
@@ -168,6 +176,7 @@ struct Joiner {
     }
 
     int rootOf(int p) {
+        SIGHTLINE_DEBUG_ASSERT(p >= 0 && p < piece_count);
         while (pieces[p].group != p) p = pieces[p].group = pieces[pieces[p].group].group;
         return p;
     }
@@ -218,6 +227,7 @@ struct Joiner {
 
 /// Rounds to float, away from the eye.
 float roundFarther(double nearness) {
+    SIGHTLINE_DEBUG_ASSERT(!std::isnan(nearness));
     const float f = static_cast<float>(nearness);
     return f > nearness ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
 }
@@ -293,6 +303,7 @@ public:
 
     /// The nearness of what covers the pixel; -infinity if it is open.
     double resolve() {
+        SIGHTLINE_DEBUG_ASSERT(count_ > 0 && count_ <= kMaxPolygons);
         if (detail::kAblate.unite) return joinAll();
         bool all = true;
         const double nearness = uniteAll(all);
@@ -328,6 +339,7 @@ private:
             for (int j = i + 1; j < count; ++j) {
                 int side_i, side_j;
                 if (!findSharedSide(tiles_, *ranked[i].polygon, *ranked[j].polygon, side_i, side_j)) continue;
+                SIGHTLINE_DEBUG_ASSERT(side_i >= 0 && side_i < 4 && side_j >= 0 && side_j < 4);
                 pieces[i].shared |= 1u << side_i;
                 pieces[j].shared |= 1u << side_j;
             }
@@ -335,6 +347,7 @@ private:
         if (tiles_.gap > 0)
             for (int i = 0; i < count; ++i) near[i] = nearPixel(*ranked[i].polygon);
         const PixelUnion united = subtractFromPixel(x_, y_, pieces, count, tiles_.gap, near);
+        SIGHTLINE_DEBUG_ASSERT(united.used >= 0 && united.used <= count && united.last < count);
         all &= united.whole;
         // What one polygon alone covers was covered when it was drawn: lookAtSeams() counts on that.
         if (united.used == 1 && tiles_.gap == 0 && united.nearness > before_ && lone_[ranked[united.last].place])
@@ -395,6 +408,7 @@ private:
 }  // namespace
 
 bool resolveSeam(DepthTiles& tiles, uint32_t tile, int bit, float wanted) {
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.base.size() && bit >= 0 && bit < 64);
     const uint64_t pixel = uint64_t{1} << bit;
     float claims[64];
     readClaims(tiles, tile, claims);
@@ -411,6 +425,7 @@ bool resolveSeam(DepthTiles& tiles, uint32_t tile, int bit, float wanted) {
     const double nearness = seam.resolve();
     if (!(nearness > before)) return false;
     claims[bit] = roundFarther(nearness);
+    SIGHTLINE_DEBUG_ASSERT(claims[bit] >= before);
     raiseClaims(tiles, tile, pixel, claims);
     return claims[bit] > wanted;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "sightline/base/assert.h"
 #include "sightline/buffer/tiles.h"
 
 namespace sightline {
@@ -34,6 +35,7 @@ uint64_t polygonsIn(const float* boxes, uint32_t count, const SeamRect& rect);
 /// Calls `look` with each entry of a tile, the last first.
 template <class Look>
 void forSeamEntries(const DepthTiles& tiles, uint32_t tile, Look look) {
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.seams.size());
     for (uint32_t at = tiles.seams[tile]; at != DepthTiles::kNone; at = tiles.chunks[at].next)
         for (uint32_t i = tiles.chunks[at].count; i-- > 0;) look(tiles.chunks[at].entry(i));
 }
@@ -41,6 +43,8 @@ void forSeamEntries(const DepthTiles& tiles, uint32_t tile, Look look) {
 /// Calls `take` with the index of each polygon of an entry that may touch the rectangle, once it is made.
 template <class Take>
 void forSeamPolygons(DepthTiles& tiles, const SeamEntry& entry, const SeamRect& rect, Take take) {
+    SIGHTLINE_DEBUG_ASSERT(entry.drawn() < tiles.drawn.size());
+    SIGHTLINE_DEBUG_ASSERT(rect.x0 <= rect.x1 && rect.y0 <= rect.y1);
     uint32_t first, count;
     if (entry.polygon() != SeamEntry::kAllPolygons) {
         seamPolygon(tiles, entry.drawn(), entry.polygon(), first, count);

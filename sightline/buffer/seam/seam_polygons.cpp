@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/assert.h"
 #include "sightline/buffer/near_clip.h"
 #include "sightline/buffer/covers.h"
 #include "sightline/buffer/seam/seam.h"
@@ -34,6 +35,7 @@ public:
 
     /// Makes one of the cluster's polygons: none if it is turned away or not drawn from there, two triangles of a quadrangle that is not flat.
     void make(uint32_t p) {
+        SIGHTLINE_DEBUG_ASSERT(p < cluster_.polygon_count);
         if (!isDrawn(p)) return;
         source_ = static_cast<uint8_t>(p);
         uint8_t v[4];
@@ -46,6 +48,7 @@ public:
     /// Bounds one of its polygons, by more than rounding; inverted bounds where nothing would be made.
     /// @param px,py  of the cluster's vertices
     void bound(uint32_t p, const double* px, const double* py, float (&box)[4]) {
+        SIGHTLINE_DEBUG_ASSERT(p < cluster_.polygon_count);
         constexpr float kAll = std::numeric_limits<float>::infinity();
         box[0] = box[1] = kAll, box[2] = box[3] = -kAll;
         if (!isDrawn(p)) return;
@@ -74,9 +77,13 @@ public:
 
 private:
     DrawnCluster& record() { return tiles_.drawn[drawn_]; }
-    double x(uint8_t v) { return tiles_.px[size_t{record().first_vertex} + v]; }
-    double y(uint8_t v) { return tiles_.py[size_t{record().first_vertex} + v]; }
-    double d(uint8_t v) { return tiles_.pd[size_t{record().first_vertex} + v]; }
+    size_t place(uint8_t v) {
+        SIGHTLINE_DEBUG_ASSERT(v < cluster_.vertex_count && record().first_vertex + v < tiles_.vertex_count);
+        return size_t{record().first_vertex} + v;
+    }
+    double x(uint8_t v) { return tiles_.px[place(v)]; }
+    double y(uint8_t v) { return tiles_.py[place(v)]; }
+    double d(uint8_t v) { return tiles_.pd[place(v)]; }
     double areaOf(uint8_t i, uint8_t j, uint8_t k) {
         return (x(j) - x(i)) * (y(k) - y(i)) - (x(k) - x(i)) * (y(j) - y(i));
     }
@@ -104,6 +111,7 @@ private:
     }
 
     SeamPolygon& add(int corners) {
+        SIGHTLINE_DEBUG_ASSERT(corners == 3 || corners == 4);
         SeamPolygon& polygon = tiles_.polygons.emplace_back();
         polygon.drawn = drawn_;
         polygon.source = source_;
@@ -113,6 +121,7 @@ private:
 
     bool finish(const double* px, const double* py, const double* pd) {
         SeamPolygon& polygon = tiles_.polygons.back();
+        SIGHTLINE_DEBUG_ASSERT(polygon.drawn == drawn_);
         if (!makeRasterPolygon(px, py, pd, polygon.corners, record().position_error, record().depth_error, tiles_.width,
                                tiles_.height, polygon.raster)) {
             tiles_.polygons.pop_back();
@@ -160,6 +169,7 @@ private:
         if (record().object == ~0u || !record().clips ||
             !clipAtNear(tiles_.objects[record().object], *record().occluder, cluster_, v, 3, clipped))
             return;
+        SIGHTLINE_DEBUG_ASSERT(clipped.count == 3 || clipped.count == 4);
         double area2 = 0;
         for (int i = 2; i < clipped.count; ++i)
             area2 += (clipped.x[i - 1] - clipped.x[0]) * (clipped.y[i] - clipped.y[0]) -
@@ -180,6 +190,7 @@ private:
 }  // namespace
 
 void seamPolygon(DepthTiles& tiles, uint32_t drawn, uint32_t polygon, uint32_t& first, uint32_t& count) {
+    SIGHTLINE_DEBUG_ASSERT(drawn < tiles.drawn.size());
     DrawnCluster& record = tiles.drawn[drawn];
     const uint32_t own = record.occluder->clusters[record.cluster].polygon_count;
     first = count = 0;
@@ -193,13 +204,16 @@ void seamPolygon(DepthTiles& tiles, uint32_t drawn, uint32_t polygon, uint32_t& 
     if (slot == DepthTiles::kNone) {
         const size_t before = tiles.polygons.size();
         Maker(tiles, drawn).make(polygon);
+        SIGHTLINE_DEBUG_ASSERT(tiles.polygons.size() >= before && tiles.polygons.size() - before <= 2);
         slot = static_cast<uint32_t>(4 * before + (tiles.polygons.size() - before));
     }
     first = slot / 4;
     count = slot % 4;
+    SIGHTLINE_DEBUG_ASSERT(size_t{first} + count <= tiles.polygons.size());
 }
 
 uint32_t seamPlane(DepthTiles& tiles, uint32_t polygon) {
+    SIGHTLINE_DEBUG_ASSERT(polygon < tiles.polygons.size());
     SeamPolygon& of = tiles.polygons[polygon];
     if (of.plane != DepthTiles::kNone) return of.plane;
     const RasterPolygon& raster = of.raster;
@@ -225,6 +239,7 @@ uint32_t seamPlane(DepthTiles& tiles, uint32_t polygon) {
 }
 
 uint32_t seamBoxes(DepthTiles& tiles, uint32_t drawn, uint32_t& count) {
+    SIGHTLINE_DEBUG_ASSERT(drawn < tiles.drawn.size());
     const DrawnCluster& record = tiles.drawn[drawn];
     count = record.occluder->clusters[record.cluster].polygon_count;
     if (record.boxes != DepthTiles::kNone) return record.boxes;

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <utility>
 
+#include "sightline/base/assert.h"
 #include "sightline/buffer/seam/seam.h"
 
 namespace sightline {
@@ -25,12 +26,15 @@ bool less(const Point& a, const Point& b) { return a.x != b.x ? a.x < b.x : a.y 
 
 Point meshPoint(const DrawnCluster& drawn, uint8_t vertex) {
     const Occluder& o = *drawn.occluder;
+    SIGHTLINE_DEBUG_ASSERT(vertex < o.clusters[drawn.cluster].vertex_count);
     const size_t at = size_t{o.clusters[drawn.cluster].first_vertex} + vertex;
     return {o.x[at], o.y[at], o.z[at]};
 }
 
 /// The mesh edge that a side lies on.
 void edgeOf(const DepthTiles& tiles, const SeamPolygon& polygon, int side, Point& from, Point& to) {
+    SIGHTLINE_DEBUG_ASSERT(polygon.drawn < tiles.drawn.size());
+    SIGHTLINE_DEBUG_ASSERT(side >= 0 && side < polygon.corners);
     const DrawnCluster& drawn = tiles.drawn[polygon.drawn];
     if (polygon.clipped != SeamPolygon::kWhole) {
         const ClippedPolygon& clipped = tiles.clipped[polygon.clipped];
@@ -43,6 +47,7 @@ void edgeOf(const DepthTiles& tiles, const SeamPolygon& polygon, int side, Point
 }
 
 bool sameTransform(const DrawnCluster& a, const DrawnCluster& b) {
+    SIGHTLINE_DEBUG_ASSERT(a.transform != nullptr && b.transform != nullptr);
     return a.transform == b.transform ||
            (a.transform_hash == b.transform_hash && std::memcmp(a.transform, b.transform, sizeof *a.transform) == 0);
 }
@@ -72,6 +77,8 @@ void setSideKeys(const DepthTiles& tiles, SeamPolygon& polygon) {
 
 bool findSharedSide(const DepthTiles& tiles, const SeamPolygon& a, const SeamPolygon& b, int& side_a, int& side_b) {
     if (!(a.edge_bits & b.edge_bits)) return false;
+    SIGHTLINE_DEBUG_ASSERT(a.raster.complete && b.raster.complete);
+    SIGHTLINE_DEBUG_ASSERT(a.raster.edges == a.corners && b.raster.edges == b.corners);
     for (int i = 0; i < a.raster.edges; ++i) {
         if (a.open >> i & 1) continue;
         const EdgeFunction& one = a.raster.edge[i];

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "sightline/base/ablate.h"
+#include "sightline/base/assert.h"
 #include "sightline/buffer/covers.h"
 #include "sightline/buffer/seam/seam.h"
 
@@ -46,6 +47,8 @@ uint64_t polygonsInKernel(const float* boxes, uint32_t count, const SeamRect& re
 /// @returns  the pixels that it has covered
 uint64_t coverPair(DepthTiles& tiles, uint32_t tile, uint64_t pixels, const SeamPolygon& a, int side_a,
                    const SeamPolygon& b, int side_b) {
+    SIGHTLINE_DEBUG_ASSERT(pixels != 0 && tile < tiles.base.size());
+    SIGHTLINE_DEBUG_ASSERT(side_a >= 0 && side_a < a.raster.edges && side_b >= 0 && side_b < b.raster.edges);
     const double x = 8.0 * (tile % tiles.stride) + 4.0, y = 8.0 * (tile / tiles.stride) + 4.0;
     struct Line {
         float a, b, c;
@@ -63,6 +66,7 @@ uint64_t coverPair(DepthTiles& tiles, uint32_t tile, uint64_t pixels, const Seam
         return true;
     };
     if (!add(a.raster, side_a) || !add(b.raster, side_b)) return 0;
+    SIGHTLINE_DEBUG_ASSERT(count <= 6);
     TilePlane planes[2];
     for (int i = 0; i < 2; ++i) {
         const RasterPolygon& p = i ? b.raster : a.raster;
@@ -107,15 +111,18 @@ HWY_EXPORT(polygonsInKernel);
 HWY_EXPORT(coverPair);
 
 uint64_t polygonsIn(const float* boxes, uint32_t count, const SeamRect& rect) {
+    SIGHTLINE_DEBUG_ASSERT(count > 0 && count <= 64);
     return HWY_DYNAMIC_DISPATCH(polygonsInKernel)(boxes, count, rect);
 }
 
 void pairSeams(DepthTiles& tiles, uint32_t tile) {
     constexpr int kMost = 96;       // work cap: of more polygons the last drawn are paired
     constexpr float kLeast = 0.5f;  // [pixels]: what smaller ones may cover between them is left to resolveSeam()
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.seams.size());
     if (detail::kAblate.seams || detail::kAblate.pairs || tiles.seams[tile] == DepthTiles::kNone) return;
     const SeamChunk& last = tiles.chunks[tiles.seams[tile]];
     const uint32_t all = last.before + last.count, known = tiles.paired[tile];
+    SIGHTLINE_DEBUG_ASSERT(known <= all);
     if (known == all) return;
     tiles.paired[tile] = all;
     uint32_t found[kMost], left_over = all;
@@ -138,6 +145,7 @@ void pairSeams(DepthTiles& tiles, uint32_t tile) {
         });
     });
     if (fresh < 0) fresh = count;
+    SIGHTLINE_DEBUG_ASSERT(fresh <= count && count <= kMost);
     for (int i = 0; i < fresh; ++i)
         for (int j = i + 1; j < count; ++j) {
             if (!(masks[i] & masks[j]) || !(bits[i] & bits[j])) continue;
@@ -157,6 +165,7 @@ void pairSeams(DepthTiles& tiles, uint32_t tile) {
 /// there; of those that lie in the next tile nothing is known. One polygon alone covers what it covers when it is drawn,
 /// and no more, but where gaps are closed: it is drawn a little smaller there.
 SeamMasks lookAtSeams(DepthTiles& tiles, uint32_t tile, uint64_t pixels, float wanted) {
+    SIGHTLINE_DEBUG_ASSERT(tile < tiles.seams.size());
     if (detail::kAblate.masks) return {0, ~uint64_t{0}};
     constexpr uint64_t kFirst = 0x0101010101010101ull, kLast = kFirst << 7, kLow = 0xff, kHigh = kLow << 56;
     const uint64_t covered = tiles.coveredBits(tile);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/base/assert.h"
+
 namespace sightline {
 namespace {
 
@@ -31,6 +33,8 @@ enum class Place { kInside, kOutside, kCut, kTooManyCorners };
 
 /// Where a region lies to the line a x + b y + c = 0, inside being the positive side. What is cut is parted in two.
 Place split(const Region& region, double a, double b, double c, Region& inside, Region& outside) {
+    SIGHTLINE_DEBUG_ASSERT(region.count >= 3 && region.count <= kMaxCorners);
+    SIGHTLINE_DEBUG_ASSERT(&region != &inside && &region != &outside);
     double e[kMaxCorners];
     bool any_inside = false, any_outside = false;
     for (int i = 0; i < region.count; ++i) {
@@ -68,6 +72,7 @@ struct Remainder {
 /// Takes what lies inside of some lines away from a region; what is left goes to `out`. `used` tells whether anything
 /// was taken.
 bool subtract(const Region& region, const EdgeFunction* lines, int count, Remainder& out, bool& used) {
+    SIGHTLINE_DEBUG_ASSERT(count >= 0 && count <= 4);
     Region parts[2], outside;
     const Region* rest = &region;  // what is inside the lines so far
     const int before = out.count;
@@ -118,6 +123,7 @@ struct PixelRest {
     /// Whether all regions are thin, or so small that they are holes between what is closed: inside the pixel, so that
     /// all around them is known.
     bool isThin(double gap, double hole) const {
+        SIGHTLINE_DEBUG_ASSERT(gap >= 0 && hole >= 0);
         for (int r = 0; r < left->count; ++r) {
             const Region& region = left->regions[r];
             double area2 = 0, around = 0, beyond = 0;
@@ -153,12 +159,15 @@ bool closeGaps(const PixelRest& rest, const GapPolygon* near, int count, double 
 
 PixelUnion subtractFromPixel(double x, double y, const UnionPiece* pieces, int count, double gap,
                              const GapPolygon* near) {
+    SIGHTLINE_DEBUG_ASSERT(count >= 0 && count <= 32);
+    SIGHTLINE_DEBUG_ASSERT(gap >= 0 && (gap == 0 || near != nullptr));
     PixelUnion out;
     out.nearness = -std::numeric_limits<double>::infinity();
     PixelRest rest;
     double farthest = std::numeric_limits<double>::infinity();
     for (int p = 0; p < count; ++p) {
         const RasterPolygon& polygon = *pieces[p].polygon;
+        SIGHTLINE_DEBUG_ASSERT(polygon.complete && polygon.edges <= 4 && polygon.error >= 0);
         EdgeFunction lines[4];
         for (int k = 0; k < polygon.edges; ++k) {
             const EdgeFunction& edge = polygon.edge[k];

@@ -4,6 +4,7 @@
 // T. J. Dekker. A Floating-Point Technique for Extending the Available Precision. 1971.
 #include <cmath>
 
+#include "sightline/base/assert.h"
 #include "sightline/cull/occluder_volumes.h"
 #include "sightline/math/exact_product.h"
 
@@ -73,6 +74,7 @@ bool isOnLine(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
 
 bool findSeam(const VolumeParts& one, const glm::dmat4& transform, const VolumeParts& other,
               const glm::dmat4& other_transform, VolumeSeam& seam) {
+    SIGHTLINE_DEBUG_ASSERT(seam.face[0] < one.faces.size() && seam.face[1] < other.faces.size());
     const VolumeFace &f = one.faces[seam.face[0]], &g = other.faces[seam.face[1]];
     const auto as_it_is = [](const glm::dvec3& from, glm::dvec3& to) {
         to = from;

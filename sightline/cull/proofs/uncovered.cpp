@@ -6,6 +6,8 @@
 #include <bit>
 #include <cmath>
 
+#include "sightline/base/assert.h"
+
 namespace sightline {
 namespace {
 
@@ -18,6 +20,7 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y 
 
 bool makeShadow(const ImageFrame& frame, Shadow& shadow) {
     const OccluderVolume& volume = shadow.volume;
+    SIGHTLINE_DEBUG_ASSERT(frame.usable && volume.planes > 0 && volume.planes <= OccluderVolume::kMaxPlanes);
     shadow.line_count = shadow.face_count = 0;
     for (uint32_t i = 0; i < volume.planes; ++i) {
         const glm::dvec3 normal(volume.normal[i][0], volume.normal[i][1], volume.normal[i][2]);
@@ -38,6 +41,7 @@ bool makeShadow(const ImageFrame& frame, Shadow& shadow) {
 }
 
 bool Shadow::holds(const glm::dvec3* corners, uint32_t count, double error) const {
+    SIGHTLINE_DEBUG_ASSERT(count > 0 && error >= 0);
     for (uint32_t plane = 0; plane < volume.planes; ++plane) {
         const glm::dvec3 normal(volume.normal[plane][0], volume.normal[plane][1], volume.normal[plane][2]);
         const double least = volume.slack[plane][0] + 2.0 * error - volume.distance[plane];
@@ -55,6 +59,7 @@ double Uncovered::Piece::area() const {
 
 /// The hull, counter-clockwise; false if it has too many corners.
 bool Uncovered::Cloud::outline(Piece& piece) {
+    SIGHTLINE_DEBUG_ASSERT(count <= kMostPoints);
     std::sort(point, point + count,
               [](const glm::dvec2& a, const glm::dvec2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
     piece.count = 0;
@@ -82,6 +87,7 @@ bool Uncovered::Cloud::outline(Piece& piece) {
 /// Parts a piece at a line: `within` where dot(line, (u, v, 1)) >= 0. Each may be empty.
 /// @returns false if one of them has too many corners
 bool Uncovered::split(const Piece& from, const glm::dvec3& line, Piece& within, Piece& outside) {
+    SIGHTLINE_DEBUG_ASSERT(from.count <= kMostOfPiece && &from != &within && &from != &outside);
     within.count = outside.count = 0;
     double height[kMostOfPiece];
     for (uint32_t i = 0; i < from.count; ++i)
@@ -105,6 +111,7 @@ bool Uncovered::split(const Piece& from, const glm::dvec3& line, Piece& within, 
 bool Uncovered::push(const Piece& piece) {
     if (piece.count == 0) return true;
     if (next_count_ == kMostPieces) return false;
+    SIGHTLINE_DEBUG_ASSERT(next_count_ < kMostPieces);
     next()[next_count_++] = piece;
     return true;
 }
@@ -119,6 +126,7 @@ bool Uncovered::addPoint(Cloud& cloud, const glm::dvec3& q) const {
 
 /// Leaves what of the body is not before the near plane.
 bool Uncovered::clipNear(const VolumeView& view, const glm::dvec3* corners, uint32_t count, bool box) {
+    SIGHTLINE_DEBUG_ASSERT(count <= kMostCorners && (!box || count == 8));
     double height[kMostCorners];
     is_box_ = false;
     bool all = true;
@@ -144,6 +152,7 @@ bool Uncovered::clipNear(const VolumeView& view, const glm::dvec3* corners, uint
 
 bool Uncovered::begin(const VolumeView& view, const ImageFrame& frame, const glm::dvec3* corners, uint32_t count,
                       double error, bool box) {
+    SIGHTLINE_DEBUG_ASSERT(view.usable && error >= 0);
     ++cuts_;
     frame_ = frame;
     error_ = error;
@@ -185,6 +194,7 @@ bool Uncovered::begin(const VolumeView& view, const ImageFrame& frame, const glm
 /// Points in the image whose hull is that of what of the body is not above a plane.
 /// @returns false if they cannot be told
 bool Uncovered::cutOff(const glm::dvec4& plane, Cloud& cloud) const {
+    SIGHTLINE_DEBUG_ASSERT(body_count_ <= kMostPoints && (!is_box_ || body_count_ == 8));
     double height[kMostPoints];
     bool none = true;
     for (uint32_t i = 0; i < body_count_; ++i) {
@@ -218,6 +228,7 @@ bool Uncovered::isBeside(const Cloud& cloud, const Piece& piece) const {
 
 /// How a piece lies to lines, and a bit for each that crosses it.
 Uncovered::Meets Uncovered::meets(const Piece& piece, const glm::dvec3* lines, uint32_t count, uint32_t& crossing) {
+    SIGHTLINE_DEBUG_ASSERT(count <= 32);
     crossing = 0;
     for (uint32_t i = 0; i < count; ++i) {
         const glm::dvec3 line = lines[i];
@@ -237,6 +248,7 @@ Uncovered::Meets Uncovered::meets(const Piece& piece, const glm::dvec3* lines, u
 /// @returns null if there is no room
 const Uncovered::Piece* Uncovered::cutAlong(const Piece& piece, const glm::dvec3* lines, uint32_t crossing,
                                             Piece* both) {
+    SIGHTLINE_DEBUG_ASSERT(&piece != &both[0] && &piece != &both[1]);
     const Piece* left = &piece;
     uint32_t at = 0;
     for (; crossing && left->count > 0; crossing &= crossing - 1) {
@@ -265,6 +277,7 @@ bool Uncovered::keepBefore(const Piece& piece, const Piece& before) {
 }
 
 double Uncovered::share(const Shadow& shadow) {
+    SIGHTLINE_DEBUG_ASSERT(piece_count_ <= kMostPieces);
     if (!subtract(shadow)) return 0;
     double before = 0, after = 0;
     for (uint32_t i = 0; i < piece_count_; ++i) before += pieces()[i].area();
@@ -280,6 +293,7 @@ bool Uncovered::subtract(const Shadow& shadow) {
         lines[i] = shadow.lines[i].line;
         lines[i].z -= 2.0 * (shadow.lines[i].still + error_) / nearest_ + kMargin;
     }
+    SIGHTLINE_DEBUG_ASSERT(shadow.face_count <= Shadow::kMostFaces && nearest_ > 0);
     Cloud before[Shadow::kMostFaces];
     Piece outlines[Shadow::kMostFaces];
     bool known = false, outlined[Shadow::kMostFaces] = {};
@@ -325,6 +339,7 @@ double Uncovered::remove(const Shadow& shadow, double least) {
 }
 
 void Uncovered::takeNext() {
+    SIGHTLINE_DEBUG_ASSERT(next_count_ <= kMostPieces);
     now_ = 1 - now_;
     piece_count_ = next_count_;
 }
@@ -334,6 +349,7 @@ void Uncovered::take(const Shadow& shadow) {
 }
 
 const Uncovered::Piece& Uncovered::largest() const {
+    SIGHTLINE_DEBUG_ASSERT(piece_count_ > 0);
     uint32_t at = 0;
     double most = -1;
     for (uint32_t i = 0; i < piece_count_; ++i)
