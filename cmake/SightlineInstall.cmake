@@ -42,6 +42,7 @@ if(SIGHTLINE_TOOLS)
     BUT sightline.h c/sightline.h studies/hidden/render.h studies/hidden/zbuffer/zbuffer.h)
   # ./run.sh builds the tool alone: what it has not built is left out.
   install(TARGETS sightline COMPONENT tools)
+  install(TARGETS sightline-lab COMPONENT tools OPTIONAL)
   install(TARGETS sightline-bench COMPONENT tools OPTIONAL)
   if(TARGET sightline-view)
     install(TARGETS sightline-view COMPONENT tools OPTIONAL)

@@ -79,17 +79,19 @@ function(sightline_sources target)
   target_sources(sightline_${target} PRIVATE ${files})
 endfunction()
 
-# Compiles the files of a target in groups of eight of the same folder, which reads the large headers once a group. A file
+# Compiles the files of a target in groups of eight, or of SIZE, of the same folder, which reads the large headers once a group. A file
 # with kernels stands alone, because Highway reads it once for every instruction set; so does a file that the build
 # makes. Names in anonymous namespaces must differ within a folder.
 function(sightline_in_groups target)
+  set(size 8 ${ARGN})
+  list(GET size -1 size)
   if(SIGHTLINE_GROUPS)
     # The files are known once the whole project has been read.
-    cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${PROJECT_SOURCE_DIR}]] CALL sightline_group ${target})")
+    cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${PROJECT_SOURCE_DIR}]] CALL sightline_group ${target} ${size})")
   endif()
 endfunction()
 
-function(sightline_group target)
+function(sightline_group target size)
   get_target_property(files ${target} SOURCES)
   get_target_property(home ${target} SOURCE_DIR)
   foreach(file ${files})
@@ -107,9 +109,10 @@ function(sightline_group target)
     if(NOT DEFINED ${key})
       set(${key} 0)
     endif()
-    math(EXPR group "${${key}} / 8")
+    math(EXPR group "${${key}} / ${size}")
     math(EXPR ${key} "${${key}} + 1")
-    cmake_path(GET folder FILENAME name)
+    cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE name)
+    string(MAKE_C_IDENTIFIER ${name} name)
     set_source_files_properties(${file} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${name}_${group})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)

@@ -23,7 +23,7 @@ protected:
 TEST_F(Cli, HelpAndVersionSucceed) {
     EXPECT_EQ(run("--help").exit_code, 0);
     EXPECT_NE(run("--version").out.find("sightline 0."), std::string::npos);
-    for (const char* verb : {"cull", "verify", "render", "replay", "info", "bench"}) {
+    for (const char* verb : {"cull", "verify", "render", "replay", "info"}) {
         EXPECT_NE(run("--help").out.find(verb), std::string::npos) << verb;
         const Outcome help = run(std::string(verb) + " --help");
         EXPECT_EQ(help.exit_code, 0) << verb;
@@ -49,12 +49,6 @@ TEST_F(Cli, WrongArgumentsExitWithTwo) {
     expectError("cull city:1:10 --path walk --fps 0", 2, "--fps");
     expectError("cull city:1:10 --path walk --fps nan", 2, "--fps");
     expectError("cull city:1:10 --path walk --speed nan", 2, "--speed");
-    expectError("bench nothing", 2, "nothing");
-    expectError("bench frustum --verify", 2, "--verify goes with the case occlusion");
-    expectError("bench occlusion --rays-per-box 4", 2, "--rays-per-box goes with --verify");
-    expectError("bench occlusion --verify --repeat 2", 2, "--verify excludes --repeat");
-    expectError("bench occlusion --verify --only moon", 2, "no scene \"moon\"");
-    expectError("bench occlusion --verify --size 12", 2, "--size 12");
     for (const char* size : {"12", "0x5", "5x0", "x", "axb", "10x10x10", "99999x10", "-1x5", "10x"})
         expectError("cull city:1:10 --size=" + std::string(size), 2, "--size");
     for (const char* city : {"city:", "city:1", "city:1:", "city:1:0", "city:x:5", "city:1:5:6", "city:1:99999999999"})
@@ -64,31 +58,13 @@ TEST_F(Cli, WrongArgumentsExitWithTwo) {
 TEST_F(Cli, FlagsTakeNoValue) {
     for (const char* word :
          {"cull city:1:10 --no-faces=3", "cull city:1:10 --masked=false", "cull city:1:10 --verify=1",
-          "verify city:1:10 --no-second-look=0", "info city:1:10 --objects=2", "bench occlusion --verify=1",
+          "verify city:1:10 --no-second-look=0", "info city:1:10 --objects=2",
           "report a.json --compare=1 --quiet=2", "replay a.rec --quiet=1", "--help=1", "--version=1", "cull --help=1"})
         expectError(word, 2, "takes no value");
     EXPECT_EQ(run("cull city:1:10 --frames=1 --size=32x18 --masked --repeat=1").exit_code, 0);
     expectError("cull city:1:10 --stereo 0", 2, "--stereo: 0 is not a distance between the eyes");
     expectError("cull city:1:10 --stereo wide", 2, "--stereo");
     expectError("cull city:1:10 --occluder-error nan", 2, "--occluder-error: not a number");
-}
-
-TEST_F(Cli, ProvesTheOcclusionScenes) {
-    const json rows = answer(
-        "bench occlusion --verify --only indoor --size 160x96 --jitters 1 --rays-per-box 2 --first-cameras 1")["rows"];
-    size_t targets = 0;
-    for (const json& row : rows) {
-        const std::string what = row["what"];
-        if (what.rfind("false culls", 0) == 0) {
-            EXPECT_EQ(row["value"], 0);
-            EXPECT_GT(row["baseline_value"], 1000);
-        }
-        if (what.rfind("answers that differ", 0) != 0) continue;
-        EXPECT_EQ(row["value"], 0);
-        EXPECT_EQ(row["note"], rows.back()["note"]);
-        ++targets;
-    }
-    EXPECT_GE(targets, 1u);
 }
 
 TEST_F(Cli, CullWritesTheSchemaToStandardOutputAlone) {

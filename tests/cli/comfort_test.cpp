@@ -77,8 +77,8 @@ TEST_F(Comfort, AnOptionWhoseValueMayBeLeftOutNeedsNone) {
 
 TEST_F(Comfort, OptionsOfOtherVerbsAreToldWhose) {
     expectError("cull city:1:10 --object 3", 2, "--object; it belongs to explain (see");
-    expectError("info city:1:10 --report out", 2, "--report; it belongs to cull, render, ");
-    expectError("cull city:1:10 -o x.json", 2, "-o; it belongs to render, explain, ");
+    expectError("info city:1:10 --report out", 2, "--report; it belongs to cull, bake, vis, render (see");
+    expectError("cull city:1:10 -o x.json", 2, "-o; it belongs to explain, bake, vis, render, ");
 }
 
 TEST_F(Comfort, ScenesAreNoVerbs) {

@@ -36,9 +36,8 @@ TEST_F(Completions, OffersVerbsOptionsChoicesAndScenes) {
     EXPECT_EQ(offered("cull mod"), Set{}) << "files are the shell's";
     EXPECT_EQ(offered("completions f"), Set{"fish"});
     EXPECT_EQ(offered("help rend"), Set{"render"});
-    EXPECT_EQ(offered("bench fru"), Set{"frustum"});
     EXPECT_EQ(offered("''"), offered("help ''"));
-    for (const char* verb : {"cull", "verify", "render", "info", "bench"}) {
+    for (const char* verb : {"cull", "verify", "render", "info"}) {
         const Set options = offered(std::string(verb) + " --");
         std::istringstream help(run(std::string(verb) + " --help").out);
         size_t count = 0;

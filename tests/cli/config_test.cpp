@@ -1,5 +1,9 @@
 // Configuration files: what is read, what comes before what, and what a file that was only found may not say.
 // SPDX-License-Identifier: MIT
+#include <map>
+#include <sstream>
+
+#include "apps/cli/shell/other_verbs.h"
 #include "tests/cli/tool.h"
 
 namespace sightline {
@@ -121,6 +125,32 @@ TEST_F(Config, WhatIsPrintedCanBeReadAgain) {
     EXPECT_EQ(run("cull city:1:50 --frames 1 --config d.toml").exit_code, 0);
     write("pattern.toml", run("config --no-config").out);
     EXPECT_EQ(run("cull city:1:50 --frames 1 --size 64x36 --config pattern.toml").exit_code, 0);
+}
+
+/// A program knows the options of verbs that another program has: a file may set them, and a slip is told its owner.
+TEST_F(Config, OptionsOfOtherProgramsAreKnown) {
+    size_t count = 0;
+    for (const cli::OtherVerb& other : cli::otherVerbs()) {
+        if (other.program != "sightline-lab" || other.name == "config") continue;
+        std::map<std::string, bool> here, there;
+        for (const cli::OtherOption& option : cli::optionsOf(other)) here[std::string(option.name)] = option.written;
+        std::istringstream lines(succeed("config --no-config " + std::string(other.name)).out);
+        for (std::string line; std::getline(lines, line);) {
+            const size_t equals = line.find(" = ");
+            if (line.find("# ") != 0 || equals == std::string::npos) continue;
+            const std::string value = line.substr(equals, line.find("  # ") - equals);
+            there[line.substr(2, equals - 2)] =
+                value.find("FILE") != std::string::npos || value.find("DIR") != std::string::npos;
+        }
+        EXPECT_EQ(here, there) << other.name;
+        count += here.size();
+    }
+    EXPECT_GE(count, 100u);
+    write("c.toml", "method = \"warnock\"\n[profile]\nrenderer = \"gl\"\n[view]\nobject = 3\n");
+    EXPECT_EQ(frames("--config c.toml --frames 2"), 2u);
+    write("c.toml", "[profile]\nrendrer = \"gl\"\n");
+    expectError("cull city:1:10 --config c.toml", 3, "did you mean renderer");
+    expectError("cull city:1:10 --depth-format float32", 2, "it belongs to render");
 }
 
 }  // namespace

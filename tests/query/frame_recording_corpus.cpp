@@ -25,10 +25,10 @@ void makeAll(Seed seed) {
     cut.resize(cut.size() / 2);
     damaged[damaged.size() / 2] ^= 1;
     long_section[recording_file::kHashedAt + 8 * recording_file::kPolygons + 6] = 1;
-    seal(long_section);
+    sealRecording(long_section);
     for (char& byte : all_ones)
         if (&byte >= all_ones.data() + all_ones.size() / 2) byte = '\xff';
-    seal(all_ones);
+    sealRecording(all_ones);
     seed("boxes.rec", boxes);
     seed("parallel.rec", parallel);
     seed("sheet.rec", sheet);

@@ -295,7 +295,7 @@ TEST(FrameRecording, SaysInOneLineWhatIsWrongAndWhere) {
     const auto expect = [&](const std::string& what, size_t at, auto change, bool sealed = true) {
         Array<char> bytes = good;
         change(bytes);
-        if (sealed) seal(bytes);
+        if (sealed) sealRecording(bytes);
         const Result<FrameRecording> read = parseRecording(bytes, "a/frame.rec");
         ASSERT_FALSE(read.ok()) << what;
         EXPECT_EQ(read.error().message, "a/frame.rec: " + what + " at byte " + std::to_string(at));
@@ -359,7 +359,7 @@ TEST(FrameRecording, SurvivesAnyBytes) {
     Array<char> good = recordingBytes(*recordFrame(made.world.commit(), someView(2), {.occlusion_size = 64}));
     for (size_t size = 0; size < good.size(); size += 1 + size / 16) {
         Array<char> bytes(good.begin(), good.begin() + static_cast<ptrdiff_t>(size));
-        seal(bytes);
+        sealRecording(bytes);
         ASSERT_FALSE(readAndReplay(bytes));
     }
     Random random(4);
@@ -371,7 +371,7 @@ TEST(FrameRecording, SurvivesAnyBytes) {
             const size_t at = place.at + random.below(std::max<size_t>(place.size, 1));
             if (at < bytes.size()) bytes[at] ^= static_cast<char>(1u << random.below(8));
         }
-        seal(bytes);
+        sealRecording(bytes);
         const Result<FrameRecording> read = parseRecording(bytes, "frame.rec");
         if (read && read->settings.occlusion_size > 1024) continue;  // sound, and slow
         replayed += readAndReplay(bytes);
@@ -409,7 +409,7 @@ TEST(FrameRecording, CorpusOfTheFuzzerIsReadAndReplayed) {
         Array<char> bytes(read.begin(), read.end());
         if (readAndReplay(bytes)) ++recordings;
         else ++others;
-        seal(bytes);
+        sealRecording(bytes);
         readAndReplay(bytes);
     });
     EXPECT_GE(recordings, 3);

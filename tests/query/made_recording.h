@@ -94,7 +94,7 @@ inline FrameRecording recordOf(uint64_t seed) {
 }
 
 /// Makes the hash of a file right again, so that what lies deeper is looked at.
-inline void seal(Array<char>& bytes) {
+inline void sealRecording(Array<char>& bytes) {
     if (bytes.size() < recording_file::kHashedAt) return;
     const uint64_t hash = contentHash(std::span<const char>(bytes).subspan(recording_file::kHashedAt));
     for (size_t i = 0; i < 8; ++i) bytes[recording_file::kHashAt + i] = static_cast<char>(hash >> 8 * i);

@@ -106,10 +106,18 @@ bool isElsewhere(const CLI::App& tool, const OtherVerb& other) {
 
 /// That some verb has what an entry sets; and of files that lie here, that it is not written.
 Status checkEntry(const CLI::App& tool, const File& file, const Entry& entry, bool here) {
-    // The program that has the verb checks the values that are for it.
-    if (const OtherVerb* other = findOtherVerb(entry.section); other && isElsewhere(tool, *other)) return success();
-    bool known = entry.section.empty() && !otherOwners(entry.key).empty(), written = false;
+    bool known = false, written = false;
     Words keys;
+    // The program that has the verb checks the values.
+    for (const OtherVerb& other : otherVerbs()) {
+        if (!isElsewhere(tool, other) || (!entry.section.empty() && entry.section != other.name)) continue;
+        known |= !entry.section.empty() && other.options.empty();
+        for (const OtherOption& option : optionsOf(other)) {
+            keys.emplace_back(option.name);
+            known |= option.name == entry.key;
+            written |= option.name == entry.key && option.written;
+        }
+    }
     for (const CLI::App* verb : verbsOf(tool)) {
         if (!entry.section.empty() && entry.section != verb->get_name()) continue;
         for (const CLI::Option* option : optionsOf(*verb)) {

@@ -16,15 +16,22 @@ struct OtherVerb {
     std::string_view name;
     std::string_view about;    ///< for the list of verbs
     std::string_view program;  ///< beside this one, which the words are handed to
-    /// The long names of its options that no verb of `sightline` has, with spaces between: configuration files may set
-    /// them, and messages say whose they are.
+    /// Its options with spaces between: long names as files have them, an = behind those that name what is written, and
+    /// short names with their dash. Empty: they are not known here.
     std::string_view options;
+};
+
+struct OtherOption {
+    std::string_view name;  ///< as a configuration file has it
+    bool written = false;
 };
 
 std::span<const OtherVerb> otherVerbs();
 /// Null if there is none.
 const OtherVerb* findOtherVerb(std::string_view name);
-/// Names of other verbs with an option.
+/// What a configuration file may set of a verb.
+std::vector<OtherOption> optionsOf(const OtherVerb& verb);
+/// Names of other verbs with an option, which has its dashes.
 std::vector<std::string> otherOwners(std::string_view option);
 
 /// What a program adds to the verbs of `sightline`.

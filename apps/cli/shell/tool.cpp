@@ -166,11 +166,14 @@ std::vector<std::string> longOptions(const CLI::App& app) {
 
 /// Of an option that a verb has not: which have it, or which of its own may have been meant.
 std::string meantOption(const CLI::App& tool, const CLI::App& verb, const std::string& option) {
-    Words owners = otherOwners(std::string_view(option).substr(std::min(option.find_first_not_of('-'), option.size())));
+    Words owners;
+    const auto note = [&](const std::string& owner) {
+        if (owner != verb.get_name() && std::find(owners.begin(), owners.end(), owner) == owners.end())
+            owners.push_back(owner);
+    };
     for (const CLI::App* other : tool.get_subcommands({}))
-        if (other != &verb && other->get_option_no_throw(option) &&
-            std::find(owners.begin(), owners.end(), other->get_name()) == owners.end())
-            owners.push_back(other->get_name());
+        if (other->get_option_no_throw(option)) note(other->get_name());
+    for (const std::string& owner : otherOwners(option)) note(owner);
     if (owners.empty()) return suggestion(option, longOptions(verb));
     return fmt::format("; it belongs to {}", fmt::join(owners, ", "));
 }

@@ -27,7 +27,7 @@ using namespace tools;
 namespace {
 
 constexpr size_t kPictureBudget = size_t{18} << 20;  // of a page [bytes]
-constexpr size_t kMostLines = 12;                    // of objects that differ
+constexpr size_t kMostReportLines = 12;                    // of objects that differ
 
 struct ReportOptions {
     std::vector<std::string> runs;
@@ -55,12 +55,12 @@ void printComparison(std::FILE* out, const RunComparison& c, const RunFile& a, c
         fmt::print(out, "over-estimate {:.3f} in A, {:.3f} in B\n", *c.over_estimate_a, *c.over_estimate_b);
     fmt::print(out, "false culls  {} in A, {} in B, {} new\n", grouped(c.false_a), grouped(c.false_b),
                grouped(c.new_false));
-    for (size_t i = 0; i < std::min(c.differences.size(), kMostLines); ++i) {
+    for (size_t i = 0; i < std::min(c.differences.size(), kMostReportLines); ++i) {
         const RunComparison::Difference& row = c.differences[i];
         fmt::print(out, "  object {} \"{}\": {} only in A, {} only in B\n", row.id & ~(uint64_t{1} << 63),
                    oneLine(row.path.empty() ? row.name : row.path, 200), counted(row.only_a, "frame"), row.only_b);
     }
-    if (c.differences.size() > kMostLines) fmt::print(out, "  and {} more\n", c.differences.size() - kMostLines);
+    if (c.differences.size() > kMostReportLines) fmt::print(out, "  and {} more\n", c.differences.size() - kMostReportLines);
     for (const std::string& sentence : c.verdict) fmt::print(out, "{}\n", oneLine(sentence));
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint32_t kGoals = 64;    // seeded cameras
 constexpr int kDirections = 32;    // tried where no goal can be reached
-constexpr double kLongestLeg = 4;  // of these  [s]
+constexpr double kLongestWalkLeg = 4;  // of these  [s]
 constexpr int kRoundings = 8;      // pieces of a corner
 constexpr double kHalfTurn = 3.14159265358979323846;
 constexpr double kTurn = kHalfTurn / 3;  // [radians / s]
@@ -155,7 +155,7 @@ private:
     glm::dvec3 openPlace(const glm::dvec3& here, double margin) {
         const glm::dvec3 ahead =
             way_.size() > 1 ? glm::normalize(here - way_[way_.size() - 2]) : first_.target - first_.eye;
-        const double far = kLongestLeg * settings_.speed;
+        const double far = kLongestWalkLeg * settings_.speed;
         double most = 0;
         glm::dvec3 best = here;
         for (int i = 0; i < kDirections; ++i) {

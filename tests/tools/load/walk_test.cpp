@@ -21,7 +21,7 @@ namespace sightline {
 using namespace tools;
 namespace {
 
-bool same(const CameraPath& a, const CameraPath& b) {
+bool samePaths(const CameraPath& a, const CameraPath& b) {
     return std::equal(
         a.frames.begin(), a.frames.end(), b.frames.begin(), b.frames.end(),
         [](const CameraFrame& p, const CameraFrame& q) { return p.eye == q.eye && p.target == q.target; });
@@ -68,8 +68,8 @@ TEST(Walk, IsTheSameForASeed) {
     const Scene scene = makeCity(1, 400);
     const WalkSettings settings{.frames = 50, .seed = 3};
     const CameraPath path = walkThrough(scene, settings);
-    EXPECT_TRUE(same(path, walkThrough(scene, settings)));
-    EXPECT_FALSE(same(path, walkThrough(scene, {.frames = 50, .seed = 4})));
+    EXPECT_TRUE(samePaths(path, walkThrough(scene, settings)));
+    EXPECT_FALSE(samePaths(path, walkThrough(scene, {.frames = 50, .seed = 4})));
     const CameraPath longer = walkThrough(scene, {.frames = 20, .seed = 3});
     EXPECT_EQ(longer.frames[0].eye, path.frames[0].eye);
 }
@@ -97,33 +97,33 @@ TEST(Walk, KeepsTheHeightOfAnEyeOverTheFloor) {
 TEST(ChoosePath, FileThenKindThenTheScenesOwnThenATour) {
     Scene scene = makeCity(1, 300);
     EXPECT_EQ(choosePath(scene, {})->frames.size(), 16u);
-    EXPECT_TRUE(same(*choosePath(scene, {}), tourOf(scene, 16, 1)));
+    EXPECT_TRUE(samePaths(*choosePath(scene, {}), tourOf(scene, 16, 1)));
     scene.cameras.resize(2);
     scene.cameras[0].fov_y = 1;
     scene.cameras[1].fov_y = 1;
     EXPECT_EQ(choosePath(scene, {})->frames.size(), 2u);
     PathChoice choice;
     choice.kind = PathKind::kScatter;
-    EXPECT_TRUE(same(*choosePath(scene, choice), seededCameras(scene, 16, 1)));
+    EXPECT_TRUE(samePaths(*choosePath(scene, choice), seededCameras(scene, 16, 1)));
     choice.kind = PathKind::kTour;
-    EXPECT_TRUE(same(*choosePath(scene, choice), tourOf(scene, 16, 1)));
+    EXPECT_TRUE(samePaths(*choosePath(scene, choice), tourOf(scene, 16, 1)));
     choice.kind = PathKind::kOrbit;
-    EXPECT_TRUE(same(*choosePath(scene, choice), orbitAround(scene, 16, 1)));
+    EXPECT_TRUE(samePaths(*choosePath(scene, choice), orbitAround(scene, 16, 1)));
     choice.kind = PathKind::kOverview;
-    EXPECT_TRUE(same(*choosePath(scene, choice), overviewsOf(scene, 1, 1)));
+    EXPECT_TRUE(samePaths(*choosePath(scene, choice), overviewsOf(scene, 1, 1)));
     choice.kind = PathKind::kWalk;
     EXPECT_EQ(choosePath(scene, choice)->frames.size(), 600u);
     choice.walk.frames = 5;
     choice.walk.seed = 9;
-    EXPECT_TRUE(same(*choosePath(scene, choice), walkThrough(scene, {.frames = 5, .seed = 9})));
+    EXPECT_TRUE(samePaths(*choosePath(scene, choice), walkThrough(scene, {.frames = 5, .seed = 9})));
     choice.kind = PathKind::kAny;
-    EXPECT_TRUE(same(*choosePath(scene, choice), tourOf(scene, 5, 9)));
+    EXPECT_TRUE(samePaths(*choosePath(scene, choice), tourOf(scene, 5, 9)));
     choice.walk.frames = 0;
     choice.seeded = true;
-    EXPECT_TRUE(same(*choosePath(scene, choice), tourOf(scene, 16, 9)));
+    EXPECT_TRUE(samePaths(*choosePath(scene, choice), tourOf(scene, 16, 9)));
     choice.file = testing::TempDir() + "sightline_choose_path.json";
     std::ofstream(choice.file) << cameraPathJson(cityStreetPath(1, 3));
-    EXPECT_TRUE(same(*choosePath(scene, choice), cityStreetPath(1, 3)));
+    EXPECT_TRUE(samePaths(*choosePath(scene, choice), cityStreetPath(1, 3)));
     std::remove(choice.file.c_str());
     const Result<CameraPath> missing = choosePath(scene, choice);
     ASSERT_FALSE(missing.ok());

@@ -91,12 +91,12 @@ std::vector<SceneCamera> placeCameras(const NodeTree& tree, const std::vector<Ca
     return out;
 }
 
-constexpr double kFarthest = 1e100;  // squares and volumes of what is nearer stay finite
+constexpr double kFarthestObject = 1e100;  // squares and volumes of what is nearer stay finite
 constexpr uint64_t kMostObjects = 50'000'000;
 
 /// A mesh as one or more nodes draw it: the same mesh unskinned, under a skin or with other morph weights is another
 /// shape.
-struct Shape {
+struct ShapeUse {
     uint32_t mesh = 0;
     std::optional<uint32_t> skin;
     std::vector<float> weights;
@@ -109,7 +109,7 @@ struct Parts {
     std::vector<MeshSource> meshes;
     std::vector<Skin> skins;
     NodeTree tree;
-    std::vector<Shape> shapes;
+    std::vector<ShapeUse> shapes;
     std::map<uint32_t, size_t> shape_of_level;  ///< by node that stands for others from afar
 };
 
@@ -127,7 +127,7 @@ bool keepsLevels(const Parts& parts, const std::vector<uint8_t>& has_children, u
 }
 
 void gatherShapes(Parts& parts) {
-    std::vector<Shape>& shapes = parts.shapes;
+    std::vector<ShapeUse>& shapes = parts.shapes;
     std::map<std::tuple<uint32_t, uint32_t, std::vector<float>>, size_t> known;
     std::vector<uint8_t> has_children(parts.tree.nodes.size(), 0);
     for (const SceneNode& node : parts.tree.names)
@@ -137,7 +137,7 @@ void gatherShapes(Parts& parts) {
         if (!node.drawn || !node.mesh || node.marked) continue;
         const MeshSource& source = parts.meshes[*node.mesh];
         if (source.primitives.empty()) continue;
-        Shape shape{*node.mesh, source.skinnable ? node.skin : std::nullopt, {}, {}};
+        ShapeUse shape{*node.mesh, source.skinnable ? node.skin : std::nullopt, {}, {}};
         if (source.morphs) shape.weights = node.weights.empty() ? source.weights : node.weights;
         const auto [place, fresh] =
             known.try_emplace({shape.mesh, shape.skin.value_or(kNoNode), shape.weights}, shapes.size());
@@ -159,7 +159,7 @@ void gatherShapes(Parts& parts) {
 }
 
 // What each morph weight of a mesh may be: 0 to 1, its defaults, and what animations make of it.
-std::vector<Range> weightRanges(const Parts& parts, const std::vector<Motion>& motions, const Shape& shape) {
+std::vector<Range> weightRanges(const Parts& parts, const std::vector<Motion>& motions, const ShapeUse& shape) {
     std::vector<Range> ranges(parts.meshes[shape.mesh].targets, Range{0, 1});
     for (size_t t = 0; t < ranges.size() && t < shape.weights.size(); ++t) ranges[t].grow(shape.weights[t]);
     for (const uint32_t node : shape.nodes)
@@ -207,7 +207,7 @@ void addObject(Document& document, Scene& scene, uint32_t node, uint32_t mesh, c
     if (!finiteMatrix(transform)) fail(place, "its world transform is not finite");
     const Box3d box = transformBox(scene.meshes[mesh].bounds, transform);
     for (int axis = 0; axis < 3; ++axis)
-        if (!(box.min[axis] >= -kFarthest && box.max[axis] <= kFarthest))
+        if (!(box.min[axis] >= -kFarthestObject && box.max[axis] <= kFarthestObject))
             fail(place, "its bounds in the world are too large");
     scene.objects.push_back({node, mesh, transform, name, node});
 }
@@ -236,7 +236,7 @@ void addNode(Document& document, const Parts& parts, uint32_t index, const Built
     addObject(document, scene, index, *built.mesh, built.transform.value_or(node.world), name);
 }
 
-Built buildShape(Document& document, const Parts& parts, const std::vector<Motion>& motions, const Shape& shape,
+Built buildShape(Document& document, const Parts& parts, const std::vector<Motion>& motions, const ShapeUse& shape,
                  MeshBuilder& builder, Scene& scene) {
     const MeshSource& source = parts.meshes[shape.mesh];
     const std::string place = at("meshes", shape.mesh);
@@ -265,7 +265,7 @@ Built buildShape(Document& document, const Parts& parts, const std::vector<Motio
 std::vector<Built> buildShapes(Document& document, const Parts& parts, Scene& scene) {
     MeshBuilder builder(document);
     bool deforms = false;
-    for (const Shape& shape : parts.shapes) {
+    for (const ShapeUse& shape : parts.shapes) {
         builder.expect(parts.meshes[shape.mesh]);
         deforms |= shape.deforms(parts.meshes[shape.mesh]);
     }
@@ -276,7 +276,7 @@ std::vector<Built> buildShapes(Document& document, const Parts& parts, Scene& sc
         motions = readMotions(document, parts.tree, targets);
     }
     std::vector<Built> built;
-    for (const Shape& shape : parts.shapes) {
+    for (const ShapeUse& shape : parts.shapes) {
         built.push_back(buildShape(document, parts, motions, shape, builder, scene));
         document.progress.reach(Progress::kParsed, Progress::kBuilt,
                                 double(built.size()) / double(parts.shapes.size()));

@@ -9,7 +9,7 @@ namespace {
 
 using Text = JsonTable::Text;
 
-constexpr int kDeepest = 256;
+constexpr int kDeepestText = 256;
 
 // Before the parser sees the text: what it builds of an element is walked by others, some of them recursive.
 void checkDepth(Text text) {
@@ -23,7 +23,7 @@ void checkDepth(Text text) {
         } else if (c == '"') {
             in_string = true;
         } else if (c == '[' || c == '{') {
-            if (++depth > kDeepest) fail("", "JSON is nested deeper than {} at byte {}", kDeepest, i);
+            if (++depth > kDeepestText) fail("", "JSON is nested deeper than {} at byte {}", kDeepestText, i);
         } else if (c == ']' || c == '}') {
             --depth;
         }
