@@ -65,5 +65,5 @@ prepare "${programs[@]}"
 if [ $# -gt 0 ]; then exec "$tool" "$@"; fi
 
 say "culling a flight through a city of 100,000 objects, and proving every cull"
-"$tool" cull city:1:100000 --frames 32 --verify --report "$root/out"
+"$tool" cull city:1:100000 --frames 16 --size 960x540 --verify --rays 200000 --report "$root/out"
 say "the report: $root/out/index.html"

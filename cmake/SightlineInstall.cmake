@@ -36,7 +36,7 @@ sightline_install(EXPORT sightline-studies COMPONENT development LIBRARIES bsp h
   HEADERS studies/hidden/render.h studies/hidden/zbuffer/zbuffer.h)
 if(SIGHTLINE_TOOLS)
   sightline_install(EXPORT sightline-bake COMPONENT development LIBRARIES bake_shared HEADERS c/bake/bake.h)
-  sightline_install(EXPORT sightline-tools COMPONENT tools-development LIBRARIES lods scene import bake truth report
+  sightline_install(EXPORT sightline-tools COMPONENT tools-development LIBRARIES lods scene import bake truth pictures report
     HEADERS bake/bake.h prepare/lod/lod_chain.h tools/scene/procedural.h tools/import/scene_file.h
             tools/load/load_world.h tools/truth/verify.h tools/report/page/page.h
     BUT sightline.h c/sightline.h studies/hidden/render.h studies/hidden/zbuffer/zbuffer.h)

@@ -30,19 +30,4 @@ int orientation(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     return exactOrientation(a, b, c);
 }
 
-int32_t firstSampleRightOf(glm::dvec2 a, glm::dvec2 b, int32_t row, int32_t width) {
-    if (a.y > b.y) std::swap(a, b);
-    const double y = row + 0.5;
-    const double x = a.x + (y - a.y) * ((b.x - a.x) / (b.y - a.y)) - 0.5;
-    if (!(x > -1)) return 0;
-    if (x > width) return width;
-    // Rounding moved x by less than ten units in the last place of the ends; where that could decide
-    // between two samples, the exact predicate does.
-    const double nearest = std::rint(x);
-    const double doubt = 0x1p-47 * (std::abs(a.x) + std::abs(b.x) + 1.0);
-    double first = std::ceil(x);
-    if (std::abs(x - nearest) <= doubt) first = orientation(a, b, {nearest + 0.5, y}) <= 0 ? nearest : nearest + 1;
-    return first < 0 ? 0 : first > width ? width : static_cast<int32_t>(first);
-}
-
 }  // namespace sightline::studies

@@ -20,7 +20,22 @@ int orientation(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c);
 /// The first sample of a row, at (i + 0.5, row + 0.5), that lies on the edge or to the right of it; exact, and
 /// the same for (a, b) and (b, a). Clamped to [0, width].
 /// @param a, b  ends of an edge that crosses the row, at different heights
-int32_t firstSampleRightOf(glm::dvec2 a, glm::dvec2 b, int32_t row, int32_t width);
+inline int32_t firstSampleRightOf(glm::dvec2 a, glm::dvec2 b, int32_t row, int32_t width) {
+    if (a.y > b.y) std::swap(a, b);
+    const double y = row + 0.5;
+    const double x = a.x + (y - a.y) * ((b.x - a.x) / (b.y - a.y)) - 0.5;
+    if (!(x > -1)) return 0;
+    if (x > width) return width;
+    // The nearest whole number: adding 1.5 * 2^52 rounds to one, and without SSE4 std::rint() is a call.
+    constexpr double kWhole = 0x1.8p52;
+    const double nearest = (x + kWhole) - kWhole;
+    // Rounding moved x by less than ten units in the last place of the ends; where that could decide
+    // between two samples, the exact predicate does.
+    const double doubt = 0x1p-47 * (std::abs(a.x) + std::abs(b.x) + 1.0);
+    double first = nearest < x ? nearest + 1 : nearest;
+    if (std::abs(x - nearest) <= doubt) first = orientation(a, b, {nearest + 0.5, y}) <= 0 ? nearest : nearest + 1;
+    return first < 0 ? 0 : first > width ? width : static_cast<int32_t>(first);
+}
 
 /// Calls fill(row, begin, end) for the samples that a polygon covers: sample i of a row lies at
 /// (i + 0.5, row + 0.5), rows grow upward. Either winding. Left and top edges belong to the polygon,
