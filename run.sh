@@ -61,6 +61,8 @@ for word in "$@"; do
         *.*) if [ -f "$word" ]; then programs+=(sightline-import); fi ;;
     esac
 done
+# The case `bench ablate` builds the tool itself, once without each mechanism.
+if [ "${1-} ${2-}" = 'bench ablate' ]; then prepare sightline; exec "$root/bench/ablate" "${@:3}"; fi
 prepare "${programs[@]}"
 if [ $# -gt 0 ]; then exec "$tool" "$@"; fi
 

@@ -18,7 +18,6 @@ namespace {
 constexpr int kWays = 2;
 std::atomic<bool> taken[kWays];
 
-
 std::string eglFault(const char* call) {
     char code[16];
     std::snprintf(code, sizeof code, "0x%04x", static_cast<unsigned>(eglGetError()));
@@ -64,7 +63,8 @@ Result<GlContext> GlContext::create(uint32_t threads) {
 Result<GlContext> GlContext::current() {
     const int version = epoxy_gl_version();
     if (version < 45)
-        return glFault("4.5 is needed, and here is " + std::to_string(version / 10) + "." + std::to_string(version % 10));
+        return glFault("4.5 is needed, and here is " + std::to_string(version / 10) + "." +
+                       std::to_string(version % 10));
     GlContext context;
     context.readRenderer();
     return context;

@@ -193,8 +193,7 @@ private:
     void make(T* at, Arguments&&... arguments) {
         if constexpr (requires { typename T::InMemory; } && std::is_constructible_v<T, Arguments..., Memory*>)
             new (at) T(std::forward<Arguments>(arguments)..., memory_);
-        else
-            new (at) T(std::forward<Arguments>(arguments)...);
+        else new (at) T(std::forward<Arguments>(arguments)...);
     }
     static void destroy(T* first, size_t count) {
         if constexpr (!std::is_trivially_destructible_v<T>)

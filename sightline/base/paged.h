@@ -79,7 +79,9 @@ private:
     static void begin(void* place) { new (place) Page(); }
     static void copyPage(void* place, const void* like) { new (place) Page(*static_cast<const Page*>(like)); }
     static void end(void* page) { static_cast<Page*>(page)->~Page(); }
-    static constexpr size_t bornAt() { return (sizeof(T) * kPage + alignof(uint64_t) - 1) / alignof(uint64_t) * alignof(uint64_t); }
+    static constexpr size_t bornAt() {
+        return (sizeof(T) * kPage + alignof(uint64_t) - 1) / alignof(uint64_t) * alignof(uint64_t);
+    }
     static constexpr PageKind kKind = {sizeof(Page), alignof(Page), bornAt(), begin, copyPage, end};
 
     Paged(detail::SharedPages&& pages, uint32_t size) : pages_(std::move(pages)), size_(size) {}

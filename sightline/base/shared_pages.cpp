@@ -20,10 +20,7 @@ struct SharedPages::Copy {
 SharedPages::SharedPages(const PageKind& kind, Memory* memory) : kind_(&kind), pages_(memory) {}
 
 SharedPages::SharedPages(SharedPages&& from) noexcept
-    : kind_(from.kind_),
-      pages_(std::move(from.pages_)),
-      pool_(std::move(from.pool_)),
-      copy_(std::move(from.copy_)) {}
+    : kind_(from.kind_), pages_(std::move(from.pages_)), pool_(std::move(from.pool_)), copy_(std::move(from.copy_)) {}
 
 SharedPages& SharedPages::operator=(SharedPages&& from) {
     if (this == &from) return *this;

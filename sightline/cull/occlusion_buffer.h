@@ -68,7 +68,8 @@ private:
     bool usable_ = false;
     Screen screen_;
     DepthTiles tiles_;
-    std::deque<glm::dmat4, MemoryAllocator<glm::dmat4>> transforms_;  ///< of what is drawn: the tiles look at them until begin()
+    std::deque<glm::dmat4, MemoryAllocator<glm::dmat4>>
+        transforms_;  ///< of what is drawn: the tiles look at them until begin()
     size_t transforms_used_ = 0;
 };
 

@@ -12,9 +12,9 @@
 namespace sightline {
 namespace {
 
-constexpr double kShapeRounding = 0x1p-46;     // of sums of a few products of doubles, with room to spare
-constexpr double kWorstPosition = 0.125;  // [pixels]: known less exactly, it is visible
-constexpr double kSlack = 0x1p-20;        // [pixels]: what rounding moves a place inside the buffer by, with room
+constexpr double kShapeRounding = 0x1p-46;  // of sums of a few products of doubles, with room to spare
+constexpr double kWorstPosition = 0.125;    // [pixels]: known less exactly, it is visible
+constexpr double kSlack = 0x1p-20;          // [pixels]: what rounding moves a place inside the buffer by, with room
 
 /// The whole pixels that bounds meet. The nearness is the caller's.
 Sight toPixels(const Screen& screen, double x0, double y0, double x1, double y1, PixelRect& rect) {

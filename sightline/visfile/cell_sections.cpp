@@ -130,7 +130,8 @@ Result<PlacedCells> PlacedCells::open(const SectionFile& sections, uint32_t rows
             return faultAt(file, "a cell with a row that there is not", at + kCellHeadBytes + 4 * uint64_t{i});
     for (uint32_t i = 0; i < leaves; ++i)
         if (const uint32_t cell = out.cell_of_leaf_[i]; cell >= out.cells_ && cell != kNoCell)
-            return faultAt(file, "a leaf of a cell that there is not", at + kCellHeadBytes + 4 * (uint64_t{with_rows} + i));
+            return faultAt(file, "a leaf of a cell that there is not",
+                           at + kCellHeadBytes + 4 * (uint64_t{with_rows} + i));
     if (!names.empty()) {
         PlacedParts texts(names);
         out.names_.ends = texts.take<uint32_t>(out.cells_);

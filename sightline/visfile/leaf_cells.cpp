@@ -66,7 +66,8 @@ Array<char> packedLeafCells(std::span<const uint32_t> cell_of_leaf, Memory* memo
 }
 
 Result<Array<char>> unpackedLeafCells(std::span<const char> bytes, std::string_view file, uint64_t at, Memory* memory) {
-    if (bytes.size() < kLeafHeadBytes) return faultAt(file, "packed leaves that end within their head", at + bytes.size());
+    if (bytes.size() < kLeafHeadBytes)
+        return faultAt(file, "packed leaves that end within their head", at + bytes.size());
     const uint32_t leaves = ByteCursor(bytes).take<uint32_t>();
     BitDecoder decoder(bytes.subspan(kLeafHeadBytes));
     LeafCoder<BitDecoder> coder(decoder);

@@ -62,7 +62,8 @@ Result<PlacedObjects> PlacedObjects::open(std::span<const char> bytes, uint32_t 
         if (end < begin || end > places)
             return faultAt(file, "an object whose cells end before they begin", at + kObjectHeadBytes);
         if (out.marks_[i] > 3) return faultAt(file, "a mark that is not known", at + kObjectHeadBytes + 64 * count + i);
-        if (begin == end && !out.seenFromEverywhere(i)) return faultAt(file, "an object in no cell", at + kObjectHeadBytes);
+        if (begin == end && !out.seenFromEverywhere(i))
+            return faultAt(file, "an object in no cell", at + kObjectHeadBytes);
         for (uint64_t k = begin; k < end; ++k)
             if (all[k] >= cells || (k > begin && all[k] <= all[k - 1]))
                 return faultAt(file, "an object in a cell that there is not, or twice in one", at);

@@ -169,8 +169,7 @@ Status VisibilityFile::openPlaces(const SectionFile& sections, std::string_view 
     if (cells->hasRegions() != tree_bytes.empty() && cells->cells() > 0)
         return faultAt(file, "cells of both regions and a tree, or of neither", at(kCells));
     if (!tree_bytes.empty()) {
-        const Result<PlacedTree> tree =
-            PlacedTree::open(tree_bytes, file, at(kTree), unpacked_rows_.memory());
+        const Result<PlacedTree> tree = PlacedTree::open(tree_bytes, file, at(kTree), unpacked_rows_.memory());
         if (!tree) return tree.error();
         if (tree->leaves() != cells->leaves()) return faultAt(file, "not a cell for each leaf", at(kTree));
         if (cells->outside() != CellGraph::kNoCell) return faultAt(file, "a tree with an outside", at(kCells));
@@ -199,8 +198,7 @@ Status VisibilityFile::openPlaces(const SectionFile& sections, std::string_view 
         return faultAt(file, "view cells without rows, or rows without view cells",
                        at(has_view_cells_ ? kViewTree : kViewRows));
     if (!has_view_cells_) return success();
-    const Result<PlacedTree> tree =
-        PlacedTree::open(view_tree, file, at(kViewTree), unpacked_rows_.memory());
+    const Result<PlacedTree> tree = PlacedTree::open(view_tree, file, at(kViewTree), unpacked_rows_.memory());
     if (!tree) return tree.error();
     view_tree_ = *tree;
     const Result<PlacedObjectRows> rows =

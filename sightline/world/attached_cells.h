@@ -38,8 +38,8 @@ struct AttachedViews final : RowSource {
 /// Made once; immutable, shared by a world and its snapshots.
 struct AttachedCells {
     PortalGraph graph;
-    FileRows rows;                  ///< empty: the stage of the PVS does nothing
-    glm::dvec3 origin{0.0};         ///< what the boxes of CellLists are relative to
+    FileRows rows;             ///< empty: the stage of the PVS does nothing
+    glm::dvec3 origin{0.0};    ///< what the boxes of CellLists are relative to
     Array<Array<char>> doors;  ///< names
     Array<uint32_t> first_of_row,
         cell_of_row;                     ///< cells by row: those of row r from first_of_row[r] to before the next

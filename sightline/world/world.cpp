@@ -54,7 +54,8 @@ void World::detach() { state_->attach(nullptr); }
 PortalId World::findPortal(std::string_view name) const {
     const detail::AttachedCells* cells = state_->attached();
     for (size_t i = 0; cells && i < cells->doors.size(); ++i)
-        if (std::string_view(cells->doors[i].data(), cells->doors[i].size()) == name) return {static_cast<uint32_t>(i + 1)};
+        if (std::string_view(cells->doors[i].data(), cells->doors[i].size()) == name)
+            return {static_cast<uint32_t>(i + 1)};
     return {};
 }
 

@@ -58,8 +58,8 @@ TEST_F(Cli, WrongArgumentsExitWithTwo) {
 TEST_F(Cli, FlagsTakeNoValue) {
     for (const char* word :
          {"cull city:1:10 --no-faces=3", "cull city:1:10 --masked=false", "cull city:1:10 --verify=1",
-          "verify city:1:10 --no-second-look=0", "info city:1:10 --objects=2",
-          "report a.json --compare=1 --quiet=2", "replay a.rec --quiet=1", "--help=1", "--version=1", "cull --help=1"})
+          "verify city:1:10 --no-second-look=0", "info city:1:10 --objects=2", "report a.json --compare=1 --quiet=2",
+          "replay a.rec --quiet=1", "--help=1", "--version=1", "cull --help=1"})
         expectError(word, 2, "takes no value");
     EXPECT_EQ(run("cull city:1:10 --frames=1 --size=32x18 --masked --repeat=1").exit_code, 0);
     expectError("cull city:1:10 --stereo 0", 2, "--stereo: 0 is not a distance between the eyes");

@@ -114,8 +114,8 @@ template Option Command::add_option_function(const std::string&, std::function<v
                                              const std::string&);
 template Option Command::add_option_function(const std::string&, std::function<void(const std::string&)>,
                                              const std::string&);
-template Option Command::add_option_function(const std::string&,
-                                             std::function<void(const std::vector<std::string>&)>, const std::string&);
+template Option Command::add_option_function(const std::string&, std::function<void(const std::vector<std::string>&)>,
+                                             const std::string&);
 
 Option Command::add_flag(const std::string& name, bool& value, const std::string& help) {
     return app_->add_flag(name, value, help);

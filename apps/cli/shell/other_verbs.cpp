@@ -22,8 +22,7 @@ constexpr OtherVerb kOthers[] = {
     {"export", "the scene as glTF, cut into objects and without what is not seen", "sightline-lab",
      "split up unit sides import-memory import-time cameras path frames seed fps speed size threads json= "
      "output= outside from-path quiet -o -q"},
-    {"calibrate", "what a cluster's test and a triangle cost on this machine", "sightline-lab",
-     "json= quiet -q"},
+    {"calibrate", "what a cluster's test and a triangle cost on this machine", "sightline-lab", "json= quiet -q"},
     {"profile", "what limits a scene's frames, what its parts cost, and what each stage is worth there",
      "sightline-lab",
      "split up unit sides import-memory import-time cameras path frames seed fps speed size threads json= "

@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-
 #include "apps/cli/shell/options.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/shell/progress.h"

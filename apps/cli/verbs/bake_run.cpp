@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-
 #include "apps/cli/shell/options.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
@@ -81,13 +80,12 @@ void addBakeOptions(Command& verb, BakeOptions& options, const std::string& outp
         ->type_name("WORK");
     verb.add_option("--time-limit", options.time_limit,
                     "stop after so many seconds; what is not settled by then is visible")
-        ->check(Validator{
-            [](const std::string& text) -> std::string {
-                double seconds = 0;
-                const bool good = readNumber(text, seconds) && seconds > 0;
-                return good ? "" : text + " is no number of seconds above 0";
-            },
-            "seconds"})
+        ->check(Validator{[](const std::string& text) -> std::string {
+                              double seconds = 0;
+                              const bool good = readNumber(text, seconds) && seconds > 0;
+                              return good ? "" : text + " is no number of seconds above 0";
+                          },
+                          "seconds"})
         ->type_name("S");
     verb.add_option("--state", options.state,
                     "where a long bake writes down how far it is, to go on after its end (default: the output's name "

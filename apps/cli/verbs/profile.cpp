@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-
 #include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"

@@ -27,7 +27,7 @@ using namespace tools;
 namespace {
 
 constexpr size_t kPictureBudget = size_t{18} << 20;  // of a page [bytes]
-constexpr size_t kMostReportLines = 12;                    // of objects that differ
+constexpr size_t kMostReportLines = 12;              // of objects that differ
 
 struct ReportOptions {
     std::vector<std::string> runs;
@@ -60,7 +60,8 @@ void printComparison(std::FILE* out, const RunComparison& c, const RunFile& a, c
         fmt::print(out, "  object {} \"{}\": {} only in A, {} only in B\n", row.id & ~(uint64_t{1} << 63),
                    oneLine(row.path.empty() ? row.name : row.path, 200), counted(row.only_a, "frame"), row.only_b);
     }
-    if (c.differences.size() > kMostReportLines) fmt::print(out, "  and {} more\n", c.differences.size() - kMostReportLines);
+    if (c.differences.size() > kMostReportLines)
+        fmt::print(out, "  and {} more\n", c.differences.size() - kMostReportLines);
     for (const std::string& sentence : c.verdict) fmt::print(out, "{}\n", oneLine(sentence));
 }
 

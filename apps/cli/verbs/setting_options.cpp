@@ -24,8 +24,8 @@ namespace {
 DoorAsked readDoor(const std::string& text) {
     const size_t equals = text.rfind('=');
     DoorAsked door;
-    const bool good = equals != std::string::npos && equals > 0 &&
-                      readNumber(text.substr(equals + 1), door.open) && door.open >= 0 && door.open <= 1;
+    const bool good = equals != std::string::npos && equals > 0 && readNumber(text.substr(equals + 1), door.open) &&
+                      door.open >= 0 && door.open <= 1;
     if (!good) refuse("--door", "wants NAME=OPEN, from 0 (shut) to 1 (open), not '" + text + "'");
     door.name = text.substr(0, equals);
     return door;
@@ -44,8 +44,7 @@ glm::dvec4 readPlane(const std::string& text) {
     glm::dvec4 plane(0.0);
     if (parts.size() != 4) refusePlane(text);
     for (int i = 0; i < 4; ++i)
-        if (!readNumber(parts[static_cast<size_t>(i)], plane[i]) || !std::isfinite(plane[i]))
-            refusePlane(text);
+        if (!readNumber(parts[static_cast<size_t>(i)], plane[i]) || !std::isfinite(plane[i])) refusePlane(text);
     if (glm::dvec3(plane) == glm::dvec3(0.0))
         refuse("--section", "A, B and C are all 0 in '" + text + "': that is no plane");
     return plane;
@@ -69,9 +68,9 @@ double readAbove(const std::string& option, const SettingRow<double>& row, std::
     if (text.size() > 2 && text.ends_with("px")) text.resize(text.size() - 2);
     double value = 0;
     if (!readNumber(text, value) || !(value > 0.0 && value <= row.most))
-        refuse(
-            option, row.most < 1e9 ? fmt::format("wants {}, above 0 and up to {}, not '{}'", row.unit, row.most, given)
-                                   : fmt::format("wants a distance above 0, not '{}'", given));
+        refuse(option, row.most < 1e9
+                           ? fmt::format("wants {}, above 0 and up to {}, not '{}'", row.unit, row.most, given)
+                           : fmt::format("wants a distance above 0, not '{}'", given));
     return value;
 }
 
@@ -180,8 +179,7 @@ void addClusterOptions(Command& verb, RunOptions& options) {
     verb.add_option_function<double>(
             "--cluster-test",
             [&options](const double& test) {
-                if (!(test > 0.0) || std::isinf(test))
-                    refuse("--cluster-test", "wants a number above 0");
+                if (!(test > 0.0) || std::isinf(test)) refuse("--cluster-test", "wants a number above 0");
                 options.cluster_test = test;
             },
             "what a cluster's test costs, in triangles: for the stage clusters")

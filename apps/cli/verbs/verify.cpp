@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <memory>
 
-
 #include "apps/cli/shell/options.h"
 #include "apps/cli/shell/apart.h"
 #include "apps/cli/verbs/common.h"

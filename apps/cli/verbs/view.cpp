@@ -259,8 +259,7 @@ void addView(Command& tool, int& exit_code) {
     verb->add_option("--object", options->object, "choose this object: its key, its name or a part of its path")
         ->type_name("OBJECT");
     verb->add_option("--colours", options->colours, "of what is visible")
-        ->check(OneOf(
-            std::vector<std::string>(std::begin(viewer::kColourByNames), std::end(viewer::kColourByNames))))
+        ->check(OneOf(std::vector<std::string>(std::begin(viewer::kColourByNames), std::end(viewer::kColourByNames))))
         ->type_name("materials|objects|answer|levels")
         ->capture_default_str();
     verb->add_option("--culled", options->culled, "what was culled is shown as")

@@ -98,7 +98,8 @@ FacingClusters describeClusters(const MeshView& mesh, std::span<const uint32_t> 
         if (settings.turned) setTurned({out.turned, out.stride, i}, makeTurnedBox(facets));
         if (settings.cones) {
             FacingCone cone = makeFacingCone(facets);
-            if (taxicabLength(glm::dvec3(cone.apex)) > 4.0 * out.reach) cone = {};  // what is so far away rounds too coarsely
+            if (taxicabLength(glm::dvec3(cone.apex)) > 4.0 * out.reach)
+                cone = {};  // what is so far away rounds too coarsely
             setCone({out.cones, out.stride, i}, cone);
         }
         if (settings.mask_steps) {

@@ -34,7 +34,7 @@ struct Cluster {
     Box3d box;
     double probability = 0;
     uint32_t count = 0, first = kNoPlane, last = kNoPlane;  ///< planes in a list
-    uint32_t parent = kNoPlane;                          ///< the cluster that it has become part of
+    uint32_t parent = kNoPlane;                             ///< the cluster that it has become part of
     std::vector<uint32_t> neighbours;
 };
 

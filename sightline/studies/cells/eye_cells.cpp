@@ -244,8 +244,7 @@ void EyeCells::pass(uint32_t from, uint32_t index) {
     if (ways_ > 0 && seen.ways++ >= ways_) {
         const uint32_t* first = kept_.data() + windows_[seen.newest].first;
         const uint32_t* last = first + windows_[seen.newest].count;
-        stats_.joined +=
-            erase_if(chosen_, [&](uint32_t line) { return !std::binary_search(first, last, line); }) > 0;
+        stats_.joined += erase_if(chosen_, [&](uint32_t line) { return !std::binary_search(first, last, line); }) > 0;
     }
     Window window;
     window.cell = portal.to;

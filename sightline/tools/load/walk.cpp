@@ -13,10 +13,10 @@
 namespace sightline::tools {
 namespace {
 
-constexpr uint32_t kGoals = 64;    // seeded cameras
-constexpr int kDirections = 32;    // tried where no goal can be reached
+constexpr uint32_t kGoals = 64;        // seeded cameras
+constexpr int kDirections = 32;        // tried where no goal can be reached
 constexpr double kLongestWalkLeg = 4;  // of these  [s]
-constexpr int kRoundings = 8;      // pieces of a corner
+constexpr int kRoundings = 8;          // pieces of a corner
 constexpr double kHalfTurn = 3.14159265358979323846;
 constexpr double kTurn = kHalfTurn / 3;  // [radians / s]
 constexpr double kGlance = 2;            // between two glances  [s]

@@ -135,8 +135,9 @@ TEST_F(SceneKinds, AMissingReaderSaysWhatToInstall) {
     const Result<Scene> scene = load(file);
     if (scene.ok()) GTEST_SKIP() << "sightline-import is installed on this machine";
     EXPECT_EQ(scene.error().message,
-              file + ": sightline-import, which reads .obj files, is not beside this program: `./run.sh info FILE.obj` "
-                     "builds it, if libassimp-dev is installed");
+              file +
+                  ": sightline-import, which reads .obj files, is not beside this program: `./run.sh info FILE.obj` "
+                  "builds it, if libassimp-dev is installed");
 }
 
 }  // namespace
