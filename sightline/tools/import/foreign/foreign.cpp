@@ -244,15 +244,15 @@ std::vector<std::string> commandOf(const std::string& worker, const std::string&
 std::string findImportWorker(const ImportSettings& settings) {
     if (!settings.worker.empty()) return settings.worker;
     if (const char* named = std::getenv("SIGHTLINE_IMPORT"); named && *named) return named;
-    std::vector<fs::path> places;
+    std::vector<std::string> places;
     std::error_code error;
     if (const fs::path self = fs::read_symlink("/proc/self/exe", error); !error) {
-        places.push_back(self.parent_path() / kProgram);
-        places.push_back(self.parent_path().parent_path() / SIGHTLINE_LIBEXEC / kProgram);
+        places.push_back((self.parent_path() / kProgram).string());
+        places.push_back((self.parent_path().parent_path() / SIGHTLINE_LIBEXEC / kProgram).string());
     }
-    places.push_back(fs::path(SIGHTLINE_FULL_LIBEXEC) / kProgram);
-    for (const fs::path& place : places)
-        if (access(place.c_str(), X_OK) == 0 && !fs::is_directory(place, error)) return place.string();
+    places.push_back((fs::path(SIGHTLINE_FULL_LIBEXEC) / kProgram).string());
+    for (const std::string& place : places)
+        if (access(place.c_str(), X_OK) == 0 && !fs::is_directory(place, error)) return place;
     return {};
 }
 
