@@ -24,7 +24,7 @@ fresh() {
     # The oldest of the marks is what sources are held against.
     local oldest=$build/.built-$1
     for program in "$@"; do [ "$build/.built-$program" -nt "$oldest" ] || oldest=$build/.built-$program; done
-    [ -z "$(cd "$root" && find CMakeLists.txt CMakePresets.json cmake sightline apps bench bindings docs/techniques/images \
+    [ -z "$(cd "$root" && find CMakeLists.txt CMakePresets.json cmake sightline apps bench bindings \
         -newer "$oldest" -print -quit 2>/dev/null)" ]
 }
 

@@ -30,7 +30,7 @@ endfunction()
 
 set(SIGHTLINE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/sightline)
 
-sightline_install(EXPORT sightline-runtime COMPONENT development LIBRARIES run HEADERS sightline.h)
+sightline_install(EXPORT sightline-runtime COMPONENT development LIBRARIES run HEADERS sightline.h geom/setting_rows.h)
 sightline_install(EXPORT sightline-c COMPONENT development LIBRARIES c shared HEADERS c/sightline.h)
 sightline_install(EXPORT sightline-studies COMPONENT development LIBRARIES bsp hidden studies
   HEADERS studies/hidden/render.h studies/hidden/zbuffer/zbuffer.h)

@@ -1,6 +1,7 @@
 // All settings of the query, each with what it means: made from the table that names them.
 // SPDX-License-Identifier: MIT
 #include "apps/viewer/settings_panel.h"
+#include "sightline/geom/setting_rows.h"
 
 #include <algorithm>
 #include <cmath>

@@ -49,15 +49,21 @@ void expectAsVector(uint64_t seed) {
             const size_t size = vector.size(), at = size == 0 ? 0 : random.below(static_cast<uint32_t>(size));
             const std::vector<T> some = {T(value), T(value + 1), T(value + 2)};
             switch (random.below(20)) {
-                case 0: array.push_back(T(value)), vector.push_back(T(value)); break;
-                case 1: array.emplace_back(value), vector.emplace_back(value); break;
+                case 0:
+                    array.push_back(T(value)), vector.push_back(T(value));
+                    break;
+                case 1:
+                    array.emplace_back(value), vector.emplace_back(value);
+                    break;
                 case 2:
                     if (size > 0) array.push_back(array[at]), vector.push_back(vector[at]);  // one of its own
                     break;
                 case 3:
                     if (size > 0) array.pop_back(), vector.pop_back();
                     break;
-                case 4: array.insert(array.begin() + at, T(value)), vector.insert(vector.begin() + at, T(value)); break;
+                case 4:
+                    array.insert(array.begin() + at, T(value)), vector.insert(vector.begin() + at, T(value));
+                    break;
                 case 5:
                     array.insert(array.begin() + at, some.begin(), some.end());
                     vector.insert(vector.begin() + at, some.begin(), some.end());
@@ -75,20 +81,30 @@ void expectAsVector(uint64_t seed) {
                     vector.erase(vector.begin() + at, vector.begin() + end);
                     break;
                 }
-                case 9: array.resize(value % 40), vector.resize(value % 40); break;
+                case 9:
+                    array.resize(value % 40), vector.resize(value % 40);
+                    break;
                 case 10:
                     array.resize(size + value % 9, T(value));
                     vector.resize(size + value % 9, T(value));
                     break;
-                case 11: array.assign(value % 20, T(value)), vector.assign(value % 20, T(value)); break;
-                case 12: array.assign(some.begin(), some.end()), vector.assign(some.begin(), some.end()); break;
+                case 11:
+                    array.assign(value % 20, T(value)), vector.assign(value % 20, T(value));
+                    break;
+                case 12:
+                    array.assign(some.begin(), some.end()), vector.assign(some.begin(), some.end());
+                    break;
                 case 13: {
                     const std::list<T> list(some.begin(), some.end());
                     array.assign(list.begin(), list.end()), vector.assign(list.begin(), list.end());
                     break;
                 }
-                case 14: array.reserve(value % 100), vector.reserve(value % 100); break;
-                case 15: array.shrink_to_fit(); break;
+                case 14:
+                    array.reserve(value % 100), vector.reserve(value % 100);
+                    break;
+                case 15:
+                    array.shrink_to_fit();
+                    break;
                 case 16: {
                     Array<T> copy(array, &elsewhere);
                     array.clear();

@@ -1,6 +1,7 @@
 // The table of a query's settings: names are told apart, and what holds unless it is asked otherwise may be asked for.
 // SPDX-License-Identifier: MIT
 #include "sightline/geom/query_settings.h"
+#include "sightline/geom/setting_rows.h"
 
 #include <set>
 #include <string>

@@ -1,5 +1,6 @@
 // A recorded frame is read as it was written, asked again with the same answer, and nothing in a file is believed.
 // SPDX-License-Identifier: MIT
+#include "sightline/geom/setting_rows.h"
 #include "sightline/query/record/frame_recording.h"
 
 #include <gtest/gtest.h>

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <vector>
 
+#include "sightline/geom/setting_rows.h"
 #include "sightline/query/record/frame_recording.h"
 #include "sightline/tools/load/mesh_lods.h"
 #include "sightline/tools/load/seeded_cameras.h"

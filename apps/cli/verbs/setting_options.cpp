@@ -12,6 +12,7 @@
 #include "apps/cli/shell/options.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/shell/quoted.h"
+#include "sightline/geom/setting_rows.h"
 #include "sightline/tools/report/run/calibration_json.h"
 #include "sightline/tools/report/run/cull_run.h"
 #include "sightline/tools/scene/text_file.h"

@@ -14,7 +14,7 @@
 #include "sightline/c/query.h"
 #include "sightline/geom/image_rect.h"
 #include "sightline/geom/mesh_view.h"
-#include "sightline/geom/query_settings.h"
+#include "sightline/geom/setting_rows.h"
 #include "sightline/geom/view.h"
 #include "sightline/math/box.h"
 #include "sightline/world/world_object.h"

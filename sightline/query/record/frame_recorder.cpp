@@ -7,6 +7,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "sightline/geom/setting_rows.h"
 #include "sightline/query/record/frame_replay.h"
 #include "sightline/world/world_state.h"
 

@@ -10,6 +10,7 @@
 
 #include "sightline/base/bytes.h"
 #include "sightline/geom/occluder_bytes.h"
+#include "sightline/geom/setting_rows.h"
 #include "sightline/query/record/frame_recording.h"
 
 namespace sightline {

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sightline/geom/setting_rows.h"
 #include "sightline/tools/report/run/camera_json.h"
 #include "sightline/tools/report/run/cull_run.h"
 

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "sightline/geom/setting_rows.h"
 #include "sightline/tools/scene/text_file.h"
 
 namespace sightline::tools {

@@ -1,5 +1,6 @@
 // What cull's JSON holds reads back; what it should not hold is told by its place.
 // SPDX-License-Identifier: MIT
+#include "sightline/geom/setting_rows.h"
 #include "sightline/tools/report/run/run_reader.h"
 
 #include <algorithm>
