@@ -67,7 +67,7 @@ void Culler::listDoors() {
     }
     for (const auto& name : cells.doors) {
         ViewerDoor& door = doors_.emplace_back();
-        door.name = door.label = std::string(name);
+        door.name = door.label = std::string(name.begin(), name.end());
         const auto known = object_of.find(door.name);
         if (known == object_of.end()) continue;
         door.object = known->second;

@@ -79,7 +79,7 @@ public:
     const Command& operator*() const { return *this; }
 
     Command add_subcommand(const std::string& name, const std::string& about);
-    /// T: int, uint32_t, uint64_t, float, double, an optional double, std::string, or a vector of doubles or texts.
+    /// T: int, uint32_t, uint64_t, float, double, optional ones of uint32_t and double, std::string, or a vector of doubles or texts.
     template <class T>
     Option add_option(const std::string& name, T& value, const std::string& help);
     template <class T>

@@ -8,12 +8,6 @@
 
 namespace sightline::tools {
 
-double medianOf(std::vector<double> values) {
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    return 0.5 * (values[values.size() / 2] + values[(values.size() - 1) / 2]);
-}
-
 double Verification::overEstimate() const {
     if (exactly_visible == 0) return reported == 0 ? 1.0 : std::numeric_limits<double>::infinity();
     return static_cast<double>(reported) / static_cast<double>(exactly_visible);

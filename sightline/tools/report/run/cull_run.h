@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sightline/frame/stats.h"
 #include "sightline/geom/view.h"
+#include "sightline/tools/profile/middle.h"
 #include "sightline/tools/scene/camera_path.h"
 #include "sightline/tools/scene/scene.h"
 #include "sightline/tools/truth/proof_counts.h"
@@ -178,7 +180,7 @@ inline bool isLossy(uint8_t reason, const CullRun& run) {
 }
 
 /// The median, of an even number the mean of the two in the middle; 0 of none. All that tells of a run uses this one.
-double medianOf(std::vector<double> values);
+inline double medianOf(std::vector<double> values) { return middleOf(std::move(values)); }
 
 /// Visible keys and culled keys by stage from the objects' reasons. Writes FrameResult::visible, objects_visible,
 /// triangles, and tested and culled of the stages in use.
