@@ -12,9 +12,9 @@ public:
         return alignment > __STDCPP_DEFAULT_NEW_ALIGNMENT__ ? ::operator new(bytes, std::align_val_t(alignment))
                                                             : ::operator new(bytes);
     }
-    void deallocate(void* place, size_t bytes, size_t alignment) override {
-        alignment > __STDCPP_DEFAULT_NEW_ALIGNMENT__ ? ::operator delete(place, bytes, std::align_val_t(alignment))
-                                                     : ::operator delete(place, bytes);
+    void deallocate(void* place, size_t, size_t alignment) override {
+        alignment > __STDCPP_DEFAULT_NEW_ALIGNMENT__ ? ::operator delete(place, std::align_val_t(alignment))
+                                                     : ::operator delete(place);
     }
 };
 

@@ -19,6 +19,8 @@ template <class T>
 struct Range {
     T least, most;
 };
+template <class T>
+Range(T, T) -> Range<T>;
 
 /// Words that an option takes.
 using OneOf = std::vector<std::string>;
