@@ -1,9 +1,8 @@
-// Arrays in a memory that is given: what std::pmr::vector is, and a tenth of its cost to compile.
+// Arrays in a memory that is given, as std::pmr::vector, whose headers and functions are slow to compile.
 // SPDX-License-Identifier: MIT
 #pragma once
 
 #include <algorithm>
-#include <compare>
 #include <cstddef>
 #include <cstring>
 #include <initializer_list>
@@ -166,7 +165,7 @@ public:
         size_ = static_cast<size_t>(behind - data_);
         return to;
     }
-    /// Both arrays have the same memory.
+    /// Exchanges the memories, too.
     void swap(Array& other) {
         std::swap(memory_, other.memory_);
         std::swap(data_, other.data_);

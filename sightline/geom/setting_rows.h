@@ -1,7 +1,7 @@
 // The table of a query's settings: names, units and limits, for whoever reads, writes or shows them all.
 // SPDX-License-Identifier: MIT
 //
-// Apart from query_settings.h, which every file of a query reads: the tuple costs a tenth of a second to compile.
+// Apart from query_settings.h, which every file of a query reads, because the tuple is slow to compile.
 #pragma once
 
 #include <cstdint>
