@@ -40,6 +40,9 @@ core() {
     ctest --preset release --output-log build/release/test.log -LE full -E "^(.*_NOT_BUILT|$slow)( |\$)"
 }
 
+# Exit code 77: this machine lacks what the part needs. It is told, and not written down as passed.
+is_skipped() { [ "$1" -eq 77 ] && skipped=1; }
+
 part_format() { tools/format --check; }
 part_clang() { tools/check_clang; }
 part_fuzz() { build fuzz sightline_fuzzers; tests/fuzz/run 30; }
@@ -55,8 +58,8 @@ part_tsan() {
     build tsan
     ctest --preset tsan --output-log build/tsan/test.log -R "^($(sort -u build/release/threads.txt | paste -sd '|'))( |\$)"
 }
-part_foreign() { tools/try_foreign || [ $? -eq 77 ]; }
-part_packages() { build release; tools/try_packages || [ $? -eq 77 ]; }
+part_foreign() { tools/try_foreign || is_skipped $?; }
+part_packages() { build release; tools/try_packages || is_skipped $?; }
 part_mutations() { build release; tools/mutate; }
 
 # What a part looks at: folders and files.
@@ -90,7 +93,12 @@ run_part() {
         return
     fi
     step "$part"
+    skipped=
     "part_$part"
+    if [ -n "$skipped" ]; then
+        step "$part: skipped, see above"
+        return
+    fi
     printf '%s %s passed in %d s on %s, state %s\n' "$(date -u +%FT%TZ)" "$part" $((SECONDS - started)) \
         "$(git describe --always --dirty 2>/dev/null || echo unknown)" "$state" >>build/full.log
 }
