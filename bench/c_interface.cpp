@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "bench/cases.h"
 #include "bench/stopwatch.h"

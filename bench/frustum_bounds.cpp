@@ -1,6 +1,6 @@
 // Large bounds and their refinement, bounds that are no boxes, and many volumes in one pass.
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "bench/frustum_walks.h"
 #include "sightline/base/random.h"

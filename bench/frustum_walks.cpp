@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/frustum_walks.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "sightline/studies/frustum/coherent_frustum.h"
 

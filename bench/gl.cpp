@@ -1,6 +1,6 @@
 // The software z-buffer beside Mesa's software GL: the same lists, views and threads, in turns.
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdio>

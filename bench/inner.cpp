@@ -1,6 +1,6 @@
 // Simpler occluders inside of dense solids: what a query saves by them, and what it then keeps.
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "bench/cases.h"
 #include "bench/path_costs.h"

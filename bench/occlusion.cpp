@@ -1,6 +1,6 @@
 // The occlusion buffer by itself; then the whole query while a city grows, beside flat frustum culling.
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "bench/cases.h"
 #include "bench/flat_boxes.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "bench/occlusion_frame.h"
 #include "bench/occlusion_truth.h"

@@ -7,7 +7,7 @@
 #include <bit>
 #include <thread>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <hwy/targets.h>
 
 #include "sightline/buffer/depth_image.h"

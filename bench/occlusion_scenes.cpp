@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstring>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace sightline::bench {
 namespace {

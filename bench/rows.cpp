@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <numeric>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "bench/cases.h"
 #include "bench/stopwatch.h"

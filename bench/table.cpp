@@ -4,10 +4,11 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "sightline/tools/profile/facing_costs.h"
+#include "sightline/tools/scene/json_text.h"
 
 namespace sightline::bench {
 using namespace tools;
@@ -43,7 +44,7 @@ std::string toJson(const Table& table) {
         if (!row.note.empty()) json["rows"].back()["note"] = row.note;
     }
     if (!table.faults.empty()) json["faults"] = table.faults;
-    return json.dump(2) + "\n";
+    return jsonText(json, 2) + "\n";
 }
 
 }  // namespace sightline::bench

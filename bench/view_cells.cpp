@@ -5,7 +5,7 @@
 // Partitioning of Densely Occluded Scenes. 1998.
 #include <algorithm>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "bench/cases.h"
 #include "bench/stopwatch.h"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/gl/context.h"
 #include "bench/cases.h"

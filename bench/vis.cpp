@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "bench/cases.h"
 #include "bench/classic_flow.h"

@@ -57,7 +57,7 @@ if(SIGHTLINE_TOOLS)
       COMPONENT tools OPTIONAL)
   endif()
   if(SIGHTLINE_HAS_ASSIMP)
-    install(TARGETS sightline-import DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/sightline COMPONENT tools)
+    install(TARGETS sightline-import DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/sightline COMPONENT tools OPTIONAL)
   endif()
 endif()
 

@@ -65,7 +65,9 @@ endfunction()
 
 # A target in which little is hot: -O1 builds it in three quarters of the time.
 function(sightline_lukewarm target)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  if(NOT SIGHTLINE_FEW_TARGETS)  # where all is built fast, this is not the exception
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
 endfunction()
 
 # A target in which nothing is hot is optimised little, and so built sooner.
@@ -145,7 +147,7 @@ function(sightline_share_precompiled target)
     set_target_properties(sightline_tool_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
     sightline_settings(sightline_tool_headers)
     target_link_libraries(sightline_tool_headers PRIVATE glm::glm fmt::fmt nlohmann_json::nlohmann_json)
-    sightline_precompile(sightline_tool_headers <filesystem> <fstream> <sstream> <fmt/format.h> <nlohmann/json.hpp>)
+    sightline_precompile(sightline_tool_headers <filesystem> <fstream> <sstream> <fmt/core.h> <nlohmann/json.hpp>)
   endif()
   target_precompile_headers(${target} REUSE_FROM sightline_tool_headers)
   # GCC takes precompiled headers only with the definitions that they were made with.

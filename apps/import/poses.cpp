@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/import/fault.h"
 #include "sightline/math/stretch.h"

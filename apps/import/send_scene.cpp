@@ -25,7 +25,7 @@
 #include <assimp/ProgressHandler.hpp>
 #include <assimp/config.h>
 #include <assimp/scene.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/import/fault.h"
 #include "apps/import/ifc_rewrite.h"

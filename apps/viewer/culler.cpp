@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "sightline/cells/portal_graph.h"
 #include "sightline/query/explain/credits.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include <epoxy/gl.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/gl/queries.h"
 #include "apps/gl/two_pass.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/viewer/inks.h"
 #include "sightline/tools/report/output_file.h"

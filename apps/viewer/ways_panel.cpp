@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/viewer/ways_panel.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <imgui.h>
 
 #include "sightline/tools/report/readable.h"

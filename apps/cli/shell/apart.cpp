@@ -4,7 +4,7 @@
 
 #include <system_error>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "sightline/tools/import/quake/map_source.h"
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/cli/shell/help.h"
 #include "apps/cli/shell/other_verbs.h"

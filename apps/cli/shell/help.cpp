@@ -11,9 +11,10 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "sightline/geom/view.h"
+#include "sightline/tools/scene/one_line.h"
 
 namespace sightline::cli {
 namespace {
@@ -192,7 +193,7 @@ std::string helpOf(const CLI::Option& option) {
     const std::string text = option.get_description();
     const std::vector<std::string> choices = choicesOf(option);
     if (choices.empty() || valueName(option) != "TEXT") return text;
-    return fmt::format("{}{}{}", text, text.empty() ? "" : ": ", fmt::join(choices, ", "));
+    return fmt::format("{}{}{}", text, text.empty() ? "" : ": ", joined(choices, ", "));
 }
 
 bool isList(const CLI::Option& option) { return valueName(option) == "LIST"; }

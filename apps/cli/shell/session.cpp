@@ -16,7 +16,7 @@
 #include <utility>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "sightline/tools/scene/one_line.h"
 

@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/cli/shell/config.h"
 #include "apps/cli/shell/help.h"
@@ -24,6 +24,7 @@
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/verbs.h"
 #include "apps/cli/verbs/vis_words.h"
+#include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/scene/procedural.h"
 #include "sightline/tools/scene/suggestion.h"
 
@@ -175,7 +176,7 @@ std::string meantOption(const CLI::App& tool, const CLI::App& verb, const std::s
         if (other->get_option_no_throw(option)) note(other->get_name());
     for (const std::string& owner : otherOwners(option)) note(owner);
     if (owners.empty()) return suggestion(option, longOptions(verb));
-    return fmt::format("; it belongs to {}", fmt::join(owners, ", "));
+    return fmt::format("; it belongs to {}", joined(owners, ", "));
 }
 
 /// A number that is none is not told by its range.

@@ -7,13 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/explain_object.h"
 #include "sightline/tools/report/run/cull_run.h"
+#include "sightline/tools/scene/json_text.h"
 #include "sightline/tools/scene/one_line.h"
 
 namespace sightline::cli {
@@ -335,7 +336,7 @@ std::string bakeJson(const BakeSource& source, const Baked& baked, const BakeSum
     out["rows_seconds"] = summary.rows_seconds;
     out["objects_seconds"] = summary.objects_seconds;
     out["wall_seconds"] = s.wall_seconds;
-    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(out, 2) + "\n";
 }
 
 }  // namespace sightline::cli

@@ -6,13 +6,14 @@
 #include <utility>
 
 #include <fmt/core.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/verbs.h"
 #include "bench/bench.h"
+#include "sightline/tools/scene/one_line.h"
 
 namespace sightline::cli {
 using namespace tools;
@@ -23,7 +24,7 @@ Status check(const Command& verb, bench::Options& options, const std::string& si
     const std::vector<std::string> names = bench::names();
     if (std::find(names.begin(), names.end(), options.name) == names.end())
         return usageError(
-            fmt::format("bench: there is no case \"{}\" (there are: {})", options.name, fmt::join(names, ", ")));
+            fmt::format("bench: there is no case \"{}\" (there are: {})", options.name, joined(names, ", ")));
     if (options.proof.wanted && options.name != "occlusion") return usageError("--verify goes with the case occlusion");
     if (!options.only.empty() && options.name != "occlusion") return usageError("--only goes with the case occlusion");
     for (const char* option : {"--jitters", "--rays-per-box", "--first-cameras"})
@@ -36,7 +37,7 @@ Status check(const Command& verb, bench::Options& options, const std::string& si
     for (const std::string& name : options.only)
         if (std::find(scenes.begin(), scenes.end(), name) == scenes.end())
             return usageError(
-                fmt::format("--only: there is no scene \"{}\" (there are: {})", name, fmt::join(scenes, ", ")));
+                fmt::format("--only: there is no scene \"{}\" (there are: {})", name, joined(scenes, ", ")));
     if (verb.count("--size") > 0)
         if (Status read = readSize("--size", size, options.proof.width, options.proof.height); !read) return read;
     return canWriteFiles({options.json});
@@ -87,7 +88,7 @@ void addBench(Command& tool, int& exit_code) {
     Command verb = addOtherVerb(tool, "bench");
     const auto options = std::make_shared<bench::Options>();
     const auto scene = std::make_shared<SceneChoice>();
-    verb->add_option("NAME", options->name, fmt::format("one of: {}", fmt::join(bench::names(), ", ")))->required();
+    verb->add_option("NAME", options->name, fmt::format("one of: {}", joined(bench::names(), ", ")))->required();
     verb->add_option("--json", options->json, "write the rows as JSON (-: standard output)")->type_name("FILE");
     verb->add_option("--scene", scene->names, "measure on this scene instead of the case's own")->type_name("SCENE");
     addImportOptions(*verb, *scene);

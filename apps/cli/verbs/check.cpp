@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "apps/cli/shell/other_verbs.h"
@@ -26,6 +26,7 @@
 #include "sightline/query/record/frame_recording.h"
 #include "sightline/tools/load/recorded_scene.h"
 #include "sightline/tools/report/run/run_reader.h"
+#include "sightline/tools/scene/json_text.h"
 #include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/scene/text_file.h"
 #include "sightline/tools/truth/cull_proof.h"
@@ -146,7 +147,7 @@ std::string jsonOf(const Sums& sums, const CheckOptions& options, const Checked&
                                      {"path", objectPath(of.scene, of.scene.objects[cull.object])},
                                      {"pixel", {cull.x, cull.y}},
                                      {"visible", cull.visible}});
-    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    return jsonText(json, 2) + "\n";
 }
 
 void tellUnshown(const Sums& sums, const Scene& scene) {

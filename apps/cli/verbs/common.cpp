@@ -11,7 +11,7 @@
 #include <utility>
 
 #include <fmt/core.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/cli/shell/options.h"
 #include "apps/cli/shell/session.h"
@@ -93,7 +93,7 @@ void addCameraOptions(Command& verb, RunOptions& options, const std::string& sha
                     "a view of the whole and a walk through it; a walk, frame by frame; once around; the whole from "
                     "outside; or cameras that stand anywhere (default: the scene's own cameras, else tour)")
         ->check(OneOf(paths))
-        ->type_name(fmt::format("{}", fmt::join(paths, "|")))
+        ->type_name(joined(paths, "|"))
         ->group("Cameras");
     verb.add_option("--frames", walk.frames,
                     "so many cameras; a city without --path and --seed is walked along its streets")

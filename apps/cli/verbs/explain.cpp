@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "apps/cli/shell/options.h"
@@ -24,6 +24,7 @@
 #include "sightline/tools/report/pictures/explain_picture.h"
 #include "sightline/tools/report/pictures/shadow_picture.h"
 #include "sightline/tools/report/run/explain_text.h"
+#include "sightline/tools/scene/json_text.h"
 #include "sightline/tools/scene/one_line.h"
 
 namespace sightline::cli {
@@ -85,7 +86,7 @@ Status writeJson(const ExplainOptions& options, const Scene& scene, const Json& 
     out["width"] = options.width;
     out["height"] = options.height;
     out.update(body);
-    return writeText(options.json, out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    return writeText(options.json, jsonText(out, 1) + "\n");
 }
 
 std::FILE* readerOf(const ExplainOptions& options) { return options.json == "-" ? stderr : stdout; }

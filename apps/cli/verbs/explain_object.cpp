@@ -7,7 +7,7 @@
 #include <charconv>
 #include <set>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <glm/gtc/matrix_access.hpp>
 #include <nlohmann/json.hpp>
 

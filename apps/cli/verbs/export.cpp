@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "apps/cli/shell/other_verbs.h"
@@ -24,6 +24,7 @@
 #include "sightline/tools/import/scene_kind.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/readable.h"
+#include "sightline/tools/scene/json_text.h"
 
 namespace sightline::cli {
 using namespace tools;
@@ -120,7 +121,7 @@ std::string exportJson(const ExportOptions& options, const Exported& e) {
     if (options.outside)
         out["outside"] = {{"closed_surfaces", e.shells}, {"triangles_left_out", e.encased}, {"proved", true}};
     if (options.from_path) out["path"] = {{"frames", e.frames}, {"triangles_left_out", e.unseen}, {"proved", true}};
-    return out.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    return jsonText(out, 1) + "\n";
 }
 
 Result<int> runExport(const Command& verb, ExportOptions& options) {

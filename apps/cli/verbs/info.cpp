@@ -21,6 +21,7 @@
 #include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/import/scene_kind.h"
 #include "sightline/tools/report/run/cull_run.h"
+#include "sightline/tools/scene/json_text.h"
 #include "sightline/tools/scene/one_line.h"
 
 namespace sightline::cli {
@@ -274,7 +275,7 @@ Status printFormats(const std::string& json) {
                         {"available", can}});
     }
     if (json.empty()) return success();
-    return writeText(json, Json{{"schema", "sightline.formats/1"}, {"formats", list}}.dump(1) + "\n");
+    return writeText(json, jsonText(Json{{"schema", "sightline.formats/1"}, {"formats", list}}, 1) + "\n");
 }
 
 /// Of a file of portals, which is no scene.
@@ -283,7 +284,7 @@ Status runPortals(const InfoOptions& options) {
     if (!report) return report.error();
     if (options.json != "-") fmt::print("{}", report->text);
     if (options.json.empty()) return success();
-    return writeText(options.json, report->json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    return writeText(options.json, jsonText(report->json, 1) + "\n");
 }
 
 Status runInfo(const Command& verb, const InfoOptions& options) {
@@ -310,7 +311,7 @@ Status runInfo(const Command& verb, const InfoOptions& options) {
     if (options.objects) printObjects(options.json == "-" ? stderr : stdout, *scene);
     else if (options.json != "-") printInfo(stdout, report);
     if (options.json.empty()) return success();
-    return writeText(options.json, infoJson(report).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    return writeText(options.json, jsonText(infoJson(report), 1) + "\n");
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string_view>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/cli/verbs/common.h"
 #include "sightline/tools/import/quake/map_source.h"

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/cli/verbs/common.h"
+#include "sightline/tools/scene/json_text.h"
 #include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/scene/text_file.h"
 #include "sightline/visfile/visibility_file.h"
@@ -184,7 +185,7 @@ Status infoOfVisibility(const std::string& file, const std::string& json) {
                                {"clusters", made.clusters},
                                {"levels", made.levels}};
     }
-    return writeText(json, out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    return writeText(json, jsonText(out, 1) + "\n");
 }
 
 }  // namespace sightline::cli

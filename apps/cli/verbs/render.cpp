@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/progress.h"
@@ -106,10 +106,9 @@ void drawMethods(const RenderList& scene, const View& view, const RenderOptions&
 
 void printRun(std::FILE* out, const RenderRun& run) {
     std::string text;
-    fmt::format_to(std::back_inserter(text), "{}: {}, {}; {}, {}x{}: {}, {} in view\n", oneLine(run.scene),
-                   counted(run.objects, "object"), counted(run.triangles, "triangle"), frameOf(run.frame, run.frames),
-                   run.width, run.height, counted(run.objects_in_view, "object"),
-                   counted(run.polygons_in_view, "polygon"));
+    text += fmt::format("{}: {}, {}; {}, {}x{}: {}, {} in view\n", oneLine(run.scene), counted(run.objects, "object"),
+                        counted(run.triangles, "triangle"), frameOf(run.frame, run.frames), run.width, run.height,
+                        counted(run.objects_in_view, "object"), counted(run.polygons_in_view, "polygon"));
     for (const MethodResult& result : run.methods) {
         const Agreement& agreement = result.agreement;
         std::string verdict = "as the plain z-buffer";
@@ -120,14 +119,12 @@ void printRun(std::FILE* out, const RenderRun& run) {
         std::string prepare;
         if (result.prepare_milliseconds > 0)
             prepare = fmt::format(" + {:.2f} ms to prepare", result.prepare_milliseconds);
-        fmt::format_to(std::back_inserter(text),
-                       "{:<18} {:>9.2f} ms{}  {:>12} fragments generated, {:>12} shaded  {}\n", result.name(),
-                       result.milliseconds, prepare, grouped(result.image.counters.generated),
-                       grouped(result.image.counters.shaded), verdict);
+        text += fmt::format("{:<18} {:>9.2f} ms{}  {:>12} fragments generated, {:>12} shaded  {}\n", result.name(),
+                            result.milliseconds, prepare, grouped(result.image.counters.generated),
+                            grouped(result.image.counters.shaded), verdict);
     }
     for (const LeftOut& left : run.left_out)
-        fmt::format_to(std::back_inserter(text), "{:<18} left out: {}\n",
-                       kHiddenMethodNames[static_cast<int>(left.method)], left.why);
+        text += fmt::format("{:<18} left out: {}\n", kHiddenMethodNames[static_cast<int>(left.method)], left.why);
     tell(out, text);
 }
 

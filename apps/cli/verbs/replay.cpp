@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <hwy/targets.h>
 #include <nlohmann/json.hpp>
 
@@ -26,6 +26,7 @@
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/pictures/depth_picture.h"
 #include "sightline/tools/report/run/cull_run.h"
+#include "sightline/tools/scene/json_text.h"
 #include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/scene/text_file.h"
 #include "sightline/tools/truth/verify.h"
@@ -203,7 +204,7 @@ std::string jsonOf(const ReplayRun& run, const FrameRecording& recording, const 
         json["verification"] = {{"rays", run.recorded->rays + run.again->rays},
                                 {"recorded", falseCullsOf(*run.recorded, recording)},
                                 {"again", falseCullsOf(*run.again, recording)}};
-    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    return jsonText(json, 2) + "\n";
 }
 
 Status writeImage(OcclusionReplay& replay, const std::string& file) {

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/cli/shell/options.h"
 #include "apps/cli/shell/progress.h"
@@ -21,6 +21,7 @@
 #include "sightline/query/record/frame_recording.h"
 #include "sightline/tools/import/scene_file.h"
 #include "sightline/tools/load/recorded_scene.h"
+#include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/scene/procedural.h"
 #include "sightline/tools/scene/text_file.h"
 
@@ -164,7 +165,7 @@ bool isRecordedFrame(const std::string& name) {
     return file.read(head, sizeof head) && isRecording(head);
 }
 
-std::string SceneChoice::title() const { return fmt::format("{}", fmt::join(names, " + ")); }
+std::string SceneChoice::title() const { return joined(names, " + "); }
 
 std::string SceneChoice::words() const {
     std::string words;

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/cli/shell/options.h"
 #include "apps/cli/shell/session.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "apps/cli/shell/other_verbs.h"
@@ -18,6 +18,7 @@
 #include "apps/cli/verbs/visibility_choice.h"
 #include "sightline/query/connectivity.h"
 #include "sightline/query/sight_query.h"
+#include "sightline/tools/scene/json_text.h"
 
 namespace sightline::cli {
 using namespace tools;
@@ -126,7 +127,7 @@ Status runSight(SightOptions& options) {
     else answerLine(asked, *from, *to, out, body);
     if (!options.to.empty() && options.opened) answerWay(asked, *from, *to, options.narrowest, out, body);
     if (options.json.empty()) return success();
-    return writeText(options.json, body.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    return writeText(options.json, jsonText(body, 1) + "\n");
 }
 
 }  // namespace

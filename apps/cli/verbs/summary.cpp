@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
@@ -144,41 +144,36 @@ double medianQuery(const CullRun& run) {
 
 void addSums(std::string& text, const Verification& sum, const CullRun& run) {
     const size_t judged = judgedFrames(run);
-    fmt::format_to(std::back_inserter(text),
-                   "verified     {} of {} culled objects were visible, by {} rays and {} id samples\n",
-                   grouped(sum.false_culls), grouped(sum.culled), rounded(static_cast<double>(sum.rays)),
-                   rounded(static_cast<double>(sum.id_samples)));
-    fmt::format_to(std::back_inserter(text), "over-estimate {:.3f}: {} reported, {} exactly visible, over {}\n",
-                   sum.overEstimate(), grouped(sum.reported), grouped(sum.exactly_visible), counted(judged, "frame"));
+    text += fmt::format("verified     {} of {} culled objects were visible, by {} rays and {} id samples\n",
+                        grouped(sum.false_culls), grouped(sum.culled), rounded(static_cast<double>(sum.rays)),
+                        rounded(static_cast<double>(sum.id_samples)));
+    text += fmt::format("over-estimate {:.3f}: {} reported, {} exactly visible, over {}\n", sum.overEstimate(),
+                        grouped(sum.reported), grouped(sum.exactly_visible), counted(judged, "frame"));
     if (sum.proofs) {
         const ProofCounts& proofs = *sum.proofs;
-        fmt::format_to(std::back_inserter(text),
-                       "proved       {} of {} culled objects hidden, by exact arithmetic; so are {} that were kept",
-                       grouped(proofs.culled_hidden),
-                       grouped(proofs.culled_hidden + proofs.culled_undecided + sum.false_culls),
-                       grouped(proofs.kept_hidden));
+        text += fmt::format(
+            "proved       {} of {} culled objects hidden, by exact arithmetic; so are {} that were kept",
+            grouped(proofs.culled_hidden), grouped(proofs.culled_hidden + proofs.culled_undecided + sum.false_culls),
+            grouped(proofs.kept_hidden));
         if (proofs.culled_undecided + proofs.kept_undecided > 0)
-            fmt::format_to(std::back_inserter(text), "; undecided: {} culled, {} kept",
-                           grouped(proofs.culled_undecided), grouped(proofs.kept_undecided));
+            text += fmt::format("; undecided: {} culled, {} kept", grouped(proofs.culled_undecided),
+                                grouped(proofs.kept_undecided));
         text += "\n";
     }
     if (sum.lossy_seen > 0)
-        fmt::format_to(
-            std::back_inserter(text),
+        text += fmt::format(
             "not proved   {} objects that were culled by distance, contribution, budget or depth were seen: so "
             "they were asked to\n",
             grouped(sum.lossy_seen));
     if (judged < run.frames.size())
-        fmt::format_to(std::back_inserter(text), "unverified   {} of {} frames\n", run.frames.size() - judged,
-                       run.frames.size());
+        text += fmt::format("unverified   {} of {} frames\n", run.frames.size() - judged, run.frames.size());
 }
 
 void addChanges(std::string& text, const CullRun& run) {
     if (const auto changes = sumChanges(run))
-        fmt::format_to(std::back_inserter(text),
-                       "changed      {:>10} pixels   {:7.4f} %: what was culled although it may be visible\n",
-                       grouped(changes->changed),
-                       percentOf(static_cast<double>(changes->changed), static_cast<double>(changes->pixels)));
+        text += fmt::format("changed      {:>10} pixels   {:7.4f} %: what was culled although it may be visible\n",
+                            grouped(changes->changed),
+                            percentOf(static_cast<double>(changes->changed), static_cast<double>(changes->pixels)));
 }
 
 /// What the stage of clusters left of the triangles of kept objects.
@@ -196,14 +191,14 @@ void addClusters(std::string& text, const CullRun& run) {
     }
     if (sum.tested == 0) return;
     const auto all = static_cast<double>(sum.tested), frames = static_cast<double>(run.frames.size());
-    fmt::format_to(std::back_inserter(text),
-                   "clusters     {:>10} tested   {:.1f} % seen from the back, {:.1f} % outside, {:.1f} % hidden\n",
-                   rounded(all / frames), percentOf(static_cast<double>(sum.back), all),
-                   percentOf(static_cast<double>(sum.outside), all), percentOf(static_cast<double>(sum.hidden), all));
-    fmt::format_to(std::back_inserter(text), "of these     {:>10} triangles {:.3f} % of those objects', in {} draws\n",
-                   rounded(static_cast<double>(sum.drawn) / frames),
-                   percentOf(static_cast<double>(sum.drawn), static_cast<double>(sum.whole)),
-                   rounded(static_cast<double>(sum.draws) / frames));
+    text +=
+        fmt::format("clusters     {:>10} tested   {:.1f} % seen from the back, {:.1f} % outside, {:.1f} % hidden\n",
+                    rounded(all / frames), percentOf(static_cast<double>(sum.back), all),
+                    percentOf(static_cast<double>(sum.outside), all), percentOf(static_cast<double>(sum.hidden), all));
+    text += fmt::format("of these     {:>10} triangles {:.3f} % of those objects', in {} draws\n",
+                        rounded(static_cast<double>(sum.drawn) / frames),
+                        percentOf(static_cast<double>(sum.drawn), static_cast<double>(sum.whole)),
+                        rounded(static_cast<double>(sum.draws) / frames));
 }
 
 /// What levels of detail save, and by how much they may err.
@@ -218,16 +213,15 @@ void addLods(std::string& text, const CullRun& run) {
         exceeded += frame.stats.lod_exceeded;
     }
     const auto frames = static_cast<double>(run.frames.size());
-    fmt::format_to(std::back_inserter(text), "levels       {:>10} triangles {:.3f} % of the finest levels'",
-                   rounded(drawn / frames), percentOf(drawn, finest));
+    text += fmt::format("levels       {:>10} triangles {:.3f} % of the finest levels'", rounded(drawn / frames),
+                        percentOf(drawn, finest));
     if (run.settings.budget == 0)
-        fmt::format_to(std::back_inserter(text), "; they err by {:g} px at most, in a corner {:.3g}",
-                       run.settings.lod_error, run.settings.lod_error * run.corner_stretch);
+        text += fmt::format("; they err by {:g} px at most, in a corner {:.3g}", run.settings.lod_error,
+                            run.settings.lod_error * run.corner_stretch);
     text += '\n';
     if (run.settings.budget == 0) return;
-    fmt::format_to(std::back_inserter(text), "budget       {:>10.3f} ms of {:g} ms modelled", 1e-6 * cost / frames,
-                   run.settings.budget);
-    if (exceeded > 0) fmt::format_to(std::back_inserter(text), "; exceeded in {}", counted(exceeded, "frame"));
+    text += fmt::format("budget       {:>10.3f} ms of {:g} ms modelled", 1e-6 * cost / frames, run.settings.budget);
+    if (exceeded > 0) text += fmt::format("; exceeded in {}", counted(exceeded, "frame"));
     text += '\n';
 }
 
@@ -241,10 +235,9 @@ void addMemory(std::string& text, const CullRun& run) {
         unasked += frame.stats.unasked;
     }
     const auto frames = static_cast<double>(run.frames.size());
-    fmt::format_to(std::back_inserter(text),
-                   "remembered   {:>10} of {} without drawing; a frame {} certificates held, {} kept unasked\n",
-                   undrawn, counted(run.frames.size(), "frame"), rounded(static_cast<double>(proved) / frames),
-                   rounded(static_cast<double>(unasked) / frames));
+    text += fmt::format("remembered   {:>10} of {} without drawing; a frame {} certificates held, {} kept unasked\n",
+                        undrawn, counted(run.frames.size(), "frame"), rounded(static_cast<double>(proved) / frames),
+                        rounded(static_cast<double>(unasked) / frames));
 }
 
 }  // namespace
@@ -279,29 +272,26 @@ void printSummary(std::FILE* out, const CullRun& run) {
         }
     }
     std::string text;
-    fmt::format_to(std::back_inserter(text), "{}: {}, {}; {} of {}x{}, means over the frames\n", oneLine(run.scene),
-                   counted(run.objects, "object"), counted(run.triangles, "triangle"),
-                   counted(run.frames.size(), "frame"), run.width, run.height);
-    fmt::format_to(std::back_inserter(text), "visible      {:>10} {:<8} {:7.3f} %\n", rounded(visible / frames),
-                   visible == frames ? "object" : "objects",
-                   percentOf(visible / frames, static_cast<double>(run.objects)));
+    text += fmt::format("{}: {}, {}; {} of {}x{}, means over the frames\n", oneLine(run.scene),
+                        counted(run.objects, "object"), counted(run.triangles, "triangle"),
+                        counted(run.frames.size(), "frame"), run.width, run.height);
+    text += fmt::format("visible      {:>10} {:<8} {:7.3f} %\n", rounded(visible / frames),
+                        visible == frames ? "object" : "objects",
+                        percentOf(visible / frames, static_cast<double>(run.objects)));
     for (int stage = 0; stage < kStageCount; ++stage) {
         if (!(run.settings.stages >> stage & 1)) continue;
         const double culled = static_cast<double>(sums[stage].culled) / frames;
-        fmt::format_to(std::back_inserter(text), "{:<12} {:>10} culled   {:7.3f} %  {:9.1f} us\n", kStageNames[stage],
-                       rounded(culled), percentOf(culled, static_cast<double>(run.objects)),
-                       sums[stage].microseconds / frames);
+        text += fmt::format("{:<12} {:>10} culled   {:7.3f} %  {:9.1f} us\n", kStageNames[stage], rounded(culled),
+                            percentOf(culled, static_cast<double>(run.objects)), sums[stage].microseconds / frames);
     }
-    fmt::format_to(std::back_inserter(text), "triangles    {:>10} submitted {:6.3f} % of the scene's\n",
-                   rounded(triangles / frames), percentOf(triangles / frames, static_cast<double>(run.triangles)));
+    text += fmt::format("triangles    {:>10} submitted {:6.3f} % of the scene's\n", rounded(triangles / frames),
+                        percentOf(triangles / frames, static_cast<double>(run.triangles)));
     addClusters(text, run);
     addLods(text, run);
-    fmt::format_to(std::back_inserter(text), "query        {:>10.1f} us mean, {:.1f} us median, {:.1f} us at most\n",
-                   time / frames, medianQuery(run), slowest);
+    text += fmt::format("query        {:>10.1f} us mean, {:.1f} us median, {:.1f} us at most\n", time / frames,
+                        medianQuery(run), slowest);
     addMemory(text, run);
-    if (budget_spent)
-        fmt::format_to(std::back_inserter(text),
-                       "the work budget was spent in some frames: more was kept than need be\n");
+    if (budget_spent) text += fmt::format("the work budget was spent in some frames: more was kept than need be\n");
     addChanges(text, run);
     if (const auto sum = sumVerification(run)) addSums(text, *sum, run);
     tell(out, text);
@@ -316,10 +306,10 @@ void printVerdicts(std::FILE* out, const CullRun& run) {
         Verification one;
         one.reported = frame.visible.size();
         one.exactly_visible = row.exactly_visible;
-        fmt::format_to(std::back_inserter(text),
-                       "frame {:>4}: {}, {} false culls, {} reported, {} exactly visible, over-estimate {:.3f}\n", i,
-                       row.false_culls == 0 ? paint(out, Tone::kGood, "sound") : paint(out, Tone::kBad, "WRONG"),
-                       row.false_culls, frame.visible.size(), row.exactly_visible, one.overEstimate());
+        text +=
+            fmt::format("frame {:>4}: {}, {} false culls, {} reported, {} exactly visible, over-estimate {:.3f}\n", i,
+                        row.false_culls == 0 ? paint(out, Tone::kGood, "sound") : paint(out, Tone::kBad, "WRONG"),
+                        row.false_culls, frame.visible.size(), row.exactly_visible, one.overEstimate());
     }
     addChanges(text, run);
     if (const auto sum = sumVerification(run)) addSums(text, *sum, run);
@@ -337,7 +327,7 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     if (choice.walk.speed != WalkSettings().speed) command += fmt::format(" --speed {}", choice.walk.speed);
     command += fmt::format(" --size {}x{}", options.width, options.height);
     const auto list = [&](const char* option, const std::vector<std::string>& names) {
-        if (!names.empty()) command += fmt::format(" {} {}", option, fmt::join(names, ","));
+        if (!names.empty()) command += fmt::format(" {} {}", option, joined(names, ","));
     };
     list("--use", options.use);
     list("--skip", options.skip);

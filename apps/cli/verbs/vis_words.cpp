@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/cli/shell/session.h"
 

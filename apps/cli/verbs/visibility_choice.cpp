@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/cli/verbs/vis_map.h"
 #include "sightline/bake/objects/scene_hash.h"

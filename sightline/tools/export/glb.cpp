@@ -1,12 +1,13 @@
 // Puts the tables and the buffer of a glTF into one file.
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/export/glb.h"
+#include "sightline/tools/scene/json_text.h"
 
 #include <algorithm>
 #include <cstring>
 #include <utility>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace sightline::tools {
 namespace {
@@ -60,7 +61,7 @@ uint32_t Glb::addIndices(std::span<const uint32_t> indices) {
 Result<std::string> Glb::bytes(const std::string& name) const {
     Json whole = json;
     if (!buffer_.empty()) whole["buffers"] = Json::array({{{"byteLength", buffer_.size()}}});
-    std::string text = whole.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string text = jsonText(whole);
     text.resize(padded(text.size()), ' ');
     const size_t body = padded(buffer_.size());
     const uint64_t length = 12 + 8 + text.size() + (body == 0 ? 0 : 8 + body);

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "sightline/tools/export/glb.h"
 #include "sightline/tools/import/gltf/gltf_draco.h"

@@ -10,7 +10,7 @@
 #include <span>
 #include <utility>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "sightline/geom/convex_region.h"
 #include "sightline/tools/export/glb.h"

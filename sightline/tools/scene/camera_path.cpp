@@ -5,10 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "sightline/geom/clip_space.h"
+#include "sightline/tools/scene/json_text.h"
 #include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/scene/suggestion.h"
 #include "sightline/tools/scene/text_file.h"
@@ -68,7 +69,7 @@ ClipSpace readClipSpace(const json& value) {
         names.push_back(known.name);
     }
     const std::string near = value.is_string() ? suggestion(value.get<std::string>(), names) : std::string();
-    throw Complaint{fmt::format("\"clip\" is none of {}{}", fmt::join(names, ", "), near)};
+    throw Complaint{fmt::format("\"clip\" is none of {}{}", joined(names, ", "), near)};
 }
 
 /// Takes what an object holds, the head's or a frame's, over what is there.
@@ -232,7 +233,7 @@ Result<CameraPath> readCameraPath(const std::string& file) {
     if (!text) return text.error();
     std::string what;
     try {
-        return readFrames(json::parse(*text));
+        return readFrames(parseJson(*text));
     } catch (const Complaint& complaint) { what = complaint.what; } catch (const json::exception& exception) {
         what = "not JSON: " + parseMessage(exception.what());
     }
@@ -241,7 +242,8 @@ Result<CameraPath> readCameraPath(const std::string& file) {
 
 std::string cameraPathJson(const CameraPath& path) {
     std::string text = "{\"frames\": [";
-    for (size_t i = 0; i < path.frames.size(); ++i) text += (i ? ",\n  " : "\n  ") + frameJson(path.frames[i]).dump();
+    for (size_t i = 0; i < path.frames.size(); ++i)
+        text += (i ? ",\n  " : "\n  ") + jsonText(frameJson(path.frames[i]));
     return text + "\n]}\n";
 }
 

@@ -68,4 +68,10 @@ std::string shortened(std::string_view text, size_t most) {
     return std::string(text.substr(0, end)) + "...";
 }
 
+std::string joined(const std::vector<std::string>& texts, std::string_view between) {
+    std::string all;
+    for (size_t i = 0; i < texts.size(); ++i) all.append(i == 0 ? "" : between).append(texts[i]);
+    return all;
+}
+
 }  // namespace sightline::tools

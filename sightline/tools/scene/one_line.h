@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace sightline::tools {
 
@@ -19,5 +20,8 @@ std::string withoutMiddle(std::string_view text, size_t most);
 /// The beginning of a text of one line, with "..." behind it if anything is left out; never half a character.
 /// @param most  [bytes] [>= 3]
 std::string shortened(std::string_view text, size_t most);
+
+/// The texts with something between each two.
+std::string joined(const std::vector<std::string>& texts, std::string_view between);
 
 }  // namespace sightline::tools

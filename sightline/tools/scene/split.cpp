@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "sightline/tools/scene/joined_sets.h"
 #include "sightline/tools/scene/welded.h"

@@ -1,6 +1,7 @@
 // A glTF's JSON, kept as text: only one element of a table at a time becomes values.
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/import/gltf/gltf_text.h"
+#include "sightline/tools/scene/json_text.h"
 
 #include <utility>
 
@@ -91,7 +92,7 @@ size_t valueEnd(Text text, size_t at) {
     }
 }
 
-Json parse(Text text) { return Json::parse(text.data(), text.data() + text.size()); }
+Json parse(Text text) { return parseJson({reinterpret_cast<const char*>(text.data()), text.size()}); }
 
 }  // namespace
 

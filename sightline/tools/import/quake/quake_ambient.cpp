@@ -7,7 +7,7 @@
 #include <cctype>
 #include <string_view>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "sightline/tools/import/quake/quake_bsp.h"
 #include "sightline/tools/import/quake/quake_lumps.h"

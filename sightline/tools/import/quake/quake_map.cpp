@@ -6,7 +6,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "sightline/tools/scene/one_line.h"
 

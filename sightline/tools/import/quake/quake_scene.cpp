@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "sightline/tools/import/gltf/gltf_fault.h"
 #include "sightline/tools/import/quake/map_source.h"

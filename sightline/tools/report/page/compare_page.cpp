@@ -9,6 +9,7 @@
 #include "sightline/tools/report/pictures/film_files.h"
 #include "sightline/tools/report/run/compare_runs.h"
 #include "sightline/tools/report/run/cull_run.h"
+#include "sightline/tools/scene/json_text.h"
 
 namespace sightline::tools {
 namespace {
@@ -18,7 +19,7 @@ constexpr size_t kMostDifferences = 300;     // of objects that differ
 
 std::string filmOf(const RunFile& file, std::vector<size_t> frames) {
     std::sort(frames.begin(), frames.end());
-    return filmJson(filmBeside(file, {"shaded", "plan", "heat-kept"}, frames, kBudget)).dump();
+    return jsonText(filmJson(filmBeside(file, {"shaded", "plan", "heat-kept"}, frames, kBudget)));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "sightline/tools/report/pictures/film.h"
 #include "sightline/tools/report/run/cull_run.h"
 #include "sightline/tools/report/run/insight.h"
+#include "sightline/tools/scene/json_text.h"
 #include "sightline/tools/scene/one_line.h"
 
 namespace sightline::tools {
@@ -116,7 +117,7 @@ std::string cullPage(const CullRun& run, const Film& film, const NamedObjects& t
         page["never"] = neverJson(run, *scene, label);
         page["together"] = togetherJson(run, *scene, label);
     }
-    std::string text = page.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string text = jsonText(page);
     text.pop_back();
     return pageWith(text + ",\"run\":" + cullJsonWithoutSets(run) + "}");
 }

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/report/page/page_pictures.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/page/page.h"
+#include "sightline/tools/scene/json_text.h"
 
 namespace sightline::tools {
 
@@ -31,8 +32,8 @@ void PagePictures::add(const std::string& name, const Image<Rgb>& image, const s
 
 Status PagePictures::finish(const std::string& page, const std::string& run) {
     save(page + ".json", run);
-    save("index.html", pageWith("{\"page\":\"" + page + "\",\"pictures\":" + pictures_.dump() +
-                                ",\"plan\":" + plan_.dump() + ",\"run\":" + run + "}"));
+    save("index.html", pageWith("{\"page\":\"" + page + "\",\"pictures\":" + jsonText(pictures_) +
+                                ",\"plan\":" + jsonText(plan_) + ",\"run\":" + run + "}"));
     return status_;
 }
 

@@ -8,6 +8,7 @@
 
 #include "sightline/tools/report/page/page.h"
 #include "sightline/tools/report/pictures/picture.h"
+#include "sightline/tools/scene/json_text.h"
 
 namespace sightline::tools {
 using namespace studies;
@@ -102,7 +103,7 @@ std::string renderPage(const RenderList& scene, const View& view, const RenderRu
     page["depth"] = depthJson(run);
     page["hierarchy"] = hierarchyJson(run);
     page["fights"] = fightsJson(scene, view, run, settings);
-    std::string text = page.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string text = jsonText(page);
     text.pop_back();
     return pageWith(text + ",\"run\":" + renderJson(run) + "}");
 }

@@ -6,10 +6,11 @@
 #include <cmath>
 #include <iterator>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "sightline/tools/report/readable.h"
+#include "sightline/tools/scene/json_text.h"
 
 namespace sightline::tools {
 namespace {
@@ -86,22 +87,21 @@ std::string adviceText(const AdviceRun& run) {
         "query\n",
         counted(run.frames, "frame"), run.width, run.height, counted(run.threads, "thread"), run.rounds,
         run.frame_milliseconds, 1e-3 * run.query_microseconds);
-    const auto out = std::back_inserter(text);
-    fmt::format_to(out, "{} (confidence {:.0f} %)\n", verdictWords(run.bottleneck), 100 * run.bottleneck.confidence);
+    text += fmt::format("{} (confidence {:.0f} %)\n", verdictWords(run.bottleneck), 100 * run.bottleneck.confidence);
     size_t shown = 0;
     const std::vector<const Advice*> order = ranked(run, shown);
-    for (size_t i = 0; i < shown; ++i) fmt::format_to(out, "{}\n", adviceLine(*order[i], run.frame_milliseconds));
+    for (size_t i = 0; i < shown; ++i) text += fmt::format("{}\n", adviceLine(*order[i], run.frame_milliseconds));
     std::string smaller, none;
     for (size_t i = shown; i < order.size(); ++i) {
         std::string& rest = matters(*order[i], run.frame_milliseconds) ? smaller : none;
         rest += fmt::format("{}{} ({:+.2g} +- {:.2g} ms)", rest.empty() ? "" : ", ", order[i]->what, -order[i]->saves,
                             order[i]->spread);
     }
-    if (!smaller.empty()) fmt::format_to(out, "smaller ones: {}\n", smaller);
-    if (!none.empty()) fmt::format_to(out, "no difference to speak of: {}\n", none);
+    if (!smaller.empty()) text += fmt::format("smaller ones: {}\n", smaller);
+    if (!none.empty()) text += fmt::format("no difference to speak of: {}\n", none);
     std::string not_tried;
     for (const std::string& what : run.not_tried) not_tried += (not_tried.empty() ? "" : "; ") + what;
-    if (!not_tried.empty()) fmt::format_to(out, "not tried: {}\n", not_tried);
+    if (!not_tried.empty()) text += fmt::format("not tried: {}\n", not_tried);
     return text;
 }
 
@@ -134,7 +134,7 @@ std::string adviceJson(const AdviceRun& run) {
         out["advice"].push_back(std::move(row));
     }
     out["not_tried"] = run.not_tried;
-    return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(out, 1) + "\n";
 }
 
 }  // namespace sightline::tools

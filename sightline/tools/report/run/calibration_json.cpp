@@ -4,9 +4,10 @@
 
 #include <cmath>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "sightline/tools/scene/json_text.h"
 #include "sightline/tools/scene/one_line.h"
 
 namespace sightline::tools {
@@ -33,12 +34,12 @@ std::string calibrationJson(const FacingCosts& costs, const std::string& machine
     out[kTest] = costs.test;
     out[kDropped] = costs.dropped;
     out[kDrawn] = costs.drawn;
-    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(out, 2) + "\n";
 }
 
 Result<FacingCosts> parseCalibration(std::string_view text, const std::string& file) {
     const auto fail = [&](const std::string& what) { return wrongFile(file, what); };
-    Json json = Json::parse(text, nullptr, false);
+    nlohmann::json json = parseJsonOrNone(text);
     if (json.is_discarded()) return fail("not JSON");
     if (!json.is_object()) return fail("not an object");
     const auto schema = json.find("schema");
@@ -46,7 +47,7 @@ Result<FacingCosts> parseCalibration(std::string_view text, const std::string& f
     if (name == kProfileSchema) {
         const auto of_profile = json.find("costs");
         if (of_profile == json.end() || !of_profile->is_object()) return fail("costs: missing");
-        json = Json(*of_profile);
+        json = nlohmann::json(*of_profile);
     } else if (name != kSchema) {
         return fail(fmt::format("schema: neither {} nor {}", kSchema, kProfileSchema));
     }
@@ -63,9 +64,9 @@ Result<FacingCosts> parseCalibration(std::string_view text, const std::string& f
 }
 
 Result<std::optional<DrawCost>> parseDrawCost(std::string_view text, const std::string& file) {
-    const Json json = Json::parse(text, nullptr, false);
+    const nlohmann::json json = parseJsonOrNone(text);
     if (!json.is_object()) return wrongFile(file, json.is_discarded() ? "not JSON" : "not an object");
-    if (json.value("schema", Json()) != Json(kProfileSchema)) return std::optional<DrawCost>();
+    if (json.value("schema", nlohmann::json()) != nlohmann::json(kProfileSchema)) return std::optional<DrawCost>();
     const auto costs = json.find("costs");
     if (costs == json.end() || !costs->is_object()) return wrongFile(file, "costs: missing");
     DrawCost cost;

@@ -15,6 +15,7 @@
 
 #include "sightline/tools/report/readable.h"
 #include "sightline/tools/report/run/camera_json.h"
+#include "sightline/tools/scene/json_text.h"
 
 namespace sightline::tools {
 namespace {
@@ -67,7 +68,7 @@ private:
 
 std::string number(uint64_t value) { return readable(static_cast<double>(value)); }
 
-std::string cameraKey(const FrameResult& frame) { return cameraJson(frame.camera).dump(); }
+std::string cameraKey(const FrameResult& frame) { return jsonText(cameraJson(frame.camera)); }
 
 void pairFrames(const CullRun& a, const CullRun& b, RunComparison& out) {
     std::map<std::string, std::deque<size_t>> of_b;
@@ -279,7 +280,7 @@ std::string compareJson(const RunComparison& c, const RunFile& a, const RunFile&
                                    {"frames_only_a", row.only_a},
                                    {"frames_only_b", row.only_b}});
     }
-    return head.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(head, 1) + "\n";
 }
 
 }  // namespace sightline::tools

@@ -7,13 +7,12 @@
 #include "sightline/geom/setting_rows.h"
 #include "sightline/tools/report/run/camera_json.h"
 #include "sightline/tools/report/run/cull_run.h"
+#include "sightline/tools/scene/json_text.h"
 
 namespace sightline::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 Json proofsJson(const ProofCounts& proofs) {
     return {{"culled_hidden", proofs.culled_hidden},
@@ -171,19 +170,19 @@ Json sumsJson(const Verification& sum) {
 }
 
 std::string framesJson(const CullRun& run, const Scene* scene) {
-    std::string text = dump(headJson(run, scene));
+    std::string text = jsonText(headJson(run, scene));
     text.pop_back();
     text += ",\n\"frames\": [";
     for (size_t i = 0; i < run.frames.size(); ++i)
-        text += (i ? ",\n" : "\n") + dump(frameJson(run.frames[i], run, scene));
+        text += (i ? ",\n" : "\n") + jsonText(frameJson(run.frames[i], run, scene));
     return text + "]";
 }
 
 std::string totalsJson(const CullRun& run) {
     std::string text;
     if (const auto changes = sumChanges(run))
-        text += ",\n\"changes\": " + dump({{"changed_pixels", changes->changed}, {"pixels", changes->pixels}});
-    if (const auto sum = sumVerification(run)) text += ",\n\"verification\": " + dump(sumsJson(*sum));
+        text += ",\n\"changes\": " + jsonText(Json{{"changed_pixels", changes->changed}, {"pixels", changes->pixels}});
+    if (const auto sum = sumVerification(run)) text += ",\n\"verification\": " + jsonText(sumsJson(*sum));
     return text + "}\n";
 }
 
@@ -193,7 +192,7 @@ std::string cullJson(const CullRun& run, const Scene& scene) {
     std::string text = framesJson(run, &scene) + ",\n\"objects\": [";
     const char* between = "\n";
     for (const KeyName& name : keyNames(run, scene, orderByKey(scene))) {
-        text += between + dump({{"key", name.key}, {"name", name.name}, {"path", name.path}});
+        text += between + jsonText(Json{{"key", name.key}, {"name", name.name}, {"path", name.path}});
         between = ",\n";
     }
     return text + "]" + totalsJson(run);

@@ -8,10 +8,11 @@
 #include <limits>
 #include <utility>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "sightline/tools/report/readable.h"
+#include "sightline/tools/scene/json_text.h"
 
 namespace sightline::tools {
 namespace {
@@ -56,48 +57,46 @@ std::string roundWords(const Bottleneck& found) {
 
 void printBottleneck(const ProfileRun& run, std::string& text) {
     const Bottleneck& found = run.bottleneck;
-    const auto out = std::back_inserter(text);
-    fmt::format_to(out, "{}\n", verdictWords(found));
-    fmt::format_to(out, "  {}\n  {}\n", roundWords(found), sumWords(found));
-    fmt::format_to(out, "  a path takes {} ms", milliseconds(found.frame));
-    fmt::format_to(out, ", the process computes {} ms meanwhile", milliseconds(found.cpu));
-    if (run.driver_counts) fmt::format_to(out, ", the GL is busy for {:.0f} %", 100 * run.driver_counts->gpu_busy);
-    if (found.waiting > 0.2) fmt::format_to(out, ", and {:.0f} % is waiting", 100 * found.waiting);
+    text += fmt::format("{}\n", verdictWords(found));
+    text += fmt::format("  {}\n  {}\n", roundWords(found), sumWords(found));
+    text += fmt::format("  a path takes {} ms", milliseconds(found.frame));
+    text += fmt::format(", the process computes {} ms meanwhile", milliseconds(found.cpu));
+    if (run.driver_counts) text += fmt::format(", the GL is busy for {:.0f} %", 100 * run.driver_counts->gpu_busy);
+    if (found.waiting > 0.2) text += fmt::format(", and {:.0f} % is waiting", 100 * found.waiting);
     text += "\n\nload        twice of it [ms]   sensitivity   share of the frame\n";
     for (int i = 0; i < kFrameStages; ++i) {
         const Sensitivity& stage = found.stages[static_cast<size_t>(i)];
-        fmt::format_to(out, "{:<11} {:>16} {:>13.2f} {:>12.1f} % +- {:.1f}\n", kFrameStageNames[i],
-                       milliseconds(stage.seconds), stage.exponent, 100 * stage.share, 100 * stage.spread);
+        text += fmt::format("{:<11} {:>16} {:>13.2f} {:>12.1f} % +- {:.1f}\n", kFrameStageNames[i],
+                            milliseconds(stage.seconds), stage.exponent, 100 * stage.share, 100 * stage.spread);
     }
 }
 
 void printCosts(const ProfileRun& run, std::string& text) {
     const DrawCosts& costs = run.costs;
-    fmt::format_to(std::back_inserter(text),
-                   "\ncosts of {} [ns]: an object {:.4g}, a triangle {:.3g}, a vertex {:.3g}, a covered pixel {:.3g}, "
-                   "a pixel of the image {:.3g}, a frame {:.4g}\n"
-                   "  fitted to {} frames of parts of the scene; half of them are within {:.1f} %\n"
-                   "  a cluster's test {:.2f}, a back face dropped {:.3g}, drawn {:.3g}\n",
-                   run.renderer, costs.object, costs.triangle, costs.vertex, costs.pixel, costs.sample, costs.frame,
-                   costs.samples, 100 * costs.error, run.facing.test, run.facing.dropped, run.facing.drawn);
+    text += fmt::format(
+        "\ncosts of {} [ns]: an object {:.4g}, a triangle {:.3g}, a vertex {:.3g}, a covered pixel {:.3g}, "
+        "a pixel of the image {:.3g}, a frame {:.4g}\n"
+        "  fitted to {} frames of parts of the scene; half of them are within {:.1f} %\n"
+        "  a cluster's test {:.2f}, a back face dropped {:.3g}, drawn {:.3g}\n",
+        run.renderer, costs.object, costs.triangle, costs.vertex, costs.pixel, costs.sample, costs.frame, costs.samples,
+        100 * costs.error, run.facing.test, run.facing.dropped, run.facing.drawn);
 }
 
 void printAblation(const ProfileRun& run, std::string& text) {
-    const auto out = std::back_inserter(text);
-    fmt::format_to(out, "\n{:<21} {:>9} {:>11} {:>10} {:>12} {:>11} {:>9} {:>9} {:>10}\n", "stages", "objects",
-                   "triangles", "drawn", "fragments", "shaded", "KiB", "query us", "frame ms");
+    text += fmt::format("\n{:<21} {:>9} {:>11} {:>10} {:>12} {:>11} {:>9} {:>9} {:>10}\n", "stages", "objects",
+                        "triangles", "drawn", "fragments", "shaded", "KiB", "query us", "frame ms");
     for (const AblationRow& row : run.ablation)
-        fmt::format_to(out, "{:<21} {:>9} {:>11} {:>10} {:>12} {:>11} {:>9.4g} {:>9.4g} {:>10.4g}\n", row.name(),
-                       readable(std::round(row.objects)), readable(std::round(row.triangles)),
-                       readable(std::round(row.drawn)), readable(std::round(row.fragments)),
-                       readable(std::round(row.shaded)), row.bytes / 1024, row.query_microseconds,
-                       row.frame_milliseconds);
-    fmt::format_to(out, "\n{:<21} {:>9} {:>11} {:>10}   {}\n", "without it, more", "geometry", "rasterizer", "bus",
-                   "it saves a frame of the reference renderer [ms]");
+        text += fmt::format("{:<21} {:>9} {:>11} {:>10} {:>12} {:>11} {:>9.4g} {:>9.4g} {:>10.4g}\n", row.name(),
+                            readable(std::round(row.objects)), readable(std::round(row.triangles)),
+                            readable(std::round(row.drawn)), readable(std::round(row.fragments)),
+                            readable(std::round(row.shaded)), row.bytes / 1024, row.query_microseconds,
+                            row.frame_milliseconds);
+    text += fmt::format("\n{:<21} {:>9} {:>11} {:>10}   {}\n", "without it, more", "geometry", "rasterizer", "bus",
+                        "it saves a frame of the reference renderer [ms]");
     for (const StageBenefit& benefit : benefitsOf(run.ablation))
-        fmt::format_to(out, "{:<21} {:>9} {:>11} {:>10}   {:.4g} +- {:.2g}{}\n", stageName(benefit.stage),
-                       growthWords(benefit.geometry), growthWords(benefit.rasterizer), growthWords(benefit.bus),
-                       benefit.milliseconds, benefit.spread, benefit.in_use ? "" : ", if it were on");
+        text += fmt::format("{:<21} {:>9} {:>11} {:>10}   {:.4g} +- {:.2g}{}\n", stageName(benefit.stage),
+                            growthWords(benefit.geometry), growthWords(benefit.rasterizer), growthWords(benefit.bus),
+                            benefit.milliseconds, benefit.spread, benefit.in_use ? "" : ", if it were on");
 }
 
 Json bottleneckJson(const Bottleneck& found) {
@@ -252,7 +251,7 @@ std::string profileJson(const ProfileRun& run) {
                                 {"samples_passed", counts.samples_passed}};
     }
     out["ablation"] = ablationJson(run);
-    return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(out, 1) + "\n";
 }
 
 }  // namespace sightline::tools

@@ -14,6 +14,7 @@
 #include "sightline/studies/hidden/zbuffer/zbuffer_method.h"
 #include "sightline/tools/report/readable.h"
 #include "sightline/tools/report/run/camera_json.h"
+#include "sightline/tools/scene/json_text.h"
 
 namespace sightline::tools {
 using namespace studies;
@@ -294,7 +295,7 @@ std::string renderJson(const RenderRun& run) {
                                      {"overlaid", fights.overlaid},
                                      {"fighting", fights.fighting},
                                      {"coplanar", fights.coplanar}});
-    return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(out, 1) + "\n";
 }
 
 }  // namespace sightline::tools

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sightline/geom/setting_rows.h"
+#include "sightline/tools/scene/json_text.h"
 #include "sightline/tools/scene/text_file.h"
 
 namespace sightline::tools {
@@ -365,7 +366,7 @@ std::string RunFile::labelOf(uint64_t key) const {
 
 Result<RunFile> parseRun(std::string_view text, const std::string& file) {
     try {
-        const json document = json::parse(text);
+        const json document = parseJson(text);
         RunFile out = readHead({&document, ""});
         out.file = file;
         return out;

@@ -1,6 +1,7 @@
 // A run as a timeline that chrome://tracing and Perfetto open: Chrome's trace event format.
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/report/run/trace_json.h"
+#include "sightline/tools/scene/json_text.h"
 
 #include <algorithm>
 #include <set>
@@ -79,8 +80,7 @@ std::string traceJson(const CullRun& run) {
         events.push_back(counter("triangles", begin, {{"submitted", frame.triangles}}));
     }
     std::string text = "{\"displayTimeUnit\": \"ms\", \"traceEvents\": [";
-    for (size_t i = 0; i < events.size(); ++i)
-        text += (i ? ",\n" : "\n") + events[i].dump(-1, ' ', false, Json::error_handler_t::replace);
+    for (size_t i = 0; i < events.size(); ++i) text += (i ? ",\n" : "\n") + jsonText(events[i]);
     return text + "]}\n";
 }
 

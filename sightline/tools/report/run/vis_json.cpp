@@ -1,6 +1,7 @@
 // What a bake of a map's visibility came to, as JSON.
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/report/run/vis_json.h"
+#include "sightline/tools/scene/json_text.h"
 
 #include <nlohmann/json.hpp>
 
@@ -57,7 +58,7 @@ std::string visJson(const VisSummary& summary) {
                                {"doubtful", verified.doubtful},
                                {"examples", examples}};
     }
-    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(out, 2) + "\n";
 }
 
 }  // namespace sightline::tools
