@@ -32,11 +32,11 @@ set(SIGHTLINE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/sightline)
 
 sightline_install(EXPORT sightline-runtime COMPONENT development LIBRARIES run HEADERS sightline.h geom/setting_rows.h)
 sightline_install(EXPORT sightline-c COMPONENT development LIBRARIES c shared HEADERS c/sightline.h)
-sightline_install(EXPORT sightline-studies COMPONENT development LIBRARIES bsp hidden studies
+sightline_install(EXPORT sightline-studies COMPONENT development LIBRARIES bsp reference hidden studies
   HEADERS studies/hidden/render.h studies/hidden/zbuffer/zbuffer.h)
 if(SIGHTLINE_TOOLS)
   sightline_install(EXPORT sightline-bake COMPONENT development LIBRARIES bake_shared HEADERS c/bake/bake.h)
-  sightline_install(EXPORT sightline-tools COMPONENT tools-development LIBRARIES lods scene import bake truth pictures report
+  sightline_install(EXPORT sightline-tools COMPONENT tools-development LIBRARIES lods scene import bake truth pictures report lab_report
     HEADERS bake/bake.h prepare/lod/lod_chain.h tools/scene/procedural.h tools/import/scene_file.h
             tools/load/load_world.h tools/truth/verify.h tools/report/page/page.h
     BUT sightline.h c/sightline.h studies/hidden/render.h studies/hidden/zbuffer/zbuffer.h)

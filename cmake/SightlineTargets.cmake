@@ -36,7 +36,9 @@ endfunction()
 function(sightline_settings target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -ffp-contract=off
-    $<$<BOOL:${SIGHTLINE_WERROR}>:-Werror>)
+    $<$<BOOL:${SIGHTLINE_WERROR}>:-Werror>
+    # Collects its garbage later: 0.93 of the time, and a seventh more memory.
+    $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=400000>)
   if(SIGHTLINE_DEBUG_ASSERTS)
     target_compile_definitions(${target} PRIVATE SIGHTLINE_DEBUG_ASSERTS)
   endif()
@@ -130,8 +132,8 @@ endfunction()
 # The headers that nearly every file reads, precompiled.
 function(sightline_precompile target)
   target_precompile_headers(${target} PRIVATE
-    <algorithm> <array> <bit> <chrono> <cmath> <cstdint> <cstring> <functional> <limits> <memory> <mutex> <numeric>
-    <optional> <span> <string> <tuple> <utility> <variant> <vector> <glm/glm.hpp> ${ARGN})
+    <algorithm> <array> <bit> <cmath> <cstdint> <cstring> <limits> <memory> <numeric> <optional> <span> <string> <tuple>
+    <utility> <vector> <glm/glm.hpp> ${ARGN})
   sightline_keep_precompiled(${target})
 endfunction()
 
@@ -147,7 +149,8 @@ function(sightline_share_precompiled target)
     set_target_properties(sightline_tool_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
     sightline_settings(sightline_tool_headers)
     target_link_libraries(sightline_tool_headers PRIVATE glm::glm fmt::fmt nlohmann_json::nlohmann_json)
-    sightline_precompile(sightline_tool_headers <filesystem> <fstream> <sstream> <fmt/core.h> <nlohmann/json.hpp>)
+    sightline_precompile(sightline_tool_headers <chrono> <filesystem> <fstream> <functional> <mutex> <sstream> <variant>
+      <fmt/core.h> <nlohmann/json.hpp>)
   endif()
   target_precompile_headers(${target} REUSE_FROM sightline_tool_headers)
   # GCC takes precompiled headers only with the definitions that they were made with.

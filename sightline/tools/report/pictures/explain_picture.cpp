@@ -4,16 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
-#include "sightline/studies/hidden/render.h"
-#include "sightline/tools/report/pictures/render_list.h"
-#include "sightline/tools/report/pictures/render_pictures.h"
+#include "sightline/tools/report/pictures/picture.h"
 #include "sightline/tools/report/pictures/world_lines.h"
 
 namespace sightline::tools {
-using namespace studies;
 namespace {
 
 constexpr glm::dvec3 kObject(30, 100, 220), kOccluder(232, 119, 20), kOutline(196, 18, 110), kShadow(176, 74, 0);
@@ -110,21 +110,27 @@ void drawRing(Image<Rgb>& image, const glm::dvec2& centre) {
 }  // namespace
 
 Image<Rgb> explainPicture(const Scene& scene, const View& view, const Emphasis& emphasis) {
-    const RenderList list(scene, view);
-    RenderSettings settings;
-    const HiddenImage drawn = render(list.list(), view, settings);
-    PictureSettings look;
-    look.shadows = false;
-    Image<Rgb> image = shadedPicture(list, view, drawn, look);
+    std::vector<uint32_t> all(scene.objects.size());
+    std::iota(all.begin(), all.end(), 0u);
+    PictureMaker::Look look = PictureMaker(scene).look(view, all);
+    Image<Rgb> image = std::move(look.shaded);
     std::unordered_map<uint32_t, glm::dvec3> tints;
     for (const uint32_t occluder : emphasis.occluders) tints[occluder] = kOccluder;
     tints[emphasis.object] = kObject;
+    const uint32_t samples = look.width / image.width;
     for (uint32_t y = 0; y < image.height; ++y)
         for (uint32_t x = 0; x < image.width; ++x) {
-            const uint32_t surface = drawn.surface[size_t{image.height - 1 - y} * image.width + x];
+            glm::dvec3 ink(0.0);
+            double part = 0;
+            for (uint32_t k = 0; k < samples * samples; ++k) {
+                const uint32_t row = look.height - 1 - (y * samples + k / samples);
+                const auto tint = tints.find(look.object[size_t{row} * look.width + x * samples + k % samples]);
+                const double share = tint == tints.end() ? kPale : kTint;
+                ink += share * (tint == tints.end() ? glm::dvec3(255) : tint->second);
+                part += share;
+            }
             Rgb& pixel = image.at(x, y);
-            const auto tint = surface == HiddenImage::kNone ? tints.end() : tints.find(list.list().idOf(surface));
-            pixel = tint == tints.end() ? mix(pixel, glm::dvec3(255), kPale) : mix(pixel, tint->second, kTint);
+            pixel = mix(pixel, ink / part, part / (samples * samples));
         }
     for (const std::vector<glm::dvec3>& outline : emphasis.outlines) drawOutline(image, view, outline);
     const SceneObject& object = scene.objects[emphasis.object];

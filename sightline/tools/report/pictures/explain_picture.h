@@ -24,7 +24,7 @@ struct Emphasis {
     double x = 0, y = 0;
 };
 
-/// One sample a pixel, by the reference z-buffer; the top row first.
+/// Four samples a pixel, by the reference z-buffer; the top row first.
 Image<Rgb> explainPicture(const Scene& scene, const View& view, const Emphasis& emphasis);
 
 }  // namespace sightline::tools

@@ -195,7 +195,10 @@ PictureMaker::Look PictureMaker::look(const View& view, const std::vector<uint32
     Drawing drawn = render(view, in_view, kSamples);
     Frame frame;
     shade(view, drawn, true, frame);
-    return {std::move(frame.shaded), drawn.image.width, drawn.image.height, std::move(drawn.image.depth)};
+    Look look{std::move(frame.shaded), drawn.image.width, drawn.image.height, std::move(drawn.image.depth), {}};
+    look.object.resize(drawn.image.id.size());
+    for (size_t i = 0; i < look.object.size(); ++i) look.object[i] = drawn.objectAt(i);
+    return look;
 }
 
 Rgb heatColour(double part) {

@@ -40,6 +40,7 @@ public:
         Image<Rgb> shaded;
         uint32_t width = 0, height = 0;  ///< [samples]
         std::vector<double> nearness;    ///< ZBufferImage::depth: per sample, rows from below
+        std::vector<uint32_t> object;    ///< the same: which is seen there, or ZBufferImage::kNone
     };
     /// @param view  its sections are cut away
     Look look(const View& view, const std::vector<uint32_t>& objects) const;

@@ -11,7 +11,7 @@
 namespace sightline::tools {
 namespace {
 
-constexpr Rgb kShadow(176, 74, 0), kObject(196, 18, 110), kOccluder(110, 116, 128);
+constexpr Rgb kRayInk(176, 74, 0), kCasterInk(196, 18, 110), kOccluderInk(110, 116, 128);
 constexpr int kBetween = 12;                  // pieces of the end of a shadow, for each side of its part
 constexpr double kAround = 115, kAbove = 35;  // from behind the eye; above the horizon  [degrees]
 
@@ -76,7 +76,7 @@ View viewFromTheSide(const View& view, const Box3d& box, std::span<const Box3d> 
 }
 
 void drawShadow(WorldLines& lines, const glm::dvec3& eye, std::span<const glm::dvec3> outline, double reach) {
-    const LineStyle ray{kShadow, 1, 0.5, 0.25}, edge{kShadow, 1.5, 0.9, 0.45}, part{kShadow, 3, 1, 0.7};
+    const LineStyle ray{kRayInk, 1, 0.5, 0.25}, edge{kRayInk, 1.5, 0.9, 0.45}, part{kRayInk, 3, 1, 0.7};
     const std::vector<glm::dvec3> ends = shadowEnd(eye, outline, reach);
     glm::dvec3 middle(0.0);
     for (const glm::dvec3& corner : outline) middle += corner / static_cast<double>(outline.size());
@@ -128,10 +128,10 @@ Image<Rgb> shadowPicture(const PictureMaker& maker, const View& view, const Emph
     // Backs of single-sided occluders are not drawn: their boxes stand for them.
     for (const uint32_t occluder : emphasis.occluders)
         drawBox(lines, scene.meshes[scene.objects[occluder].mesh].bounds, scene.objects[occluder].transform,
-                {kOccluder, 1, 0.6, 0.3});
+                {kOccluderInk, 1, 0.6, 0.3});
     for (const std::vector<glm::dvec3>& outline : emphasis.outlines)
         drawShadow(lines, eye, outline, shadowReach(eye, box, outline));
-    drawBox(lines, scene.meshes[object.mesh].bounds, object.transform, {kObject, 3, 1, 0.8});
+    drawBox(lines, scene.meshes[object.mesh].bounds, object.transform, {kCasterInk, 3, 1, 0.8});
     drawFrustum(lines, view, far);
     return lines.over(look.shaded);
 }
