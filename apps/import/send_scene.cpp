@@ -29,6 +29,7 @@
 
 #include "apps/import/fault.h"
 #include "apps/import/ifc_rewrite.h"
+#include "apps/import/obj_rewrite.h"
 #include "apps/import/materials.h"
 #include "apps/import/placement.h"
 #include "apps/import/poses.h"
@@ -379,6 +380,7 @@ void sendScene(const std::string& file, const std::string& suffix, SceneStreamWr
     FileAccess* const access = new FileAccess(file, suffix);  // the importer's from here on
     importer.SetIOHandler(access);
     if (suffix == "ifc") access->replace(rewriteIfc(access->text()));
+    if (suffix == "obj") access->replace(rewriteObj(access->text()));
     importer.SetProgressHandler(new ReadProgress(out));
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);  // one node a node
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);    // no surface that is not in the file

@@ -11,6 +11,7 @@
 #include "sightline/tools/report/output_file.h"
 #include "sightline/query/record/frame_recorder.h"
 #include "sightline/tools/report/pictures/scene_look.h"
+#include "sightline/tools/scene/scene_core.h"
 
 namespace sightline::viewer {
 using namespace tools;
@@ -41,7 +42,7 @@ bool sameInput(const Input& a, const Input& b) {
 
 Viewer::Viewer(const Scene& scene, LoadedWorld world, const QuerySettings& settings, ViewerSettings viewer)
     : scene_(scene), culler_(scene, std::move(world), settings), begun_(settings), settings_(std::move(viewer)) {
-    bounds_ = finiteBounds(scene);
+    bounds_ = coreOf(scene).bounds;
     size_ = diagonalOf(bounds_);
     if (!settings_.path.frames.empty()) eye.take(settings_.path.frames.front());
     culling = eye;

@@ -67,9 +67,9 @@ public:
     /// @returns false if a part of the body may be in no cell, for it comes as close to where none is: then it is not known
     ///          what is seen from there
     bool cellsAround(std::span<const glm::dvec3> points, double radius, Array<uint32_t>& cells) const;
-    /// The same for a box, to find the cells that an object stands in. A box that reaches out of all cells gets the
+    /// The same for a box, to find the cells that an object stands in. A box that reaches out of all regions gets the
     /// cells that it reaches into, and the outside if there is one.
-    /// @returns false if it is in no cell at all
+    /// @returns false if it is in no cell at all, or reaches beyond the bounds of a tree
     bool cellsOf(const Box3d& box, Array<uint32_t>& cells) const;
 
     /// The portals that leave a cell.

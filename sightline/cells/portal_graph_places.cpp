@@ -219,7 +219,8 @@ bool PortalGraph::cellsOf(const Box3d& box, Array<uint32_t>& cells) const {
             if (!(heights.least > tolerance_)) open.push_back({node.child[0], part.box});
             if (!(heights.most < -tolerance_)) open.push_back({node.child[1], part.box});
         }
-        if (!bounds_.empty() && !meet(wide, bounds_)) cells.clear();
+        // A sight line to what lies beyond the bounds leaves them, and beyond them there are no portals.
+        if (!bounds_.empty() && !isWithin(box, grown(bounds_, tolerance_))) cells.clear();
     } else {
         visitRegions(wide, [&](uint32_t i) {
             const CellRegion& region = regions_[i];

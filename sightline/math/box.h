@@ -31,6 +31,12 @@ struct Box {
         min = glm::min(min, other.min);
         max = glm::max(max, other.max);
     }
+    /// All of another box that is not empty, borders included.
+    bool holds(const Box& other) const {
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(min[axis] <= other.min[axis] && other.max[axis] <= max[axis])) return false;
+        return true;
+    }
     /// False if any bound is NaN or infinite; an empty box is not finite.
     bool finite() const {
         for (int axis = 0; axis < 3; ++axis)

@@ -77,12 +77,4 @@ inline Box3f boundsOf(const BvhNode& node) {
     return box;
 }
 
-/// Whether a box lies within another; touching is within.
-inline bool holds(const Box3f& outer, const Box3f& inner) {
-    bool within = true;
-    for (int axis = 0; axis < 3; ++axis)
-        within &= outer.min[axis] <= inner.min[axis] && inner.max[axis] <= outer.max[axis];
-    return within;
-}
-
 }  // namespace sightline

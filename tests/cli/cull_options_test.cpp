@@ -45,6 +45,27 @@ TEST_F(PathOptions, TourWalkOrbitOverviewAndScatter) {
               0);
 }
 
+TEST_F(PathOptions, OneCameraByItsEye) {
+    const std::string scene = "building:1:2";
+    const json one = cull(scene + " --eye 3,1.6,-2 --look 3,1.6,-9 --verify --rays 1000");
+    ASSERT_EQ(one["frames"].size(), 1u);
+    EXPECT_EQ(one["frames"][0]["camera"]["eye"], json({3, 1.6, -2}));
+    EXPECT_EQ(one["frames"][0]["camera"]["target"], json({3, 1.6, -9}));
+    EXPECT_EQ(one["verification"]["false_culls"], 0);
+    // It looks at the middle, straight up and down, too; and says where the scene is to who looks away.
+    EXPECT_GT(cull(scene + " --eye 30,20,40")["frames"][0]["visible"].size(), 0u);
+    const Outcome listed = run("cull " + scene + " --eye=-1,40,-1 --look=-1,0,-1 --list");
+    EXPECT_EQ(listed.exit_code, 0);
+    EXPECT_NE(listed.out.find("visible in the frame: frames, key, path\n"), std::string::npos) << listed.out;
+    const Outcome away = run("cull " + scene + " --eye 0,500,0 --look 0,900,0");
+    EXPECT_NE(away.err.find("1 of 1 frames sees nothing; the scene lies from "), std::string::npos) << away.err;
+    expectError("cull " + scene + " --look 1,2,3", 2, "--look goes with --eye");
+    expectError("cull " + scene + " --eye 1,2", 2, "--eye 1,2: not X,Y,Z of a point");
+    for (const char* other : {"--path walk", "--frames 3", "--seed 4", "--cameras a.json"})
+        expectError("cull " + scene + " --eye 1,2,3 " + other, 2,
+                    "--eye excludes --cameras, --path, --frames and --seed");
+}
+
 TEST_F(SizeOptions, AreOffUnlessAsked) {
     const json run = cull("city:1:400 --frames 2 --seed 1");
     for (const json& row : run["frames"][0]["stages"]) {

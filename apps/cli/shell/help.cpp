@@ -34,6 +34,7 @@ constexpr const char* kWords = R"(Scenes:
 
 Cameras:
   --cameras PATH.json         a camera path
+  --eye X,Y,Z --look X,Y,Z    one camera, and the point that it looks at
   --path WORD                 tour: the whole, then a walk through it, or around it; walk: frame by frame;
                               orbit; overview; scatter: anywhere, as proofs want it
   --frames N, --seed S        so many cameras of it; where it begins

@@ -9,7 +9,7 @@ namespace {
 
 constexpr OtherVerb kOthers[] = {
     {"render", "one frame by any hidden-surface method, or by all of them", "sightline-lab",
-     "split up unit sides import-memory import-time cameras path frames seed fps speed size threads json= "
+     "split up unit sides import-memory import-time cameras eye look path frames seed fps speed size threads json= "
      "method frame repeat painter-key free-samples rays clipping front back-faces output= ids= heat-map= "
      "heat report= shading shadows depth-format depth-comparison depth-write polygon-offset early-z "
      "hierarchical-z fast-clear depth-compression quiet -o -q"},
@@ -20,18 +20,18 @@ constexpr OtherVerb kOthers[] = {
     {"check", "the certificates of a run or a recorded frame, each held to exact arithmetic", "sightline-lab",
      "split up unit sides import-memory import-time threads json= quiet -q"},
     {"export", "the scene as glTF, cut into objects and without what is not seen", "sightline-lab",
-     "split up unit sides import-memory import-time cameras path frames seed fps speed size threads json= "
+     "split up unit sides import-memory import-time cameras eye look path frames seed fps speed size threads json= "
      "output= outside from-path quiet -o -q"},
     {"calibrate", "what a cluster's test and a triangle cost on this machine", "sightline-lab", "json= quiet -q"},
     {"profile", "what limits a scene's frames, what its parts cost, and what each stage is worth there",
      "sightline-lab",
-     "split up unit sides import-memory import-time cameras path frames seed fps speed size threads json= "
+     "split up unit sides import-memory import-time cameras eye look path frames seed fps speed size threads json= "
      "repeat use skip distance contribution section visibility= windows portal-depth door cluster-test "
      "calibration= dear-shading jitter occluder-triangles occlusion-size masked occluder-error close-gaps "
      "no-faces no-second-look second-look-polygons lod-error lod-fade budget hard-budget cost-object "
      "cost-triangle cost-vertex cost-pixel renderer stream time-limit quiet -q"},
     {"advise", "what to turn on, bake, split or merge in a scene, each tried on its own frames", "sightline-lab",
-     "split up unit sides import-memory import-time cameras path frames seed fps speed size threads json= "
+     "split up unit sides import-memory import-time cameras eye look path frames seed fps speed size threads json= "
      "repeat use skip distance contribution section visibility= windows portal-depth door cluster-test "
      "calibration= dear-shading jitter occluder-triangles occlusion-size masked occluder-error close-gaps "
      "no-faces no-second-look second-look-polygons lod-error lod-fade budget hard-budget cost-object "

@@ -23,6 +23,7 @@
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/page/bake_page.h"
 #include "sightline/tools/report/page/vis_page.h"
+#include "sightline/tools/scene/scene_core.h"
 #include "sightline/tools/truth/region_sight.h"
 
 namespace sightline::cli {
@@ -47,7 +48,7 @@ glm::dvec3 eyeIn(const Scene& scene, std::optional<double> height) {
     walk.kind = PathKind::kWalk;
     walk.walk.frames = 1;
     const Result<CameraPath> path = choosePath(scene, walk);
-    glm::dvec3 eye = path && !path->frames.empty() ? path->frames.front().eye : worldBounds(scene).center();
+    glm::dvec3 eye = path && !path->frames.empty() ? path->frames.front().eye : coreOf(scene).bounds.center();
     if (height) eye.y = *height;
     return eye;
 }
@@ -154,22 +155,22 @@ void addBake(Command& tool, int& exit_code) {
     const auto options = std::make_shared<SceneBakeOptions>();
     addSceneChoice(*verb, options->scene);
     addBakeOptions(*verb, *options, "write the visibility file", true);
-    verb->add_option(
-            "--smallest-occluder", options->source.smallest_occluder,
-            "of a scene without marked cells: the side of the smallest square of opaque surface that divides "
-            "space [world "
-            "units] (default: a 128th of the scene's diagonal, or a little more if hardly less is hidden then)")
+    verb->add_option("--smallest-occluder", options->source.smallest_occluder,
+                     "of a scene without marked cells: the side of the smallest square of opaque surface that divides "
+                     "space [world "
+                     "units] (default: a 128th of the diagonal of what is near together, or a little more if hardly "
+                     "less is hidden then)")
         ->check(Range{0.0, 1e9})
         ->type_name("L");
-    verb->add_option(
-            "--smallest-hole", options->source.smallest_hole,
-            "and how wide a hole must be to be one [world units]; larger than coordinates are exact it shuts "
-            "holes that can be seen through, so that a cull may be false (default: 2^-23 of the scene's diagonal)")
+    verb->add_option("--smallest-hole", options->source.smallest_hole,
+                     "and how wide a hole must be to be one [world units]; larger than coordinates are exact it shuts "
+                     "holes that can be seen through, so that a cull may be false (default: 2^-22 of the largest "
+                     "coordinate of the wall beside it)")
         ->check(Range{0.0, 1e9})
         ->type_name("L");
     verb->add_option("--widest-gap", options->source.widest_gap,
                      "list the slits between walls that are no wider, which were probably meant to be shut [world "
-                     "units]; 0: none (default: 2^-12 of the scene's diagonal)")
+                     "units]; 0: none (default: 2^-12 of the diagonal of what is near together)")
         ->check(Range{0.0, 1e9})
         ->type_name("L");
     verb->add_option("--moves", options->source.moves,

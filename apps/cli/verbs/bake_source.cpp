@@ -15,8 +15,10 @@
 #include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/import/quake/quake_scene.h"
 #include "sightline/tools/load/seeded_cameras.h"
+#include "sightline/tools/report/readable.h"
 #include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/scene/procedural.h"
+#include "sightline/tools/scene/scene_core.h"
 
 namespace sightline::cli {
 using namespace bake;
@@ -96,9 +98,15 @@ Result<std::vector<uint32_t>> movableOf(const Scene& scene, const std::vector<st
                                      "info --objects lists them",
                                      oneLine(word), scene.name)};
     }
-    std::vector<uint32_t> out;
-    for (uint32_t i = 0; i < moves.size(); ++i)
-        if (moves[i]) out.push_back(i);
+    std::vector<uint32_t> animated, out;
+    for (uint32_t i = 0; i < moves.size(); ++i) {
+        if (scene.objects[i].animated && !moves[i]) animated.push_back(i);
+        if (moves[i] || scene.objects[i].animated) out.push_back(i);
+    }
+    if (!animated.empty())
+        note(fmt::format("the file's animations move {} ({}): baked as moving, so that {} nothing",
+                         counted(animated.size(), "object"), namesOf(scene, animated),
+                         animated.size() == 1 ? "it hides" : "they hide"));
     return out;
 }
 
@@ -147,6 +155,8 @@ Result<BakeSource> wallsOf(const Scene& scene, const SceneChoice& names, const s
     Progress progress("finding portals", "faces", 0);
     settings.progress = [&](size_t done, size_t total) { progress.set(done, total); };
     out.cells = soupToBake(scene, name, settings, &out.walls.emplace());
+    if (const std::string text = asideText(scene, out.walls->aside); !text.empty())
+        note(text + ": what is beyond does not divide space");
     if (choice.cells.empty() && out.walls->hardlyAnInside()) return takeAllOfSpace();
     if (out.cells.space.graph.cells == 0)
         return Error{Error::Kind::kInput,

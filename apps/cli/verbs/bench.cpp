@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <fmt/core.h>
-#include <fmt/core.h>
 
 #include "apps/cli/shell/other_verbs.h"
 #include "apps/cli/shell/progress.h"

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstdio>
 #include <thread>
+#include <tuple>
 #include <utility>
 
-#include <fmt/core.h>
 #include <fmt/core.h>
 
 #include "apps/cli/shell/options.h"
@@ -22,6 +22,7 @@
 #include "sightline/tools/report/readable.h"
 #include "sightline/tools/scene/city/city.h"
 #include "sightline/tools/scene/one_line.h"
+#include "sightline/tools/scene/scene_core.h"
 #include "sightline/tools/scene/suggestion.h"
 
 namespace sightline::cli {
@@ -66,7 +67,8 @@ Result<uint32_t> readStages(const std::string& option, const std::vector<std::st
 /// it.
 bool walksStreets(const RunOptions& options, uint64_t& seed) {
     const PathChoice& choice = options.choice;
-    if (!choice.file.empty() || choice.kind != PathKind::kAny || choice.walk.frames == 0 || choice.seeded) return false;
+    if (!choice.file.empty() || choice.eye || choice.kind != PathKind::kAny || choice.walk.frames == 0 || choice.seeded)
+        return false;
     const std::string scene = options.scene.procedural();
     return scene.starts_with("city:") && readWhole(std::string_view(scene).substr(5, scene.find(':', 5) - 5), seed);
 }
@@ -83,12 +85,28 @@ Status readSize(const std::string& option, const std::string& text, uint32_t& wi
     return usageError(fmt::format("{} {}: not WxH with sides from 1 to {}", option, text, kLargestSide));
 }
 
+Result<glm::dvec3> readPoint(const char* option, const std::string& text) {
+    const std::vector<std::string> parts = splitAt(text, ',');
+    glm::dvec3 point(0.0);
+    bool good = parts.size() == 3;
+    for (int axis = 0; axis < 3 && good; ++axis)
+        good = readNumber(parts[static_cast<size_t>(axis)], point[axis]) && std::isfinite(point[axis]);
+    if (good) return point;
+    return usageError(fmt::format("{} {}: not X,Y,Z of a point", option, text));
+}
+
 void addCameraOptions(Command& verb, RunOptions& options, const std::string& shared) {
     std::vector<std::string> paths;
     for (const auto& [word, kind] : kPathKinds) paths.emplace_back(word);
     addSceneChoice(verb, options.scene);
     WalkSettings& walk = options.choice.walk;
     verb.add_option("--cameras", options.choice.file, "camera path (JSON)")->type_name("PATH.json")->group("Cameras");
+    verb.add_option("--eye", options.eye, "one camera that stands there [world units]")
+        ->type_name("X,Y,Z")
+        ->group("Cameras");
+    verb.add_option("--look", options.look, "and looks at this point (default: the middle of the scene)")
+        ->type_name("X,Y,Z")
+        ->group("Cameras");
     verb.add_option("--path", options.path,
                     "a view of the whole and a walk through it; a walk, frame by frame; once around; the whole from "
                     "outside; or cameras that stand anywhere (default: the scene's own cameras, else tour)")
@@ -205,8 +223,18 @@ namespace {
 Status finishPath(const Command& verb, RunOptions& options) {
     PathChoice& choice = options.choice;
     choice.seeded = verb.count("--seed") > 0;
-    if (!choice.file.empty() && (choice.walk.frames > 0 || choice.seeded || !options.path.empty()))
-        return usageError("--cameras excludes --path, --frames and --seed");
+    const bool made = choice.walk.frames > 0 || choice.seeded || !options.path.empty();
+    if (!choice.file.empty() && made) return usageError("--cameras excludes --path, --frames and --seed");
+    if (!options.eye.empty() && (made || !choice.file.empty()))
+        return usageError("--eye excludes --cameras, --path, --frames and --seed");
+    if (!options.look.empty() && options.eye.empty()) return usageError("--look goes with --eye");
+    for (auto [option, text, point] :
+         {std::tuple("--eye", &options.eye, &choice.eye), std::tuple("--look", &options.look, &choice.look)}) {
+        if (text->empty()) continue;
+        const Result<glm::dvec3> read = readPoint(option, *text);
+        if (!read) return read.error();
+        *point = *read;
+    }
     for (const auto& [word, kind] : kPathKinds)
         if (options.path == word) choice.kind = kind;
     for (const char* of_walk : {"--fps", "--speed"})
@@ -259,12 +287,16 @@ Status finish(const Command& verb, RunOptions& options) {
 Result<CameraPath> loadPath(const Scene& scene, const RunOptions& options) {
     uint64_t city_seed = 0;
     if (walksStreets(options, city_seed)) return cityStreetPath(city_seed, options.choice.walk.frames);
+    if (options.choice.file.empty() && !options.choice.eye && !takesOwnCameras(scene, options.choice))
+        if (const std::string text = asideText(scene, coreOf(scene).aside); !text.empty())
+            note(text + ": the cameras leave what is beyond aside");
     return choosePath(scene, options.choice);
 }
 
 std::string ownerOfPath(const Scene& scene, const RunOptions& options) {
     uint64_t city_seed = 0;
     if (!options.choice.file.empty()) return oneLine(options.choice.file);
+    if (options.choice.eye) return "--eye " + options.eye;
     if (!options.path.empty()) return "--path " + options.path;
     if (walksStreets(options, city_seed)) return "a walk along the streets";
     return takesOwnCameras(scene, options.choice) ? "the scene's own cameras" : "a tour";

@@ -39,7 +39,10 @@ Status finish(const Command& verb, RunOptions& options);
 /// @param option  what an error, kUsage, calls it
 Status readSize(const std::string& option, const std::string& text, uint32_t& width, uint32_t& height);
 
-/// Which path: --cameras; --path, --frames and --seed; a city's streets for --frames alone; the scene's own; 16 seeded.
+/// "1.5,0,-2". Error (kUsage): it is no point.
+Result<glm::dvec3> readPoint(const char* option, const std::string& text);
+
+/// Which path: --cameras; --eye and --look; --path, --frames and --seed; a city's streets for --frames alone; the scene's own; 16 seeded.
 Result<CameraPath> loadPath(const Scene& scene, const RunOptions& options);
 
 /// "frame 3 (0 to 15)", or "the only frame".

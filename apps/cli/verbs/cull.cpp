@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -35,6 +36,8 @@
 #include "sightline/tools/report/pictures/window_picture.h"
 #include "sightline/tools/report/run/cull_run.h"
 #include "sightline/tools/report/run/trace_json.h"
+#include "sightline/tools/scene/one_line.h"
+#include "sightline/tools/scene/scene_core.h"
 
 namespace sightline::cli {
 using namespace tools;
@@ -157,6 +160,7 @@ struct CullOptions : RunOptions {
     std::string recording;     ///< file, or empty
     std::string depth_images;  ///< directory, or empty
     uint32_t frame = 0;        ///< that is recorded
+    bool list = false;         ///< name what is visible
 };
 
 /// That nothing is written over what is read, or over another output.
@@ -242,6 +246,30 @@ Status writeCullPage(const Scene& scene, const Snapshot& now, const CullRun& run
     return writeFileAside(options.report + "/index.html", page);
 }
 
+/// What some frame kept, by keys: in how many frames, and its path.
+void printList(std::FILE* out, const Scene& scene, const CullRun& run) {
+    std::map<uint64_t, size_t> frames_of;
+    for (const FrameResult& frame : run.frames)
+        for (const uint64_t key : frame.visible) ++frames_of[key];
+    std::map<uint64_t, std::string> paths;
+    for (const SceneObject& object : scene.objects)
+        if (frames_of.contains(object.key)) paths.try_emplace(object.key, objectPath(scene, object));
+    tell(out, fmt::format("visible in {}: frames, key, path\n", run.frames.size() == 1 ? "the frame" : "some frame"));
+    for (const auto& [key, frames] : frames_of)
+        tell(out, fmt::format("  {:>6}  {:>8}  {}\n", frames, key, oneLine(paths[key])));
+}
+
+/// Of cameras that look away from everything.
+void noteEmptyFrames(const Scene& scene, const CullRun& run) {
+    const auto isEmpty = [](const FrameResult& frame) { return frame.visible.empty(); };
+    const auto empty = static_cast<size_t>(std::count_if(run.frames.begin(), run.frames.end(), isEmpty));
+    const Box3d box = coreOf(scene).bounds;
+    if (empty == 0 || box.empty()) return;
+    const auto text = [](const glm::dvec3& p) { return fmt::format("{:.4g},{:.4g},{:.4g}", p.x, p.y, p.z); };
+    note(fmt::format("{} of {} frames {} nothing; the scene lies from {} to {}", empty, run.frames.size(),
+                     empty == 1 ? "sees" : "see", text(box.min), text(box.max)));
+}
+
 Status writeCullOutputs(const Scene& scene, const Snapshot& now, const CullRun& run, const CullOptions& options) {
     const std::string json = cullJson(run, scene);
     if (!options.json.empty())
@@ -306,6 +334,8 @@ Result<int> runCull(const Command& verb, CullOptions& options) {
     if (!options.report.empty()) noteFrames(*scene, options, std::move(world), run);
 
     printSummary(options.json == "-" ? stderr : stdout, run);
+    noteEmptyFrames(*scene, run);
+    if (options.list) printList(options.json == "-" ? stderr : stdout, *scene, run);
     if (Status explained = explainFalseCulls(*scene, options, run); !explained) return explained.error();
     if (Status written = writeCullOutputs(*scene, now, run, options); !written) return written.error();
     if (recording)
@@ -324,6 +354,7 @@ void addCull(Command& tool, int& exit_code) {
     verb->add_flag("--verify", options->verify,
                    "let rays and an id-buffer judge every frame; exit code 1 if "
                    "anything visible was culled");
+    verb->add_flag("--list", options->list, "name what is visible: the frames that keep it, its key and its path");
     verb->add_option("--report", options->report,
                      "write DIR/index.html, one page with pictures, and its numbers and pictures beside it")
         ->type_name("DIR");

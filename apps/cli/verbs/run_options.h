@@ -21,7 +21,8 @@ struct OpenedVisibility;
 /// Options of every verb that moves a camera through a scene.
 struct RunOptions {
     SceneChoice scene;
-    std::string path;  ///< a word for PathChoice::kind, or empty
+    std::string path;       ///< a word for PathChoice::kind, or empty
+    std::string eye, look;  ///< X,Y,Z of PathChoice's, or empty
     PathChoice choice;
     std::string size = "1280x720";
     uint32_t width = 1280, height = 720;  ///< from `size`

@@ -31,16 +31,6 @@ struct SightOptions : RunOptions {
     double within = 0, narrowest = 0;
 };
 
-Result<glm::dvec3> readPoint(const char* option, const std::string& text) {
-    const std::vector<std::string> parts = splitAt(text, ',');
-    glm::dvec3 point(0.0);
-    bool good = parts.size() == 3;
-    for (int axis = 0; axis < 3 && good; ++axis)
-        good = readNumber(parts[static_cast<size_t>(axis)], point[axis]) && std::isfinite(point[axis]);
-    if (good) return point;
-    return usageError(fmt::format("{} {}: not X,Y,Z of a point", option, text));
-}
-
 Json pointJson(const glm::dvec3& point) { return {point.x, point.y, point.z}; }
 
 Json objectJson(const Scene& scene, const Visible& visible) {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <fmt/core.h>
 
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
@@ -320,6 +319,8 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     std::string command = "sightline cull " + options.scene.words();
     const PathChoice& choice = options.choice;
     if (!choice.file.empty()) command += " --cameras " + quoted(choice.file);
+    if (!options.eye.empty()) command += " --eye " + options.eye;
+    if (!options.look.empty()) command += " --look " + options.look;
     if (!options.path.empty()) command += " --path " + options.path;
     if (choice.walk.frames > 0) command += fmt::format(" --frames {}", choice.walk.frames);
     if (choice.seeded) command += fmt::format(" --seed {}", choice.walk.seed);

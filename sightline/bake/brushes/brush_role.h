@@ -19,15 +19,16 @@ enum class BrushRole : uint8_t {
 };
 
 /// Whether an entity's brushes are part of the world, as of func_group; of func_detail and its kin they are, too, but
-/// only as detail, unless they are sky. Those of all others move, or come and go.
+/// only as detail, unless they are sky. Those of all others move, or come and go. What an editor's layer or a compiler's key
+/// leaves out is no part of it.
 bool isWorldEntity(const QuakeMap& map, const QuakeMapEntity& entity);
 
 /// Of a brush of an entity. A brush is what the least hiding of its sides says it is.
 ///
-/// Names are Quake's (sky..., *water, clip, hint, origin, ...), without the folders of Quake 2 and 3, of which
-/// `common/` holds what is not drawn: of it only caulk is solid. Flags of Quake 2 and 3: detail, liquids, sky,
-/// windows, clips. What a name of Quake 3's shaders means is not known here: all that is not named above is solid,
-/// which is wrong of windows that are not detail.
+/// Names are Quake's and Half-Life's (sky..., *water, clip, hint, origin, ...), without the folders of Quake 2 and 3, of
+/// which `common/` and `system/` hold what is not drawn: of them only caulk is solid. Names with a folder that speak of
+/// liquids, fog, glass or windows are that. Flags of Quake 2 and 3: detail, liquids, sky, windows, clips, hints. What
+/// another name of Quake 3's shaders means is not known here: it is solid, which is wrong of what one sees through.
 BrushRole roleOf(const QuakeMap& map, const QuakeMapEntity& entity, const QuakeMapBrush& brush);
 
 }  // namespace sightline::bake

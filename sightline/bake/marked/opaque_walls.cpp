@@ -59,10 +59,14 @@ void OpaqueWalls::gather(const Box3d& box, std::vector<WallTriangle>& triangles)
         if (!meet(bounds_[k], box)) continue;
         const SceneObject& object = scene_.objects[objects_[k]];
         const Mesh& mesh = scene_.meshes[object.mesh];
-        std::vector<glm::dvec3> points;
+        std::vector<glm::dvec3> points, sizes;
         points.reserve(mesh.positions.size());
-        for (const glm::vec3& point : mesh.positions)
+        sizes.reserve(mesh.positions.size());
+        const glm::dmat3 linear(object.transform), size(glm::abs(linear[0]), glm::abs(linear[1]), glm::abs(linear[2]));
+        for (const glm::vec3& point : mesh.positions) {
             points.emplace_back(object.transform * glm::dvec4(glm::dvec3(point), 1));
+            sizes.push_back(size * glm::abs(glm::dvec3(point)));
+        }
         const bool mirrored = glm::determinant(glm::dmat3(object.transform)) < 0;
         for (const Primitive& part : mesh.primitives) {
             const Material& material = scene_.materials[part.material];
@@ -72,10 +76,14 @@ void OpaqueWalls::gather(const Box3d& box, std::vector<WallTriangle>& triangles)
                 triangle.object = objects_[k];
                 triangle.both = material.double_sided;
                 Box3d bounds;
+                glm::dvec3 largest(0.0);
                 for (size_t c = 0; c < 3; ++c) {
-                    triangle.corners[c] = points[mesh.indices[3 * t + c]];
+                    const uint32_t corner = mesh.indices[3 * t + c];
+                    triangle.corners[c] = points[corner];
                     bounds.grow(triangle.corners[c]);
+                    largest = glm::max(largest, sizes[corner]);
                 }
+                triangle.rounding = 0x1p-22 * std::max({largest.x, largest.y, largest.z});
                 if (!meet(bounds, box)) continue;
                 if (mirrored) std::swap(triangle.corners[1], triangle.corners[2]);
                 triangles.push_back(triangle);

@@ -22,6 +22,9 @@ struct WallTriangle {
     glm::dvec3 corners[3];
     uint32_t object = 0;
     bool both = false;  ///< double-sided
+    /// How far the corners of two surfaces that were meant to meet may be apart, of coordinates as large as its own in its
+    /// object: four units in the last place of the file's floats.  [world units]
+    double rounding = 0;
 };
 
 /// The objects that hide: opaque, not deforming, and not among those that may be elsewhere.

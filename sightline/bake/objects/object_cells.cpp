@@ -92,6 +92,10 @@ public:
         double far = reach_;
         for (const glm::dvec3& corner : {body.box.min, body.box.max}) far = std::max(far, largest(corner));
         const double depth = margin_ + 0x1p-40 * far;
+        // A sight line to what lies beyond the bounds leaves them, and beyond them there are no portals.
+        const Box3d& bounds = space_.tree.bounds;
+        if (space_.ofTree() && !bounds.empty() && !Box3d{bounds.min - depth, bounds.max + depth}.holds(body.box))
+            return true;
         bool in_no_cell = false;
         if (!space_.ofTree()) in_no_cell = !placeInRegions(body, depth, pieces);
         else if (body.corners.empty()) placeBox(body.box, depth, pieces);

@@ -40,7 +40,7 @@ struct ObjectCells {
 
 /// The cells of each object that stands still: all that one of its triangles meets or comes as close to as the margin,
 /// with what rounding may move; at sharp edges of a cell it may come in from farther away. A triangle in a plane
-/// between two cells is in both. Where there is an outside, an object that is not wholly inside of cells, by more than
+/// between two cells is in both. What reaches beyond the bounds of a tree is seen from everywhere. Where there is an outside, an object that is not wholly inside of cells, by more than
 /// the margin, triangle for triangle, is outside too; where there is none, what is in no cell is seen from everywhere.
 ///
 /// Bounds are transformBox() of the mesh's, as a world has them. O(triangles * cells that their object's bounds meet),

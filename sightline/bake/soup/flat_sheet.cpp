@@ -8,7 +8,7 @@
 
 namespace sightline::bake {
 
-FlatSheet::FlatSheet(const SoupWalls& walls, const WallSheet& sheet, double grow)
+FlatSheet::FlatSheet(const SoupWalls& walls, const WallSheet& sheet)
     : frame_(-sheet.plane.w * glm::dvec3(sheet.plane), glm::dvec3(sheet.plane)) {
     for (const uint32_t t : sheet.triangles) {
         const WallTriangle& triangle = walls.triangles[t];
@@ -18,7 +18,8 @@ FlatSheet::FlatSheet(const SoupWalls& walls, const WallSheet& sheet, double grow
         if (area == 0) continue;
         flat.sides = triangle.both ? 3 : area > 0 ? 1 : 2;
         if (area < 0) std::swap(piece[1], piece[2]);
-        flat.piece = grownBy(piece, grow);
+        flat.rounding = triangle.rounding;
+        flat.piece = grownBy(piece, triangle.rounding / 3);
         if (flat.piece.empty()) continue;
         flat.min = flat.max = flat.piece[0];
         for (const glm::dvec2& point : flat.piece) {

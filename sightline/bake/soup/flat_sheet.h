@@ -19,13 +19,14 @@ struct SheetTriangle {
     glm::dvec2 min, max;
     uint32_t triangle = 0;  ///< of SoupWalls::triangles
     uint8_t sides = 0;      ///< 1: hides from where the normal points, 2: from behind, 3: from both
+    double rounding = 0;    ///< WallTriangle::rounding
 };
 
 class FlatSheet {
 public:
     FlatSheet() = default;
-    /// @param grow  by how much triangles become larger  [world units] [>= 0]
-    FlatSheet(const SoupWalls& walls, const WallSheet& sheet, double grow);
+    /// Triangles become larger by a third of their rounding.
+    FlatSheet(const SoupWalls& walls, const WallSheet& sheet);
 
     const FlatFrame& frame() const { return frame_; }
     /// From left to right.

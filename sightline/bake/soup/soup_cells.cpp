@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -28,25 +29,25 @@ struct FaceAnswer {
     };
     std::vector<Hole> holes;
     std::vector<uint32_t> walls;  // triangles
+    double smallest = 0;          // narrower holes are none
     bool merged = false;
 };
 
 class Faces {
 public:
     Faces(const SoupWalls& walls, const SoupTree& tree, const CellGraph& graph,
-          const std::vector<uint32_t>& node_of_portal, double hole, uint32_t most_holes)
+          const std::vector<uint32_t>& node_of_portal, uint32_t most_holes)
         : walls_(walls),
           tree_(tree),
           graph_(graph),
           node_of_portal_(node_of_portal),
-          hole_(hole),
           most_holes_(most_holes),
           sheets_(walls.sheets.size()) {
         std::vector<bool> used(walls.sheets.size(), false);
         for (const uint32_t sheet : tree.sheet_of_node)
             if (sheet != SoupTree::kNoSheet) used[sheet] = true;
         for (size_t i = 0; i < sheets_.size(); ++i)
-            if (used[i]) sheets_[i] = FlatSheet(walls, walls.sheets[i], hole / 3);
+            if (used[i]) sheets_[i] = FlatSheet(walls, walls.sheets[i]);
     }
 
     FaceAnswer answer(uint32_t portal) const {
@@ -63,10 +64,18 @@ public:
         const bool along = glm::dot(glm::dvec3(face.plane), glm::dvec3(walls_.sheets[sheet_number].plane)) > 0;
         const FlatPiece whole = sheet.frame().to(outline);
         const FlatPiece piece = areaOf(whole) < 0 ? FlatPiece(whole.rbegin(), whole.rend()) : whole;
-        // A strip along another plane may belong to the wall in that.
-        const FlatPiece inner = shrunkBy(piece, hole_);
         std::vector<const SheetTriangle*> near[2];
-        sheet.gather(inner.empty() ? piece : inner, near);
+        sheet.gather(piece, near);
+        out.smallest = std::numeric_limits<double>::infinity();
+        for (const auto& side : near)
+            for (const SheetTriangle* triangle : side) out.smallest = std::min(out.smallest, triangle->rounding);
+        // A strip along another plane may belong to the wall in that.
+        const FlatPiece inner = near[0].empty() && near[1].empty() ? FlatPiece() : shrunkBy(piece, out.smallest);
+        if (!inner.empty()) {
+            near[0].clear();
+            near[1].clear();
+            sheet.gather(inner, near);
+        }
         if (near[0].empty() && near[1].empty()) {
             out.holes.push_back({{outline.begin(), outline.end()}, 3});
             return out;
@@ -89,10 +98,10 @@ public:
                 out.walls.push_back(triangle->triangle);
             }
             if (rest.empty()) continue;
-            for (const FlatHole& hole : holesOf(rest.pieces(), hole_, most_holes_)) {
+            for (const FlatHole& hole : holesOf(rest.pieces(), out.smallest, most_holes_)) {
                 out.merged |= hole.merged;
                 for (const FlatPiece& part : hole.pieces)
-                    out.holes.push_back({sheet.frame().from(widened(part, hole_)), way});
+                    out.holes.push_back({sheet.frame().from(widened(part, out.smallest)), way});
             }
         }
         return out;
@@ -103,7 +112,6 @@ private:
     const SoupTree& tree_;
     const CellGraph& graph_;
     const std::vector<uint32_t>& node_of_portal_;
-    double hole_;
     uint32_t most_holes_;
     std::vector<FlatSheet> sheets_;
 };
@@ -126,8 +134,8 @@ void addHoles(const CellPortal& face, const FaceAnswer& answer, double hole, Cel
 /// The walls of a scene, as fine as the smallest that may divide.
 struct Soup {
     SoupWalls walls;
-    Box3d bounds;  // of the tree
-    double hole = 0;
+    Box3d bounds;     // of the tree
+    double hole = 0;  // the largest of the smallest
 };
 
 /// Divides by walls from a size on.
@@ -149,7 +157,7 @@ SoupCells divide(const Scene& scene, const Soup& soup, double smallest_occluder,
     std::vector<uint32_t> node_of_portal;
     const CellGraph faces = cellsOfTree(tree.tree, {}, &counts, &node_of_portal);
     report.faces = faces.portals.size();
-    const Faces walls_of(soup.walls, tree, faces, node_of_portal, soup.hole, settings.most_holes);
+    const Faces walls_of(soup.walls, tree, faces, node_of_portal, settings.most_holes);
     std::vector<FaceAnswer> answers(faces.portals.size());
     constexpr size_t kTask = 256, kBatch = 64;
     const size_t tasks = (answers.size() + kTask - 1) / kTask;
@@ -183,17 +191,18 @@ SoupCells divide(const Scene& scene, const Soup& soup, double smallest_occluder,
 }  // namespace
 
 SoupCells cellsOfSoup(const Scene& scene, const SoupCellSettings& settings) {
-    const std::optional<SoupScale> scale = soupScaleOf(scene, settings.smallest_hole);
-    std::vector<WallTriangle> triangles = opaqueTriangles(scene, settings.movable);
-    if (triangles.empty() || !scale) return {};
+    const std::optional<SoupScale> scale = soupScaleOf(scene);
+    if (!scale) return {};
+    std::vector<WallTriangle> triangles = opaqueTriangles(scene, *scale, settings.smallest_hole, settings.movable);
+    if (triangles.empty()) return {};
     const double diagonal = scale->diagonal;
     const uint64_t opaque = triangles.size();
     Soup soup;
-    soup.bounds = scale->bounds;
-    soup.hole = scale->hole;
+    soup.bounds = scale->core.bounds;
+    soup.hole = largestHole(triangles);
     const double finest = settings.smallest_occluder >= 0 ? settings.smallest_occluder : diagonal / 128;
-    soup.walls = sheetsOf(std::move(triangles), soup.hole, std::max(finest * finest, soup.hole * soup.hole));
-    // Eyes outside of the scene are in cells, too.
+    soup.walls = sheetsOf(std::move(triangles), std::max(finest * finest, soup.hole * soup.hole));
+    // Eyes outside of the core are in cells, too; what is left aside is seen from everywhere.
     soup.bounds.min -= glm::dvec3(diagonal);
     soup.bounds.max += glm::dvec3(diagonal);
 
@@ -201,11 +210,11 @@ SoupCells cellsOfSoup(const Scene& scene, const SoupCellSettings& settings) {
     std::vector<SoupTrial> trials;
     if (settings.smallest_occluder < 0 && !settings.eyes.empty() && best.space.graph.cells > 0) {
         constexpr double kMuchMore = 1.2;
-        trials.push_back(trialOf(scene, best, settings));
+        trials.push_back(trialOf(scene, best, settings, diagonal));
         for (const double times : {2.0, 4.0, 8.0}) {
             SoupCells coarser = divide(scene, soup, times * finest, settings);
             if (coarser.space.graph.cells == 0) break;
-            trials.push_back(trialOf(scene, coarser, settings));
+            trials.push_back(trialOf(scene, coarser, settings, diagonal));
             if (trials.back().objects_seen > kMuchMore * trials.front().objects_seen) break;
             best = std::move(coarser);
         }
@@ -214,6 +223,7 @@ SoupCells cellsOfSoup(const Scene& scene, const SoupCellSettings& settings) {
     best.report.objects = scene.objects.size();
     best.report.triangles = opaque;
     best.report.smallest_hole = soup.hole;
+    best.report.aside = scale->core.aside;
     best.report.widest_gap = settings.widest_gap >= 0 ? settings.widest_gap : std::ldexp(diagonal, -12);
     if (best.report.widest_gap > 0)
         best.report.gaps = gapsOfWalls(soup.walls, best.space, soup.hole, best.report.widest_gap);

@@ -16,10 +16,11 @@ using namespace tools;
 ///
 /// The argument. Leaves fill space, so a sight line that goes from leaf to leaf crosses a face, which lies in a node's
 /// plane. Think of the boundary between the leaves as bent through the triangles that lie in that plane to within half of
-/// smallest_hole. Of a face, the portal from A to B is what is left of it once those triangles are taken away whose
-/// fronts A sees; a line that crosses elsewhere has met such a front. Triangles are grown by a third of smallest_hole
+/// their rounding. Of a face, the portal from A to B is what is left of it once those triangles are taken away whose
+/// fronts A sees; a line that crosses elsewhere has met such a front. Triangles are grown by a third of that
 /// before, and a strip as wide as that along the edges of a face counts as the neighbour's wall, for sheets that meet do
-/// not do so bit for bit: so holes narrower than that are closed. Portals are widened by smallest_hole, and what is as
+/// not do so bit for bit: so holes narrower than that are closed. Portals are widened by the smallest of the walls
+/// beside them, and what is as
 /// close to a plane belongs to both sides.
 ///
 /// O(triangles * log) for a tree, and for faces their number times the triangles of their planes that are near.

@@ -15,15 +15,16 @@ namespace sightline::bake {
 
 struct SoupCellSettings {
     /// What divides space: opaque sheets that hang together and are at least as large as a square of this side. Smaller
-    /// ones hide as occluders alone. Negative: a 128th of the scene's diagonal or, if there are `eyes`, two, four or eight
+    /// ones hide as occluders alone. Negative: a 128th of the core's diagonal (SceneCore) or, if there are `eyes`, two, four or eight
     /// times as much, as long as they see at most a fifth more.  [world units]
     double smallest_occluder = -1;
     std::vector<glm::dvec3> eyes;  ///< places that are asked how much is seen from them
-    /// Holes that are narrower are no holes: as much as coordinates of the scene may be off. A larger one closes
-    /// holes that light passes, which is not conservative. Negative: 2^-23 of the scene's diagonal.  [world units]
+    /// Holes that are narrower are no holes: as much as coordinates of the walls about them may be off. A larger one
+    /// closes holes that light passes, which is not conservative. Negative: 2^-22 of the largest coordinate of the wall
+    /// beside the hole, which is four units in the last place of what files hold.  [world units]
     double smallest_hole = -1;
     /// Slits between walls are listed as gaps, which were probably meant to be shut, if they are no wider. 0: none are.
-    /// Negative: 2^-12 of the scene's diagonal.  [world units]
+    /// Negative: 2^-12 of the core's diagonal.  [world units]
     double widest_gap = -1;
     uint32_t most_cells = 1u << 15;  ///< [limit: >= 1]
     uint32_t most_holes = 32;        ///< pieces of the holes of one face; more become their hull  [limit: >= 1]
@@ -50,19 +51,21 @@ struct WallGap {
 };
 
 struct SoupCellReport {
-    std::vector<SoupTrial> trials;                    ///< the finest first; none without `eyes`
-    uint64_t objects = 0;                             ///< of the scene, that trials speak of
-    double smallest_occluder = 0, smallest_hole = 0;  ///< as used  [world units]
-    uint64_t triangles = 0;                           ///< opaque ones
-    uint64_t sheets = 0;                              ///< planes that may divide
-    uint64_t faces = 0;                               ///< between leaves
-    uint64_t closed = 0;                              ///< faces that walls cover wholly, from both sides
-    uint64_t one_way = 0;                             ///< portals that are seen through from one side alone
-    uint64_t merged = 0;                              ///< faces whose holes became their hull
-    uint32_t depth = 0;                               ///< of the tree
-    bool full = false;                                ///< `most_cells` ended the division
-    double widest_gap = 0;                            ///< as used  [world units]
-    std::vector<WallGap> gaps;                        ///< the largest first, by width times length
+    std::vector<SoupTrial> trials;  ///< the finest first; none without `eyes`
+    uint64_t objects = 0;           ///< of the scene, that trials speak of
+    double smallest_occluder = 0;   ///< as used  [world units]
+    double smallest_hole = 0;       ///< the largest that was used  [world units]
+    std::vector<uint32_t> aside;    ///< SceneCore::aside: these are no walls
+    uint64_t triangles = 0;         ///< opaque ones
+    uint64_t sheets = 0;            ///< planes that may divide
+    uint64_t faces = 0;             ///< between leaves
+    uint64_t closed = 0;            ///< faces that walls cover wholly, from both sides
+    uint64_t one_way = 0;           ///< portals that are seen through from one side alone
+    uint64_t merged = 0;            ///< faces whose holes became their hull
+    uint32_t depth = 0;             ///< of the tree
+    bool full = false;              ///< `most_cells` ended the division
+    double widest_gap = 0;          ///< as used  [world units]
+    std::vector<WallGap> gaps;      ///< the largest first, by width times length
     /// Whether the trial of what was used saw a quarter of the objects or more; false without trials.
     bool hardlyAnInside() const {
         for (const SoupTrial& trial : trials)

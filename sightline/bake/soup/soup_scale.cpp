@@ -1,31 +1,54 @@
-// The size of a scene without marks, how narrow its holes may be, and its opaque triangles.
+// The size of a scene without marks, and its opaque triangles with how narrow holes beside them may be.
 // SPDX-License-Identifier: MIT
 #include "sightline/bake/soup/soup_scale.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace sightline::bake {
 
-std::optional<SoupScale> soupScaleOf(const Scene& scene, double smallest_hole) {
+namespace {
+
+double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+}  // namespace
+
+std::optional<SoupScale> soupScaleOf(const Scene& scene) {
     SoupScale out;
     out.bounds = worldBounds(scene);
-    out.diagonal = out.bounds.empty() ? 0 : glm::length(out.bounds.size());
-    if (!(out.diagonal > 0) || !std::isfinite(out.diagonal)) return std::nullopt;
-    const double narrow = smallest_hole >= 0 ? smallest_hole : out.diagonal * 0x1p-23;
-    // Far from the origin rounding moves planes by more than what the scene's size says.
-    const glm::dvec3 far = glm::max(glm::abs(out.bounds.min), glm::abs(out.bounds.max));
-    out.hole = std::max({narrow, out.diagonal * 0x1p-30, std::max({far.x, far.y, far.z}) * 0x1p-40});
+    out.core = coreOf(scene);
+    out.diagonal = out.core.diagonal();
+    if (!(out.diagonal > 0) || !out.bounds.finite()) return std::nullopt;
     return out;
 }
 
-std::vector<WallTriangle> opaqueTriangles(const Scene& scene, std::span<const uint32_t> movable) {
-    const Box3d everywhere{glm::dvec3(-std::numeric_limits<double>::infinity()),
-                           glm::dvec3(std::numeric_limits<double>::infinity())};
+std::vector<WallTriangle> opaqueTriangles(const Scene& scene, const SoupScale& scale, double smallest_hole,
+                                          std::span<const uint32_t> movable) {
     std::vector<WallTriangle> triangles;
-    OpaqueWalls(scene, movable).gather(everywhere, triangles);
+    OpaqueWalls(scene, movable).gather(scale.core.bounds, triangles);
+    std::erase_if(triangles, [&](const WallTriangle& triangle) {
+        Box3d box;
+        for (const glm::dvec3& corner : triangle.corners) box.grow(corner);
+        return !scale.core.bounds.holds(box);
+    });
+    const glm::dvec3 middle = scale.core.bounds.center();
+    // Planes are computed in doubles, of coordinates up to those of the core.
+    const double least =
+        std::max({scale.diagonal, largest(scale.core.bounds.min), largest(scale.core.bounds.max)}) * 0x1p-40;
+    for (WallTriangle& triangle : triangles) {
+        // Where an object stands was rounded, too, but for what all of them may share: a place on a map, in doubles.
+        const glm::dvec3 at(scene.objects[triangle.object].transform[3]);
+        const double moved = std::min(largest(at), largest(at - middle));
+        const double own = triangle.rounding + 0x1p-22 * moved;
+        triangle.rounding = std::max(smallest_hole >= 0 ? smallest_hole : own, least);
+    }
     return triangles;
+}
+
+double largestHole(std::span<const WallTriangle> triangles) {
+    double largest = 0;
+    for (const WallTriangle& triangle : triangles) largest = std::max(largest, triangle.rounding);
+    return largest;
 }
 
 }  // namespace sightline::bake

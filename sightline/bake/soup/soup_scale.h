@@ -1,4 +1,4 @@
-// The size of a scene without marks, how narrow its holes may be, and its opaque triangles.
+// The size of a scene without marks, and its opaque triangles with how narrow holes beside them may be.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -10,21 +10,27 @@
 #include "sightline/bake/marked/opaque_walls.h"
 #include "sightline/math/box.h"
 #include "sightline/tools/scene/scene.h"
+#include "sightline/tools/scene/scene_core.h"
 
 namespace sightline::bake {
 using namespace tools;
 
 struct SoupScale {
     Box3d bounds;         ///< of the scene
-    double diagonal = 0;  ///< of the bounds
-    double hole = 0;      ///< narrower holes are none; never less than rounding asks for  [world units] [> 0]
+    SceneCore core;       ///< of it; what is left aside is no wall
+    double diagonal = 0;  ///< of the core
 };
 
 /// None of a scene without a size.
-/// @param smallest_hole  SoupCellSettings::smallest_hole
-std::optional<SoupScale> soupScaleOf(const Scene& scene, double smallest_hole);
+std::optional<SoupScale> soupScaleOf(const Scene& scene);
 
-/// All that OpaqueWalls finds.
-std::vector<WallTriangle> opaqueTriangles(const Scene& scene, std::span<const uint32_t> movable);
+/// What OpaqueWalls finds within the core. No hole beside a triangle is narrower than its `rounding`, which is never less
+/// than what the arithmetic asks for.
+/// @param smallest_hole  SoupCellSettings::smallest_hole
+std::vector<WallTriangle> opaqueTriangles(const Scene& scene, const SoupScale& scale, double smallest_hole,
+                                          std::span<const uint32_t> movable);
+
+/// The largest rounding.
+double largestHole(std::span<const WallTriangle> triangles);
 
 }  // namespace sightline::bake

@@ -14,7 +14,7 @@
 namespace sightline::bake {
 
 struct SoupTreeSettings {
-    double bend = 0;                  ///< what is no farther from a plane lies in it  [world units] [> 0]
+    double bend = 0;                  ///< what is no farther from a plane is not split by it  [world units] [> 0]
     double least_area = 0;            ///< sheets divide a cell in which they have as much  [world units^2] [> 0]
     uint32_t most_leaves = 1u << 15;  ///< [limit: >= 1]
 };

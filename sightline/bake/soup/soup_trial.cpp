@@ -36,13 +36,12 @@ std::vector<View> viewsRound(const glm::dvec3& eye, double z_near) {
 
 }  // namespace
 
-SoupTrial trialOf(const Scene& scene, const SoupCells& cells, const SoupCellSettings& settings) {
+SoupTrial trialOf(const Scene& scene, const SoupCells& cells, const SoupCellSettings& settings, double diagonal) {
     ObjectCellSettings placing;
     placing.jobs = settings.jobs;
     const ObjectCells objects = cellsOfObjects(scene, cells.space, placing);
     const PortalGraph graph(cells.space);
-    const Box3d bounds = worldBounds(scene);
-    const double z_near = glm::length(bounds.size()) / 4096;
+    const double z_near = diagonal / 4096;
     PortalFlood flood;
     std::vector<bool> seen(graph.cells());
     SoupTrial out;

@@ -10,6 +10,6 @@ using namespace tools;
 
 /// Looks round from each of SoupCellSettings::eyes, by walks through the portals alone: objects count that lie in cells
 /// which are seen, whether or not they lie in their windows. O(objects + eyes * walk).
-SoupTrial trialOf(const Scene& scene, const SoupCells& cells, const SoupCellSettings& settings);
+SoupTrial trialOf(const Scene& scene, const SoupCells& cells, const SoupCellSettings& settings, double diagonal);
 
 }  // namespace sightline::bake

@@ -135,13 +135,15 @@ void measureParts(SoupWalls& walls, WallSheet& sheet, double step) {
 
 }  // namespace
 
-SoupWalls sheetsOf(std::vector<WallTriangle> triangles, double bend, double least_area) {
+SoupWalls sheetsOf(std::vector<WallTriangle> triangles, double least_area) {
     SoupWalls out;
     out.triangles = std::move(triangles);
     out.part.assign(out.triangles.size(), 0);
     std::vector<double> areas(out.triangles.size());
     Box3d bounds;
+    double coarsest = 0;
     for (size_t i = 0; i < areas.size(); ++i) {
+        coarsest = std::max(coarsest, out.triangles[i].rounding);
         areas[i] = glm::length(areaVectorOf(out.triangles[i]));
         for (const glm::dvec3& corner : out.triangles[i].corners) bounds.grow(corner);
     }
@@ -151,7 +153,7 @@ SoupWalls sheetsOf(std::vector<WallTriangle> triangles, double bend, double leas
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return areas[a] > areas[b]; });
 
-    PlaneTable table(bounds.center(), std::max(glm::length(bounds.size()) / 4096, 4 * bend));
+    PlaneTable table(bounds.center(), std::max(glm::length(bounds.size()) / 4096, 4 * coarsest));
     std::vector<WallSheet> sheets;
     for (const uint32_t t : order) {
         const WallTriangle& triangle = out.triangles[t];
@@ -159,18 +161,21 @@ SoupWalls sheetsOf(std::vector<WallTriangle> triangles, double bend, double leas
         const glm::dvec3 normal = areaVectorOf(triangle) / areas[t];
         const glm::dvec4 plane(normal, -glm::dot(normal, triangle.corners[0]));
         const bool known = table.find(plane, [&](uint32_t number) {
-            if (!liesIn(triangle, sheets[number].plane, bend / 2)) return false;
-            sheets[number].triangles.push_back(t);
+            WallSheet& sheet = sheets[number];
+            const double reach = std::min(triangle.rounding, out.triangles[sheet.triangles[0]].rounding) / 2;
+            if (!liesIn(triangle, sheet.plane, reach)) return false;
+            sheet.triangles.push_back(t);
+            sheet.rounding = std::max(sheet.rounding, triangle.rounding);
             return true;
         });
         if (known) continue;
         table.add(plane, static_cast<uint32_t>(sheets.size()));
-        sheets.push_back({plane, {t}, 0});
+        sheets.push_back({plane, {t}, 0, triangle.rounding});
     }
     for (WallSheet& sheet : sheets) {
         double all = 0;
         for (const uint32_t t : sheet.triangles) all += areas[t] / 2;
-        if (all >= least_area) measureParts(out, sheet, 2 * bend);
+        if (all >= least_area) measureParts(out, sheet, 2 * sheet.rounding);
         if (sheet.largest >= least_area) {
             out.sheets.push_back(std::move(sheet));
             continue;

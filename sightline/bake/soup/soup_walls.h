@@ -20,6 +20,7 @@ struct WallSheet {
     glm::dvec4 plane{0.0};            ///< its normal has length 1
     std::vector<uint32_t> triangles;  ///< of SoupWalls::triangles
     double largest = 0;               ///< area of the largest part of one side that hangs together  [world units^2]
+    double rounding = 0;              ///< the largest of its triangles'  [world units]
 };
 
 struct SoupWalls {
@@ -30,11 +31,11 @@ struct SoupWalls {
     uint64_t small_triangles = 0;  ///< of sheets that were left out: nothing of them is large enough
 };
 
-/// Sorts triangles into planes. A triangle whose corners lie within half the bend of a plane that is nearly parallel to it
-/// may lie in that; which of several, and what is in none, costs tightness alone. Deterministic.
-/// @param walls      opaque triangles of the world; such without a plane are left out
-/// @param bend       how far from its plane a triangle may be, to both sides together  [world units] [> 0]
+/// Sorts triangles into planes. A triangle whose corners lie within half of its rounding of a plane that is nearly parallel
+/// to it, and that no coarser triangle gave, may lie in that; which of several, and what is in none, costs tightness alone.
+/// Deterministic.
+/// @param walls      opaque triangles of the world, their rounding > 0; such without a plane are left out
 /// @param least_area sheets with no part of this size that hangs together are left out  [world units^2]
-SoupWalls sheetsOf(std::vector<WallTriangle> walls, double bend, double least_area);
+SoupWalls sheetsOf(std::vector<WallTriangle> walls, double least_area);
 
 }  // namespace sightline::bake

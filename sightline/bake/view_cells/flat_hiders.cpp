@@ -174,7 +174,7 @@ std::vector<std::vector<const SheetTriangle*>> partsOf(const FlatSheet& sheet, u
 class SheetHiders {
 public:
     SheetHiders(const SoupWalls& walls, const WallSheet& sheet, const FlatHiderSettings& settings)
-        : walls_(walls), plane_(sheet.plane), settings_(settings), sheet_(walls, sheet, settings.bend / 3) {}
+        : walls_(walls), plane_(sheet.plane), bend_(sheet.rounding), settings_(settings), sheet_(walls, sheet) {}
 
     std::vector<FlatHider> find() {
         const auto two_sided = [](const SheetTriangle& triangle) { return triangle.sides == 3; };
@@ -224,7 +224,7 @@ private:
             part.pieces.push_back(std::move(piece));
             for (glm::dvec2& point : part.exact[i]) point = turned(point);
         }
-        Grid grid(part, settings_.bend / 3);
+        Grid grid(part, finestOf(part) / 3);
         for (uint32_t i = 0; i < settings_.most_of_part; ++i) {
             FlatPiece rect = grid.takeLargest(std::max(settings_.least_area, kLeastShare * part.area));
             if (rect.empty()) break;
@@ -237,7 +237,7 @@ private:
         if (part.triangles.size() > kMostOfHull) return false;
         std::vector<glm::dvec2> points;
         for (const FlatPiece& piece : part.exact) points.insert(points.end(), piece.begin(), piece.end());
-        FlatPiece hull = withoutStraight(hullOf(std::move(points)));
+        FlatPiece hull = withoutStraight(hullOf(std::move(points)), finestOf(part));
         if (hull.size() < 3 || hull.size() > kMostCorners) return false;
         FlatRest rest(hull);
         for (const SheetTriangle* triangle : part.triangles) {
@@ -249,14 +249,20 @@ private:
         return true;
     }
 
+    static double finestOf(const SidePart& part) {
+        double least = HUGE_VAL;
+        for (const SheetTriangle* triangle : part.triangles) least = std::min(least, triangle->rounding);
+        return least;
+    }
+
     /// Leaves out corners that lie on the line of their neighbours.
-    FlatPiece withoutStraight(const FlatPiece& hull) const {
+    static FlatPiece withoutStraight(const FlatPiece& hull, double rounding) {
         FlatPiece out;
         for (size_t i = 0; i < hull.size(); ++i) {
             const glm::dvec2 before = out.empty() ? hull.back() : out.back();
             const glm::dvec2 chord = hull[(i + 1) % hull.size()] - before, to = hull[i] - before;
             const double length = glm::length(chord);
-            if (length > 0 && std::abs(chord.x * to.y - chord.y * to.x) <= settings_.bend / 8 * length) continue;
+            if (length > 0 && std::abs(chord.x * to.y - chord.y * to.x) <= rounding / 8 * length) continue;
             out.push_back(hull[i]);
         }
         return out;
@@ -287,9 +293,11 @@ private:
         hider.area = areaOf(shape);
         if (!(hider.area >= settings_.least_area)) return;
         hider.plane = side == 1 ? plane_ : -plane_;
+        hider.bend = bend_;
         hider.corners = sheet_.frame().from(shape);
         if (side == 2) std::reverse(hider.corners.begin(), hider.corners.end());
         for (const glm::dvec3& corner : hider.corners) hider.bounds.grow(corner);
+        hider.hole = finestOf(part);
         for (const SheetTriangle* triangle : part.triangles)
             if (!sharedBy(triangle->piece, shape).empty())
                 hider.objects.push_back(walls_.triangles[triangle->triangle].object);
@@ -300,6 +308,7 @@ private:
 
     const SoupWalls& walls_;
     const glm::dvec4 plane_;
+    const double bend_;
     const FlatHiderSettings& settings_;
     FlatSheet sheet_;
     glm::dvec2 along_{1, 0};

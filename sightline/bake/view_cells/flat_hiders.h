@@ -15,17 +15,18 @@
 namespace sightline::bake {
 
 /// A convex polygon that opaque fronts cover wholly: a segment that comes from in front of its plane and goes behind it
-/// through the polygon meets one of them within `bend` of the plane.
+/// through the polygon meets one of them within `bend` of the plane, which is the rounding of its coarsest wall.
 struct FlatHider {
     glm::dvec4 plane{0.0};            ///< its normal has length 1 and points to where it hides from
     std::vector<glm::dvec3> corners;  ///< counter-clockwise as seen from there
     Box3d bounds;                     ///< of the corners
     double area = 0;
+    double bend = 0;                ///< [world units] [> 0]
+    double hole = 0;                ///< the rounding of its finest wall  [world units] [> 0]
     std::vector<uint32_t> objects;  ///< whose triangles cover it, rising  [Scene::objects]
 };
 
 struct FlatHiderSettings {
-    double bend = 0;             ///< of the walls: within half of it triangles lie in one plane  [world units] [> 0]
     double least_area = 0;       ///< smaller ones are left out  [world units^2]
     uint32_t most_of_part = 16;  ///< rectangles of one part that hangs together
     Jobs* jobs = nullptr;        ///< threads to share the sheets out to; the answer is the same with any
@@ -33,7 +34,7 @@ struct FlatHiderSettings {
 
 /// Of each side of a sheet, part by part: its hull if that is covered and has few corners, else the largest rectangles
 /// along the lines of its edges, which may overlap. What is left uncovered costs tightness alone. Gaps narrower than
-/// two thirds of the bend count as covered, as those of cellsOfSoup() do. Deterministic.
+/// a third of the roundings of the walls beside them count as covered, as those of cellsOfSoup() do. Deterministic.
 std::vector<FlatHider> flatHiders(const SoupWalls& walls, const FlatHiderSettings& settings);
 
 }  // namespace sightline::bake

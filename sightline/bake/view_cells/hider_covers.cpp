@@ -25,8 +25,7 @@ glm::dvec3 middleOf(const FlatHider& hider) {
 
 }  // namespace
 
-HiderCovers::HiderCovers(std::span<const FlatHider> hiders, const HiderTree& tree, double bend, Jobs* jobs)
-    : hiders_(hiders), bend_(bend) {
+HiderCovers::HiderCovers(std::span<const FlatHider> hiders, const HiderTree& tree, Jobs* jobs) : hiders_(hiders) {
     constexpr size_t kTask = 256;
     std::vector<std::vector<std::vector<uint32_t>>> found(hiders.size());
     const auto tasks = static_cast<uint32_t>((hiders.size() + kTask - 1) / kTask);
@@ -48,7 +47,7 @@ HiderCovers::HiderCovers(std::span<const FlatHider> hiders, const HiderTree& tre
 void HiderCovers::findNeighbours(uint32_t number, const HiderTree& tree,
                                  std::vector<std::vector<uint32_t>>& out) const {
     const FlatHider& hider = hiders_[number];
-    const glm::dvec3 lift = 4 * bend_ * glm::dvec3(hider.plane), middle = middleOf(hider);
+    const glm::dvec3 lift = 4 * hider.bend * glm::dvec3(hider.plane), middle = middleOf(hider);
     std::vector<Crossed> crossed;
     out.resize(hider.corners.size());
     for (size_t edge = 0; edge < hider.corners.size(); ++edge) {
@@ -56,7 +55,7 @@ void HiderCovers::findNeighbours(uint32_t number, const HiderTree& tree,
         const double length = glm::distance(middle, to);
         if (!(length > 0)) continue;
         crossed.clear();
-        tree.crossed(middle + lift, to + 8 * bend_ / length * (to - middle) + lift, kMostCrossed, crossed);
+        tree.crossed(middle + lift, to + 8 * hider.bend / length * (to - middle) + lift, kMostCrossed, crossed);
         for (const Crossed& one : crossed)
             if (endsAt(hider, edge, hiders_[one.hider])) out[edge].push_back(one.hider);
         std::stable_sort(out[edge].begin(), out[edge].end(),
@@ -69,7 +68,7 @@ void HiderCovers::findNeighbours(uint32_t number, const HiderTree& tree,
 bool HiderCovers::endsAt(const FlatHider& hider, size_t edge, const FlatHider& other) const {
     const double sine = glm::length(glm::cross(glm::dvec3(hider.plane), glm::dvec3(other.plane)));
     if (sine < kLeastSine) return false;
-    const double most = bend_ / 2 * sine;
+    const double most = std::min(hider.hole, other.hole) / 2 * sine;
     return heightOver(other, hider.corners[edge]) <= most &&
            heightOver(other, hider.corners[(edge + 1) % hider.corners.size()]) <= most;
 }
@@ -83,7 +82,7 @@ bool HiderCovers::hasPlace(const HiderCover& cover, size_t member) const {
         next.clear();
         for (size_t i = 0; i < left.size(); ++i) {
             const glm::dvec3 &a = left[i], &b = left[(i + 1) % left.size()];
-            const double above_a = heightOver(other, a) - bend_, above_b = heightOver(other, b) - bend_;
+            const double above_a = heightOver(other, a) - other.bend, above_b = heightOver(other, b) - other.bend;
             if (above_a >= 0) next.push_back(a);
             if ((above_a >= 0) != (above_b >= 0)) next.push_back(a + above_a / (above_a - above_b) * (b - a));
         }
@@ -113,8 +112,7 @@ bool HiderCovers::add(HiderCover& cover, uint32_t number) const {
     return true;
 }
 
-RegionCovers::RegionCovers(const HiderCovers& of, const Box3d& region, double bend, double reach)
-    : of_(of), bend_(bend), reach_(reach) {
+RegionCovers::RegionCovers(const HiderCovers& of, const Box3d& region, double reach) : of_(of), reach_(reach) {
     for (int i = 0; i < 8; ++i)
         corners_[i] = {i & 1 ? region.max.x : region.min.x, i & 2 ? region.max.y : region.min.y,
                        i & 4 ? region.max.z : region.min.z};
@@ -123,7 +121,7 @@ RegionCovers::RegionCovers(const HiderCovers& of, const Box3d& region, double be
 const RegionShadow* RegionCovers::shadowOf(uint32_t hider) {
     const auto [found, fresh] = shadows_.try_emplace(hider);
     if (fresh) {
-        const RegionShadow shadow(of_.hiders()[hider], corners_, bend_, reach_);
+        const RegionShadow shadow(of_.hiders()[hider], corners_, reach_);
         if (shadow.any()) found->second = std::make_unique<RegionShadow>(shadow);
     }
     return found->second.get();

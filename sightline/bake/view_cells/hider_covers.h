@@ -30,7 +30,7 @@ struct CoverMember {
 /// which is in front of all other planes. If p is outside of that member's polygon, then walk from a point of the
 /// polygon in K, which there must be, to p: all the way is in K, and it leaves the polygon at one of its edges. Shared
 /// edges are not in K. So it is beside one that is not shared, and these are asked. Walls meet at corners to within
-/// half of the smallest hole.
+/// half of the smaller FlatHider::hole.
 using HiderCover = std::vector<CoverMember>;
 
 /// The hiders of a scene, and which of them meet.
@@ -39,8 +39,7 @@ public:
     static constexpr size_t kMostMembers = 8;
 
     /// @param hiders  must outlive this, as `tree` must
-    /// @param bend    FlatHiderSettings::bend
-    HiderCovers(std::span<const FlatHider> hiders, const HiderTree& tree, double bend, Jobs* jobs);
+    HiderCovers(std::span<const FlatHider> hiders, const HiderTree& tree, Jobs* jobs);
 
     std::span<const FlatHider> hiders() const { return hiders_; }
     /// Hiders that an edge ends at, those with the most area first.
@@ -58,7 +57,6 @@ private:
     bool hasPlace(const HiderCover& cover, size_t member) const;
 
     std::span<const FlatHider> hiders_;
-    double bend_ = 0;
     std::vector<uint32_t> first_edge_, first_, neighbours_;
 };
 
@@ -76,7 +74,7 @@ class RegionCovers {
 public:
     /// @param of     must outlive this
     /// @param reach  as for RegionShadow
-    RegionCovers(const HiderCovers& of, const Box3d& region, double bend, double reach);
+    RegionCovers(const HiderCovers& of, const Box3d& region, double reach);
 
     /// Takes up a cover. None if the region is not in front of all members.
     std::optional<ReadyCover> take(const HiderCover& cover);
@@ -88,7 +86,7 @@ private:
 
     const HiderCovers& of_;
     glm::dvec3 corners_[8];
-    double bend_ = 0, reach_ = 0;
+    double reach_ = 0;
     std::unordered_map<uint32_t, std::unique_ptr<RegionShadow>> shadows_;  // null: the region is not in front
 };
 

@@ -20,16 +20,16 @@ struct OverEdge {
 
 }  // namespace
 
-RegionShadow::RegionShadow(const FlatHider& hider, std::span<const glm::dvec3> corners, double bend, double reach) {
+RegionShadow::RegionShadow(const FlatHider& hider, std::span<const glm::dvec3> corners, double reach) {
     SIGHTLINE_ASSERT(hider.corners.size() < kMost);
     const glm::dvec3 normal(hider.plane);
     double lowest = std::numeric_limits<double>::infinity();
     for (const glm::dvec3& corner : corners) lowest = std::min(lowest, glm::dot(normal, corner - hider.corners[0]));
-    if (!(lowest > bend)) return;
+    if (!(lowest > hider.bend)) return;
 
-    const double rounding = 0x1p-48 * reach, lift = bend / 2;
-    planes_[0] = glm::dvec4(-normal, glm::dot(normal, hider.corners[0]) - bend / 2 - rounding);
-    front_ = glm::dvec4(normal, -glm::dot(normal, hider.corners[0]) - bend / 2 - rounding);
+    const double rounding = 0x1p-48 * reach, lift = hider.bend / 2;
+    planes_[0] = glm::dvec4(-normal, glm::dot(normal, hider.corners[0]) - lift - rounding);
+    front_ = glm::dvec4(normal, -glm::dot(normal, hider.corners[0]) - lift - rounding);
     uint32_t count = 1;
     for (size_t i = 0; i < hider.corners.size(); ++i) {
         const glm::dvec3 &a = hider.corners[i], &b = hider.corners[(i + 1) % hider.corners.size()];

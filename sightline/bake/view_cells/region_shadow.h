@@ -28,10 +28,9 @@ namespace sightline::bake {
 class RegionShadow {
 public:
     /// @param corners  of the region: it is their hull
-    /// @param bend     FlatHiderSettings::bend
     /// @param reach    no coordinate is larger, and nothing that is asked lies farther from the hider  [world units]
-    /// Without planes, hiding nothing, if the region is not wholly in front of the hider's plane by more than the bend.
-    RegionShadow(const FlatHider& hider, std::span<const glm::dvec3> corners, double bend, double reach);
+    /// Without planes, hiding nothing, if the region is not wholly in front of the hider's plane by more than its bend.
+    RegionShadow(const FlatHider& hider, std::span<const glm::dvec3> corners, double reach);
 
     /// Whether it hides anything.
     bool any() const { return count_ > 0; }

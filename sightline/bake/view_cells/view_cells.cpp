@@ -64,15 +64,15 @@ struct Hiding {
     const HiderCovers& covers;
     const HiderTree& search;
     const Bvh& objects;
-    double bend = 0, reach = 0;
+    double bend = 0;  // the largest of the hiders'
+    double reach = 0;
     uint64_t budget = 0;
 };
 
 /// Finds the row of one region.
 class RowFinder {
 public:
-    RowFinder(const Hiding& of, const Box3d& region)
-        : of_(of), region_(region), covers_(of.covers, region, of.bend, of.reach) {}
+    RowFinder(const Hiding& of, const Box3d& region) : of_(of), region_(region), covers_(of.covers, region, of.reach) {}
 
     /// @param from  of a region that holds this one
     RegionRow find(const RegionRow& from) {
@@ -476,16 +476,17 @@ private:
 
 ViewCells viewCellsOf(const Scene& scene, const ViewCellSettings& settings) {
     ViewCells out;
-    const std::optional<SoupScale> scale = soupScaleOf(scene, settings.smallest_hole);
+    const std::optional<SoupScale> scale = soupScaleOf(scene);
     if (!scale) return out;
     const double finest = scale->diagonal / 512;
     out.smallest_occluder = settings.smallest_occluder >= 0 ? settings.smallest_occluder : finest;
     out.smallest_cell = settings.smallest_cell >= 0 ? settings.smallest_cell : finest;
     FlatHiderSettings flat;
-    flat.bend = scale->hole;
-    flat.least_area = std::max(out.smallest_occluder * out.smallest_occluder, flat.bend * flat.bend);
+    std::vector<WallTriangle> triangles = opaqueTriangles(scene, *scale, settings.smallest_hole, settings.movable);
+    const double bend = largestHole(triangles);
+    flat.least_area = std::max(out.smallest_occluder * out.smallest_occluder, bend * bend);
     flat.jobs = settings.jobs;
-    const SoupWalls walls = sheetsOf(opaqueTriangles(scene, settings.movable), flat.bend, flat.least_area);
+    const SoupWalls walls = sheetsOf(std::move(triangles), flat.least_area);
     const std::vector<FlatHider> hiders = flatHiders(walls, flat);
     out.hiders = hiders.size();
     if (hiders.empty()) return out;
@@ -500,18 +501,19 @@ ViewCells viewCellsOf(const Scene& scene, const ViewCellSettings& settings) {
     }
     const Bvh objects = buildBvh(boxes);
     const HiderTree search(hiders);
-    Box3d bounds = scale->bounds;
+    Box3d bounds = scale->core.bounds;
     const glm::dvec3 beyond(scale->diagonal / 16);
     bounds.min -= beyond;
     bounds.max += beyond;
-    const glm::dvec3 far = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
+    const glm::dvec3 far = glm::max(glm::max(glm::abs(bounds.min), glm::abs(bounds.max)),
+                                    glm::max(glm::abs(scale->bounds.min), glm::abs(scale->bounds.max)));
     const double reach = 2 * std::max({far.x, far.y, far.z, scale->diagonal});
-    const HiderCovers covers(hiders, search, flat.bend, settings.jobs);
-    const Hiding hiding{covers, search, objects, flat.bend, reach, settings.budget};
+    const HiderCovers covers(hiders, search, settings.jobs);
+    const Hiding hiding{covers, search, objects, bend, reach, settings.budget};
     out.visible = BitMatrix(0, scene.objects.size());
     uint64_t question = 0;
     if (settings.journal) {
-        const double numbers[] = {flat.bend, flat.least_area, static_cast<double>(settings.budget)};
+        const double numbers[] = {settings.smallest_hole, flat.least_area, static_cast<double>(settings.budget)};
         question = askedWith(mixSeed(kRowsVersion, hashOf(scene)), numbers);
         for (const uint32_t object : settings.movable) question = mixSeed(question, object);
     }

@@ -20,7 +20,7 @@ using namespace tools;
 
 struct ViewCellSettings {
     uint32_t most_cells = 2048;  ///< [limit: >= 2]
-    /// No cell is halved if its longest side would be shorter. Negative: a 512th of the scene's diagonal.  [world
+    /// No cell is halved if its longest side would be shorter. Negative: a 512th of the core's diagonal (SceneCore).  [world
     /// units]
     double smallest_cell = -1;
     /// Flat parts that are smaller than a square of this side hide nothing from whole cells. Negative: a 512th of the

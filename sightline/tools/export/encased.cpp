@@ -302,10 +302,7 @@ Encased encasedTriangles(const Scene& scene, const std::function<bool(size_t, si
     size_t total = 0, done = 0;
     for (size_t i = 0; i < scene.objects.size(); ++i) total += opens[i] ? 0 : shells[scene.objects[i].mesh].size();
     out.shells = total;
-    const Box3d world = worldBounds(scene);
-    if (total == 0 || world.empty()) return out;
-    const glm::dvec3 reach = glm::max(glm::abs(world.min), glm::abs(world.max));
-    const double distance = 1e-6 * std::max({reach.x, reach.y, reach.z});
+    if (total == 0) return out;
 
     const AllTriangles all(scene);
     std::vector<std::vector<bool>> inside(scene.objects.size());
@@ -319,6 +316,8 @@ Encased encasedTriangles(const Scene& scene, const std::function<bool(size_t, si
             if (progress && !progress(done, total)) return out;
             ++done;
             PlacedShell around(mesh, scene.objects[i].transform, shell);
+            const glm::dvec3 reach = glm::max(glm::abs(around.box().min), glm::abs(around.box().max));
+            const double distance = 1e-6 * std::max({reach.x, reach.y, reach.z});
             std::vector<AllTriangles::Item> items;
             for (const AllTriangles::Item& item : all.within(around.box())) {
                 if (isInside(item)) continue;

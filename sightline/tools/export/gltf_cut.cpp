@@ -83,7 +83,7 @@ public:
           accessor_at_(document_.accessors.size(), kAbsent),
           view_at_(document_.views.size(), kAbsent),
           mesh_at_(table(in_, "meshes").size(), kAbsent) {
-        const Materials materials = readMaterials(document_.json);
+        Materials materials = readMaterials(document_.json);
         sources_ = readMeshes(document_, materials);
     }
 

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
+
+#include <glm/glm.hpp>
 
 #include "sightline/base/result.h"
 #include "sightline/tools/load/walk.h"
@@ -21,7 +24,8 @@ enum class PathKind {
 };
 
 struct PathChoice {
-    std::string file;  ///< empty: none
+    std::string file;                     ///< empty: none
+    std::optional<glm::dvec3> eye, look;  ///< one camera; without `look` it looks at the middle of the core (SceneCore)
     PathKind kind = PathKind::kAny;
     bool seeded = false;             ///< a seed was asked for
     WalkSettings walk{.frames = 0};  ///< frames and seed are any kind's; 0 frames: not asked for
@@ -30,7 +34,7 @@ struct PathChoice {
 /// Whether nothing else was asked for and the scene has cameras, so that choosePath() takes those.
 bool takesOwnCameras(const Scene& scene, const PathChoice& choice);
 
-/// The file's cameras; else those of a kind; else, if neither frames nor a seed were asked for, the scene's own; else a
+/// The file's cameras; else the one of `eye`; else those of a kind; else, if neither frames nor a seed were asked for, the scene's own; else a
 /// tour. If nothing says how many: 600 of a walk, one overview, 16 of the others. Errors: of readCameraPath().
 Result<CameraPath> choosePath(const Scene& scene, const PathChoice& choice);
 

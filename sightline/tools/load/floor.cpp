@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "sightline/base/random.h"
+#include "sightline/tools/scene/scene_core.h"
 
 namespace sightline::tools {
 namespace {
@@ -65,7 +66,7 @@ struct Start {
 class FloorFinder {
 public:
     FloorFinder(const Scene& scene, const RayProbe& probe, uint64_t seed)
-        : probe_(probe), bounds_(worldBounds(scene)), random_(mixSeed(seed, 0x666c6f6f)) {
+        : probe_(probe), bounds_(coreOf(scene).bounds), random_(mixSeed(seed, 0x666c6f6f)) {
         std::vector<double> bottoms;
         for (const SceneObject& object : scene.objects)
             bottoms.push_back(transformBox(scene.meshes[object.mesh].bounds, object.transform).min.y);

@@ -7,6 +7,7 @@
 
 #include "sightline/base/random.h"
 #include "sightline/tools/scene/framing.h"
+#include "sightline/tools/scene/scene_core.h"
 
 namespace sightline::tools {
 namespace {
@@ -16,16 +17,16 @@ constexpr double kGolden = 2.39996323;  // between two sides in turn: no two of 
 constexpr size_t kMostBoxes = 65536;    // of more objects only the box around all is framed
 
 Framing framingOf(const Scene& scene) {
-    Box3d bounds = worldBounds(scene);
-    const double diagonal = bounds.finite() ? glm::length(bounds.size()) : 0;
-    const bool nothing = !(diagonal > 0) || !std::isfinite(diagonal);
+    const SceneCore core = coreOf(scene);
+    Box3d bounds = core.bounds;
+    const bool nothing = !(core.diagonal() > 0);
     if (nothing) {
         bounds = {};
         bounds.grow(glm::dvec3(-0.5));
         bounds.grow(glm::dvec3(0.5));
     }
     Framing framing(bounds.center());
-    if (nothing || scene.objects.size() > kMostBoxes) framing.add(bounds);
+    if (nothing || scene.objects.size() > kMostBoxes || !core.isWhole()) framing.add(bounds);
     else
         for (const SceneObject& object : scene.objects)
             framing.add(transformBox(scene.meshes[object.mesh].bounds, object.transform));

@@ -9,7 +9,7 @@
 
 namespace sightline::tools {
 
-/// Once around the scene in so many frames, from a seeded side on, at one distance, 17 degrees above the horizon. All of
+/// Once around the scene, or its core (SceneCore), in so many frames, from a seeded side on, at one distance, 17 degrees above the horizon. All of
 /// the scene is in each image of 3 by 2 or wider. Vertical angle 45 degrees, near a thousandth of the distance to the
 /// centre, infinite far. A scene without triangles is orbited as if it were a unit cube at the origin.
 CameraPath orbitAround(const Scene& scene, uint32_t frames, uint64_t seed);

@@ -6,10 +6,12 @@
 #include <bit>
 #include <cmath>
 #include <tuple>
+#include <unordered_map>
 #include <vector>
 
 #include "sightline/base/random.h"
 #include "sightline/math/curves.h"
+#include "sightline/tools/scene/scene_core.h"
 
 namespace sightline::tools {
 namespace {
@@ -105,9 +107,11 @@ struct SurfacePoint {
 /// own area; the choice stands with the probability of the true area within the bound.
 class Surface {
 public:
-    explicit Surface(const Scene& scene) : scene_(scene), triangles_(scene.meshes.size()) {
-        for (const SceneObject& object : scene.objects) {
-            const Wheel& mesh = meshWheel(object.mesh);
+    Surface(const Scene& scene, const SceneCore& core) : scene_(scene), triangles_(scene.meshes.size()) {
+        for (uint32_t i = 0; i < scene.objects.size(); ++i) {
+            const SceneObject& object = scene.objects[i];
+            const bool aside = std::binary_search(core.aside.begin(), core.aside.end(), i);
+            const Wheel& mesh = aside ? wheelWithin(core.bounds, i) : meshWheel(object.mesh);
             const double weight = norm(cofactors(glm::dmat3(object.transform))) * mesh.total();
             objects_.add(std::isfinite(weight) ? weight : 0);
         }
@@ -117,9 +121,11 @@ public:
 
     SurfacePoint choose(Random& random) const {
         for (int tries = 0;; ++tries) {
-            const SceneObject& object = scene_.objects[objects_.choose(random)];
+            const auto number = static_cast<uint32_t>(objects_.choose(random));
+            const SceneObject& object = scene_.objects[number];
             const Mesh& mesh = scene_.meshes[object.mesh];
-            const uint32_t triangle = triangles_[object.mesh].choose(random);
+            const auto part = parts_.find(number);
+            const uint32_t triangle = (part == parts_.end() ? triangles_[object.mesh] : part->second).choose(random);
             const double chance = random.uniform();
             double u = random.uniform();
             double v = random.uniform();
@@ -154,8 +160,26 @@ private:
         return wheel;
     }
 
+    /// Of an object that reaches beyond a box: its triangles there have no weight.
+    const Wheel& wheelWithin(const Box3d& box, uint32_t number) {
+        const SceneObject& object = scene_.objects[number];
+        const Mesh& mesh = scene_.meshes[object.mesh];
+        Wheel& wheel = parts_[number];
+        for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+            Box3d own;
+            glm::dvec3 corners[3];
+            for (size_t k = 0; k < 3; ++k) {
+                corners[k] = glm::dvec3(mesh.positions[mesh.indices[i + k]]);
+                own.grow(glm::dvec3(object.transform * glm::dvec4(corners[k], 1.0)));
+            }
+            wheel.add(box.holds(own) ? glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0])) : 0);
+        }
+        return wheel;
+    }
+
     const Scene& scene_;
-    std::vector<Wheel> triangles_;  ///< by mesh
+    std::vector<Wheel> triangles_;               ///< by mesh
+    std::unordered_map<uint32_t, Wheel> parts_;  ///< by object: of those that reach beyond the core
     Wheel objects_;
 };
 
@@ -319,10 +343,10 @@ void RayProbe::meet(uint32_t object, const ProbeRay& ray, double from, const Cou
 CameraPath seededCameras(const Scene& scene, uint32_t count, uint64_t seed) {
     CameraPath path;
     path.frames.reserve(count);
-    const Surface surface(scene);
-    const Box3d bounds = worldBounds(scene);
-    const double diagonal = bounds.finite() ? glm::length(bounds.size()) : 0;
-    if (surface.empty() || !(diagonal > 0) || !std::isfinite(diagonal)) {
+    const SceneCore core = coreOf(scene);
+    const Surface surface(scene, core);
+    const double diagonal = core.diagonal();
+    if (surface.empty() || !(diagonal > 0)) {
         for (uint32_t i = 0; i < count; ++i) {
             Random random(mixSeed(seed, i));
             const glm::dvec3 direction = drawDirection(random);

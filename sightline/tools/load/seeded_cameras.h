@@ -87,7 +87,7 @@ private:
     std::unique_ptr<ProbeTree> objects_;
 };
 
-/// A camera stands off a surface point chosen by area (0.3 to 6 % of the scene's diagonal along the
+/// A camera stands off a surface point chosen by area (0.3 to 6 % of the core's diagonal (SceneCore) along the
 /// normal), looks anywhere with pitch within +-30 degrees, and is taken only if most of its rays meet
 /// front faces at more than 0.2 % of the diagonal; the wish fades if a scene cannot meet it.
 /// Deterministic in (scene, count, seed); a scene without triangles gives cameras around the origin.

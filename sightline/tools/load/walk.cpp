@@ -9,6 +9,7 @@
 
 #include "sightline/base/random.h"
 #include "sightline/tools/load/floor_way.h"
+#include "sightline/tools/scene/scene_core.h"
 
 namespace sightline::tools {
 namespace {
@@ -66,9 +67,7 @@ public:
           floor_(floor),
           settings_(settings),
           random_(mixSeed(settings.seed, 0x77616c6b)) {
-        const Box3d bounds = worldBounds(scene);
-        diagonal_ = bounds.finite() ? glm::length(bounds.size()) : 0;
-        if (!std::isfinite(diagonal_)) diagonal_ = 0;
+        diagonal_ = coreOf(scene).diagonal();
         margin_ = diagonal_ > 0 ? std::min(0.25, 0.01 * diagonal_) : 0;
     }
 
@@ -322,7 +321,7 @@ private:
     Random random_;
     CameraFrame first_;                ///< where the walk begins
     std::vector<CameraFrame> starts_;  ///< seeded cameras, between which one flies
-    double diagonal_ = 0;              ///< of the scene; 0 if it has none  [world units]
+    double diagonal_ = 0;              ///< of the core; 0 if it has none  [world units]
     double margin_ = 0;                ///< [world units]
     std::vector<glm::dvec3> way_;
 };

@@ -72,6 +72,7 @@ struct SceneObject {
     glm::dmat4 transform{1.0};  ///< object to world, affine; a negative determinant flips the winding
     std::string name;
     uint32_t node = SceneNode::kNone;  ///< index into Scene::nodes
+    bool animated = false;             ///< an animation of the file moves it, or shows and hides it
 };
 
 /// What a file names as a coarser level of detail of an object.

@@ -153,12 +153,41 @@ TEST(BrushTree, RolesAreByNameAndFlags) {
         }
         return roleOf(maker.map, maker.map.entities.back(), maker.map.brushes.back());
     };
-    for (const char* name : {"brick", "skip", "textures/base/skyline_wall2/x", "common/caulk", "e1u1/metal"})
+    for (const char* name : {"brick", "null", "skip", "textures/base/skyline_wall2/x", "common/caulk", "system/caulk",
+                             "e1u1/metal", "window01", "waterfall"})
         EXPECT_EQ(role(name), BrushRole::kSolid) << name;
-    for (const char* name : {"sky1", "SKY_void", "env/sky"}) EXPECT_EQ(role(name), BrushRole::kSky) << name;
-    for (const char* name : {"*water1", "*lava", "!slime"}) EXPECT_EQ(role(name), BrushRole::kLiquid) << name;
-    for (const char* name : {"clip", "HINT", "hintskip", "origin", "trigger", "common/clip", "textures/common/hint",
-                             "common/nodraw", "{grate"})
+    for (const char* name : {"sky1", "SKY_void", "env/sky", "CONTENTSKY"})
+        EXPECT_EQ(role(name), BrushRole::kSky) << name;
+    for (const char* name : {"*water1", "*lava", "!slime", "CONTENTWATER", "ContentSlime", "contentlava",
+                             "liquids/clear_ripple1", "textures/liquids/slime1", "gothic/lavahell", "e1u1/watrt_water"})
+        EXPECT_EQ(role(name), BrushRole::kLiquid) << name;
+    for (const char* name : {"clip",
+                             "HINT",
+                             "hintskip",
+                             "origin",
+                             "trigger",
+                             "common/clip",
+                             "textures/common/hint",
+                             "common/nodraw",
+                             "{grate",
+                             "@glow",
+                             "CLIPBEVEL",
+                             "ClipBevelBrush",
+                             "CLIPHULL1",
+                             "cliphull2",
+                             "CLIPHULL3",
+                             "CONTENTEMPTY",
+                             "BOUNDINGBOX",
+                             "SPLITFACE",
+                             "BEVELHINT",
+                             "SOLIDHINT",
+                             "AAATRIGGER",
+                             "system/physics_clip",
+                             "textures/system/nodraw",
+                             "sfx/fog_red",
+                             "base/glass01",
+                             "textures/gothic_glass/x",
+                             "e1u1/window1"})
         EXPECT_EQ(role(name), BrushRole::kNothing) << name;
     EXPECT_EQ(role("wall", 0x8000000), BrushRole::kNothing);  // detail
     EXPECT_EQ(role("wall", 1), BrushRole::kSolid);
@@ -166,11 +195,46 @@ TEST(BrushTree, RolesAreByNameAndFlags) {
     EXPECT_EQ(role("wall", 32), BrushRole::kLiquid);
     EXPECT_EQ(role("wall", 0, 4), BrushRole::kSky);
     EXPECT_EQ(role("wall", 0, 32), BrushRole::kNothing);
+    EXPECT_EQ(role("wall", 0, 256), BrushRole::kNothing);  // a hint
+    EXPECT_EQ(role("wall", 0, 512), BrushRole::kNothing);  // skip
+    EXPECT_EQ(role("wall", 1, 768), BrushRole::kNothing);
     maker.entity({{"classname", "func_detail_wall"}});
     EXPECT_EQ(role("brick"), BrushRole::kNothing);
     EXPECT_EQ(role("sky1"), BrushRole::kSky);
     maker.entity({{"classname", "func_door"}});
     EXPECT_EQ(role("sky1"), BrushRole::kNothing);
+}
+
+TEST(BrushTree, LeavesOutWhatEditorsAndCompilersLeaveOut) {
+    using Pairs = std::vector<std::pair<std::string, std::string>>;
+    BrushMaker maker;
+    const auto isLeftOut = [&](const Pairs& pairs) {
+        maker.entity(pairs);
+        maker.box({0, 0, 0}, {1, 1, 1}, "wall");
+        return roleOf(maker.map, maker.map.entities.back(), maker.map.brushes.back()) == BrushRole::kNothing;
+    };
+    const auto layer = [](const char* id, const char* omit) {
+        return Pairs{{"classname", "func_group"},
+                     {"_tb_type", "_tb_layer"},
+                     {"_tb_id", id},
+                     {"_tb_layer_omit_from_export", omit}};
+    };
+    EXPECT_TRUE(isLeftOut(layer("1", "1")));
+    EXPECT_FALSE(isLeftOut(layer("2", "0")));
+    EXPECT_TRUE(
+        isLeftOut({{"classname", "func_group"}, {"_tb_type", "_tb_group"}, {"_tb_id", "3"}, {"_tb_layer", "1"}}));
+    EXPECT_FALSE(
+        isLeftOut({{"classname", "func_group"}, {"_tb_type", "_tb_group"}, {"_tb_id", "4"}, {"_tb_layer", "2"}}));
+    EXPECT_TRUE(
+        isLeftOut({{"classname", "func_group"}, {"_tb_type", "_tb_group"}, {"_tb_id", "5"}, {"_tb_group", "3"}}));
+    EXPECT_TRUE(isLeftOut({{"classname", "func_group"}, {"_tb_group", "5"}}));
+    EXPECT_FALSE(isLeftOut({{"classname", "func_group"}, {"_tb_group", "4"}}));
+    EXPECT_FALSE(isLeftOut({{"classname", "func_group"}, {"_tb_group", "9"}, {"_tb_layer", "9"}}));
+    EXPECT_TRUE(isLeftOut({{"classname", "func_group"}, {"_omitbrushes", "1"}}));
+    EXPECT_FALSE(isLeftOut({{"classname", "func_group"}, {"_omitbrushes", "0"}}));
+    // A group in itself is no reason to hang.
+    EXPECT_FALSE(
+        isLeftOut({{"classname", "func_group"}, {"_tb_type", "_tb_group"}, {"_tb_id", "7"}, {"_tb_group", "7"}}));
 }
 
 TEST(BrushTreeMaps, HoldWhatBrushesHold) {

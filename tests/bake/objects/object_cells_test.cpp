@@ -161,7 +161,7 @@ Scene strewn(size_t count, const std::vector<glm::dvec4>& planes, uint64_t seed)
 LeafTree randomTree(uint32_t nodes, uint64_t seed) {
     Random random(seed);
     LeafTree tree;
-    tree.bounds = {glm::dvec3(0), glm::dvec3(1)};
+    tree.bounds = {glm::dvec3(-4), glm::dvec3(5)};
     const auto leaf = [&] {
         tree.contents.push_back(random.below(4) == 0 ? LeafContents::kSolid : LeafContents::kEmpty);
         return LeafTreeNode::kLeaf | static_cast<uint32_t>(tree.contents.size() - 1);

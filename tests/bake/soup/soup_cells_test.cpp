@@ -17,6 +17,7 @@
 #include "sightline/tools/truth/rays.h"
 #include "tests/bake/aimed_points.h"
 #include "tests/bake/any_triangles.h"
+#include "tests/bake/far_things.h"
 #include "tests/bake/marked/random_rooms.h"
 #include "tests/bake/opaque_triangles.h"
 #include "tests/bake/soup/slit_room.h"
@@ -215,40 +216,62 @@ TEST(SoupCells, HoldsOfAnyTriangles) {
     EXPECT_GT(counts.walls, 10000u);
 }
 
+/// Lines through the middle of a slit, from hall to hall, both ways. Where they cross the wall there must be a portal.
+/// @returns how many did
+int lookThroughSlit(const MarkedRooms& made, size_t half_of, const SoupCells& cells, int lines, Random& random) {
+    const OpaqueTriangles truth(made.scene);
+    const Mesh &half = made.scene.meshes[half_of], &other = made.scene.meshes[half_of - 2];
+    int seen = 0;
+    for (int line = 0; line < lines; ++line) {
+        glm::dvec3 from(random.uniform(1, 24), random.uniform(0.2, 2.8), random.uniform(1, 19));
+        glm::dvec3 to(random.uniform(26, 49), random.uniform(0.2, 2.8), random.uniform(1, 19));
+        if (line % 2) std::swap(from, to);
+        const double part = random.uniform(0.3, 0.7);
+        const glm::dvec3 aim = glm::mix(0.5 * (glm::dvec3(half.positions[0]) + glm::dvec3(other.positions[0])),
+                                        0.5 * (glm::dvec3(half.positions[1]) + glm::dvec3(other.positions[1])), part);
+        const glm::dvec3 along = glm::normalize(aim - from);
+        const double length = glm::distance(from, aim) * 1.5;
+        if (truth.meets(from, along, 0, glm::distance(from, aim) + 0.1, 0)) continue;
+        const LineWalk walk(cells.space, from, along, length);
+        for (const Crossing& crossing : walk.crossings()) {
+            const glm::dvec3 point = from + crossing.at * along;
+            if (std::abs(point.x - 25) > 1e-6) continue;
+            ++seen;
+            EXPECT_TRUE(leads(cells.space, crossing, point));
+            if (::testing::Test::HasFailure()) return seen;
+        }
+    }
+    return seen;
+}
+
 TEST(SoupCells, SlitsOf10And1AndATenthOfAMillimetreAreSeenThrough) {
     Random random(3);
     for (const double width : {1e-2, 1e-3, 1e-4})
         for (int round = 0; round < 12; ++round) {
             SCOPED_TRACE("slit of " + std::to_string(width) + ", round " + std::to_string(round));
             const MarkedRooms made = slitRoom(random, width, round % 2 ? random.uniform(0, 3.1) : 0);
-            const SoupCells cells = cellsOfSoup(made.scene);
-            const PortalGraph graph(cells.space);
-            // A line through the middle of the slit, from hall to hall, both ways.
-            const OpaqueTriangles truth(made.scene);
-            int seen = 0;
-            for (int line = 0; line < 2000; ++line) {
-                glm::dvec3 from(random.uniform(1, 24), random.uniform(0.2, 2.8), random.uniform(1, 19));
-                glm::dvec3 to(random.uniform(26, 49), random.uniform(0.2, 2.8), random.uniform(1, 19));
-                if (line % 2) std::swap(from, to);
-                const Mesh& half = made.scene.meshes[made.scene.meshes.size() - 1];
-                const Mesh& other = made.scene.meshes[made.scene.meshes.size() - 3];
-                const double part = random.uniform(0.3, 0.7);
-                const glm::dvec3 aim =
-                    glm::mix(0.5 * (glm::dvec3(half.positions[0]) + glm::dvec3(other.positions[0])),
-                             0.5 * (glm::dvec3(half.positions[1]) + glm::dvec3(other.positions[1])), part);
-                const glm::dvec3 along = glm::normalize(aim - from);
-                const double length = glm::distance(from, aim) * 1.5;
-                if (truth.meets(from, along, 0, glm::distance(from, aim) + 0.1, 0)) continue;
-                const LineWalk walk(cells.space, from, along, length);
-                for (const Crossing& crossing : walk.crossings()) {
-                    const glm::dvec3 point = from + crossing.at * along;
-                    if (std::abs(point.x - 25) > 1e-6) continue;
-                    ++seen;
-                    ASSERT_TRUE(leads(cells.space, crossing, point));
-                }
-            }
-            EXPECT_GT(seen, 20);
+            EXPECT_GT(lookThroughSlit(made, made.scene.meshes.size() - 1, cellsOfSoup(made.scene), 2000, random), 20);
+            if (HasFailure()) return;
         }
+}
+
+TEST(SoupCells, SlitsAreSeenThroughWhateverLiesFarOff) {
+    Random random(11);
+    for (const FarThing what : kFarThings)
+        for (const double far : {4e3, 1e4, 1e5, 1e6, 1e7})
+            for (const double width : {1e-3, 1e-2, 0.2}) {
+                SCOPED_TRACE("far thing " + std::to_string(int(what)) + " at " + std::to_string(far) + ", slit of " +
+                             std::to_string(width));
+                MarkedRooms made = slitRoom(random, width, random.uniform(0, 3.1));
+                const size_t half = made.scene.meshes.size() - 1;
+                addFarThing(made, what, far, random);
+                SoupCellSettings settings;
+                settings.smallest_occluder = what == FarThing::kChain ? 0.7 : -1;
+                const SoupCells cells = cellsOfSoup(made.scene, settings);
+                EXPECT_EQ(cells.report.aside.empty(), what == FarThing::kChain);
+                EXPECT_GT(lookThroughSlit(made, half, cells, 2000, random), 20);
+                if (HasFailure()) return;
+            }
 }
 
 // A room whose walls are drawn from inside alone is shut from there, and open from outside.

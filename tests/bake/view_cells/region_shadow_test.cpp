@@ -90,11 +90,12 @@ TEST(RegionShadow, HidesWhatEverySegmentPassesTheHiderTo) {
     uint64_t hidden = 0, passed = 0, kept = 0;
     for (int round = 0; round < 20'000; ++round) {
         const double far = round % 3 == 0 ? 0 : std::pow(10, random.uniform(0, 4));
-        const MadeHider made(random, far);
+        MadeHider made(random, far);
         const double bend = made.size * std::pow(10, random.uniform(-7, -2)) + far * 0x1p-40;
+        made.hider.bend = bend;
         const double reach = 2 * (far + 40 * made.size);
         const Box3d region = made.boxAt(random, made.size * std::pow(10, random.uniform(-2, 1)), 2 * made.size);
-        const RegionShadow shadow(made.hider, cornersOf(region), bend, reach);
+        const RegionShadow shadow(made.hider, cornersOf(region), reach);
         for (int k = 0; k < 8; ++k) {
             const Box3d box = made.boxAt(random, -made.size * std::pow(10, random.uniform(-2, 1)), 2 * made.size);
             const double least = leastInside(made, region, box, bend);
@@ -114,13 +115,14 @@ TEST(RegionShadow, HidesWhatEverySegmentPassesTheHiderTo) {
 TEST(RegionShadow, IsNoneWhereTheRegionIsNotInFront) {
     Random random(2);
     for (int round = 0; round < 1000; ++round) {
-        const MadeHider made(random, 0);
+        MadeHider made(random, 0);
         const double bend = 1e-6 * made.size;
+        made.hider.bend = bend;
         Box3d region = made.boxAt(random, -made.size, made.size);
         region.grow(made.middle + bend / 2 * made.normal);
-        EXPECT_FALSE(RegionShadow(made.hider, cornersOf(region), bend, 100).any());
+        EXPECT_FALSE(RegionShadow(made.hider, cornersOf(region), 100).any());
         region.grow(made.middle + made.size * made.normal);
-        EXPECT_FALSE(RegionShadow(made.hider, cornersOf(region), bend, 100).any()) << "it stands in the plane";
+        EXPECT_FALSE(RegionShadow(made.hider, cornersOf(region), 100).any()) << "it stands in the plane";
     }
 }
 

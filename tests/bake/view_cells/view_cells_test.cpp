@@ -15,6 +15,7 @@
 #include "sightline/base/thread_pool.h"
 #include "sightline/tools/scene/procedural.h"
 #include "tests/bake/aimed_points.h"
+#include "tests/bake/far_things.h"
 #include "tests/bake/marked/random_rooms.h"
 #include "tests/bake/opaque_triangles.h"
 
@@ -42,9 +43,10 @@ struct Judged {
 };
 
 /// Looks from anywhere at points of objects that are said to be hidden from there.
-void judge(const Scene& scene, const ViewCells& cells, int lines, Random& random, Judged& judged) {
+/// @param hole  how wide holes may be that are shut; negative: as the coordinates say
+void judge(const Scene& scene, const ViewCells& cells, int lines, Random& random, Judged& judged, double hole = -1) {
     const OpaqueTriangles truth(scene);
-    const SoupScale scale = *soupScaleOf(scene, -1);
+    if (hole < 0) hole = largestHole(opaqueTriangles(scene, *soupScaleOf(scene), -1, {}));
     for (int i = 0; i < lines; ++i) {
         const glm::dvec3 eye = pointIn(cells.tree.bounds, random);
         const uint32_t leaf = leafOf(cells.tree, eye);
@@ -55,7 +57,7 @@ void judge(const Scene& scene, const ViewCells& cells, int lines, Random& random
             ++judged.hidden;
             const glm::dvec3 to = pointOn(scene, scene.objects[object], random);
             const double length = glm::distance(eye, to);
-            ASSERT_TRUE(truth.meets(eye, (to - eye) / length, 0, length, scale.hole, object))
+            ASSERT_TRUE(truth.meets(eye, (to - eye) / length, 0, length, hole, object))
                 << "from (" << eye.x << ", " << eye.y << ", " << eye.z << ") object " << object << " is seen at ("
                 << to.x << ", " << to.y << ", " << to.z << ")";
         }
@@ -238,16 +240,39 @@ TEST(ViewCells, ThatHideTooLittleAreLeftOut) {
     EXPECT_LT(cells.hidden, 1);
 }
 
+TEST(ViewCells, HideNothingForWhatLiesFarOff) {
+    Random random(12);
+    for (const FarThing what : kFarThings)
+        for (const double far : {1e3, 1e5, 1e7}) {
+            SCOPED_TRACE("far thing " + std::to_string(int(what)) + " at " + std::to_string(far));
+            MarkedRooms made = randomRooms(random, 0);
+            const Box3d near = worldBounds(made.scene);
+            addFarThing(made, what, far, random);
+            ViewCellSettings settings;
+            settings.most_cells = 64;
+            settings.least_hidden = 0;
+            if (what == FarThing::kChain) settings.smallest_occluder = settings.smallest_cell = 0.1;
+            const ViewCells cells = viewCellsOf(made.scene, settings);
+            ASSERT_FALSE(cells.tree.contents.empty());
+            Judged judged;
+            judge(made.scene, cells, 4000, random, judged, 1e-4);
+            if (HasFatalFailure()) return;
+            if (what == FarThing::kChain) continue;  // its cells are where eyes are not
+            EXPECT_LT(glm::length(cells.tree.bounds.size()), 2 * glm::length(near.size()));
+            EXPECT_GT(judged.hidden, 0u);
+        }
+}
+
 /// Walls with windows and doors of any shape: hiders are covered, and most of what could hide does.
 TEST(FlatHiders, AreCoveredByFrontsAndCoverMostOfTheWalls) {
     Random random(10);
     for (int round = 0; round < 24; ++round) {
         const MarkedRooms made = randomRooms(random, round);
-        const SoupScale scale = *soupScaleOf(made.scene, -1);
         FlatHiderSettings settings;
-        settings.bend = scale.hole;
         settings.least_area = 0.04;
-        const SoupWalls walls = sheetsOf(opaqueTriangles(made.scene, {}), scale.hole, settings.least_area);
+        const SoupWalls walls =
+            sheetsOf(opaqueTriangles(made.scene, *soupScaleOf(made.scene), -1, {}), settings.least_area);
+        const double hole = largestHole(walls.triangles);
         const std::vector<FlatHider> hiders = flatHiders(walls, settings);
         ASSERT_GT(hiders.size(), 10u);
         const OpaqueTriangles truth(made.scene);
@@ -265,7 +290,7 @@ TEST(FlatHiders, AreCoveredByFrontsAndCoverMostOfTheWalls) {
                     weights += weight;
                 }
                 point /= weights;
-                ASSERT_TRUE(truth.meets(point + normal, -normal, 1 - 2 * scale.hole, 1 + 2 * scale.hole, scale.hole))
+                ASSERT_TRUE(truth.meets(point + normal, -normal, 1 - 2 * hole, 1 + 2 * hole, hole))
                     << "round " << round;
             }
         }

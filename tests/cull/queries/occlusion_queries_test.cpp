@@ -325,7 +325,7 @@ TEST(AskedBoxes, HoldAllItemsBelowAndAreNotMuchLarger) {
                 const uint32_t at = tree.slot[item];
                 const Box3f inner = slotBox(tree.nodes[at / 8], static_cast<int>(at % 8));
                 EXPECT_TRUE(
-                    std::any_of(boxes.begin(), boxes.end(), [&](const Box3f& box) { return holds(box, inner); }));
+                    std::any_of(boxes.begin(), boxes.end(), [&](const Box3f& box) { return box.holds(inner); }));
             }
         }
     }

@@ -59,6 +59,42 @@ TEST(GltfGeometry, ReadsEachFormOfTriangles) {
         EXPECT_GT(glm::cross(kStrip[i + 1] - kStrip[i], kStrip[i + 2] - kStrip[i]).z, 0);
 }
 
+// A primitive that variants draw otherwise hides no more than the least hiding of them, and is seen from all their sides.
+TEST(GltfGeometry, VariantsHideWhatAllOfThemHide) {
+    const Json materials =
+        Json::array({{{"doubleSided", true}},
+                     {{"alphaMode", "BLEND"}, {"doubleSided", true}},
+                     {{"alphaMode", "MASK"}, {"doubleSided", true}},
+                     {{"name", "one-sided"}},
+                     {{"doubleSided", true}, {"name", "too"}},
+                     {{"doubleSided", true}, {"extensions", {{"KHR_materials_transmission", Json::object()}}}}});
+    struct Case {
+        uint32_t usual;
+        std::vector<uint32_t> variants;
+        bool hides, double_sided;
+    };
+    for (const Case& c :
+         {Case{0, {}, true, true}, Case{0, {0}, true, true}, Case{0, {4}, true, true}, Case{0, {1}, false, true},
+          Case{0, {4, 2}, false, true}, Case{0, {5}, false, true}, Case{0, {3}, false, true}, Case{3, {0}, false, true},
+          Case{3, {}, true, false}, Case{3, {3, 3}, true, false}, Case{1, {0}, false, true}, Case{2, {3}, false, true},
+          Case{4, {0, 1, 2, 3}, false, true}}) {
+        GltfBuilder b;
+        b.json["materials"] = materials;
+        const uint32_t positions = b.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0});
+        Json mappings = Json::array();
+        for (const uint32_t material : c.variants) mappings.push_back({{"material", material}, {"variants", {0}}});
+        Json more = {{"material", c.usual}};
+        if (!c.variants.empty()) more["extensions"] = {{"KHR_materials_variants", {{"mappings", mappings}}}};
+        for (int twice = 0; twice < 2; ++twice) b.node({{"mesh", b.mesh(positions, -1, more)}});
+        const Scene scene = load(b.glb());
+        const Material& material = scene.materials[scene.meshes[0].primitives[0].material];
+        SCOPED_TRACE("material " + std::to_string(c.usual) + " and " + mappings.dump());
+        EXPECT_EQ(material.hides(), c.hides);
+        EXPECT_EQ(material.double_sided, c.double_sided);
+        EXPECT_LE(scene.materials.size(), materials.size() + 1) << "the same variants make one material";
+    }
+}
+
 TEST(GltfGeometry, LeavesOutPointsAndLines) {
     const Scene scene = loadSample("points_and_lines.glb");
     ASSERT_EQ(scene.objects.size(), 1u) << "the node of lines draws nothing";

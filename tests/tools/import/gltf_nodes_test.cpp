@@ -58,6 +58,40 @@ GltfBuilder nodeWithLevels() {
     return b;
 }
 
+// A bake takes what an animation of the file moves, shows or hides for what moves.
+TEST(GltfNodes, KnowsWhatAnimationsMove) {
+    const auto animatedBy = [](const Json& target) {
+        GltfBuilder b;
+        const uint32_t mesh = b.triangleMesh();
+        b.node({{"mesh", mesh}, {"name", "apart"}});
+        b.node({{"children", {2}}, {"name", "hinge"}});
+        b.node({{"children", {3}}, {"name", "leaf"}, {"mesh", mesh}});
+        b.node({{"mesh", mesh}, {"name", "knob"}});
+        const uint32_t times = b.accessor<float>("SCALAR", {0, 1});
+        const uint32_t values = b.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0});
+        b.json["animations"] = Json::array({{{"samplers", Json::array({{{"input", times}, {"output", values}}})},
+                                             {"channels", Json::array({{{"sampler", 0}, {"target", target}}})}}});
+        std::string moved;
+        for (const SceneObject& object : load(b.glb()).objects)
+            if (object.animated) moved += object.name + " ";
+        return moved;
+    };
+    const auto byPointer = [](const std::string& pointer) {
+        return Json{{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}};
+    };
+    for (const char* path : {"translation", "rotation", "scale"}) {
+        EXPECT_EQ(animatedBy({{"node", 2}, {"path", path}}), "leaf knob ") << path;
+        EXPECT_EQ(animatedBy({{"node", 1}, {"path", path}}), "leaf knob ") << path;
+        EXPECT_EQ(animatedBy({{"node", 3}, {"path", path}}), "knob ") << path;
+        EXPECT_EQ(animatedBy(byPointer("/nodes/2/" + std::string(path))), "leaf knob ") << path;
+    }
+    EXPECT_EQ(animatedBy(byPointer("/nodes/0/extensions/KHR_node_visibility/visible")), "apart ");
+    for (const Json& nothing :
+         {Json{{"path", "translation"}}, Json{{"node", 2}, {"path", "weights"}}, byPointer("/materials/0/alphaCutoff"),
+          byPointer("/meshes/0/weights"), byPointer("/nodes/77/scale"), Json{{"node", 77}, {"path", "scale"}}})
+        EXPECT_EQ(animatedBy(nothing), "") << nothing.dump();
+}
+
 TEST(GltfNodes, KeepsTheLevelsOfDetailOfANode) {
     GltfBuilder b = nodeWithLevels();
     b.json["scenes"] = {{{"nodes", {0}}}};

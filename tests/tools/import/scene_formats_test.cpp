@@ -246,6 +246,32 @@ TEST_F(SceneFormats, MaterialsOfAnObjSayWhatMayHide) {
     EXPECT_EQ(scene->objects.size(), 5u);
 }
 
+TEST_F(SceneFormats, FacesOfAnObjNeedTheirPositionsAlone) {
+    const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
+    const Result<Scene> plain = load(write("plain.obj", points + "f 1 2 3\nf 2 4 3\n"));
+    ASSERT_TRUE(plain.ok()) << plain.error().message;
+    ASSERT_EQ(worldTriangles(*plain).size(), 2u);
+    const std::string normal = "vn 0 0 1\n", place = "vt 0 0\n";
+    for (const std::string& faces :
+         {std::string("f 1/1 2/2 3/3\nf 2/2 4/4 3/3\n"), std::string("f 1/1/1 2/2/2 3/3/3\nf 2/2/2 4/4/4 3/3/3\n"),
+          std::string("f 1//9 2//9 3//9\nf 2//9 4//9 3//9\n"), normal + "f 1/1/1 2/2/1 3/3/1\nf 2/2/1 4/4/1 3/3/1\n",
+          normal + "f 1//1 2//1 3//1\nf 2/7 4/7 3/7\n", place + "f 1/1 2/1 3/2\nf 2/1 4/1 3/1\n",
+          place + "f 1/1/5 2/1/5 3/1/5\nf 2/1/5 4/1/5 3/1/5\n",
+          std::string("f -4/-1 -3/-1 -2/-1\nf -3/-9 -1/-9 -2/-9\n"),
+          std::string("f\t1/1\t2/1\t3/1\n\t f 2/1 4/1 3/1\n"), std::string("f 1/1 2/1 3/1 # a / b\nf 2/1 4/1 3/1\n"),
+          std::string("f 1/1 \\\n2/2 3/3\nf 2/2 4/4 \\\n3/3\n"), std::string("f 1/1 2/1 3/1\r\nf 2/1 4/1 3/1\r\n"),
+          std::string("f 1/ 2/ 3/\nf 2// 4// 3//\n"), std::string("f 1/1/1 2/2/2 3/3/3\nf 2/2/2 4/4/4 3/3/3")}) {
+        SCOPED_TRACE(faces);
+        const Result<Scene> scene = load(write("faces.obj", points + faces));
+        ASSERT_TRUE(scene.ok()) << scene.error().message;
+        EXPECT_EQ(worldTriangles(*scene), worldTriangles(*plain));
+    }
+    // Names, materials and remarks may have slashes.
+    const Result<Scene> named = load(write("named.obj", points + "o a/b\n# f 1/2\nusemtl x/y\nf 1/1 2/1 3/1\n"));
+    ASSERT_TRUE(named.ok()) << named.error().message;
+    EXPECT_TRUE(paths(*named)[0].ends_with("a/b")) << paths(*named)[0];
+}
+
 TEST_F(SceneFormats, AMissingMaterialFileIsNoted) {
     std::string noted;
     settings_.note = [&](const std::string& text) { noted += text; };

@@ -22,7 +22,6 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <fmt/core.h>
 
 #include "sightline/base/result.h"
 #include "sightline/tools/import/foreign/scene_stream.h"

@@ -150,7 +150,38 @@ void applyChannel(Document& document, const Json& samplers, const Json& json, co
     }
 }
 
+/// The node that a channel moves, shows or hides; none also for what is not as the format asks, for nothing of it is read.
+std::optional<uint32_t> movedBy(const Json& channel, size_t nodes, const std::string& place) {
+    try {
+        const std::optional<Channel> read = readChannel(channel, nodes, place);
+        if (!read) return std::nullopt;
+        for (const char* path :
+             {"translation", "rotation", "scale", "matrix", "extensions/KHR_node_visibility/visible"})
+            if (read->path == path) return read->node;
+    } catch (const Fault&) {}
+    return std::nullopt;
+}
+
 }  // namespace
+
+std::vector<bool> animatedNodes(const Document& document, const NodeTree& tree) {
+    std::vector<bool> moved(tree.nodes.size(), false);
+    const JsonTable animations = document.json.table("animations");
+    for (size_t a = 0; a < animations.size(); ++a) {
+        const std::string animation = at("animations", a);
+        const Json json = animations.object(a, animation);
+        const Json& channels = table(json, "channels", animation);
+        for (size_t c = 0; c < channels.size(); ++c) {
+            const std::string place = animation + at(".channels", c);
+            if (const auto node = movedBy(objectAt(channels, c, place), moved.size(), place)) moved[*node] = true;
+        }
+    }
+    // What hangs below goes along. Parents need not come first.
+    std::vector<bool> out(moved.size(), false);
+    for (uint32_t i = 0; i < moved.size(); ++i)
+        for (uint32_t at = i; at != kNoNode && !out[i]; at = tree.names[at].parent) out[i] = moved[at];
+    return out;
+}
 
 std::vector<Motion> readMotions(Document& document, const NodeTree& tree, const std::vector<size_t>& targets) {
     std::vector<Motion> motions(tree.nodes.size());

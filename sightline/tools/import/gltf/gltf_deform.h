@@ -35,6 +35,9 @@ struct Motion {
 /// @param targets  how many morph targets each mesh has  [size: meshes]
 std::vector<Motion> readMotions(Document& document, const NodeTree& tree, const std::vector<size_t>& targets);
 
+/// Which nodes an animation moves, shows or hides, themselves or with a node above them.
+std::vector<bool> animatedNodes(const Document& document, const NodeTree& tree);
+
 /// Where morph targets may take the vertices of a mesh.
 struct MorphReach {
     std::vector<glm::dvec3> rest, low, high;  ///< [size: vertices]; finite, low <= high on each axis

@@ -100,8 +100,46 @@ void readDraco(Document& document, const Json& json, PrimitiveSource& out) {
         out.influences[set] = {attributes[2 * set + 1].second, attributes[2 * set + 2].second};
 }
 
+// The number of a material that stands for all of some, of which the first is the file's default.
+uint32_t materialOf(std::vector<uint32_t> all, Materials& materials) {
+    const uint32_t first = all.front();
+    std::sort(all.begin() + 1, all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    const Material& usual = materials.list[first];
+    bool hides = true, alike = true, double_sided = false;
+    for (const uint32_t number : all) {
+        const Material& material = materials.list[number];
+        hides = hides && material.hides();
+        alike = alike && material.double_sided == usual.double_sided;
+        double_sided = double_sided || material.double_sided;
+    }
+    if (alike && hides == usual.hides()) return first;
+    const auto [known, fresh] = materials.of_variants.emplace(all, static_cast<uint32_t>(materials.list.size()));
+    if (fresh) {
+        Material made = usual;
+        made.double_sided = double_sided;
+        if (made.hides()) made.alpha_mode = AlphaMode::kMask;
+        materials.list.push_back(std::move(made));
+    }
+    return known->second;
+}
+
+uint32_t readMaterialNumber(const Json& json, Materials& materials, const std::string& place) {
+    const auto usual = index(json, "material", materials.count, place);
+    std::vector<uint32_t> all{usual ? *usual + materials.first : 0};
+    if (const Json* variants = extension(json, "KHR_materials_variants", place)) {
+        const Json& mappings = table(*variants, "mappings", place);
+        for (size_t i = 0; i < mappings.size(); ++i) {
+            const std::string mapping = place + at(".mappings", i);
+            if (const auto other = index(objectAt(mappings, i, mapping), "material", materials.count, mapping))
+                all.push_back(*other + materials.first);
+        }
+    }
+    return materialOf(std::move(all), materials);
+}
+
 // None if it draws no triangles.
-std::optional<PrimitiveSource> readPrimitive(Document& document, const Json& json, const Materials& materials,
+std::optional<PrimitiveSource> readPrimitive(Document& document, const Json& json, Materials& materials,
                                              const std::string& place) {
     PrimitiveSource out;
     out.place = place;
@@ -114,8 +152,7 @@ std::optional<PrimitiveSource> readPrimitive(Document& document, const Json& jso
     if (out.mode < kTriangles || !positions) return std::nullopt;
     out.positions = *positions;
     out.indices = index(json, "indices", accessors, place);
-    const auto material = index(json, "material", materials.count, place);
-    out.material = material ? *material + materials.first : 0;
+    out.material = readMaterialNumber(json, materials, place);
     readInfluences(*attributes, accessors, out);
     readTargets(json, accessors, out);
     if (const Json* draco = extension(json, "KHR_draco_mesh_compression", place)) readDraco(document, *draco, out);
@@ -176,7 +213,7 @@ Materials readMaterials(const JsonText& json) {
     return out;
 }
 
-std::vector<MeshSource> readMeshes(Document& document, const Materials& materials) {
+std::vector<MeshSource> readMeshes(Document& document, Materials& materials) {
     const JsonTable array = document.json.table("meshes");
     std::vector<MeshSource> out(array.size());
     for (size_t i = 0; i < array.size(); ++i) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -18,6 +19,7 @@ struct Materials {
     std::vector<Material> list;  ///< never empty
     uint32_t first = 0;          ///< where glTF's material 0 is; 1 if the default material stands before it
     size_t count = 0;            ///< glTF's own
+    std::map<std::vector<uint32_t>, uint32_t> of_variants;  ///< made for sets of glTF's own; at the end of `list`
 };
 
 /// The default material comes first if a primitive names none.
@@ -49,8 +51,9 @@ struct MeshSource {
     bool skinnable = false;  ///< has joints and weights
 };
 
-/// Reads all meshes of the JSON, without their data.
-std::vector<MeshSource> readMeshes(Document& document, const Materials& materials);
+/// Reads all meshes of the JSON, without their data. A primitive that may be drawn with one of several materials
+/// (KHR_materials_variants) gets one that hides no more, and is seen from no fewer sides, than each of them.
+std::vector<MeshSource> readMeshes(Document& document, Materials& materials);
 
 /// Where the vertices of a primitive came from.
 struct VertexRun {

@@ -336,6 +336,8 @@ Scene makeScene(Document& document) {
     scene.materials = std::move(materials.list);
     const std::vector<Built> built = buildShapes(document, parts, scene);
     addObjects(document, parts, built, scene);
+    const std::vector<bool> animated = animatedNodes(document, parts.tree);
+    for (SceneObject& object : scene.objects) object.animated = animated[object.node];
     addLevels(document, parts, built, scene);
     scene.cameras = placeCameras(parts.tree, cameras);
     scene.nodes = std::move(parts.tree.names);

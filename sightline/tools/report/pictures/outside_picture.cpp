@@ -12,6 +12,7 @@
 #include "sightline/tools/report/pictures/world_lines.h"
 #include "sightline/tools/report/run/cull_run.h"
 #include "sightline/tools/scene/framing.h"
+#include "sightline/tools/scene/scene_core.h"
 
 namespace sightline::tools {
 namespace {
@@ -85,7 +86,7 @@ Standpoint standpointBehind(const PictureMaker& maker, const View& view, std::sp
     for (size_t i = 0; i < reasons.size(); ++i)
         if (reasons[i] == 0 && maker.bounds()[i].finite())
             distances.push_back(glm::length(maker.bounds()[i].center() - eye));
-    const double diagonal = diagonalOf(finiteBounds(maker.scene()));
+    const double diagonal = diagonalOf(coreOf(maker.scene()).bounds);
     out.reach = std::max(distances.empty() ? 0.25 * diagonal : medianOf(distances), 0.02 * diagonal);
     const double roof = roofOver(maker, reasons, eye, 0.25 * out.reach);
     out.top = eye.y + 0.98 * roof;
@@ -138,7 +139,7 @@ void drawCulled(WorldLines& lines, const PictureMaker& maker, const Standpoint& 
 
 Overview overviewPicture(const PictureMaker& maker, std::span<const glm::dvec3> eyes, uint32_t width) {
     constexpr double kAzimuth = 35, kAbove = 35;  // [degrees]
-    Box3d bounds = finiteBounds(maker.scene());
+    Box3d bounds = coreOf(maker.scene()).bounds;
     if (bounds.empty()) return {{}, std::vector<std::optional<glm::dvec2>>(eyes.size())};
     const std::vector<bool> joined = joinedEyes(eyes, diagonalOf(bounds));
     Framing framing(bounds.center());

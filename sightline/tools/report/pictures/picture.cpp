@@ -12,6 +12,7 @@
 #include "sightline/studies/hidden/zbuffer/zbuffer.h"
 #include "sightline/tools/report/pictures/plan.h"
 #include "sightline/tools/report/pictures/scene_look.h"
+#include "sightline/tools/scene/scene_core.h"
 
 namespace sightline::tools {
 using namespace studies;
@@ -38,7 +39,7 @@ PictureMaker::PictureMaker(const Scene& scene) : scene_(scene) {
     zeros_.assign(most, 0);
     for (const SceneObject& object : scene.objects)
         bounds_.push_back(transformBox(scene.meshes[object.mesh].bounds, object.transform));
-    world_ = finiteBounds(scene);
+    world_ = coreOf(scene).bounds;
     diagonal_ = diagonalOf(world_);
 }
 

@@ -5,14 +5,15 @@
 #include <algorithm>
 
 #include "sightline/tools/report/pictures/scene_look.h"
+#include "sightline/tools/scene/scene_core.h"
 
 namespace sightline::tools {
 using namespace studies;
 
 RenderList::RenderList(const Scene& scene, const View& view)
-    : scene_(scene), items_(chooseItems(&view)), list_(items_), bounds_(finiteBounds(scene)) {}
+    : scene_(scene), items_(chooseItems(&view)), list_(items_), bounds_(coreOf(scene).bounds) {}
 RenderList::RenderList(const Scene& scene)
-    : scene_(scene), items_(chooseItems(nullptr)), list_(items_), bounds_(finiteBounds(scene)) {}
+    : scene_(scene), items_(chooseItems(nullptr)), list_(items_), bounds_(coreOf(scene).bounds) {}
 
 std::vector<DrawItem> RenderList::chooseItems(const View* view) {
     flags_.resize(scene_.meshes.size());

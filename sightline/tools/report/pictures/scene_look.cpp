@@ -33,15 +33,6 @@ glm::dvec3 colourOf(const Scene& scene, const SceneObject& object, const Primiti
     return colour == glm::dvec3(1.0) ? hashedColour(object.key) : colour;
 }
 
-Box3d finiteBounds(const Scene& scene) {
-    Box3d whole;
-    for (const SceneObject& object : scene.objects) {
-        const Box3d box = transformBox(scene.meshes[object.mesh].bounds, object.transform);
-        if (box.finite()) whole.grow(box);
-    }
-    return whole;
-}
-
 double diagonalOf(const Box3d& box) { return box.empty() ? 1.0 : std::max(glm::length(box.size()), 1e-9); }
 
 }  // namespace sightline::tools

@@ -20,9 +20,6 @@ bool isSolid(const Material& material);
 /// The linear colour of an object's primitive: its material's, or one hashed from the object's key where that is white.
 glm::dvec3 colourOf(const Scene& scene, const SceneObject& object, const Primitive& primitive);
 
-/// The box around all objects whose bounds are finite, in world space.
-Box3d finiteBounds(const Scene& scene);
-
 /// A box's diagonal, at least a billionth; 1 if it is empty [world units].
 double diagonalOf(const Box3d& box);
 

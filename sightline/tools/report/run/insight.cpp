@@ -9,6 +9,7 @@
 
 #include "sightline/base/random.h"
 #include "sightline/math/curves.h"
+#include "sightline/tools/scene/scene_core.h"
 
 namespace sightline::tools {
 namespace {
@@ -127,7 +128,7 @@ std::vector<uint32_t> neverKept(const CullRun& run, const Scene& scene) {
 
 std::vector<TogetherGroup> keptTogether(const CullRun& run, const Scene& scene) {
     const std::vector<KeptIn> kept = keptIn(run, scene.objects.size());
-    const Box3d world = worldBounds(scene);
+    const Box3d world = coreOf(scene).bounds;
     const double largest = kSmallGroup * glm::length(world.size());
     const std::vector<Mergeable> list = mergeable(scene, kept, world);
     std::vector<TogetherGroup> groups;
