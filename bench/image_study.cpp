@@ -9,6 +9,7 @@
 #include "bench/stopwatch.h"
 #include "sightline/images/portal_screen.h"
 #include "sightline/tools/report/pictures/scene_look.h"
+#include "sightline/tools/scene/scene_core.h"
 
 namespace sightline::bench {
 using namespace images;
@@ -20,7 +21,7 @@ constexpr size_t kEyes = 4;
 
 /// Sees the whole of a scene, so that a list's items are all of them.
 View viewOfAll(const Scene& scene) {
-    const Box3d box = finiteBounds(scene);
+    const Box3d box = coreOf(scene).bounds;
     const double size = 4 * diagonalOf(box);
     View view;
     const glm::dvec3 middle = box.empty() ? glm::dvec3(0.0) : box.center();

@@ -9,6 +9,7 @@
 #include "bench/image_study.h"
 #include "sightline/tools/load/walk.h"
 #include "sightline/tools/report/pictures/scene_look.h"
+#include "sightline/tools/scene/scene_core.h"
 
 namespace sightline::bench {
 using namespace images;
@@ -51,7 +52,7 @@ std::vector<StudiedDoorway> doorwaysOf(const Scene& scene, uint64_t seed, size_t
 }
 
 StudiedDoorway cutThrough(const Scene& scene) {
-    const Box3d box = finiteBounds(scene);
+    const Box3d box = coreOf(scene).bounds;
     const glm::dvec3 middle = box.center();
     const int axis = box.size().x >= box.size().z ? 0 : 2;
     const glm::dvec3 along = axis == 0 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 0, 1);
