@@ -36,7 +36,7 @@ std::vector<WallTriangle> opaqueTriangles(const Scene& scene, const SoupScale& s
     const double least =
         std::max({scale.diagonal, largest(scale.core.bounds.min), largest(scale.core.bounds.max)}) * 0x1p-40;
     for (WallTriangle& triangle : triangles) {
-        // Where an object stands was rounded, too, but for what all of them may share: a place on a map, in doubles.
+        // An object's place was rounded, too. What all places share, as on a map, is in doubles and counts for nothing.
         const glm::dvec3 at(scene.objects[triangle.object].transform[3]);
         const double moved = std::min(largest(at), largest(at - middle));
         const double own = triangle.rounding + 0x1p-22 * moved;

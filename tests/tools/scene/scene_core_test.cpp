@@ -43,7 +43,7 @@ TEST(SceneCore, LeavesStraysAndDomesAside) {
                 const uint32_t box = scene.objects[0].mesh;
                 addObject(scene, box, dome ? placed(glm::dvec3(0), far) : placed({0, far, 0}, 0.2));
                 const SceneCore core = coreOf(scene);
-                if (boxes < 3 && !dome) continue;  // nobody can tell which of two has strayed
+                if (boxes < 3 && !dome) continue;  // of two boxes either may be the stray
                 ASSERT_EQ(core.aside, std::vector<uint32_t>{boxes});
                 EXPECT_LT(glm::length(core.bounds.min - house.min), 1e-9);
                 EXPECT_LT(glm::length(core.bounds.max - house.max), 1e-9);

@@ -100,7 +100,7 @@ void readDraco(Document& document, const Json& json, PrimitiveSource& out) {
         out.influences[set] = {attributes[2 * set + 1].second, attributes[2 * set + 2].second};
 }
 
-// The number of a material that stands for all of some, of which the first is the file's default.
+// One material for all that variants choose from; the first of them is the file's default. Returns its number.
 uint32_t materialOf(std::vector<uint32_t> all, Materials& materials) {
     const uint32_t first = all.front();
     std::sort(all.begin() + 1, all.end());
