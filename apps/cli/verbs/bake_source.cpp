@@ -98,15 +98,9 @@ Result<std::vector<uint32_t>> movableOf(const Scene& scene, const std::vector<st
                                      "info --objects lists them",
                                      oneLine(word), scene.name)};
     }
-    std::vector<uint32_t> animated, out;
-    for (uint32_t i = 0; i < moves.size(); ++i) {
-        if (scene.objects[i].animated && !moves[i]) animated.push_back(i);
-        if (moves[i] || scene.objects[i].animated) out.push_back(i);
-    }
-    if (!animated.empty())
-        note(fmt::format("the file's animations move {} ({}): baked as moving, so that {} nothing",
-                         counted(animated.size(), "object"), namesOf(scene, animated),
-                         animated.size() == 1 ? "it hides" : "they hide"));
+    std::vector<uint32_t> out;
+    for (uint32_t i = 0; i < moves.size(); ++i)
+        if (moves[i] || scene.objects[i].changes != 0) out.push_back(i);
     return out;
 }
 

@@ -81,6 +81,7 @@ std::vector<std::vector<uint32_t>> findEncased(const Scene& scene, Exported& out
 std::vector<std::vector<uint32_t>> unseenObjects(const Scene& scene, const CullRun& run) {
     std::vector<std::vector<uint32_t>> out(scene.objects.size());
     for (size_t i = 0; i < out.size(); ++i) {
+        if (scene.objects[i].changes != 0) continue;  // it may stand elsewhere
         const bool is_seen = std::any_of(run.frames.begin(), run.frames.end(),
                                          [&](const FrameResult& frame) { return frame.reasons[i] == 0; });
         if (is_seen) continue;
@@ -157,8 +158,6 @@ Result<int> runExport(const Command& verb, ExportOptions& options) {
         out.keeps_textures ? cutGltf(options.scene.plainFile(), cut) : sceneGltf(cut.scene, options.output);
     if (!written) return written.error();
     for (const std::string& text : written->notes) note(text);
-    if (written->animated && (options.outside || options.from_path))
-        note("what animations move was judged where it stands at rest");
     if (Status done = writeFileAside(options.output, written->bytes); !done) return done.error();
     printExported(options.json == "-" ? stderr : stdout, options, out);
     if (!options.json.empty())

@@ -21,8 +21,10 @@
 #include "sightline/query/record/frame_recording.h"
 #include "sightline/tools/import/scene_file.h"
 #include "sightline/tools/load/recorded_scene.h"
+#include "sightline/tools/report/readable.h"
 #include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/scene/procedural.h"
+#include "sightline/tools/scene/scene_core.h"
 #include "sightline/tools/scene/text_file.h"
 
 namespace sightline::cli {
@@ -145,6 +147,19 @@ Result<Scene> loadOne(const std::string& name, ImportSettings settings) {
     return loadSceneFile(name, settings);
 }
 
+/// Says which objects the file may draw otherwise than they stand, and what follows.
+void tellOfChanges(const Scene& scene) {
+    const auto tell = [&](SceneObject::Change change, const char* head, const char* tail) {
+        std::vector<uint32_t> which;
+        for (uint32_t i = 0; i < scene.objects.size(); ++i)
+            if (scene.objects[i].changes & change) which.push_back(i);
+        if (!which.empty())
+            note(fmt::format("{} {} ({}): {}", head, counted(which.size(), "object"), namesOf(scene, which), tail));
+    };
+    tell(SceneObject::kAnimated, "the file may move, show or hide", "hides nothing, and a bake takes it as moving");
+    tell(SceneObject::kLevels, "from afar the file draws other shapes for", "hides nothing in a bake or an export");
+}
+
 /// Says so where objects that reach through half a scene hold most of it, and what may help.
 void tellOfWideObjects(const Scene& scene) {
     constexpr uint64_t kMany = 20000;
@@ -243,6 +258,7 @@ Result<Scene> loadWholeScene(const SceneChoice& choice, Split& split) {
         return Error{
             Error::Kind::kInput,
             joined.name + ": draws nothing: it has cells or portals alone; name the scene that they belong to, too"};
+    tellOfChanges(joined);
     if (choice.split.empty()) tellOfWideObjects(joined);
     return joined;
 }

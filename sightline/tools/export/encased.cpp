@@ -239,7 +239,7 @@ public:
         std::vector<Box3d> boxes;
         for (uint32_t object = 0; object < scene.objects.size(); ++object) {
             const Mesh& mesh = scene.meshes[scene.objects[object].mesh];
-            if (mesh.deforms) continue;
+            if (mesh.deforms || scene.objects[object].changes != 0) continue;
             for (uint32_t t = 0; t < mesh.triangles(); ++t) {
                 items_.emplace_back(object, t);
                 boxes.push_back(boxOf(placed(mesh, scene.objects[object].transform, t)));
@@ -296,7 +296,8 @@ Encased encasedTriangles(const Scene& scene, const std::function<bool(size_t, si
     out.triangles.resize(scene.objects.size());
     std::vector<std::vector<Shell>> shells;
     for (const Mesh& mesh : scene.meshes) shells.push_back(shellsOf(scene, mesh));
-    std::vector<bool> opens(scene.objects.size());
+    std::vector<bool> opens(scene.objects.size());  // no shells
+    for (size_t i = 0; i < opens.size(); ++i) opens[i] = scene.objects[i].changes != 0;
     for (const ScenePortal& portal : scene.portals)
         if (portal.door != ScenePortal::kNone) opens[portal.door] = true;
     size_t total = 0, done = 0;

@@ -26,7 +26,8 @@ struct Encased {
 
 /// All triangles that keep a distance from some shell around them: a millionth of the scene's largest coordinate, so that
 /// positions in float change nothing. Nothing of what deforms, and nothing within what several surfaces shut together.
-/// Doors are no shells. What else moves is taken where it stands.
+/// Doors, and what the file may draw otherwise (SceneObject::changes), are no shells and are encased by none. What else
+/// moves is taken where it stands.
 /// @param progress  called now and then with (done, total) shells; false: stop, with what was found
 Encased encasedTriangles(const Scene& scene, const std::function<bool(size_t, size_t)>& progress = {});
 

@@ -17,6 +17,7 @@
 
 #include "sightline/tools/export/glb.h"
 #include "sightline/tools/import/gltf/gltf_draco.h"
+#include "sightline/tools/import/gltf/gltf_features.h"
 #include "sightline/tools/import/gltf/gltf_meshes.h"
 #include "sightline/tools/import/gltf/gltf_open.h"
 
@@ -83,7 +84,7 @@ public:
           accessor_at_(document_.accessors.size(), kAbsent),
           view_at_(document_.views.size(), kAbsent),
           mesh_at_(table(in_, "meshes").size(), kAbsent) {
-        Materials materials = readMaterials(document_.json);
+        Materials materials = readMaterials(document_);
         sources_ = readMeshes(document_, materials);
     }
 
@@ -98,10 +99,11 @@ public:
         writeAnimations();
         writeMetadata();
         writeNodes();
+        movePointers();
         nameExtensions();
         Result<std::string> bytes = out_.bytes(file_);
         if (!bytes) return bytes.error();
-        return WrittenGltf{std::move(*bytes), std::move(notes_), !table(in_, "animations").empty()};
+        return WrittenGltf{std::move(*bytes), std::move(notes_)};
     }
 
 private:
@@ -129,7 +131,7 @@ private:
         if (extensions == value.end() || !extensions->is_object()) return;
         std::vector<std::string> names;
         for (const auto& [name, inner] : extensions->items())
-            if (!isKnownExtension(name)) names.push_back(name);
+            if (!featureOf(name).understood) names.push_back(name);
         for (const std::string& name : names) dropExtension(value, name);
         unknown.insert(names.begin(), names.end());
     }
@@ -224,14 +226,25 @@ private:
             if (!table(animations[i], "samplers", place).empty())
                 for (Json& sampler : animations[i]["samplers"])
                     for (const char* key : {"input", "output"}) moveAccessor(sampler, key, place);
-            for (const Json& channel : table(animations[i], "channels", place)) {
-                // Meshes are numbered anew.
-                const Json* target = find(channel, "target");
-                const Json* pointer = target ? extension(*target, "KHR_animation_pointer", place) : nullptr;
-                if (pointer && text(*pointer, "pointer", place).starts_with("/meshes/"))
-                    fail(place, "animates a mesh by its number, which cannot be cut");
-            }
         }
+    }
+
+    /// Meshes are numbered anew, and animations may aim at their numbers. What has weights is never cut.
+    void movePointers() {
+        constexpr std::string_view kMeshes = "/meshes/";
+        if (!out_.json.contains("animations")) return;
+        for (Json& animation : out_.json["animations"])
+            for (Json& channel : animation["channels"]) {
+                const Json* target = find(channel, "target");
+                const Json* aim = target ? extension(*target, "KHR_animation_pointer", "") : nullptr;
+                const std::string pointer = aim ? text(*aim, "pointer", "") : "";
+                if (!pointer.starts_with(kMeshes)) continue;
+                const size_t number = std::strtoul(pointer.c_str() + kMeshes.size(), nullptr, 10);
+                const size_t rest = std::min(pointer.find('/', kMeshes.size()), pointer.size());
+                if (number >= mesh_at_.size()) fail("", "pointer '{}' aims at no mesh", printable(pointer));
+                channel["target"]["extensions"]["KHR_animation_pointer"]["pointer"] =
+                    fmt::format("{}{}{}", kMeshes, wholeMesh(static_cast<uint32_t>(number)), pointer.substr(rest));
+            }
     }
 
     void writeMetadata() {
@@ -508,7 +521,7 @@ private:
         for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
             Json left = Json::array();
             for (const Json& name : table(in_, key))
-                if (name.is_string() && isKnownExtension(name.get<std::string>()) &&
+                if (name.is_string() && featureOf(name.get<std::string>()).understood &&
                     !gone.count(name.get<std::string>()))
                     left.push_back(name);
             out_.json.erase(key);

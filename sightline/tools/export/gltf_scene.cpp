@@ -48,7 +48,7 @@ public:
         if (shapeless_ > 0) notes_.push_back(fmt::format("cells without a shape are left out: {}", shapeless_));
         if (deforming_ > 0)
             notes_.push_back(fmt::format("meshes that deform stand as they are at rest: {}", deforming_));
-        return WrittenGltf{std::move(*bytes), std::move(notes_), false};
+        return WrittenGltf{std::move(*bytes), std::move(notes_)};
     }
 
 private:

@@ -14,7 +14,6 @@ namespace sightline::tools {
 struct WrittenGltf {
     std::string bytes;               ///< a GLB
     std::vector<std::string> notes;  ///< a line each
-    bool animated = false;           ///< animations may move what the scene has at rest
 };
 
 /// A node's name, changed if a reader would take it for the mark of a cell or a portal.

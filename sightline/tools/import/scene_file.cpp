@@ -73,7 +73,7 @@ Result<Scene> loadSceneFile(const std::string& file, const ImportSettings& setti
     if (!kind->format) return inputError(file, kind->refusal);
     Result<Scene> scene = !kind->format->ours         ? loadForeign(file, kind->suffix, settings)
                           : isMapSuffix(kind->suffix) ? loadQuakeScene(file)
-                                                      : loadGltf(file, settings.progress);
+                                                      : loadGltf(file, settings.progress, settings.note);
     if (!scene) return scene;
     scene->name = file;
     scene->files = {{file, 0}};

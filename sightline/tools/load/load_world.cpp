@@ -106,7 +106,8 @@ LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_
         def.bounds = scene.meshes[object.mesh].bounds;
         def.transform = object.transform;
         def.key = object.key;
-        def.occluder = forms[object.mesh].occluder;
+        if (!(object.changes & (SceneObject::kAnimated | SceneObject::kUnknown)))
+            def.occluder = forms[object.mesh].occluder;
         def.shape = forms[object.mesh].shape;
         def.clusters = forms[object.mesh].clusters;
         def.lods = forms[object.mesh].lods;

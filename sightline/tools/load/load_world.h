@@ -46,7 +46,7 @@ LoadSettings loadSettings(const QuerySettings& settings, double cluster_test = F
 LoadSettings loadSettings(bool volumes, double occluder_error, bool clusters = false,
                           double cluster_test = FacingCost().test);
 
-/// Deforming meshes and materials that do not hide give no occluder triangles.
+/// Deforming meshes, materials that do not hide, and objects that the file may move, show or hide give no occluder triangles.
 /// @param progress  called with (done, total) meshes now and then; may be empty
 LoadedWorld loadWorld(const Scene& scene, const std::function<void(size_t, size_t)>& progress = {},
                       const LoadSettings& settings = {});

@@ -67,12 +67,19 @@ struct SceneNode {
 
 /// One drawn instance of a mesh.
 struct SceneObject {
+    /// Why the file may draw it otherwise than it stands here.
+    enum Change : uint8_t {
+        kAnimated = 1,  ///< an animation or something that it points at moves it, or shows and hides it
+        kUnknown = 2,   ///< the file says something of it that is not known
+        kLevels = 4,    ///< from afar the file draws something else: Scene::levels
+    };
+
     uint64_t key = 0;           ///< glTF: the node's index; GPU instances of one node share it
     uint32_t mesh = 0;          ///< index into Scene::meshes
     glm::dmat4 transform{1.0};  ///< object to world, affine; a negative determinant flips the winding
     std::string name;
     uint32_t node = SceneNode::kNone;  ///< index into Scene::nodes
-    bool animated = false;             ///< an animation of the file moves it, or shows and hides it
+    uint8_t changes = 0;               ///< bits of Change
 };
 
 /// What a file names as a coarser level of detail of an object.

@@ -3,6 +3,7 @@
 #include "sightline/tools/scene/scene_core.h"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <optional>
 
@@ -42,12 +43,21 @@ glm::dvec3 medianOf(const std::vector<Part>& parts, Weight&& weight) {
             places[i] = {parts[i].box.center()[axis], weight(parts[i])};
             whole += places[i].second;
         }
-        std::sort(places.begin(), places.end());
-        double below = 0;
-        for (const auto& [place, own] : places) {
-            median[axis] = place;
-            if ((below += own) >= whole / 2) break;
+        // The half that holds the median is halved again.
+        auto begin = places.begin(), end = places.end();
+        for (double below = 0; end - begin > 1;) {
+            const auto middle = begin + (end - begin) / 2;
+            std::nth_element(begin, middle, end);
+            double lower = below;
+            for (auto place = begin; place != middle; ++place) lower += place->second;
+            if (lower >= whole / 2) {
+                end = middle;
+            } else {
+                begin = middle;
+                below = lower;
+            }
         }
+        if (begin != end) median[axis] = begin->first;
     }
     return median;
 }
@@ -93,6 +103,22 @@ void takeApart(const Scene& scene, const glm::dvec3& middle, std::vector<Part>& 
     parts.swap(out);
 }
 
+/// Whether one of several distances may be kFar times the one before it: by their binary exponents, of which three are free then.
+bool mayLeap(const std::vector<std::pair<double, uint32_t>>& reaches) {
+    constexpr int kLeast = -1100, kMost = 1100;
+    std::bitset<kMost - kLeast> taken;
+    for (const auto& [reach, part] : reaches)
+        if (!std::isfinite(reach)) return true;
+        else if (reach > 0) taken.set(static_cast<size_t>(std::ilogb(reach) - kLeast));
+    int last = kMost;
+    for (int i = 0; i < kMost - kLeast; ++i)
+        if (taken[static_cast<size_t>(i)]) {
+            if (i - last >= std::ilogb(kFar)) return true;
+            last = i;
+        }
+    return false;
+}
+
 /// Of the parts within the first great gap around a middle.
 /// @param boxes  the boxes of the objects  [Scene::objects]
 std::optional<SceneCore> coreAround(const std::vector<Part>& parts, const std::vector<Box3d>& boxes,
@@ -104,6 +130,7 @@ std::optional<SceneCore> coreAround(const std::vector<Part>& parts, const std::v
         objects += parts[i].objects;
         triangles += parts[i].triangles;
     }
+    if (!mayLeap(order)) return std::nullopt;
     std::sort(order.begin(), order.end());
     SceneCore core;
     double objects_left = objects, triangles_left = triangles;

@@ -96,7 +96,9 @@ uint64_t countChangedPixels(const SceneFacts& facts, const View& view, std::span
     const SightLines sight(view);
     std::vector<uint32_t> full, kept;
     for (uint32_t object = 0; object < drawn.size(); ++object) {
-        if (drawn[object] == Drawn::kNever || !sight.touches(facts.box(object))) continue;
+        // Boxes are of the finest levels; a coarser one may reach farther.
+        const bool is_coarse = !lods.empty() && lods[object] > 0;
+        if (drawn[object] == Drawn::kNever || !(is_coarse || sight.touches(facts.box(object)))) continue;
         full.push_back(object);
         if (drawn[object] == Drawn::kAlways) kept.push_back(object);
     }

@@ -49,5 +49,24 @@ TEST(ChangedPixels, ShowWhatChangesBehindGlassAndTheGlassItself) {
     EXPECT_EQ(countChangedPixels(facts, view, std::vector{kFullOnly, kAlways}), 144u);
 }
 
+// A coarse level may be seen where the finest one is out of view.
+TEST(ChangedPixels, CountLevelsThatReachFartherThanTheFinest) {
+    Scene scene = emptyScene();
+    const uint32_t small = addSquare(scene, 2);
+    Mesh& mesh = scene.meshes[small];
+    MeshLod& wide = mesh.lods.emplace_back();
+    for (const uint32_t index : mesh.indices)
+        wide.indices.push_back(index + static_cast<uint32_t>(mesh.positions.size()));
+    for (size_t i = 0, count = mesh.positions.size(); i < count; ++i)
+        mesh.positions.push_back(mesh.positions[i] * 3.0f);
+    wide.primitives = mesh.primitives;
+    addObject(scene, small, moved({-13, 0, -10}));
+    const SceneFacts facts(scene);
+    const std::vector<uint8_t> finest{0}, coarse{1};
+    EXPECT_EQ(countChangedPixels(facts, sixteenPixels(), std::vector{Drawn::kAlways}, finest), 0u);
+    EXPECT_EQ(countChangedPixels(facts, sixteenPixels(), std::vector{Drawn::kAlways}, coarse), 12u)
+        << "1 of 12 columns";
+}
+
 }  // namespace
 }  // namespace sightline::test

@@ -12,8 +12,21 @@ namespace {
 
 using namespace gltf;
 
-Scene sceneOf(Document document, const std::string& name) {
+/// Extensions that are not known, with how often each was met.
+std::string unknownText(const std::map<std::string, size_t>& unknown) {
+    std::string text;
+    size_t named = 0;
+    for (const auto& [name, count] : unknown) {
+        if (named++ == 3) break;
+        text += fmt::format("{}{} ({} times)", text.empty() ? "" : ", ", printable(name), count);
+    }
+    if (unknown.size() > 3) text += fmt::format(" and {} more", unknown.size() - 3);
+    return "extensions that are not known: " + text + "; what carries one hides nothing";
+}
+
+Scene sceneOf(Document document, const std::string& name, const std::function<void(const std::string&)>& note) {
     Scene scene = makeScene(document);
+    if (note && !document.unknown.empty()) note(unknownText(document.unknown));
     scene.name = name;
     document.progress.reach(Progress::kBuilt, Progress::kTotal, 1);
     return scene;
@@ -21,13 +34,14 @@ Scene sceneOf(Document document, const std::string& name) {
 
 }  // namespace
 
-Result<Scene> loadGltf(const std::string& path, const std::function<void(size_t done, size_t total)>& progress) {
-    return guarded(path, [&]() -> Result<Scene> { return sceneOf(openGltf(path, progress), path); });
+Result<Scene> loadGltf(const std::string& path, const std::function<void(size_t done, size_t total)>& progress,
+                       const std::function<void(const std::string& text)>& note) {
+    return guarded(path, [&]() -> Result<Scene> { return sceneOf(openGltf(path, progress), path, note); });
 }
 
 Result<Scene> parseGltf(std::span<const unsigned char> bytes, const std::string& name) {
     return guarded(name,
-                   [&]() -> Result<Scene> { return sceneOf(openDocument(ByteSource(bytes), std::nullopt), name); });
+                   [&]() -> Result<Scene> { return sceneOf(openDocument(ByteSource(bytes), std::nullopt), name, {}); });
 }
 
 }  // namespace sightline::tools

@@ -40,7 +40,9 @@ namespace sightline::tools {
 ///
 /// @param progress  called now and then, from this thread, with how much of the work is done; `total` stays the same,
 ///                  `done` grows and ends there
-Result<Scene> loadGltf(const std::string& path, const std::function<void(size_t done, size_t total)>& progress = {});
+/// @param note  called with a line for what the reader took otherwise than the file may mean; may be empty
+Result<Scene> loadGltf(const std::string& path, const std::function<void(size_t done, size_t total)>& progress = {},
+                       const std::function<void(const std::string& text)>& note = {});
 
 /// The same from memory, as a fuzzer needs it. External files are not opened.
 Result<Scene> parseGltf(std::span<const unsigned char> bytes, const std::string& name);

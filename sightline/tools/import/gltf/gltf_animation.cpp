@@ -7,41 +7,46 @@
 #include <cstdlib>
 
 #include "sightline/tools/import/gltf/gltf_accessor.h"
+#include "sightline/tools/import/gltf/gltf_features.h"
 
 namespace sightline::tools::gltf {
 namespace {
 
+/// What an animation drives.
 struct Channel {
-    uint32_t node = 0;
+    bool of_mesh = false;  ///< of all nodes that draw it
+    uint32_t index = 0;    ///< node, or mesh
     std::string path;
 };
 
-// `/nodes/5/translation` as node and path; none if the pointer aims elsewhere.
-std::optional<Channel> readPointer(const std::string& pointer, size_t nodes, const std::string& place) {
-    const std::string_view head = "/nodes/";
-    if (pointer.starts_with("/meshes/")) fail(place, "pointer '{}' is not understood", printable(pointer));
+/// `/nodes/5/translation` or `/meshes/2/weights`; none if the pointer aims elsewhere.
+std::optional<Channel> readPointer(const std::string& pointer, size_t meshes, size_t nodes, const std::string& place) {
+    const bool of_mesh = pointer.starts_with("/meshes/");
+    const std::string_view head = of_mesh ? "/meshes/" : "/nodes/";
     if (!pointer.starts_with(head)) return std::nullopt;
     const size_t slash = pointer.find('/', head.size());
     const std::string digits = pointer.substr(head.size(), slash - head.size());
     if (slash == std::string::npos || digits.empty() || digits.size() > 9 ||
         digits.find_first_not_of("0123456789") != std::string::npos)
         fail(place, "pointer '{}' is not understood", printable(pointer));
-    const size_t node = std::strtoul(digits.c_str(), nullptr, 10);
-    if (node >= nodes) fail(place, "pointer '{}' out of range: {} of {} nodes", printable(pointer), node, nodes);
-    return Channel{static_cast<uint32_t>(node), pointer.substr(slash + 1)};
+    const size_t index = std::strtoul(digits.c_str(), nullptr, 10), count = of_mesh ? meshes : nodes;
+    if (index >= count)
+        fail(place, "pointer '{}' out of range: {} of {} {}", printable(pointer), index, count,
+             of_mesh ? "meshes" : "nodes");
+    return Channel{of_mesh, static_cast<uint32_t>(index), pointer.substr(slash + 1)};
 }
 
-std::optional<Channel> readChannel(const Json& json, size_t nodes, const std::string& place) {
+std::optional<Channel> readChannel(const Json& json, size_t meshes, size_t nodes, const std::string& place) {
     const Json* target = findObject(json, "target", place);
     if (!target) fail(place, "target is missing");
     const std::string path = text(*target, "path", place);
     if (path == "pointer") {
         const Json* pointer = extension(*target, "KHR_animation_pointer", place);
-        return pointer ? readPointer(text(*pointer, "pointer", place), nodes, place) : std::nullopt;
+        return pointer ? readPointer(text(*pointer, "pointer", place), meshes, nodes, place) : std::nullopt;
     }
     const std::optional<uint32_t> node = index(*target, "node", nodes, place);
     if (!node) return std::nullopt;
-    return Channel{*node, path};
+    return Channel{false, *node, path};
 }
 
 // Keys of `width` numbers each, and how far the curve next to them may leave what they span. Both ends of
@@ -150,22 +155,34 @@ void applyChannel(Document& document, const Json& samplers, const Json& json, co
     }
 }
 
-/// The node that a channel moves, shows or hides; none also for what is not as the format asks, for nothing of it is read.
-std::optional<uint32_t> movedBy(const Json& channel, size_t nodes, const std::string& place) {
+/// The nodes that pointers in a value aim at, whatever for: `/nodes/5/translation`. One without a number may aim at any.
+void markPointers(const Json& value, NodeChanges& out) {
+    if (value.is_structured())
+        for (const Json& inner : value) markPointers(inner, out);
+    if (!value.is_string()) return;
+    const std::string& pointer = value.get_ref<const std::string&>();
+    if (!pointer.starts_with("/nodes/")) return;
+    const size_t digits = std::min(pointer.find_first_not_of("0123456789", 7), pointer.size()) - 7;
+    const size_t node = digits > 0 && digits < 10 ? std::strtoul(pointer.c_str() + 7, nullptr, 10) : ~size_t{0};
+    if (digits == 0) std::fill(out.moved.begin(), out.moved.end(), true);
+    if (digits == 0) std::fill(out.shown.begin(), out.shown.end(), true);
+    if (node < out.moved.size()) out.moved[node] = out.shown[node] = true;
+}
+
+/// Marks what a channel moves, shows or hides; nothing where it is not as the format asks, for nothing of it is read then.
+void markChannel(const Json& channel, const std::string& place, NodeChanges& out) {
     try {
-        const std::optional<Channel> read = readChannel(channel, nodes, place);
-        if (!read) return std::nullopt;
-        for (const char* path :
-             {"translation", "rotation", "scale", "matrix", "extensions/KHR_node_visibility/visible"})
-            if (read->path == path) return read->node;
+        const std::optional<Channel> read = readChannel(channel, 0, out.moved.size(), place);
+        if (!read || read->of_mesh || read->path.starts_with("weights")) return;
+        out.moved[read->index] = true;
+        if (read->path.starts_with("extensions/")) out.shown[read->index] = true;
     } catch (const Fault&) {}
-    return std::nullopt;
 }
 
 }  // namespace
 
-std::vector<bool> animatedNodes(const Document& document, const NodeTree& tree) {
-    std::vector<bool> moved(tree.nodes.size(), false);
+NodeChanges nodeChanges(Document& document, size_t nodes) {
+    NodeChanges out{std::vector<bool>(nodes, false), std::vector<bool>(nodes, false)};
     const JsonTable animations = document.json.table("animations");
     for (size_t a = 0; a < animations.size(); ++a) {
         const std::string animation = at("animations", a);
@@ -173,13 +190,12 @@ std::vector<bool> animatedNodes(const Document& document, const NodeTree& tree) 
         const Json& channels = table(json, "channels", animation);
         for (size_t c = 0; c < channels.size(); ++c) {
             const std::string place = animation + at(".channels", c);
-            if (const auto node = movedBy(objectAt(channels, c, place), moved.size(), place)) moved[*node] = true;
+            markChannel(objectAt(channels, c, place), place, out);
         }
     }
-    // What hangs below goes along. Parents need not come first.
-    std::vector<bool> out(moved.size(), false);
-    for (uint32_t i = 0; i < moved.size(); ++i)
-        for (uint32_t at = i; at != kNoNode && !out[i]; at = tree.names[at].parent) out[i] = moved[at];
+    const Json file = document.json.members({"extensions"});
+    effectOfExtensions(file, document.unknown);
+    if (const Json* extensions = findObject(file, "extensions", "")) markPointers(*extensions, out);
     return out;
 }
 
@@ -197,11 +213,17 @@ std::vector<Motion> readMotions(Document& document, const NodeTree& tree, const 
         const Json& channels = table(json, "channels", animation);
         for (size_t c = 0; c < channels.size(); ++c) {
             const std::string place = animation + at(".channels", c);
-            const std::optional<Channel> channel = readChannel(objectAt(channels, c, place), tree.nodes.size(), place);
+            const std::optional<Channel> channel =
+                readChannel(objectAt(channels, c, place), targets.size(), tree.nodes.size(), place);
             if (!channel) continue;
-            const std::optional<uint32_t> mesh = tree.nodes[channel->node].mesh;
-            applyChannel(document, samplers, channels[c], *channel, mesh ? targets[*mesh] : 0, motions[channel->node],
-                         animation, place);
+            const auto apply = [&](size_t node) {
+                const std::optional<uint32_t> mesh = tree.nodes[node].mesh;
+                applyChannel(document, samplers, channels[c], *channel, mesh ? targets[*mesh] : 0, motions[node],
+                             animation, place);
+            };
+            if (!channel->of_mesh) apply(channel->index);
+            for (size_t node = 0; channel->of_mesh && node < tree.nodes.size(); ++node)
+                if (tree.nodes[node].mesh == channel->index) apply(node);
         }
     }
     return motions;

@@ -30,13 +30,13 @@ struct Motion {
     std::vector<Range> weights;  ///< animated weights of morph targets; empty: none
 };
 
-/// One motion a node. Channels that KHR_animation_pointer aims at a node's translation, rotation, scale or
-/// weights count like ordinary ones.
+/// One motion a node. Channels that KHR_animation_pointer aims at a node's translation, rotation, scale or weights, or at
+/// a mesh's weights, count like ordinary ones.
 /// @param targets  how many morph targets each mesh has  [size: meshes]
 std::vector<Motion> readMotions(Document& document, const NodeTree& tree, const std::vector<size_t>& targets);
 
-/// Which nodes an animation moves, shows or hides, themselves or with a node above them.
-std::vector<bool> animatedNodes(const Document& document, const NodeTree& tree);
+/// Nodes that an animation moves, shows or hides, and those that an extension of the whole file points at.
+NodeChanges nodeChanges(Document& document, size_t nodes);
 
 /// Where morph targets may take the vertices of a mesh.
 struct MorphReach {

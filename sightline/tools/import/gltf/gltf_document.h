@@ -163,7 +163,8 @@ struct Document {
     std::vector<Accessor> accessors;
     std::vector<DracoStream> streams;
     std::map<std::vector<uint64_t>, uint32_t> known_streams;
-    bool draco_required = false;  ///< by extensionsRequired: there is no other data
+    bool draco_required = false;            ///< by extensionsRequired: there is no other data
+    std::map<std::string, size_t> unknown;  ///< extensions that are not known, and how often each was met
     Budget budget;
     Progress progress;
 };

@@ -7,6 +7,7 @@
 
 #include "sightline/tools/import/gltf/gltf_accessor.h"
 #include "sightline/tools/import/gltf/gltf_draco.h"
+#include "sightline/tools/import/gltf/gltf_features.h"
 
 namespace sightline::tools::gltf {
 namespace {
@@ -38,15 +39,14 @@ void readColor(const Json* owner, const char* key, Material& material, const std
                                static_cast<float>(color[3])};
 }
 
-Material readMaterial(const Json& json, const std::string& place) {
+Material readMaterial(Document& document, const Json& json, const std::string& place) {
     Material material;
     material.name = text(json, "name", place);
     material.alpha_mode = readAlphaMode(json, place);
     material.alpha_cutoff = static_cast<float>(number(json, "alphaCutoff", place).value_or(0.5));
     material.double_sided = flag(json, "doubleSided", place);
-    // Whatever its factor, which a texture, an animation or the application may change: none of these hides.
-    for (const char* name : {"KHR_materials_transmission", "KHR_materials_diffuse_transmission"})
-        if (extension(json, name, place)) material.transmissive = true;
+    // Whatever its factor, which a texture, an animation or the application may change.
+    material.transmissive = effectOfExtensions(json, document.unknown) != Effect::kNone;
     if (const Json* glossiness = extension(json, "KHR_materials_pbrSpecularGlossiness", place))
         readColor(glossiness, "diffuseFactor", material, place);
     readColor(findObject(json, "pbrMetallicRoughness", place), "baseColorFactor", material, place);
@@ -100,14 +100,18 @@ void readDraco(Document& document, const Json& json, PrimitiveSource& out) {
         out.influences[set] = {attributes[2 * set + 1].second, attributes[2 * set + 2].second};
 }
 
-// One material for all that variants choose from; the first of them is the file's default. Returns its number.
+/// In a set of materials: one that lets light pass.
+constexpr uint32_t kClearMaterial = ~0u;
+
+// One material for all that may be drawn; the first of them is the file's default. Returns its number.
 uint32_t materialOf(std::vector<uint32_t> all, Materials& materials) {
     const uint32_t first = all.front();
     std::sort(all.begin() + 1, all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
     const Material& usual = materials.list[first];
-    bool hides = true, alike = true, double_sided = false;
+    bool hides = all.back() != kClearMaterial, alike = true, double_sided = false;
     for (const uint32_t number : all) {
+        if (number == kClearMaterial) continue;
         const Material& material = materials.list[number];
         hides = hides && material.hides();
         alike = alike && material.double_sided == usual.double_sided;
@@ -124,9 +128,11 @@ uint32_t materialOf(std::vector<uint32_t> all, Materials& materials) {
     return known->second;
 }
 
-uint32_t readMaterialNumber(const Json& json, Materials& materials, const std::string& place) {
+/// @param clear  light may pass whatever the material says
+uint32_t readMaterialNumber(const Json& json, bool clear, Materials& materials, const std::string& place) {
     const auto usual = index(json, "material", materials.count, place);
     std::vector<uint32_t> all{usual ? *usual + materials.first : 0};
+    if (clear) all.push_back(kClearMaterial);
     if (const Json* variants = extension(json, "KHR_materials_variants", place)) {
         const Json& mappings = table(*variants, "mappings", place);
         for (size_t i = 0; i < mappings.size(); ++i) {
@@ -135,11 +141,15 @@ uint32_t readMaterialNumber(const Json& json, Materials& materials, const std::s
                 all.push_back(*other + materials.first);
         }
     }
+    for (size_t i = all.size(); i-- > 0;)
+        if (const auto levels = materials.levels.find(all[i]); levels != materials.levels.end())
+            all.insert(all.end(), levels->second.begin(), levels->second.end());
     return materialOf(std::move(all), materials);
 }
 
 // None if it draws no triangles.
-std::optional<PrimitiveSource> readPrimitive(Document& document, const Json& json, Materials& materials,
+/// @param clear  as of readMaterialNumber()
+std::optional<PrimitiveSource> readPrimitive(Document& document, const Json& json, bool clear, Materials& materials,
                                              const std::string& place) {
     PrimitiveSource out;
     out.place = place;
@@ -152,7 +162,8 @@ std::optional<PrimitiveSource> readPrimitive(Document& document, const Json& jso
     if (out.mode < kTriangles || !positions) return std::nullopt;
     out.positions = *positions;
     out.indices = index(json, "indices", accessors, place);
-    out.material = readMaterialNumber(json, materials, place);
+    clear |= effectOfExtensions(json, document.unknown) == Effect::kUnknown;
+    out.material = readMaterialNumber(json, clear, materials, place);
     readInfluences(*attributes, accessors, out);
     readTargets(json, accessors, out);
     if (const Json* draco = extension(json, "KHR_draco_mesh_compression", place)) readDraco(document, *draco, out);
@@ -198,17 +209,24 @@ std::vector<uint32_t> triangleCorners(Document& document, const PrimitiveSource&
     return unrolled(readCorners(document, source, vertices), source.mode);
 }
 
-Materials readMaterials(const JsonText& json) {
+Materials readMaterials(Document& document) {
     Materials out;
-    const JsonTable array = json.table("materials");
+    const JsonTable array = document.json.table("materials");
     out.count = array.size();
-    if (array.empty() || needsDefault(json)) {
+    if (array.empty() || needsDefault(document.json)) {
         out.list.push_back({});
         out.first = 1;
     }
     for (size_t i = 0; i < array.size(); ++i) {
         const std::string place = at("materials", i);
-        out.list.push_back(readMaterial(array.object(i, place), place));
+        const Json json = array.object(i, place);
+        out.list.push_back(readMaterial(document, json, place));
+        const Json* lod = extension(json, "MSFT_lod", place);
+        if (!lod) continue;
+        const Json& ids = table(*lod, "ids", place);
+        for (size_t k = 0; k < ids.size(); ++k)
+            out.levels[static_cast<uint32_t>(i) + out.first].push_back(indexAt(ids, k, "ids", array.size(), place) +
+                                                                       out.first);
     }
     return out;
 }
@@ -222,11 +240,12 @@ std::vector<MeshSource> readMeshes(Document& document, Materials& materials) {
         MeshSource& mesh = out[i];
         mesh.name = text(json, "name", place);
         mesh.weights = floats(json, "weights", place);
+        const bool clear = effectOfExtensions(json, document.unknown) == Effect::kUnknown;
         const Json& primitives = table(json, "primitives", place);
         for (size_t p = 0; p < primitives.size(); ++p) {
             const std::string primitive_place = place + at(".primitives", p);
             auto primitive =
-                readPrimitive(document, objectAt(primitives, p, primitive_place), materials, primitive_place);
+                readPrimitive(document, objectAt(primitives, p, primitive_place), clear, materials, primitive_place);
             if (!primitive) continue;
             primitive->number = static_cast<uint32_t>(p);
             mesh.targets = std::max(mesh.targets, primitive->targets.size());

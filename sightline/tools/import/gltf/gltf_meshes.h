@@ -19,11 +19,12 @@ struct Materials {
     std::vector<Material> list;  ///< never empty
     uint32_t first = 0;          ///< where glTF's material 0 is; 1 if the default material stands before it
     size_t count = 0;            ///< glTF's own
+    std::map<uint32_t, std::vector<uint32_t>> levels;       ///< MSFT_lod: what stands for a material from afar
     std::map<std::vector<uint32_t>, uint32_t> of_variants;  ///< made for sets of glTF's own; at the end of `list`
 };
 
 /// The default material comes first if a primitive names none.
-Materials readMaterials(const JsonText& json);
+Materials readMaterials(Document& document);
 
 /// A primitive that draws triangles; its numbers are accessors, of a Draco stream or of the file.
 struct PrimitiveSource {
@@ -52,7 +53,8 @@ struct MeshSource {
 };
 
 /// Reads all meshes of the JSON, without their data. A primitive that may be drawn with one of several materials
-/// (KHR_materials_variants) gets one that hides no more, and is seen from no fewer sides, than each of them.
+/// (KHR_materials_variants, MSFT_lod of materials) gets one that hides no more, and is seen from no fewer sides, than each
+/// of them; one that carries an extension that is not known gets one that does not hide.
 std::vector<MeshSource> readMeshes(Document& document, Materials& materials);
 
 /// Where the vertices of a primitive came from.

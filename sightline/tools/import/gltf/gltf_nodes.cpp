@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sightline/math/stretch.h"
+#include "sightline/tools/import/gltf/gltf_features.h"
 
 namespace sightline::tools::gltf {
 namespace {
@@ -94,7 +95,8 @@ void readChildren(const Json& json, uint32_t parent, std::vector<SceneNode>& nod
     }
 }
 
-void readNode(const Json& json, uint32_t i, const NodeTargets& targets, NodeTree& tree) {
+void readNode(const Json& json, uint32_t i, const NodeTargets& targets, std::map<std::string, size_t>& unknown,
+              NodeTree& tree) {
     const std::string place = at("nodes", i);
     Node& node = tree.nodes[i];
     tree.names[i].name = text(json, "name", place);
@@ -103,12 +105,16 @@ void readNode(const Json& json, uint32_t i, const NodeTargets& targets, NodeTree
     node.camera = index(json, "camera", targets.cameras, place);
     node.weights = floats(json, "weights", place);
     node.extended = json.contains("extensions");
-    if (node.extended)
+    if (node.extended) {
+        const Effect effect = effectOfExtensions(json, unknown);
+        if (effect == Effect::kMoves) node.changes |= SceneObject::kAnimated;
+        if (effect == Effect::kUnknown) node.changes |= SceneObject::kUnknown;
         if (const Json* lod = extension(json, "MSFT_lod", place)) {
             const Json& ids = table(*lod, "ids", place);
             for (size_t k = 0; k < ids.size(); ++k)
                 node.lods.push_back(indexAt(ids, k, "ids", tree.nodes.size(), place));
         }
+    }
     if (std::optional<NodeMark> mark = readMark(json, tree.names[i].name, tree.nodes.size(), place)) {
         mark->node = i;
         node.marked = !mark->box;
@@ -194,13 +200,15 @@ std::optional<NodeMark> readMark(const Json& node, const std::string& name, size
     return mark;
 }
 
-NodeTree readNodes(const JsonText& json, const NodeTargets& targets, const std::function<void(size_t)>& told) {
+NodeTree readNodes(const JsonText& json, const NodeTargets& targets, const NodeChanges& changes,
+                   std::map<std::string, size_t>& unknown, const std::function<void(size_t)>& told) {
     const JsonTable array = json.table("nodes");
     NodeTree tree;
     tree.nodes.resize(array.size());
     tree.names.resize(array.size());
     for (uint32_t i = 0; i < array.size(); ++i) {
-        readNode(array.object(i, at("nodes", i)), i, targets, tree);
+        readNode(array.object(i, at("nodes", i)), i, targets, unknown, tree);
+        if (changes.moved[i]) tree.nodes[i].changes |= SceneObject::kAnimated;
         if (i % 1024 == 0) told(i);
     }
     tree.order = parentsFirst(tree.names);
@@ -213,10 +221,11 @@ NodeTree readNodes(const JsonText& json, const NodeTargets& targets, const std::
             node.world = tree.nodes[parent].world * node.world;
             node.placed = tree.nodes[parent].placed;
             node.drawn = tree.nodes[parent].drawn;
+            node.changes |= tree.nodes[parent].changes;
         } else {
             node.drawn = node.placed;
         }
-        if (node.drawn && node.extended) node.drawn = !hiddenByFile(array[i], at("nodes", i));
+        if (node.drawn && node.extended && !changes.shown[i]) node.drawn = !hiddenByFile(array[i], at("nodes", i));
     }
     // What stands for another node is not drawn beside it.
     for (const Node& node : tree.nodes)

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +48,7 @@ struct Node {
     bool drawn = false;           ///< and nothing hides it
     bool marked = false;          ///< its mesh is the shape of a cell or a portal, and is not drawn
     bool extended = false;        ///< its JSON has extensions
+    uint8_t changes = 0;          ///< of it and of what is above it: SceneObject::Change
     std::vector<uint32_t> lods;   ///< MSFT_lod: nodes that stand for it from afar, finest first
 };
 
@@ -63,10 +65,18 @@ struct NodeTargets {
     size_t meshes = 0, skins = 0, cameras = 0;
 };
 
-/// Reads nodes and scenes. A Fault if a node has two parents or is its own ancestor, if a transform is not
+/// What the file as a whole does to its nodes.
+struct NodeChanges {
+    std::vector<bool> moved;  ///< moved, shown or hidden by an animation, or pointed at  [size: nodes]
+    std::vector<bool> shown;  ///< hidden at rest, it may be shown all the same            [size: nodes]
+};
+
+/// Reads nodes and scenes. What an animation may show is drawn. A Fault if a node has two parents or is its own ancestor, if a transform is not
 /// finite or not affine, or if a scene's root has a parent.
-/// @param told  is called now and then with how many nodes have been read
-NodeTree readNodes(const JsonText& json, const NodeTargets& targets, const std::function<void(size_t)>& told);
+/// @param unknown  counts extensions that are not known
+/// @param told     is called now and then with how many nodes have been read
+NodeTree readNodes(const JsonText& json, const NodeTargets& targets, const NodeChanges& changes,
+                   std::map<std::string, size_t>& unknown, const std::function<void(size_t)>& told);
 
 /// Rotation (x, y, z, w), of any length: normalised; all zeros is no rotation.
 glm::dmat3 rotationMatrix(const double rotation[4]);

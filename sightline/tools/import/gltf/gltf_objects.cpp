@@ -323,22 +323,23 @@ void addLevels(Document& document, const Parts& parts, const std::vector<Built>&
 
 Scene makeScene(Document& document) {
     Scene scene;
-    Materials materials = readMaterials(document.json);
+    Materials materials = readMaterials(document);
     Parts parts;
     parts.meshes = readMeshes(document, materials);
     const std::vector<CameraSource> cameras = readCameras(document.json);
     const size_t nodes = document.json.table("nodes").size();
     parts.skins = readSkins(document, nodes);
-    parts.tree = readNodes(document.json, {parts.meshes.size(), parts.skins.size(), cameras.size()}, [&](size_t read) {
+    const NodeTargets targets{parts.meshes.size(), parts.skins.size(), cameras.size()};
+    parts.tree = readNodes(document.json, targets, nodeChanges(document, nodes), document.unknown, [&](size_t read) {
         document.progress.reach(Progress::kChecked, Progress::kParsed, double(read) / double(nodes));
     });
     gatherShapes(parts);
     scene.materials = std::move(materials.list);
     const std::vector<Built> built = buildShapes(document, parts, scene);
     addObjects(document, parts, built, scene);
-    const std::vector<bool> animated = animatedNodes(document, parts.tree);
-    for (SceneObject& object : scene.objects) object.animated = animated[object.node];
+    for (SceneObject& object : scene.objects) object.changes = parts.tree.nodes[object.node].changes;
     addLevels(document, parts, built, scene);
+    for (const SceneLevel& level : scene.levels) scene.objects[level.object].changes |= SceneObject::kLevels;
     scene.cameras = placeCameras(parts.tree, cameras);
     scene.nodes = std::move(parts.tree.names);
     addMarked(document, parts.tree, parts.meshes, scene);

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/import/gltf/gltf_open.h"
 
-#include <array>
 #include <filesystem>
 #include <utility>
 
 #include "sightline/tools/import/gltf/gltf_container.h"
+#include "sightline/tools/import/gltf/gltf_features.h"
 
 namespace sightline::tools::gltf {
 namespace {
@@ -25,7 +25,7 @@ void checkAsset(Document& document) {
         const Json value = required[i];
         if (!value.is_string()) fail(place, "is not a string");
         const std::string name = value.get<std::string>();
-        if (!isKnownExtension(name)) fail(place, "{} is required but not supported", printable(name));
+        if (!featureOf(name).understood) fail(place, "{} is required but not supported", printable(name));
         document.draco_required |= name == "KHR_draco_mesh_compression";
     }
 }
@@ -38,22 +38,6 @@ Bytes trimmed(Bytes text) {
 }
 
 }  // namespace
-
-bool isKnownExtension(const std::string& name) {
-    constexpr std::array kExact = {"KHR_mesh_quantization",   "EXT_meshopt_compression",
-                                   "KHR_meshopt_compression", "KHR_draco_mesh_compression",
-                                   "EXT_mesh_gpu_instancing", "KHR_node_visibility",
-                                   "KHR_animation_pointer",   "MSFT_texture_dds",
-                                   "EXT_mesh_features",       "MSFT_lod",
-                                   "EXT_structural_metadata", "EXT_instance_features"};
-    constexpr std::array kPrefixes = {"KHR_texture_",     "EXT_texture_", "KHR_materials_", "EXT_materials_",
-                                      "ADOBE_materials_", "KHR_lights_",  "EXT_lights_",    "KHR_xmp"};
-    for (const char* exact : kExact)
-        if (name == exact) return true;
-    for (const char* prefix : kPrefixes)
-        if (name.starts_with(prefix)) return true;
-    return false;
-}
 
 Document openDocument(ByteSource bytes, std::optional<std::string> directory, const Progress::Report& progress) {
     Document document;

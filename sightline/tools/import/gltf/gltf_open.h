@@ -9,9 +9,6 @@
 
 namespace sightline::tools::gltf {
 
-/// Whether an extension is one that is read, or one that does not change where triangles are.
-bool isKnownExtension(const std::string& name);
-
 /// A document with its tables checked. A Fault if it is no glTF 2.0, or requires an extension that is not known.
 /// @param directory  of the file, where its buffers are looked for; none: they are not opened
 Document openDocument(ByteSource bytes, std::optional<std::string> directory, const Progress::Report& progress = {});
