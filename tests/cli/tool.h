@@ -25,7 +25,7 @@ struct Outcome {
         std::istringstream lines(err);
         size_t count = 0;
         for (std::string line; std::getline(lines, line);)
-            count += !line.ends_with(" left") && !line.ends_with("just begun");
+            count += !line.ends_with(" left") && !line.ends_with("just begun") && !line.ends_with(" so far");
         return count;
     }
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
@@ -37,6 +38,15 @@ void tellWatch(const std::string& what, size_t done, size_t total) {
         g_watch(what, total == 0 ? 0.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total)));
 }
 
+/// Whoever reads it in a signal's handler may find a half of two names: no harm.
+char g_step[128] = "";
+
+void noteStep(const std::string& what) {
+    const std::lock_guard lock(g_watch_mutex);
+    const size_t size = what.copy(g_step, sizeof g_step - 1);
+    g_step[size] = 0;
+}
+
 /// A reader of standard error who has left is no reason to stop.
 void print(const std::string& text) {
     tell(stderr, text);
@@ -50,46 +60,86 @@ void watchProgress(ProgressWatch watch) {
     g_watch = std::move(watch);
 }
 
+std::string progressText(size_t before, size_t done, size_t total, const std::string& unit, double seconds) {
+    const std::string counts = fmt::format("{} of {} {}", done, total, unit);
+    if (done >= total) return counts + ", 0 s left";
+    if (done <= before) return counts + ", just begun";
+    return fmt::format("{}, {} left", counts,
+                       duration(seconds * static_cast<double>(total - done) / static_cast<double>(done - before)));
+}
+
+const char* stepAtHand() { return g_step; }
+
 Progress::Progress(const std::string& what, std::string unit, size_t total)
     : what_(oneLine(what)),
       unit_(std::move(unit)),
       total_(total),
       terminal_(isatty(STDERR_FILENO)),
       start_(Clock::now()),
+      count_from_(start_),
       next_(start_ + kPatience) {
     tellWatch(what_, 0, total_);
+    noteStep(what_);
+    if (quiet()) return;
+    try {
+        watch_ = std::thread([this] { watch(); });
+    } catch (const std::system_error&) {}  // then there is a line with each step alone
 }
 
 Progress::~Progress() {
+    {
+        const std::lock_guard lock(mutex_);
+        has_ended_ = true;
+    }
+    ended_.notify_all();
+    if (watch_.joinable()) watch_.join();
     tellWatch({}, 0, 0);
+    noteStep({});
     if (terminal_ && shown_) print("\r\033[K");
 }
 
 void Progress::step() {
     const std::lock_guard lock(mutex_);
+    begin(0);
     ++done_;
+    tellWatch(what_, done_, total_);
     show();
 }
 
 void Progress::set(size_t done, size_t total) {
     const std::lock_guard lock(mutex_);
+    begin(done);
     done_ = done;
     total_ = total;
+    tellWatch(what_, done_, total_);
     show();
 }
 
+void Progress::begin(size_t done) {
+    if (std::exchange(counts_, true)) return;
+    done_before_ = done;
+    if (done > 0) count_from_ = Clock::now();
+}
+
+/// Shows that the work goes on, while a step of it takes long.
+void Progress::watch() {
+    std::unique_lock lock(mutex_);
+    while (!ended_.wait_until(lock, next_, [this] { return has_ended_; })) show();
+}
+
 void Progress::show() {
-    tellWatch(what_, done_, total_);
     const auto now = Clock::now();
-    if (now < next_ || total_ == 0) return;
+    if (now < next_) return;
     next_ = now + (terminal_ ? kTerminalPause : kPipedPause);
     shown_ = true;
-    const double elapsed = std::chrono::duration<double>(now - start_).count();
-    const double part = std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_));
-    const std::string left = part > 0 ? duration(elapsed * (1 - part) / part) + " left" : "just begun";
-    const std::string counts = fmt::format("{} of {} {}, {}", done_, total_, unit_, left);
+    const auto secondsSince = [&](Clock::time_point then) { return std::chrono::duration<double>(now - then).count(); };
+    const std::string counts = total_ == 0
+                                   ? duration(secondsSince(start_)) + " so far"
+                                   : progressText(done_before_, done_, total_, unit_, secondsSince(count_from_));
     if (!terminal_) return print(fmt::format("{}: {}\n", what_, counts));
+    if (total_ == 0) return print(fmt::format("\r\033[K{}  {}", what_, counts));
     constexpr int kWidth = 30;
+    const double part = std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_));
     const auto full = static_cast<size_t>(part * kWidth);
     print(fmt::format("\r\033[K{} {}{} {:3.0f} %  {}", what_, paint(stderr, Tone::kGood, std::string(full, '#')),
                       std::string(kWidth - full, '.'), 100 * part, counts));

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <functional>
 #include <mutex>
 #include <string>
+#include <thread>
 
 namespace sightline::cli {
 
@@ -19,11 +21,13 @@ using ProgressWatch = std::function<void(const std::string& what, double part)>;
 void watchProgress(ProgressWatch watch);
 
 /// Shows how far one piece of work has come, unless quiet. Thread-safe. Work that is done within half a second shows
-/// nothing.
+/// nothing; longer work shows something from then on, though no step of it be done yet. The time left is that of the
+/// steps that this run has done, counted from the first set().
 class Progress {
 public:
     /// @param what   what is being done: "culling"
     /// @param unit   what is counted: "frames"
+    /// @param total  0: not known, and the time that has gone by is shown
     Progress(const std::string& what, std::string unit, size_t total);
     /// Clears the bar.
     ~Progress();
@@ -32,19 +36,36 @@ public:
 
     /// One more is done.
     void step();
-    /// So many of so many are done.
+    /// So many of so many are done. What the first call says was done before: it tells nothing of the time.
     void set(size_t done, size_t total);
 
 private:
     using Clock = std::chrono::steady_clock;
 
+    void begin(size_t done);
     void show();
+    void watch();
 
     std::mutex mutex_;
+    std::condition_variable ended_;
+    bool has_ended_ = false;
     std::string what_, unit_;
     size_t done_ = 0, total_ = 0;
-    bool terminal_ = false, shown_ = false;
-    Clock::time_point start_, next_;
+    size_t done_before_ = 0;  ///< by an earlier run
+    bool terminal_ = false, shown_ = false, counts_ = false;
+    Clock::time_point start_;       ///< of the work
+    Clock::time_point count_from_;  ///< of what was done after `done_before_`
+    Clock::time_point next_;
+    std::thread watch_;
 };
+
+/// "12 of 100 frames, 3 s left", as Progress shows it.
+/// @param before   done by an earlier run, in no time of this one
+/// @param seconds  for the steps after these
+std::string progressText(size_t before, size_t done, size_t total, const std::string& unit, double seconds);
+
+/// What is being done, for whoever has to say where it was interrupted; empty: nothing that is told. Safe in a signal's
+/// handler.
+const char* stepAtHand();
 
 }  // namespace sightline::cli

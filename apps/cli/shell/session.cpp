@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fcntl.h>
+#include <initializer_list>
 #include <malloc.h>
 #include <poll.h>
 #include <string>
@@ -18,6 +19,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "apps/cli/shell/progress.h"
 #include "sightline/tools/scene/one_line.h"
 
 namespace sightline::cli {
@@ -26,8 +28,25 @@ namespace {
 
 bool g_quiet = false;
 // What a signal's handler may touch.
-std::atomic<bool> g_gentle{false}, g_interrupted{false};
+std::atomic<bool> g_gentle{false}, g_interrupted{false}, g_waits{false};
+constexpr unsigned kHearing = 1;  // for work that is to hear of it  [s]
 static_assert(std::atomic<bool>::is_always_lock_free);
+
+/// Ends the process with one line. Only what is safe in a signal's handler.
+[[noreturn]] void endAtOnce(std::initializer_list<std::string_view> line) {
+    constexpr std::string_view kClear = "\r\033[K";
+    if (::isatty(STDERR_FILENO)) (void)!::write(STDERR_FILENO, kClear.data(), kClear.size());
+    for (const std::string_view part : line) (void)!::write(STDERR_FILENO, part.data(), part.size());
+    ::_exit(kInterrupted);
+}
+
+/// Work that has not asked for a second whether to stop is not waited for.
+extern "C" void onAlarm(int) {
+    if (!g_waits) return;
+    const std::string_view step = stepAtHand();
+    endAtOnce({"sightline: interrupted in the midst of ", step.empty() ? "a step" : step,
+               ", which cannot stop half-way: what was not written is lost\n"});
+}
 
 /// Only what is safe in a signal's handler.
 extern "C" void onSignal(int) {
@@ -35,12 +54,10 @@ extern "C" void onSignal(int) {
     ::signal(SIGINT, SIG_DFL);  // the next one ends the process at once
     ::signal(SIGTERM, SIG_DFL);
     g_interrupted = true;
-    if (!g_gentle) {
-        constexpr std::string_view kClear = "\r\033[K", kLine = "sightline: interrupted: nothing was finished\n";
-        if (::isatty(STDERR_FILENO)) (void)!::write(STDERR_FILENO, kClear.data(), kClear.size());
-        (void)!::write(STDERR_FILENO, kLine.data(), kLine.size());
-        ::_exit(kInterrupted);
-    }
+    if (!g_gentle) endAtOnce({"sightline: interrupted: nothing was finished\n"});
+    g_waits = true;
+    ::signal(SIGALRM, onAlarm);
+    ::alarm(kHearing);
     errno = error;
 }
 
@@ -114,7 +131,11 @@ int endSession(int exit_code) {
 
 void stopGently() { g_gentle = true; }
 
-bool interrupted() { return g_interrupted; }
+bool interrupted() {
+    if (!g_interrupted) return false;
+    if (g_waits.exchange(false)) ::alarm(0);
+    return true;
+}
 
 int reportInterruption(const std::string& done, bool written) {
     fmt::print(stderr, "sightline: interrupted after {}: {}\n", done,

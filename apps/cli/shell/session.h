@@ -49,10 +49,12 @@ void openSession();
 /// @return the exit code of the process
 int endSession(int exit_code);
 
-/// From here on Ctrl-C, or a request to end, only makes interrupted() true. Before, it ends the process at once with
-/// exit code 130; a second one ends it at once in any case.
+/// From here on Ctrl-C, or a request to end, makes interrupted() true. If nobody asks within a second, the process ends and
+/// names the step that was at work. Before stopGently() it ends at once, and a second signal ends it at once in any
+/// case, each with exit code 130.
 void stopGently();
-/// True once Ctrl-C was pressed, or the process asked to end: loops over frames stop and leave what is finished.
+/// True once Ctrl-C was pressed, or the process asked to end: loops over frames stop and leave what is finished. Whoever
+/// is told so must leave what takes long.
 bool interrupted();
 /// Says on standard error how far it came.
 /// @param done  "3 of 16 frames"

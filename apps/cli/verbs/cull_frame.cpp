@@ -142,6 +142,7 @@ FrameVerdict judgeFrame(const Witness& witness, const CullRun& run, const FrameR
     both.id_samples += right.id_samples;
     both.supersampling = std::min(both.supersampling, right.supersampling);
     both.unconfirmed += right.unconfirmed;
+    both.stopped = both.stopped || right.stopped;
     if (both.proofs && right.proofs) *both.proofs += *right.proofs;
     both.seen.resize(std::max(both.seen.size(), right.seen.size()), 0);
     for (size_t i = 0; i < right.seen.size(); ++i) both.seen[i] |= right.seen[i];

@@ -279,12 +279,14 @@ void verifyPath(const Scene& scene, const RunOptions& options, CullRun& run) {
     settings.rays = options.rays;
     settings.aimed_rays = std::min(settings.aimed_rays, options.rays / 5);
     settings.prove = !options.no_proofs;
+    settings.stop = interrupted;
     if (interrupted()) return;
     const Witness witness(scene);
     Progress progress("verifying", "frames", run.frames.size());
     const Worker judge = [&](size_t i) {
         FrameResult& frame = run.frames[i];
         const FrameVerdict verdict = judgeFrame(witness, run, frame, settings);
+        if (verdict.stopped && verdict.false_culls.empty()) return;  // it was not judged; what was found is found
         frame.verification = rowOf(verdict, frame, scene, run);
         progress.step();
     };

@@ -3,6 +3,7 @@
 #include "sightline/tools/truth/cull_proof.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "sightline/base/random.h"
 #include "sightline/tools/truth/exact.h"
 #include "sightline/tools/truth/shadow_pieces.h"
 #include "sightline/tools/truth/sight.h"
@@ -116,16 +118,68 @@ double sizeInSight(const ExactTriangle& triangle, const SightOrigin& origin) {
 
 }  // namespace
 
+/// Numbers the planes that triangles lie in, exactly: what lies in a triangle's plane is not behind it. A plane may have two
+/// numbers.
+class ExactPlanes {
+public:
+    const ExactTriangle& operator[](uint32_t number) const { return planes_[number]; }
+
+    /// Forgets all where memory would grow without end.
+    void limit() {
+        constexpr size_t kMost = 1 << 16;
+        if (numbers_.size() > kMost) *this = {};
+    }
+
+    /// @param make  gives the triangle with this key, which is not seen from its edge
+    template <class Make>
+    uint32_t of(uint64_t key, Make&& make) {
+        const auto [known, is_new] = numbers_.try_emplace(key, 0u);
+        if (is_new) known->second = find(make());
+        return known->second;
+    }
+
+private:
+    static constexpr int kMostTries = 4;
+
+    uint32_t find(const ExactTriangle& triangle) {
+        const glm::dvec3 a = triangle.corners[0].about();
+        const glm::dvec3 normal = glm::cross(triangle.corners[1].about() - a, triangle.corners[2].about() - a);
+        const glm::dvec3 size = glm::abs(normal);
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        // Where the plane meets an axis, and how it leans: rounding may part equal planes, which then have two numbers.
+        const auto coarse = [](double value) { return std::bit_cast<uint32_t>(static_cast<float>(value) + 0.0f); };
+        uint64_t hash = static_cast<uint64_t>(axis);
+        for (int i = 1; i < 3; ++i) hash = mixSeed(hash, coarse(normal[(axis + i) % 3] / normal[axis]));
+        hash = mixSeed(hash, coarse(glm::dot(normal, a) / normal[axis]));
+        const auto [begin, end] = known_.equal_range(hash);
+        int tries = kMostTries;  // planes that all but coincide are many in a stack of sheets
+        for (auto at = begin; at != end && tries-- > 0; ++at)
+            if (std::all_of(std::begin(triangle.corners), std::end(triangle.corners),
+                            [&](const ExactCorner& corner) { return sideOf(planes_[at->second], corner) == 0; }))
+                return at->second;
+        const auto number = static_cast<uint32_t>(planes_.size());
+        planes_.push_back(triangle);  // its corners know transforms of the scene, which stay
+        known_.emplace(hash, number);
+        return number;
+    }
+
+    std::unordered_map<uint64_t, uint32_t> numbers_;
+    std::unordered_multimap<uint64_t, uint32_t> known_;
+    std::vector<ExactTriangle> planes_;
+};
+
 struct CullProver::Impl {
-    Impl(const SceneFacts& scene_facts, const View& view, uint64_t work)
+    Impl(const SceneFacts& scene_facts, const View& view, uint64_t work, std::function<bool()> stop)
         : facts(scene_facts),
           sight(view),
           exact(facts, sight),
           planes(view, sight),
           most_work(work),
+          asks_to_stop(std::move(stop)),
           pieces(planes.origin) {}
 
-    CullProof prove(uint32_t which, const std::vector<uint32_t>* hiders_allowed);
+    CullProof prove(uint32_t which);
+    CullProof proveBy(uint32_t which, const std::vector<uint32_t>& hiders_allowed);
     std::vector<uint8_t> hiddenTogether();
 
 private:
@@ -133,20 +187,25 @@ private:
     struct Hider {
         uint32_t object = 0, number = 0;
         ExactTriangle triangle;
+        double size = 0;
         bool is_drawn = false, has_lines = false, hides = false;
         std::vector<uint32_t> lines;
-        uint64_t key() const { return uint64_t{object} << 32 | number; }
+        uint64_t key() const { return keyOf(object, number); }
     };
 
+    static uint64_t keyOf(uint32_t of, uint32_t triangle) { return uint64_t{of} << 32 | triangle; }
     bool isFinite(uint32_t of, uint32_t triangle) const;
     ExactTriangle triangleOf(uint32_t of, uint32_t triangle) const;
     bool isDrawn(uint32_t of, uint32_t triangle, int facing) const;
+    CullProof find(uint32_t which, const std::vector<uint32_t>* hiders_allowed);
+    bool isStopped();
     void begin(uint32_t which, const std::vector<uint32_t>* hiders_allowed);
     double roundingOf(uint32_t of) const;
     bool isOutside() const;
     bool isBoxHidden(const glm::dmat4& transform, const Box3d& box, uint64_t most);
     void lookAtTriangle(uint32_t triangle);
-    void beginPart();
+    void beginPart(const ExactTriangle& frame);
+    bool liesInPlaneOf(uint32_t hider, uint32_t triangle);
     bool clip(Piece& piece);
     template <class Open>
     bool cover(Piece whole, uint64_t end, Open&& open_at);
@@ -161,15 +220,21 @@ private:
     const ExactSight exact;
     const ProofView planes;
     const uint64_t most_work;
+    const std::function<bool()> asks_to_stop;
+    bool stopped = false;
+    std::unordered_map<uint32_t, CullProof> of_equal;  ///< by the first of those that are equal
 
-    uint32_t object = 0;  ///< that is proved
-    const std::vector<uint32_t>* allowed = nullptr;
+    uint32_t object = 0;                             ///< that is proved
+    const std::vector<uint32_t>* allowed = nullptr;  ///< firstEqual() of each
     CullProof proof;
     int open = 0;
     std::list<Hider> hiders;  ///< that were met, the last that hid something first
     std::unordered_map<uint64_t, std::list<Hider>::iterator> known;
 
     ShadowPieces pieces;  ///< of the part at hand
+    const ExactTriangle* part = nullptr;
+    ExactPlanes exact_planes;
+    std::unordered_map<uint32_t, bool> is_of_part;  ///< by plane: whether the part lies in it
     std::vector<Piece> left;
     std::vector<ExactSight::Met> met;
     std::vector<std::list<Hider>::iterator> asked;
@@ -203,7 +268,10 @@ bool CullProver::Impl::isDrawn(uint32_t of, uint32_t triangle, int facing) const
 
 // A part: a triangle, or a face of a box.
 
-void CullProver::Impl::beginPart() {
+void CullProver::Impl::beginPart(const ExactTriangle& frame) {
+    part = &frame;
+    exact_planes.limit();
+    is_of_part.clear();
     left.clear();
     known.clear();
     if (hiders.size() > kRecent) hiders.resize(kRecent);
@@ -245,6 +313,17 @@ bool CullProver::Impl::takeByRecent(const Piece& piece) {
     return false;
 }
 
+/// Whether the part lies in the plane of a triangle, which then hides nothing of it: where many things coincide most do.
+bool CullProver::Impl::liesInPlaneOf(uint32_t hider, uint32_t triangle) {
+    const uint32_t plane = exact_planes.of(keyOf(hider, triangle), [&] { return triangleOf(hider, triangle); });
+    const auto [known_of, is_new] = is_of_part.try_emplace(plane, false);
+    if (is_new)
+        known_of->second =
+            std::all_of(std::begin(part->corners), std::end(part->corners),
+                        [&](const ExactCorner& corner) { return sideOf(exact_planes[plane], corner) == 0; });
+    return known_of->second;
+}
+
 /// By triangles that hide a place of the piece. All that were asked are kept: lines of the part name them.
 bool CullProver::Impl::takeBySearch(const Piece& piece, const glm::dvec3& at) {
     exact.hidersOn(planes.rayTo(at), met);
@@ -252,24 +331,27 @@ bool CullProver::Impl::takeBySearch(const Piece& piece, const glm::dvec3& at) {
     for (const ExactSight::Met& hit : met) {
         if (allowed && !std::binary_search(allowed->begin(), allowed->end(), hit.object)) continue;
         if (!isFinite(hit.object, hit.triangle)) continue;
-        const auto [place, is_new] = known.try_emplace(uint64_t{hit.object} << 32 | hit.triangle, hiders.end());
+        const uint64_t key = keyOf(hit.object, hit.triangle);
+        if (liesInPlaneOf(hit.object, hit.triangle)) continue;
+        const auto [place, is_new] = known.try_emplace(key, hiders.end());
         if (is_new) {
             Hider& hider = hiders.emplace_back();
             hider.object = hit.object;
             hider.number = hit.triangle;
             hider.triangle = triangleOf(hit.object, hit.triangle);
+            hider.size = sizeInSight(hider.triangle, planes.origin);
             hider.is_drawn = isDrawn(hit.object, hit.triangle, hider.triangle.facing);
             place->second = std::prev(hiders.end());
         }
         if (place->second->is_drawn) asked.push_back(place->second);
     }
-    const auto size = [&](const auto& hider) { return sizeInSight(hider->triangle, planes.origin); };
-    std::sort(asked.begin(), asked.end(), [&](const auto& a, const auto& b) { return size(a) > size(b); });
-    for (const auto& hider : asked)
-        if (take(*hider, piece)) {
-            hasHidden(hider);
-            return true;
-        }
+    std::sort(asked.begin(), asked.end(), [](const auto& a, const auto& b) { return a->size > b->size; });
+    for (const auto& hider : asked) {
+        if (isStopped()) return false;
+        if (!take(*hider, piece)) continue;
+        hasHidden(hider);
+        return true;
+    }
     return false;
 }
 
@@ -294,12 +376,13 @@ bool CullProver::Impl::cover(Piece whole, uint64_t end, Open&& open_at) {
     bool all = true;
     left.push_back(std::move(whole));
     while (!left.empty()) {
-        if (proof.cuts >= end) return false;
+        if (proof.cuts >= end || isStopped()) return false;
         const Piece piece = std::move(left.back());
         left.pop_back();
         if (takeByRecent(piece)) continue;
         const glm::dvec3 at = pieces.middle(piece);
         if (takeBySearch(piece, at)) continue;
+        if (stopped) return false;
         all = false;
         if (!open_at(piece, at)) return false;
     }
@@ -351,7 +434,7 @@ bool CullProver::Impl::isBoxHidden(const glm::dmat4& transform, const Box3d& box
             if (face.facing == 0) continue;
             if (sideOf(face, corners[at ^ other]) == face.facing) continue;  // the eye is on the side of the rest
             has_front = true;
-            beginPart();
+            beginPart(face);
             Piece whole = pieces.beginParallelogram(face);
             // Sight lines of a parallel view run along its sides but for rounding: there the whole face has to be hidden.
             if (!planes.origin.parallel() && !clip(whole)) continue;
@@ -366,7 +449,7 @@ void CullProver::Impl::lookAtTriangle(uint32_t triangle) {
     if (!isFinite(object, triangle)) return;
     const ExactTriangle face = triangleOf(object, triangle);
     if (!isDrawn(object, triangle, face.facing)) return;
-    beginPart();
+    beginPart(face);
     Piece whole = pieces.begin(face);
     if (!clip(whole)) return;
     cover(std::move(whole), most_work, [&](const Piece& piece, const glm::dvec3& at) {
@@ -392,7 +475,28 @@ void CullProver::Impl::begin(uint32_t which, const std::vector<uint32_t>* hiders
     hiders.clear();
 }
 
-CullProof CullProver::Impl::prove(uint32_t which, const std::vector<uint32_t>* hiders_allowed) {
+bool CullProver::Impl::isStopped() {
+    stopped = stopped || (asks_to_stop && asks_to_stop());
+    return stopped;
+}
+
+CullProof CullProver::Impl::prove(uint32_t which) {
+    if (!facts.hasEqual(which)) return find(which, nullptr);
+    const uint32_t first = facts.firstEqual(which);
+    if (const auto known_proof = of_equal.find(first); known_proof != of_equal.end()) return known_proof->second;
+    CullProof found = find(first, nullptr);
+    if (!stopped) of_equal.emplace(first, found);
+    return found;
+}
+
+CullProof CullProver::Impl::proveBy(uint32_t which, const std::vector<uint32_t>& hiders_allowed) {
+    std::vector<uint32_t> first;
+    for (const uint32_t hider : hiders_allowed) first.push_back(facts.firstEqual(hider));
+    std::sort(first.begin(), first.end());
+    return find(which, &first);
+}
+
+CullProof CullProver::Impl::find(uint32_t which, const std::vector<uint32_t>* hiders_allowed) {
     begin(which, hiders_allowed);
     const Mesh& mesh = facts.mesh(object);
     const bool nowhere = facts.box(object).empty() && mesh.triangles() > 0;  // its place is not known
@@ -401,7 +505,7 @@ CullProof CullProver::Impl::prove(uint32_t which, const std::vector<uint32_t>* h
         return proof;
     }
     const auto isDone = [&] {
-        return proof.cuts >= most_work || proof.result == ProofResult::kSeen || open >= kMostOpen;
+        return isStopped() || proof.cuts >= most_work || proof.result == ProofResult::kSeen || open >= kMostOpen;
     };
     if (!facts.box(object).empty() && !isOutside()) {
         const glm::dmat4& transform = facts.scene().objects[object].transform;
@@ -412,7 +516,8 @@ CullProof CullProver::Impl::prove(uint32_t which, const std::vector<uint32_t>* h
                 if (!isDone()) lookAtTriangle(triangle);
             });
     }
-    if (proof.result == ProofResult::kProved && proof.cuts >= most_work) proof.result = ProofResult::kUndecided;
+    if (proof.result == ProofResult::kProved && (stopped || proof.cuts >= most_work))
+        proof.result = ProofResult::kUndecided;
     if (proof.result != ProofResult::kProved) proof.hiders.clear();
     return std::move(proof);
 }
@@ -429,25 +534,26 @@ std::vector<uint8_t> CullProver::Impl::hiddenTogether() {
     }
     const glm::dmat4 as_it_stands(1.0);
     begin(0, nullptr);
-    facts.objects().walk(
+    facts.distinct().walk(
         [&](const Box3d& box) {
             proof.cuts = 0;
-            return !isBoxHidden(as_it_stands, {box.min - rounding, box.max + rounding}, kGroupWork);
+            return isStopped() || !isBoxHidden(as_it_stands, {box.min - rounding, box.max + rounding}, kGroupWork);
         },
         [&](uint32_t found) { hidden[found] = 0; });
+    for (uint32_t i = 0; i < count; ++i) hidden[i] = hidden[facts.firstEqual(i)];
     return hidden;
 }
 
-CullProver::CullProver(const SceneFacts& facts, const View& view, uint64_t work)
-    : impl_(std::make_unique<Impl>(facts, view, work)) {}
+CullProver::CullProver(const SceneFacts& facts, const View& view, uint64_t work, std::function<bool()> stop)
+    : impl_(std::make_unique<Impl>(facts, view, work, std::move(stop))) {}
 CullProver::~CullProver() = default;
 
-CullProof CullProver::prove(uint32_t object) { return impl_->prove(object, nullptr); }
+CullProof CullProver::prove(uint32_t object) { return impl_->prove(object); }
 
 std::vector<uint8_t> CullProver::hiddenTogether() { return impl_->hiddenTogether(); }
 
 CullProof CullProver::proveBy(uint32_t object, const std::vector<uint32_t>& hiders) {
-    return impl_->prove(object, &hiders);
+    return impl_->proveBy(object, hiders);
 }
 
 }  // namespace sightline::tools

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -12,19 +13,20 @@
 namespace sightline::tools {
 
 enum class ProofResult : uint8_t {
-    kProved,  ///< no point of it is visible
-    kSeen,    ///< a point of it is visible beyond rounding
-    kOpen,    ///< something is left that no triangle hides, but rounding might: CullProof::width
-    kUndecided,  ///< the proof would be more work than was allowed; the object lies nowhere (SceneFacts); or the view is one of
+    kProved,     ///< no point of it is visible
+    kSeen,       ///< a point of it is visible beyond rounding
+    kOpen,       ///< something is left that no triangle hides, but rounding might: CullProof::width
+    kUndecided,  ///< the proof would be more work than was allowed, or was stopped; the object lies nowhere (SceneFacts); or the view is one of
     ///< which nothing is proved: reversed depth, an eye that the projection moves, planes too large for a double
 };
 
 struct CullProof {
     ProofResult result = ProofResult::kProved;
-    double x = 0, y = 0;           ///< of kSeen and kOpen: where  [pixels from the left and the top]
-    double width = 0;              ///< of kOpen: of the widest place that is left  [pixels]
-    uint64_t cuts = 0;             ///< shadows that were held against pieces
-    std::vector<uint32_t> hiders;  ///< of kProved: the objects that hide it, rising; those whose triangles were taken
+    double x = 0, y = 0;  ///< of kSeen and kOpen: where  [pixels from the left and the top]
+    double width = 0;     ///< of kOpen: of the widest place that is left  [pixels]
+    uint64_t cuts = 0;    ///< shadows that were held against pieces
+    /// Of kProved: the objects that hide it, rising; those whose triangles were taken. Of equal ones the first.
+    std::vector<uint32_t> hiders;
 };
 
 /// The third witness, and the only complete one. What can be seen of an object is where a triangle of it faces the eye, within the view
@@ -37,13 +39,16 @@ struct CullProof {
 /// triangle to take next. Surfaces at equal depth are both visible. A triangle that the eye sees from its edge is not
 /// drawn. Deforming meshes are proved in their rest pose, and hide nothing.
 ///
+/// Objects that are equal (SceneFacts::firstEqual) have one proof, and hide as one.
+///
 /// Not thread-safe: each thread has its own.
 class CullProver {
 public:
     /// @param facts  outlive it
     /// @param view   isUsable(view); its eye_radius is ignored
     /// @param work   the most shadows that are held against the pieces of one object
-    CullProver(const SceneFacts& facts, const View& view, uint64_t work = 1000000);
+    /// @param stop   asked between shadows; true: what is not proved yet is kUndecided. May be empty
+    CullProver(const SceneFacts& facts, const View& view, uint64_t work = 1000000, std::function<bool()> stop = {});
     ~CullProver();
 
     CullProof prove(uint32_t object);

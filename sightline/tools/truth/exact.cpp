@@ -11,6 +11,7 @@ namespace {
 
 /// Of the size of the terms that a position relative to the eye was summed from.
 constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
+constexpr uint32_t kNobody = ~0u;
 /// Depths closer than this part of the distance are equal.
 constexpr double kEqualDepth = 1e-9;
 
@@ -170,7 +171,7 @@ void ExactSight::forEachHider(const SightRay& ray, double from, double to, uint3
     const auto touches = [&](const Box3d& box) {
         return !done && meets(origin, ray.direction, from, to, box, box_slack);
     };
-    facts_.objects().walk(touches, [&](uint32_t object) {
+    facts_.distinct().walk(touches, [&](uint32_t object) {
         if (object == by_others_than || !touches(facts_.box(object))) return;
         const MeshFacts& mesh = facts_.facts(object);
         const ObjectTriangles triangles(facts_, object, sight_.eye());
@@ -188,6 +189,8 @@ void ExactSight::forEachHider(const SightRay& ray, double from, double to, uint3
 bool ExactSight::hidden(const SightRay& ray, double t, uint32_t by_others_than) const {
     const double slack = depthSlack(ray, t);
     const double from = ray.t_near - slack, to = t - slack;
+    if (by_others_than != kNobody && facts_.hasEqual(by_others_than))
+        by_others_than = kNobody;  // an equal one is another
     bool found = false;
     forEachHider(ray, from, to, by_others_than, [&](uint32_t, uint32_t, const Crossing& met) {
         found = met.t >= from && met.t_low < to;
@@ -199,7 +202,7 @@ bool ExactSight::hidden(const SightRay& ray, double t, uint32_t by_others_than) 
 void ExactSight::hidersOn(const SightRay& ray, std::vector<Met>& met) const {
     met.clear();
     const double slack = depthSlack(ray, ray.t_far), from = ray.t_near - slack, to = ray.t_far + slack;
-    forEachHider(ray, from, to, ~0u, [&](uint32_t object, uint32_t triangle, const Crossing& crossing) {
+    forEachHider(ray, from, to, kNobody, [&](uint32_t object, uint32_t triangle, const Crossing& crossing) {
         if (crossing.t >= from && crossing.t_low <= to) met.push_back({object, triangle});
         return false;
     });

@@ -38,7 +38,8 @@ public:
     struct Met {
         uint32_t object = 0, triangle = 0;
     };
-    /// The triangles that hide and that a ray may meet, with every doubt for them: none that it meets is missing.
+    /// The triangles that hide and that a ray may meet, with every doubt for them: none that it meets is missing. Of objects
+    /// that are equal (SceneFacts::firstEqual) it names the first.
     void hidersOn(const SightRay& ray, std::vector<Met>& met) const;
 
     /// How far the positions of an object may be off, relative to the eye  [world units].

@@ -49,6 +49,7 @@ uint64_t drawIdBuffer(const SceneFacts& facts, const View& view, const SightLine
     ZBufferSettings pass;
     pass.samples = settings.supersampling;
     pass.want_generated = false;
+    pass.stop = settings.stop;
     pass.offset.x = random.uniform(-0.5, 0.5) / settings.supersampling;
     pass.offset.y = random.uniform(-0.5, 0.5) / settings.supersampling;
     const uint64_t width = uint64_t(view.width) * settings.supersampling;
@@ -58,6 +59,7 @@ uint64_t drawIdBuffer(const SceneFacts& facts, const View& view, const SightLine
     for (uint64_t row = 0; row < height; row += pass.row_count) {
         pass.first_row = static_cast<uint32_t>(row);
         renderZBuffer(items, view, pass, image);
+        if (settings.stop && settings.stop()) return width * row;
         for (uint32_t i = 0; i < image.seen.size(); ++i) {
             if (!image.seen[i]) continue;
             const double column = image.seen_at[i] % width + 0.5;

@@ -3,6 +3,11 @@
 #include "sightline/tools/truth/scene_facts.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
+#include <numeric>
+
+#include "sightline/base/random.h"
 
 namespace sightline::tools {
 namespace {
@@ -35,6 +40,30 @@ void gather(const Scene& scene, const Mesh& mesh, MeshFacts& facts) {
         facts.all_hide = facts.all_hide && facts.hides[t] != 0;
         facts.all_plain = facts.all_plain && facts.hides[t] != 0 && facts.double_sided[t] != 0;
     }
+}
+
+template <class T>
+bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+/// Equal for equal meshes that show and hide alike.
+uint64_t hashOf(const Mesh& mesh, const MeshFacts& facts) {
+    uint64_t hash = mixSeed(mesh.positions.size(), mesh.indices.size());
+    for (size_t t = 0; t < mesh.triangles(); ++t) hash = mixSeed(hash, 2u * facts.double_sided[t] + facts.hides[t]);
+    for (const glm::vec3& p : mesh.positions)
+        for (int i = 0; i < 3; ++i) hash = mixSeed(hash, std::bit_cast<uint32_t>(p[i]));
+    for (const uint32_t index : mesh.indices) hash = mixSeed(hash, index);
+    return hash;
+}
+
+uint64_t hashOf(const glm::dmat4& transform, const Box3d& box) {
+    uint64_t hash = 0;
+    for (int i = 0; i < 3; ++i)
+        hash = mixSeed(mixSeed(hash, std::bit_cast<uint64_t>(box.min[i])), std::bit_cast<uint64_t>(box.max[i]));
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) hash = mixSeed(hash, std::bit_cast<uint64_t>(transform[column][row]));
+    return hash;
 }
 
 bool withinReach(const Box3d& box) {
@@ -106,10 +135,69 @@ SceneFacts::SceneFacts(const Scene& scene) : scene_(scene) {
         world.grow(box);
     }
     tree_.build(boxes_);
+    findEqual();
     if (world.empty()) return;
     center_ = world.center();
     const glm::dvec3 half = 0.5 * world.size();
     radius_ = std::max({half.x, half.y, half.z});
+}
+
+bool SceneFacts::areEqual(uint32_t a, uint32_t b) const {
+    if (std::memcmp(&scene_.objects[a].transform, &scene_.objects[b].transform, sizeof(glm::dmat4)) != 0) return false;
+    if (scene_.objects[a].mesh == scene_.objects[b].mesh) return true;
+    return sameBytes(mesh(a).positions, mesh(b).positions) && sameBytes(mesh(a).indices, mesh(b).indices) &&
+           facts(a).double_sided == facts(b).double_sided && facts(a).hides == facts(b).hides;
+}
+
+/// Meshes are compared only of objects that lie in the same place.
+void SceneFacts::findEqual() {
+    struct Place {
+        uint64_t hash = 0;
+        uint32_t object = 0;
+        bool operator<(const Place& o) const { return hash != o.hash ? hash < o.hash : object < o.object; }
+    };
+    std::vector<Place> places;
+    for (uint32_t i = 0; i < boxes_.size(); ++i)
+        if (!boxes_[i].empty()) places.push_back({hashOf(scene_.objects[i].transform, boxes_[i]), i});
+    const auto forEachRun = [&](auto&& visit) {
+        std::sort(places.begin(), places.end());
+        for (size_t begin = 0, end = 0; begin < places.size(); begin = end) {
+            while (end < places.size() && places[end].hash == places[begin].hash) ++end;
+            if (end - begin > 1) visit(std::span(places).subspan(begin, end - begin));
+        }
+    };
+    std::vector<Place> close;
+    std::vector<uint64_t> mesh_hash(meshes_.size(), 0);
+    forEachRun([&](std::span<const Place> run) {
+        const uint32_t first_mesh = scene_.objects[run[0].object].mesh;
+        const bool one_mesh = std::all_of(run.begin(), run.end(), [&](const Place& place) {
+            return scene_.objects[place.object].mesh == first_mesh;
+        });
+        for (const Place& place : run) {
+            uint64_t& hash = mesh_hash[scene_.objects[place.object].mesh];
+            if (!one_mesh && hash == 0) hash = hashOf(mesh(place.object), facts(place.object));
+            close.push_back({mixSeed(place.hash, one_mesh ? 0 : hash), place.object});
+        }
+    });
+    if (close.empty()) return;
+    places = std::move(close);
+    first_equal_.resize(boxes_.size());
+    std::iota(first_equal_.begin(), first_equal_.end(), 0u);
+    has_equal_.assign(boxes_.size(), 0);
+    forEachRun([&](std::span<const Place> run) {
+        for (const Place& place : run.subspan(1)) {
+            const uint32_t first = run[0].object;  // one hash, and yet another object: rare, and then it stays alone
+            if (!areEqual(first, place.object)) continue;
+            first_equal_[place.object] = first;
+            has_equal_[first] = has_equal_[place.object] = 1;
+            ++twins_;
+        }
+    });
+    if (twins_ == 0) return;
+    std::vector<Box3d> distinct = boxes_;
+    for (uint32_t i = 0; i < distinct.size(); ++i)
+        if (first_equal_[i] != i) distinct[i] = Box3d();
+    distinct_.build(distinct);
 }
 
 }  // namespace sightline::tools

@@ -79,14 +79,26 @@ public:
     const MeshFacts& meshFacts(uint32_t mesh) const { return *meshes_[mesh]; }
     const Box3d& box(uint32_t object) const { return boxes_[object]; }  ///< world space; empty: not drawn
     const BoxTree& objects() const { return tree_; }
+    /// The same without those that equal an earlier one: what hides is hidden behind each of them alike.
+    const BoxTree& distinct() const { return twins_ > 0 ? distinct_ : tree_; }
+    /// The first object that equals this one: the same triangles, to the bit, in the same place, that show and hide alike.
+    uint32_t firstEqual(uint32_t object) const { return twins_ > 0 ? first_equal_[object] : object; }
+    /// Whether another object equals it.
+    bool hasEqual(uint32_t object) const { return twins_ > 0 && has_equal_[object]; }
     const glm::dvec3& center() const { return center_; }
     double radius() const { return radius_; }  ///< largest distance of a box from the centre, per axis
 
 private:
+    void findEqual();
+    bool areEqual(uint32_t a, uint32_t b) const;
+
     const Scene& scene_;
     std::vector<std::unique_ptr<MeshFacts>> meshes_;
     std::vector<Box3d> boxes_;
-    BoxTree tree_;
+    BoxTree tree_, distinct_;
+    std::vector<uint32_t> first_equal_;
+    std::vector<uint8_t> has_equal_;
+    size_t twins_ = 0;  ///< objects that equal an earlier one
     glm::dvec3 center_{0.0};
     double radius_ = 0;
 };

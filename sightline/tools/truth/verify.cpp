@@ -23,13 +23,17 @@ namespace {
 constexpr uint8_t kMostTries = 100;
 /// The same for points that were aimed at: objects that touch a wall from behind have many that nearly show.
 constexpr uint8_t kMostAimedTries = 32;
+/// So many rays are cast between two questions whether to stop.
+constexpr uint64_t kRaysAtOnce = 256;
 
 /// Everything that is seen of one frame.
 class Trial {
 public:
-    Trial(const SceneFacts& facts, const SightLines& sight, std::span<const uint8_t> culled)
+    Trial(const SceneFacts& facts, const SightLines& sight, std::span<const uint8_t> culled,
+          const std::function<bool()>& stop)
         : sight_(sight),
           culled_(culled),
+          stop_(stop),
           exact_(facts, sight),
           tries_(culled.size(), 0),
           aimed_tries_(culled.size(), 0) {
@@ -37,6 +41,11 @@ public:
     }
 
     const ExactSight& exact() const { return exact_; }
+    /// To be asked between pieces of work.
+    bool isStopped() {
+        verdict.stopped = verdict.stopped || (stop_ && stop_());
+        return verdict.stopped;
+    }
     bool open(uint32_t object) const { return culled_[object] && !verdict.seen[object]; }
 
     /// A witness saw the object at a place.
@@ -86,6 +95,7 @@ private:
 
     const SightLines& sight_;
     std::span<const uint8_t> culled_;
+    const std::function<bool()>& stop_;
     ExactSight exact_;
     std::vector<uint8_t> tries_, aimed_tries_;
 };
@@ -108,6 +118,7 @@ struct Witness::Impl {
         RaySighting sighting;
         Target target;
         for (const Aim& aim : chooseAims(facts, sight, culled, std::min(settings.aimed_rays, settings.rays))) {
+            if (trial.isStopped()) return;
             Random random(mixSeed(settings.seed, aim.object));
             for (uint32_t i = 0; i < aim.rays && trial.open(aim.object); ++i) {
                 if (!aimAt(facts, sight, trial.exact(), aim.object, random, target)) continue;
@@ -131,6 +142,7 @@ struct Witness::Impl {
         Random random(seed);
         RaySighting sighting;
         for (uint64_t i = 0; i < count; ++i) {
+            if (i % kRaysAtOnce == 0 && trial.isStopped()) return;
             const double x = random.uniform(), y = random.uniform();
             const bool in_grid = i < columns * rows;
             const glm::dvec2 place =
@@ -142,10 +154,11 @@ struct Witness::Impl {
 
     /// Decides of each object whether it is seen.
     void prove(Trial& trial, const View& view, std::span<const uint8_t> culled) const {
-        CullProver prover(facts, view);
+        constexpr uint64_t kMostWork = 1000000;  // shadows of an object
+        CullProver prover(facts, view, kMostWork, [&] { return trial.isStopped(); });
         ProofCounts counts;
         const std::vector<uint8_t> together = prover.hiddenTogether();
-        for (uint32_t object = 0; object < culled.size(); ++object) {
+        for (uint32_t object = 0; object < culled.size() && !trial.isStopped(); ++object) {
             if (trial.verdict.seen[object]) continue;
             const CullProof proof = together[object] ? CullProof() : prover.prove(object);
             if (proof.result == ProofResult::kSeen) trial.found(object, proof.x, proof.y);
@@ -170,13 +183,14 @@ FrameVerdict Witness::judge(const View& view, std::span<const uint8_t> culled, c
     if (!isUsable(view)) return nothing;
 
     const SightLines sight(view);
-    Trial trial(impl_->facts, sight, culled);
+    Trial trial(impl_->facts, sight, culled, settings.stop);
     impl_->castAimed(trial, sight, culled, settings);
     impl_->castUniform(trial, sight, view, settings.rays - trial.verdict.aimed_rays, mixSeed(settings.seed, ~0ull));
-    if (settings.supersampling > 0) {
+    if (settings.supersampling > 0 && !trial.isStopped()) {
         IdBufferSettings pass;
         pass.supersampling = settings.supersampling;
         pass.seed = mixSeed(settings.seed, ~1ull);
+        pass.stop = [&] { return trial.isStopped(); };
         const uint64_t pixels = uint64_t(view.width) * view.height;
         while (pass.supersampling > 1 && pixels * pass.supersampling * pass.supersampling > settings.id_sample_limit)
             --pass.supersampling;
@@ -185,7 +199,7 @@ FrameVerdict Witness::judge(const View& view, std::span<const uint8_t> culled, c
             drawIdBuffer(impl_->facts, view, sight, pass,
                          [&](uint32_t object, const glm::dvec2& place) { trial.sighted(object, place, "id-buffer"); });
     }
-    if (settings.prove) impl_->prove(trial, view, culled);
+    if (settings.prove && !trial.isStopped()) impl_->prove(trial, view, culled);
     return trial.finish();
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -33,6 +34,7 @@ struct FrameVerdict {
     std::optional<ProofCounts> proofs;   ///< if they were asked for
     std::vector<uint8_t> seen;           ///< per object of the scene: 1 if any witness saw it
     uint64_t exactly_visible = 0;        ///< objects with seen = 1
+    bool stopped = false;                ///< by the settings' stop: what is seen is seen, but not all was looked for
 };
 
 struct WitnessSettings {
@@ -45,6 +47,8 @@ struct WitnessSettings {
     /// Prove of each object that it is hidden, or find where it is seen: cull_proof.h. `seen` is then what is seen, and no
     /// lower bound, but for what is undecided.
     bool prove = false;
+    /// Asked within the frame; true: end at once. FrameVerdict::stopped then says so. May be empty.
+    std::function<bool()> stop = {};
 };
 
 /// Holds the scene in the form that the witnesses need (an Embree scene and draw lists). The scene must

@@ -400,5 +400,30 @@ TEST(Witness, SurvivesNothingAndNonsense) {
     EXPECT_EQ(Witness(scene).judge(view, culled, settings).rays, 0u);
 }
 
+TEST(Witness, StopsWithinAFrame) {
+    Scene scene = emptyScene();
+    for (int i = 0; i < 40; ++i)
+        addObject(scene, addBox(scene, glm::vec3(0.3f)), moved({0.1 * i - 2, 0, -4 - 0.01 * i}));
+    const std::vector<uint8_t> culled(scene.objects.size(), 0);
+    const Witness witness(scene);
+    WitnessSettings settings{.rays = 5000, .supersampling = 2};
+    settings.prove = true;
+    const FrameVerdict whole = witness.judge(usualView(), culled, settings);
+    EXPECT_FALSE(whole.stopped);
+    bool finished = false;
+    for (uint64_t limit = 0; !finished; limit = limit + 1 + limit / 8) {
+        uint64_t asked = 0;
+        settings.stop = [&] { return asked++ >= limit; };
+        const FrameVerdict part = witness.judge(usualView(), culled, settings);
+        finished = !part.stopped;
+        EXPECT_LE(asked, limit + 1);  // it is asked once more at most, and works no longer
+        EXPECT_LE(part.rays, whole.rays);
+        for (size_t i = 0; i < part.seen.size(); ++i) EXPECT_LE(part.seen[i], whole.seen[i]);
+        if (!finished) continue;
+        EXPECT_EQ(part.seen, whole.seen);
+        EXPECT_EQ(part.proofs->kept_hidden, whole.proofs->kept_hidden);
+    }
+}
+
 }  // namespace
 }  // namespace sightline

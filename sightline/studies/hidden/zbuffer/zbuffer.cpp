@@ -10,6 +10,9 @@
 namespace sightline::studies {
 namespace {
 
+/// So many are drawn between two questions whether to stop: each may fill the image.
+constexpr size_t kTrianglesAtOnce = 32;
+
 class Renderer {
 public:
     Renderer(const View& view, const ZBufferSettings& settings, ZBufferImage& image)
@@ -25,6 +28,7 @@ public:
         const int32_t end_row = first_row + static_cast<int32_t>(image_.height);
         ScreenPolygon polygon;
         for (size_t triangle = 0; triangle < item.mesh.triangles(); ++triangle) {
+            if (triangle % kTrianglesAtOnce == 0 && settings_.stop && settings_.stop()) return;
             const bool writes = item.writes_depth.empty() || item.writes_depth[triangle] != 0;
             if (writes != writing || !projector_.project(triangle, polygon)) continue;
             scanPolygon(polygon.outline(), first_row, end_row, static_cast<int32_t>(image_.width),

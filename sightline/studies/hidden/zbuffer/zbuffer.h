@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -40,6 +41,8 @@ struct ZBufferSettings {
     uint32_t first_row = 0;      ///< draw only a band of the image, from this row of samples ...
     uint32_t row_count = ~0u;    ///< ... so many rows, or up to the top
     bool want_generated = true;  ///< fill ZBufferImage::generated
+    std::function<bool()> stop =
+        {};  ///< asked now and then; true: leave out the rest, and the image is of no use. May be empty
 };
 
 /// Draws the items in the order given, those triangles that write depth before those that do not. Samples
