@@ -102,7 +102,7 @@ int main() {
     ThreadPool threads(2);                   // an engine offers its own by the same hook: class Jobs
     Query query(defaultMemory(), &threads);  // kept from frame to frame
     QuerySettings settings;
-    settings.bins = 2;  // strips of the image that threads can share
+    settings.bins = 2;  // strips that the threads share when a view is drawn; certificates need none
 
     uint64_t drawn = 0, in_view = 0, appeared = 0, left = 0;
     const auto draw = [&](uint64_t) { ++drawn; };  // the renderer's

@@ -30,7 +30,8 @@ inline constexpr glm::vec3 kEyeCell(1.0f, 1.0f, 1.0f), kSeenCell(0.25f, 0.6f, 0.
 inline glm::vec3 stageColour(int stage) {
     constexpr glm::vec3 kColours[kStageCount] = {{0.34f, 0.70f, 0.91f}, {0.00f, 0.62f, 0.45f}, {0.55f, 0.57f, 0.60f},
                                                  {0.94f, 0.89f, 0.26f}, {0.80f, 0.47f, 0.65f}, {0.84f, 0.37f, 0.00f},
-                                                 {0.90f, 0.20f, 0.20f}, {0.60f, 0.40f, 0.80f}, {0.70f, 0.70f, 0.30f}};
+                                                 {0.90f, 0.20f, 0.20f}, {0.60f, 0.40f, 0.80f}, {0.70f, 0.70f, 0.30f},
+                                                 {0.75f, 0.65f, 0.55f}};
     return kColours[stage];
 }
 

@@ -173,7 +173,8 @@ void Panels::stages() {
         ImGui::TableNextColumn();
         bool on = (culler_.settings.stages & bit) != 0;
         ImGui::PushStyleColor(ImGuiCol_Text, inkOf(stageColour(stage)));
-        if (check(kStageNames[stage], on)) culler_.settings.stages ^= bit;
+        if (!(bit & kAllStages)) ImGui::TextUnformatted(kStageNames[stage]);  // it has no switch
+        else if (check(kStageNames[stage], on)) culler_.settings.stages ^= bit;
         ImGui::PopStyleColor();
         const StageStats& row = stats.stages[stage];
         ImGui::TableNextColumn();

@@ -21,7 +21,8 @@ typedef enum slVerdict {
     SL_NO_CLUSTER, /**< none of its clusters is left */
     SL_NO_TIME,    /**< although it may be visible */
     SL_NOT_IN_PVS,
-    SL_NO_WINDOW /**< it lies in no window of a portal */
+    SL_NO_WINDOW, /**< it lies in no window of a portal */
+    SL_FACES_AWAY /**< each of its faces in the view is single-sided and looks away */
 } slVerdict;
 
 /** An occluder that hides it. */

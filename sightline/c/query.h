@@ -21,6 +21,7 @@ typedef enum slStage {
     SL_STAGE_OCCLUSION,
     SL_STAGE_LOD, /**< levels of detail; culls under a hard budget alone */
     SL_STAGE_CLUSTERS,
+    SL_STAGE_FACING, /**< counts objects whose faces in the view all look away; no bit of slQuerySettings.stages */
     SL_STAGE_COUNT
 } slStage;
 
@@ -105,7 +106,12 @@ typedef struct slQueryStats {
     uint64_t nanoseconds;
     bool budget_spent;      /**< occluders were left out: occluder_triangles */
     bool second_look_spent; /**< objects were not asked: second_look_polygons */
+    uint32_t off;           /**< bits of what was switched off by another setting: slOffWords() */
 } slQueryStats;
+
+/** What a bit of slQueryStats.off says, as "bins: strips need the stages frustum and occlusion"; null: it is none.
+ * @param bit  its number [0 to 31] */
+SL_API const char* slOffWords(uint32_t bit);
 
 /** The scratch of one thread, to be kept from frame to frame. It allocates only when world or viewport have grown, or
  * when it remembers more certificates, or more is proposed to it, than ever before. It keeps the memory of the snapshot that it was asked last until it is

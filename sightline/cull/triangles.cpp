@@ -222,6 +222,22 @@ bool isOpenStill(DepthTiles& tiles, const OccludeePlace& place, const Occluder& 
     return cover == Cover::kOpen || (cover == Cover::kUndecided && !resolveHidden(tiles, occludee, &walk.box));
 }
 
+/// Whether a polygon lies in the view that is turned away, and so is not drawn. No polygon that would be drawn does.
+bool showsBack(const OccludeePlace& place, const Occluder& shape, std::span<const ClusterLook> clusters) {
+    OccludeePolygon occludee;
+    for (const ClusterLook& next : clusters) {
+        ClusterWalk walk(place, shape, next.cluster);
+        if (!walk.begin(next.w)) return false;
+        for (uint32_t p = 0; p < walk.cluster.polygon_count; ++p) {
+            OccluderPolygon polygon = shape.polygons[walk.cluster.first_polygon + p];
+            if (polygon.double_sided) continue;
+            polygon.double_sided = true;
+            if (walk.polygon(polygon, occludee) != Sight::kOutside) return true;
+        }
+    }
+    return false;
+}
+
 }  // namespace
 
 Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder& shape, TriangleScratch& scratch,
@@ -233,7 +249,7 @@ Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder
         look.polygons = look.by_first;
         if (look.by_first) return Sight::kVisible;
     }
-    bool in_view = false;
+    bool in_view = false, beside = false, beyond = false;
     const uint64_t polygons = gatherClusters(tiles, place, shape, scratch.clusters, in_view);
     look.spent = polygons > look.most_polygons;
     if (look.spent) return Sight::kVisible;
@@ -251,15 +267,18 @@ Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder
             ++look.polygons;
             const OccluderPolygon& polygon = shape.polygons[walk.cluster.first_polygon + p];
             if (part && walk.liesBeside(tiles, polygon)) {
-                in_view = true;
+                beside = true;
                 continue;
             }
             const Sight made = walk.polygon(polygon, occludee);
             look.in_doubt = made == Sight::kVisible;
             if (look.in_doubt) return made;
-            if (made == Sight::kOutside) continue;
+            if (made == Sight::kOutside) {
+                beyond = true;
+                continue;
+            }
             if (!tiles.clip(occludee.rect)) {
-                in_view = true;
+                beside = true;
                 continue;
             }
             const Cover cover = lookAt(tiles, occludee, &walk.box);
@@ -277,7 +296,8 @@ Sight askTriangles(DepthTiles& tiles, const OccludeePlace& place, const Occluder
         const OccludeeBox box = boxOf(place, shape.clusters[look.open.cluster]);
         if (!resolveHidden(tiles, scratch.undecided[i], &box)) return Sight::kVisible;
     }
-    return in_view ? Sight::kOccluded : Sight::kOutside;
+    look.away = beyond && !in_view && showsBack(place, shape, scratch.clusters);
+    return in_view || beside ? Sight::kOccluded : Sight::kOutside;
 }
 
 bool isOpen(DepthTiles& tiles, const OccludeePlace& place, const Occluder& shape, const OpenPolygon& polygon) {

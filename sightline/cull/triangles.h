@@ -30,7 +30,9 @@ struct TriangleLook {
     bool spent = false;                     ///< it ran into the limit
     bool by_first = false;                  ///< `first` is open still
     bool in_doubt = false;                  ///< it ended where it could not be said what lies where
-    OpenPolygon open;                       ///< where the answer is kVisible, unless the look was spent
+    /// Where the answer is not kVisible: nothing hides the object, but some of it lies in the view and is turned away.
+    bool away = false;
+    OpenPolygon open;  ///< where the answer is kVisible, unless the look was spent
 };
 
 /// The scratch memory of second looks.

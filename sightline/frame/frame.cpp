@@ -7,6 +7,7 @@
 
 #include "sightline/base/assert.h"
 #include "sightline/frame/image_part.h"
+#include "sightline/geom/off.h"
 #include "sightline/math/stretch.h"
 
 namespace sightline::detail {
@@ -22,6 +23,7 @@ void Frame::begin(const SnapshotState* now, const View& from, const QuerySetting
     volume_owners = {};
     sizes.clear();
     objects = 0;
+    off = 0;
     problem = problemOf(view);
     usable = problem == ViewProblem::kNone;
     if (usable) {
@@ -34,12 +36,28 @@ void Frame::begin(const SnapshotState* now, const View& from, const QuerySetting
     if (world->lods.size() < 2 || !usable) stages &= ~stageBit(Stage::kLod);
     if (uses(Stage::kLod)) lods = makeLodMeasure(view);
     if (usable) sizes.begin(*world, view, settings, stages, frustum.eye, shown);
+    noteOff();
     every_layer = (world->common_layers & view.layers) != 0 || world->count == 0;
     objects = world->count;
     if (every_layer) return;
     objects = 0;
     for (uint32_t place = 0; place < world->placed.size(); ++place) objects += isInLayers(place);
     for (const uint32_t row : world->unbounded) objects += (world->objects[row].layers & view.layers) != 0;
+}
+
+void Frame::noteOff() {
+    if (!usable) return;
+    const auto note = [&](bool is_off, Off what) { off |= is_off ? offBit(what) : 0; };
+    const bool cells_asked = world->cell_state.cells && (settings.stages & kCellStages);
+    const bool remembers = settings.proofs || settings.unasked_answers > 0;
+    const bool frustum = uses(Stage::kFrustum), occlusion = uses(Stage::kOcclusion);
+    note(cells_asked && view.sections.count > 0 && !(stages & kCellStages), Off::kCellsBySections);
+    note(view.eye_radius != 0.0, Off::kStagesByEyeRadius);
+    note(view.window.count > 0 && !frustum, Off::kWindowByStages);
+    note(settings.bins > 1 && !(frustum && occlusion), Off::kBinsByStages);
+    note(settings.stateless && occlusion && remembers, Off::kMemoryByStateless);
+    note(!settings.stateless && settings.proofs && occlusion && !frustum, Off::kCertificatesByStages);
+    note(uses(Stage::kLod) && occlusion, Off::kOccludersByLods);
 }
 
 Box3d Frame::boundsAt(uint32_t place) const {

@@ -28,6 +28,7 @@ struct Frame {
     View view;
     QuerySettings settings;
     uint32_t stages = 0;  ///< bits of Stage: those in use
+    uint32_t off = 0;     ///< bits of Off: what the view and the settings switch off whatever the answer is
     ViewProblem problem = ViewProblem::kNone;
     bool usable = false;      ///< the view has no problem; else nothing can be proved hidden: all is kept
     bool every_layer = true;  ///< no object is outside the view's layers
@@ -83,6 +84,7 @@ struct Frame {
     uint32_t columns() const { return screen.width / 8; }
 
 private:
+    void noteOff();
     bool errsLittle(uint32_t place) const;
 };
 

@@ -81,6 +81,8 @@ public:
     /// @param proposed  objects that somebody else takes to be hidden; others are passed over
     void begin(const Frame& frame, std::span<const ObjectId> proposed = {});
     Way way() const { return way_; }
+    /// Whether answers for this view may rest on certificates.
+    bool possible() const { return possible_; }
     /// Takes over what another memory found for its last view: who hides what has no certificate here. From then on the
     /// other one is a teacher: it draws each view, and seeks certificates for all that it finds hidden. This one is taught:
     /// for some answers it seeks nothing, and draws nothing but at a cut. O(what was found).
@@ -99,6 +101,7 @@ public:
         Box3f box;
         uint32_t index = 0;
         Pending::Kind kind = Pending::Kind::kNode;
+        PlaceRange below;
     };
 
     /// What this answer culled, and by which certificate.
@@ -127,6 +130,10 @@ public:
     void seekAll(const Frame& frame, const QueryStats& stats, size_t visible);
     /// A view was answered: compares the work of both ways, and decides how the next one is.
     void noteAnswered(const QueryStats& stats, size_t visible);
+
+    /// Of the last certificate that held or was found, if it names nobody: whether some of what it culls looks away; else
+    /// all of it lies outside of the view.
+    bool looksAway() const { return looks_away_; }
 
     /// The parts whose shadows hid a node or an object by the last certificate that held or was found; good until the
     /// next call.
@@ -282,7 +289,8 @@ private:
     ImageFrame image_;
 
     Way way_ = Way::kTiles;
-    bool possible_ = false;     ///< for this view
+    bool possible_ = false;  ///< for this view
+    bool looks_away_ = false;
     uint64_t cuts_before_ = 0;  ///< Uncovered::cuts() at the start of the answer
     uint32_t passed_over_ = 0;
     bool spent_ = false;  ///< certificates were not sought for all

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "sightline/geom/off.h"
 #include "sightline/geom/stage.h"
 
 namespace sightline {
@@ -53,6 +54,7 @@ struct QueryStats {
     bool budget_spent = false;
     bool second_look_spent = false;
     bool lod_exceeded = false;
+    uint32_t off = 0;  ///< bits of Off: what the settings and the view asked for, and was switched off all the same
 
     StageStats& of(Stage stage) { return stages[static_cast<int>(stage)]; }
     const StageStats& of(Stage stage) const { return stages[static_cast<int>(stage)]; }
@@ -143,6 +145,7 @@ inline void QueryStats::addWork(const QueryStats& other) {
     for (const CounterRow& row : kQueryCounters)
         if (row.kind != CounterRow::kOfAnswer) this->*row.member += other.*row.member;
     for (const CounterFlagRow& row : kQueryFlags) this->*row.member |= other.*row.member;
+    off |= other.off;
 }
 
 }  // namespace sightline

@@ -107,9 +107,10 @@ struct TraversalState {
     /// Per place: the polygon that was open in the last answer that asked the object there by its triangles. It outlives
     /// the answer; what has moved to another place meanwhile is asked in vain.
     Array<OpenPolygon> open_at;
-    Turns turns;              ///< it outlives the answer, too
-    ProofMemory proofs;       ///< and so does this
-    Array<NodeVisit> visits;  ///< the queue, where the traversal is in any order
+    Turns turns;                ///< it outlives the answer, too
+    ProofMemory proofs;         ///< and so does this
+    bool notes_hidden = false;  ///< ProofMemory::hidden is to be filled
+    Array<NodeVisit> visits;    ///< the queue, where the traversal is in any order
     OpenVolumes volumes;
     QueryStats stats;
 

@@ -11,11 +11,12 @@
 #include "sightline/frame/validate_proofs.h"
 #include "sightline/query/explain/shadows.h"
 #include "sightline/query/traversal.h"
+#include "sightline/tree/descend.h"
 
 namespace sightline::detail {
 
 Answer::Answer(Memory* memory)
-    : memory_(memory), memory_of_stages_(memory), parts_(memory), merged_(memory), counted_(memory) {
+    : memory_(memory), memory_of_stages_(memory), parts_(memory), tiles_(memory), merged_(memory), counted_(memory) {
     parts_.push_back(makeOwned<TraversalState>(memory, memory));
 }
 
@@ -24,9 +25,18 @@ void Answer::begin(const Snapshot& now, const View& view, const QuerySettings& s
     const Stopwatch watch;
     frame_.begin(now, view, settings, shown);
     chooseStages(frame_, memory_of_stages_, settings.time_stages ? choose_nanoseconds_ : nullptr);
-    count_ = now ? partCount(frame_) : 1;
+    ProofMemory& proofs = parts_[0]->proofs;
+    proofs.begin(frame_, proposed);
+    // What rests on certificates is not shared out: nothing is drawn. Nor are proposals, which the first part would judge.
+    const bool shares = proofs.way() != ProofMemory::Way::kProofs && !(proofs.possible() && !proposed.empty());
+    count_ = now && shares ? partCount(frame_) : 1;
     while (parts_.size() < count_) parts_.push_back(makeOwned<TraversalState>(memory_, memory_));
-    parts_[0]->proofs.begin(frame_, proposed);
+    for (uint32_t part = 0; part < count_; ++part) {
+        if (part > 0) parts_[part]->proofs.hidden.clear();
+        parts_[part]->notes_hidden = proofs.way() == ProofMemory::Way::kTilesAndSeek;
+    }
+    tiles_.clear();
+    for (uint32_t part = 0; part < count_ && frame_.usable; ++part) tiles_.push_back(&parts_[part]->tiles);
     merged_.clear();
     memory_of_stages_.lods.clear();
     memory_of_stages_.clusters.clear();
@@ -45,17 +55,84 @@ void Answer::run(uint32_t part) {
     traverse(frame_, state, image, frame_.settings.time_stages);
     if (by_proofs && proofs.way() != ProofMemory::Way::kProofs) {
         state.turns.begin(frame_, false);
+        state.notes_hidden = proofs.way() == ProofMemory::Way::kTilesAndSeek;
         proofs.culled.clear();
         traverse(frame_, state, image, frame_.settings.time_stages);
     }
-    if (proofs.way() == ProofMemory::Way::kTilesAndSeek) proofs.seekAll(frame_, state.stats, state.visible.size());
-    state.stats.proofs_sought = proofs.sought + proofs.proposalsTried();
-    state.stats.proofs_found = proofs.found;
-    state.stats.proof_rays = proofs.rays;
-    state.stats.proof_cuts = proofs.cuts();
-    proofs.noteAnswered(state.stats, state.visible.size());
-    validateProofs(proofs);
+    if (count_ == 1) learnFrom(state.stats, state.visible.size());
     state.stats.nanoseconds = watch.nanoseconds();
+}
+
+/// Seeks certificates for what was found to be hidden, and decides how the next view is answered.
+void Answer::learnFrom(QueryStats& from, size_t visible) {
+    ProofMemory& proofs = parts_[0]->proofs;
+    if (proofs.way() == ProofMemory::Way::kTilesAndSeek) proofs.seekAll(frame_, from, visible);
+    from.proofs_sought = proofs.sought + proofs.proposalsTried();
+    from.proofs_found = proofs.found;
+    from.proof_rays = proofs.rays;
+    from.proof_cuts = proofs.cuts();
+    proofs.noteAnswered(from, visible);
+    validateProofs(proofs);
+}
+
+/// Whether the answer keeps one of the objects at these places; of an answer in parts, once they are put together.
+bool Answer::keepsAny(const PlaceRange& places) const {
+    for (uint32_t place = places.first; place < places.first + places.count; ++place)
+        if (counted_[place] == answer_) return true;
+    return false;
+}
+
+/// Adds what a part found to be hidden, or what of it no other part keeps.
+void Answer::addHidden(const ProofMemory::Hidden& one) {
+    if (!keepsAny(one.below)) return parts_[0]->proofs.hidden.push_back(one);
+    if (one.kind == Pending::Kind::kObject) return;
+    const PlacedBvh& bvh = frame_.world->bvh;
+    const BvhNode& node = bvh.nodes[one.index];
+    const EyeBoxes boxes = eyeBoxes(node, bvh.origin - frame_.frustum.eye);
+    forEachSlot(usedSlots(node), [&](int slot) {
+        const bool leaf = node.child[slot] & BvhNode::kLeaf;
+        addHidden({boxOf(boxes, slot), node.child[slot] & ~BvhNode::kLeaf,
+                   leaf ? Pending::Kind::kObject : Pending::Kind::kNode, placesBelow(node, slot)});
+    });
+}
+
+/// What all parts together found to be hidden, each thing once.
+void Answer::gatherHidden() {
+    Array<ProofMemory::Hidden>& all = parts_[0]->proofs.hidden;
+    const size_t own = all.size();
+    for (size_t i = 0; i < own; ++i) {
+        const ProofMemory::Hidden one = all[i];
+        addHidden(one);
+    }
+    for (uint32_t part = 1; part < count_; ++part)
+        for (const ProofMemory::Hidden& one : parts_[part]->proofs.hidden) addHidden(one);
+    std::copy(all.begin() + static_cast<ptrdiff_t>(own), all.end(), all.begin());
+    all.resize(all.size() - own);
+    // Wider ones first; what lies in one that was taken goes.
+    std::sort(all.begin(), all.end(), [](const ProofMemory::Hidden& a, const ProofMemory::Hidden& b) {
+        if (a.below.first != b.below.first) return a.below.first < b.below.first;
+        return a.below.count != b.below.count ? a.below.count > b.below.count : a.kind < b.kind;
+    });
+    uint32_t end = 0;
+    erase_if(all, [&](const ProofMemory::Hidden& one) {
+        if (one.below.first + one.below.count <= end) return true;
+        end = one.below.first + one.below.count;
+        return false;
+    });
+}
+
+void Answer::noteOff() {
+    stats.off = frame_.off;
+    const ProofMemory& proofs = parts_[0]->proofs;
+    const QuerySettings& settings = frame_.settings;
+    const auto note = [&](bool is_off, Off what) { stats.off |= is_off ? offBit(what) : 0; };
+    const bool both = frame_.uses(Stage::kFrustum) && frame_.uses(Stage::kOcclusion);
+    if (!frame_.world || !frame_.usable || !both || !settings.proofs || settings.stateless) return;
+    note(!proofs.possible() && !frame_.world->bvh.nodes.empty(), Off::kCertificatesByView);
+    note(proofs.possible() && count_ < partCount(frame_), Off::kBinsByCertificates);
+    if (proofs.way() != ProofMemory::Way::kProofs) return;
+    note(frame_.uses(Stage::kClusters) && frame_.world->clusters.size() > 1, Off::kClusterLookByCertificates);
+    note(closedGap(settings) > 0.0, Off::kGapsByCertificates);
 }
 
 /// Notes a place; false if it has been in this answer.
@@ -114,13 +191,20 @@ void Answer::finish() {
             answer_ = 1;
         }
         mergeVisible();
+        if (parts_[0]->notes_hidden) gatherHidden();
         for (uint32_t part = 0; part < count_; ++part)
             for (const CulledRange& range : parts_[part]->culled)
                 if (range.stage != Stage::kOcclusion && countOnce(range.places.first))
                     stats.of(range.stage).culled += frame_.countObjects(range.places);
     }
     stats.visible = visible().size();
+    if (count_ > 1) {
+        const Stopwatch watch;
+        learnFrom(stats, stats.visible);
+        stats.nanoseconds += watch.nanoseconds();
+    }
     addStages();
+    noteOff();
 }
 
 /// Counts what the stages of cells did, and how many objects each stage had to test.
@@ -130,11 +214,13 @@ void Answer::addStages() {
         stats.of(stage).doubt = cells().doubt(stage);
     }
     uint64_t left = stats.objects;
-    for (int i = 0; i < kStageCount; ++i) {
-        StageStats& stage = stats.stages[i];
-        if (count_ > 1 && static_cast<Stage>(i) == Stage::kOcclusion) stage.culled = left - stats.visible;
-        stage.tested = frame_.uses(static_cast<Stage>(i)) ? left : 0;
-        if (frame_.settings.time_stages) stage.nanoseconds += choose_nanoseconds_[i];
+    const uint32_t counted = countedStages(frame_.stages);
+    for (const Stage at : kStageOrder) {
+        StageStats& stage = stats.of(at);
+        if (count_ > 1 && at == Stage::kOcclusion)
+            stage.culled = left - stats.visible - stats.of(Stage::kFacing).culled;
+        stage.tested = counted & stageBit(at) ? left : 0;
+        if (frame_.settings.time_stages) stage.nanoseconds += choose_nanoseconds_[static_cast<int>(at)];
         SIGHTLINE_DEBUG_ASSERT(stage.culled <= left);
         left -= stage.culled;
     }
@@ -161,8 +247,8 @@ void Answer::refine(Stage last) {
         row.of_answer(frame_, memory_of_stages_, answer);
         const uint64_t took = watch.nanoseconds();
         SIGHTLINE_DEBUG_ASSERT(stats.visible == visible().size());
-        for (int i = static_cast<int>(row.stage) + 1; i < kStageCount; ++i)
-            if (frame_.uses(static_cast<Stage>(i))) stats.stages[i].tested -= stats.of(row.stage).culled;
+        if (row.stage == Stage::kLod && frame_.uses(Stage::kClusters))
+            stats.of(Stage::kClusters).tested -= stats.of(row.stage).culled;
         stats.nanoseconds += took;
         if (frame_.settings.time_stages) stats.of(row.stage).nanoseconds = took;
     }
@@ -191,6 +277,13 @@ void Answer::reasons(std::span<uint8_t> reasons) const {
     if (frame_.every_layer) return;
     for (uint32_t item = 0; item < world->count; ++item)
         if (!(world->object(item).layers & frame_.view.layers)) reasons[item] = 255;
+}
+
+Stage Answer::reasonOf(ObjectId id) const {
+    const uint32_t place = frame_.world ? frame_.world->placeOf(id) : PlacedBvh::kNone;
+    for (const CulledRange& range : parts_[0]->culled)
+        if (place != PlacedBvh::kNone && range.places.holds(place)) return range.stage;
+    return Stage::kFrustum;
 }
 
 bool Answer::wasUnasked(ObjectId id) const {

@@ -53,11 +53,13 @@ public:
     const ClusterMemory& clusters() const { return memory_of_stages_.clusters; }
     LodMemory& lods() { return memory_of_stages_.lods; }
     const LodMemory& lods() const { return memory_of_stages_.lods; }
-    AnswerView view() { return {visible(), stats, count_ == 1 && frame_.usable ? &parts_[0]->tiles : nullptr}; }
+    AnswerView view() { return {visible(), stats, tiles_}; }
 
     /// As Query::reasons(). An object that one part hides and another part does not meet is hidden: of two stages the
     /// finer one is reported.
     void reasons(std::span<uint8_t> reasons) const;
+    /// The stage that culled an object in the first part of the image; kFrustum if none did.
+    Stage reasonOf(ObjectId id) const;
     /// As Query::DepthImage has it.  [size: pixels of the buffer]
     void depthImage(Seams seams, std::span<float> nearness, std::span<uint8_t> covered);
     /// Whether a certificate culled an object in this answer, and the objects that it names.
@@ -73,6 +75,11 @@ private:
     bool countOnce(uint32_t place);
     void mergeVisible();
     void addStages();
+    void learnFrom(QueryStats& from, size_t visible);
+    void noteOff();
+    void gatherHidden();
+    void addHidden(const ProofMemory::Hidden& one);
+    bool keepsAny(const PlaceRange& places) const;
 
     Memory* const memory_;
     Frame frame_;
@@ -81,6 +88,7 @@ private:
     uint32_t count_ = 1;
     uint64_t choosing_ = 0;  ///< what begin() took  [nanoseconds]
     uint64_t choose_nanoseconds_[kStageCount] = {};
+    Array<DepthTiles*> tiles_;  ///< of each part, if the view is usable
     Array<Visible> merged_;
     Array<uint32_t> counted_;  ///< per place: the last answer in which it was kept, or culled with those that follow it
     uint32_t answer_ = 0;

@@ -23,6 +23,7 @@ struct Query::Impl {
     void ask(std::span<detail::Answer* const> eyes, const Snapshot& now, std::span<const View* const> views,
              const QuerySettings& settings);
     void mergeEyes();
+    void noteOffOfTwo();
     void findScissors();
 
     Memory* const memory;
@@ -125,6 +126,7 @@ StereoSet Query::visibleStereo(const Snapshot& now, const View& left, const View
         for (size_t eye : {0, 1}) impl.ask({&eyes[eye], 1}, now, {&views[eye], 1}, settings);
     impl.shown.unmark(impl.before);
     impl.mergeEyes();
+    impl.noteOffOfTwo();
     const detail::Frame* const frames[] = {&impl.left.frame(), &impl.right->frame()};
     if (frames[0]->uses(Stage::kLod) && frames[1]->uses(Stage::kLod))
         impl.left.lods().run(frames, impl.both, impl.left.stats);
@@ -174,6 +176,18 @@ void Query::Impl::mergeEyes() {
     for (; at < left.visible().size(); ++at) take(left.visible()[at]);
     for (const Visible& v : both) mark[v.id.index] = 0;
     SIGHTLINE_DEBUG_ASSERT(both.size() == eyes.size());
+}
+
+void Query::Impl::noteOffOfTwo() {
+    for (detail::Answer* eye : {&left, right.get()}) {
+        const detail::Frame& frame = eye->frame();
+        if (!frame.world || !frame.usable) continue;
+        if (frame.uses(Stage::kClusters) && frame.world->clusters.size() > 1)
+            eye->stats.off =
+                (eye->stats.off & ~offBit(Off::kClusterLookByCertificates)) | offBit(Off::kClustersByTwoEyes);
+        if (frame.uses(Stage::kLod) && frame.settings.budget > 0.0 && frame.settings.hard_budget)
+            eye->stats.off |= offBit(Off::kHardBudgetByTwoEyes);
+    }
 }
 
 namespace {
@@ -289,8 +303,9 @@ Explanation Query::explain(const Snapshot& now, const View& view, ObjectId id, c
     if (!impl_->left.certificateOf(id, why.certificate) || why.verdict != Verdict::kVisible) return why;
     // Drawing keeps what the last answer proved to be hidden.
     if (why.certificate.empty()) {
-        why.verdict = Verdict::kOutsideFrustum;
-        why.frustum.by_triangles = true;
+        const bool away = impl_->left.reasonOf(id) == Stage::kFacing;
+        why.verdict = away ? Verdict::kFacesAway : Verdict::kOutsideFrustum;
+        why.frustum.by_triangles = !away;
         return why;
     }
     why.verdict = Verdict::kOccluded;

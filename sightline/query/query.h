@@ -121,7 +121,7 @@ public:
     ///
     /// Proposals stand until the next call; each costs a lookup in each answer. Ids that are stale, or of no object of the
     /// snapshot, are passed over. They do nothing where answers rest on no certificates: without
-    /// QuerySettings::proofs, with ::stateless or ::bins, with Stage::kClusters, in parallel views.
+    /// QuerySettings::proofs, with ::stateless, in parallel views. QueryStats::off tells.
     void propose(std::span<const ObjectId> hidden);
 
     /// Takes over what another query found out for its last view: who hides whom. For their next 128 answers the two share

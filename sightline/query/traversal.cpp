@@ -128,8 +128,8 @@ private:
 
     /// Where certificates are sought for what is hidden.
     void noteHidden(const Pending& entry) {
-        if (state_.proofs.way() != ProofMemory::Way::kTilesAndSeek) return;
-        state_.proofs.hidden.push_back({entry.box, entry.index, entry.kind});
+        if (!state_.notes_hidden) return;
+        state_.proofs.hidden.push_back({entry.box, entry.index, entry.kind, entry.below});
     }
 
     Group groupOf(uint32_t index, uint32_t planes) {

@@ -9,10 +9,12 @@ namespace {
 
 /// What a closer look says. Without the frustum stage, what lies outside of the view is kept. What a strip finds outside
 /// may lie in another: to the strip it is hidden.
-TurnAnswer settle(const Frame& frame, const TraversalState& state, Look look, Sight sight) {
+/// @param away  its faces in the view look away
+TurnAnswer settle(const Frame& frame, const TraversalState& state, Look look, Sight sight, bool away = false) {
     if (sight == Sight::kVisible || (sight == Sight::kOutside && !frame.uses(Stage::kFrustum))) return {.look = look};
     const bool outside = sight == Sight::kOutside && state.part.whole();
-    return {.culled = true, .stage = outside ? Stage::kFrustum : Stage::kOcclusion, .look = look};
+    const Stage stage = away ? Stage::kFacing : outside ? Stage::kFrustum : Stage::kOcclusion;
+    return {.culled = true, .stage = stage, .look = look};
 }
 
 }  // namespace
@@ -89,7 +91,7 @@ TurnAnswer cullByTriangles(const Frame& frame, TraversalState& state, const Seco
     SIGHTLINE_DEBUG_ASSERT(look.spent || look.polygons <= look.most_polygons);
     state.stats.second_look_polygons += look.polygons;
     state.stats.second_look_spent |= look.spent;
-    TurnAnswer answer = settle(frame, state, Look::kTriangles, sight);
+    TurnAnswer answer = settle(frame, state, Look::kTriangles, sight, look.away);
     state.stats.second_look_culled += answer.culled;
     OpenPolygon found{OpenPolygon::kNone};
     if (answer.culled) {

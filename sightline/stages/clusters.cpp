@@ -41,6 +41,18 @@ bool seesOutside(const Box3f& box, const Screen* object, const View& view) {
     return !answer.doubt && !answer.outside;
 }
 
+/// Whether a rectangle is hidden in each part of the image that it meets, and meets one.
+bool isHiddenInAll(std::span<DepthTiles* const> parts, const PixelRect& rect) {
+    bool meets = false;
+    for (DepthTiles* const tiles : parts) {
+        PixelRect here = rect;
+        if (!tiles->clip(here)) continue;
+        if (!isHidden(*tiles, here, Seams::kLeave)) return false;
+        meets = true;
+    }
+    return meets;
+}
+
 }  // namespace
 
 /// Leaves the clusters of which some triangle may be seen from its front.
@@ -63,8 +75,8 @@ void ClusterMemory::findFacing(const DrawClusters& clusters, const ObjectRecord&
 }
 
 /// Leaves, of these, the clusters that lie in the view and are not hidden.
-void ClusterMemory::findSeen(const DrawClusters& clusters, const Frame& frame, const Screen& screen, DepthTiles& tiles,
-                             QueryStats& stats) {
+void ClusterMemory::findSeen(const DrawClusters& clusters, const Frame& frame, const Screen& screen,
+                             std::span<DepthTiles* const> tiles, QueryStats& stats) {
     const bool frustum = frame.uses(Stage::kFrustum), occlusion = frame.uses(Stage::kOcclusion);
     if (!frustum && !occlusion) return;
     SIGHTLINE_DEBUG_ASSERT(8 * left_.size() >= clusters.count());
@@ -78,9 +90,7 @@ void ClusterMemory::findSeen(const DrawClusters& clusters, const Frame& frame, c
                 if (!frustum) continue;
                 ++stats.clusters_outside;
             } else {
-                PixelRect rect = on_screen.rects[which];
-                if (!occlusion || on_screen.doubt & bit || !tiles.clip(rect)) continue;
-                if (!isHidden(tiles, rect, Seams::kLeave)) continue;
+                if (!occlusion || on_screen.doubt & bit || !isHiddenInAll(tiles, on_screen.rects[which])) continue;
                 ++stats.clusters_hidden;
             }
             left_[byte] &= static_cast<uint8_t>(~bit);
@@ -110,12 +120,12 @@ void ClusterMemory::addRanges(const DrawClusters& clusters, uint32_t gap, uint32
 
 /// @returns whether something is left of the object
 bool ClusterMemory::select(const Frame& frame, const DrawClusters& clusters, const ObjectRecord& object,
-                           DepthTiles* tiles, uint32_t visible, QueryStats& stats) {
+                           std::span<DepthTiles* const> tiles, uint32_t visible, QueryStats& stats) {
     stats.clusters_tested += clusters.count();
     Screen placed;
-    if (tiles) placed = objectScreen(frame.screen, object.transform);
-    findFacing(clusters, object, frame.view, tiles ? &placed : nullptr, stats);
-    if (tiles) findSeen(clusters, frame, placed, *tiles, stats);
+    if (frame.usable) placed = objectScreen(frame.screen, object.transform);
+    findFacing(clusters, object, frame.view, frame.usable ? &placed : nullptr, stats);
+    if (frame.usable) findSeen(clusters, frame, placed, tiles, stats);
     if (countBits(left_) == 0) return false;
     stats.cluster_triangles += clusters.triangles.size();
     addRanges(clusters, frame.settings.cluster_gap, visible, stats);

@@ -118,7 +118,10 @@ void ProofMemory::takeUp(const Frame& frame, Pending::Kind kind, uint32_t index,
 bool ProofMemory::hiddenBy(const Frame& frame, const Certificate& certificate, const Body& body) {
     rest_.clear();
     SIGHTLINE_DEBUG_ASSERT(possible_ && corners_.count <= Uncovered::kMostCorners && corners_.error >= 0);
-    if (corners_.count == 0) return true;
+    if (corners_.count == 0) {
+        looks_away_ = true;
+        return true;
+    }
     for (const uint32_t hider : certificate.all()) {
         const Shadow* const shadow = shadowOf(frame, hider);
         if (shadow && shadow->holds(corners_.at, corners_.count, corners_.error)) return true;
@@ -136,6 +139,7 @@ bool ProofMemory::hiddenBy(const Frame& frame, const Certificate& certificate, c
 /// Whether a certificate holds.
 bool ProofMemory::isCovered(const Frame& frame, const Certificate& certificate, Pending::Kind kind, uint32_t index,
                             const Box3f& box) {
+    looks_away_ = false;
     return forEachBody(frame, kind, index, certificate.closely, [&](const Body& body) {
         takeUp(frame, kind, index, box, body);
         return hiddenBy(frame, certificate, body);

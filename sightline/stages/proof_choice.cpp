@@ -49,10 +49,8 @@ void ProofMemory::begin(const Frame& frame, std::span<const ObjectId> proposed) 
     rays = polygons = 0;
     way_ = Way::kTiles;
     const QuerySettings& settings = frame.settings;
-    possible_ = settings.proofs && !settings.stateless && settings.bins <= 1 && frame.usable && frame.world &&
+    possible_ = settings.proofs && !settings.stateless && frame.usable && frame.world &&
                 !frame.world->bvh.nodes.empty() && frame.uses(Stage::kOcclusion) && frame.uses(Stage::kFrustum);
-    // Clusters are held against what was drawn.
-    if (possible_ && frame.uses(Stage::kClusters) && frame.world->clusters.size() > 1) possible_ = false;
     if (!possible_) return;
     view_ = makeVolumeView(frame.view, frame.screen, frame.world->bvh.origin - frame.frustum.eye);
     image_ = makeImageFrame(frame.screen);

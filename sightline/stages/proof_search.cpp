@@ -222,6 +222,7 @@ bool ProofMemory::seek(const Frame& frame, Pending::Kind kind, uint32_t index, c
     SIGHTLINE_DEBUG_ASSERT(possible_ && kind != Pending::Kind::kCluster);
     ++sought;
     Certificate out;
+    looks_away_ = false;
     last_ray_ = glm::dvec3(0.0);
     if (!closely && isStillSeen(frame, kind, index, box)) return noteFailed(frame, kind, index, box, closely);
     if (!forEachBody(frame, kind, index, closely, [&](const Body& body) {

@@ -268,8 +268,8 @@ namespace {
 TurnAnswer cull(ProofMemory& proofs, const Pending& entry) {
     const Certificate certificate = proofs.certificateOf(entry.kind, entry.index);
     proofs.culled.push_back({entry.below, certificate});
-    // Where nobody had to hide it, it lies beside the image, or faces away.
-    return {.culled = true, .stage = certificate.count > 0 ? Stage::kOcclusion : Stage::kFrustum};
+    const Stage unhidden = proofs.looksAway() ? Stage::kFacing : Stage::kFrustum;
+    return {.culled = true, .stage = certificate.count > 0 ? Stage::kOcclusion : unhidden};
 }
 
 }  // namespace

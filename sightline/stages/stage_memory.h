@@ -167,8 +167,8 @@ private:
 struct AnswerView {
     Array<Visible>& visible;
     QueryStats& stats;
-    DepthTiles* tiles = nullptr;      ///< of the whole image; null: it was answered in parts
-    std::span<VisibleLod> lods = {};  ///< per object; empty: no levels were chosen
+    std::span<DepthTiles* const> tiles;  ///< of each part of the image; none if the view is not usable
+    std::span<VisibleLod> lods = {};     ///< per object; empty: no levels were chosen
 };
 
 /// The levels of detail of one answer, and what is remembered of the one before.
@@ -227,7 +227,7 @@ private:
 ///
 /// Clusters are hidden by what the traversal drew. That is sound as the second look is: along each ray the nearest
 /// point of all that is drawn has nothing in front of it, so that its cluster is kept, and hides what others hid. Of an
-/// image in parts no cluster is asked whether it is hidden.
+/// image in parts a cluster is hidden if it is in each part that it meets. Where nothing was drawn, none is.
 class ClusterMemory {
 public:
     explicit ClusterMemory(Memory* memory) : ranges_(memory), culled_(memory), left_(memory) {}
@@ -243,12 +243,12 @@ public:
     void reasons(const SnapshotState& now, std::span<uint8_t> reasons) const;
 
 private:
-    bool select(const Frame& frame, const DrawClusters& clusters, const ObjectRecord& object, DepthTiles* tiles,
-                uint32_t visible, QueryStats& stats);
+    bool select(const Frame& frame, const DrawClusters& clusters, const ObjectRecord& object,
+                std::span<DepthTiles* const> tiles, uint32_t visible, QueryStats& stats);
     void findFacing(const DrawClusters& clusters, const ObjectRecord& object, const View& view, const Screen* screen,
                     QueryStats& stats);
-    void findSeen(const DrawClusters& clusters, const Frame& frame, const Screen& screen, DepthTiles& tiles,
-                  QueryStats& stats);
+    void findSeen(const DrawClusters& clusters, const Frame& frame, const Screen& screen,
+                  std::span<DepthTiles* const> tiles, QueryStats& stats);
     void addRanges(const DrawClusters& clusters, uint32_t gap, uint32_t visible, QueryStats& stats);
 
     Array<DrawRange> ranges_;

@@ -183,7 +183,12 @@ std::string valueName(const CLI::Option& option) {
 }
 
 std::vector<std::string> choicesOf(const CLI::Option& option) {
-    if (isList(option)) return {std::begin(kStageNames), std::end(kStageNames)};
+    if (isList(option)) {
+        std::vector<std::string> chosen;
+        for (int stage = 0; stage < kStageCount; ++stage)
+            if (kAllStages >> stage & 1) chosen.emplace_back(kStageNames[stage]);
+        return chosen;
+    }
     const std::string type = option.get_type_name();  // of CLI::IsMember "TEXT:{a,b}"
     const size_t open = type.find(":{");
     if (open == std::string::npos || type.back() != '}') return {};

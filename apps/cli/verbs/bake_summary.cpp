@@ -13,6 +13,7 @@
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/explain_object.h"
+#include "sightline/tools/report/readable.h"
 #include "sightline/tools/report/run/cull_run.h"
 #include "sightline/tools/scene/json_text.h"
 #include "sightline/tools/scene/one_line.h"
@@ -30,7 +31,7 @@ std::string percentText(uint64_t part, uint64_t whole) { return fmt::format("{:.
 
 /// What ends sight, or ended the bake, early.
 void printLimits(std::FILE* out, const VisSummary& s) {
-    if (s.farthest > 0) tell(out, fmt::format("  sight ends at {:g} units\n", s.farthest));
+    if (s.farthest > 0) tell(out, fmt::format("  sight ends at {} units\n", readable(s.farthest, 6)));
     if (s.over_budget)
         tell(out,
              fmt::format("  portals over budget {}: what they may see counts as visible\n", grouped(s.over_budget)));
@@ -40,8 +41,8 @@ void printLimits(std::FILE* out, const VisSummary& s) {
 void printFindings(std::FILE* out, const SceneCellReport& report) {
     constexpr size_t kMost = 8;
     if (report.holes)
-        tell(out, fmt::format("holes that nobody marked: {}, of {:.4g} square units; they are portals\n",
-                              grouped(report.holes), report.hole_area));
+        tell(out, fmt::format("holes that nobody marked: {}, of {} square units; they are portals\n",
+                              grouped(report.holes), readable(report.hole_area)));
     for (size_t i = 0; i < std::min(report.findings.size(), kMost); ++i)
         tell(out, fmt::format("  {}\n", oneLine(report.findings[i].text)));
     if (report.findings.size() > kMost)
@@ -49,7 +50,7 @@ void printFindings(std::FILE* out, const SceneCellReport& report) {
 }
 
 std::string pointText(const glm::dvec3& point) {
-    return fmt::format("({:.6g}, {:.6g}, {:.6g})", point.x, point.y, point.z);
+    return fmt::format("({}, {}, {})", readable(point.x, 6), readable(point.y, 6), readable(point.z, 6));
 }
 
 /// The objects whose surfaces bound a gap.
@@ -61,12 +62,12 @@ std::string boundsText(const WallGap& gap, const Scene& scene) {
 void printGaps(std::FILE* out, const SoupCellReport& report, const Scene& scene) {
     constexpr size_t kMost = 8;
     if (report.gaps.empty()) return;
-    tell(out, fmt::format("gaps between walls, up to {:.2g} wide: {}; they are seen through\n", report.widest_gap,
-                          grouped(report.gaps.size())));
+    tell(out, fmt::format("gaps between walls, up to {} wide: {}; they are seen through\n",
+                          readable(report.widest_gap, 2), grouped(report.gaps.size())));
     for (size_t i = 0; i < std::min(report.gaps.size(), kMost); ++i) {
         const WallGap& gap = report.gaps[i];
-        tell(out, fmt::format("  {:.2g} wide from {} to {}: {}\n", gap.width, pointText(gap.from), pointText(gap.to),
-                              oneLine(boundsText(gap, scene))));
+        tell(out, fmt::format("  {} wide from {} to {}: {}\n", readable(gap.width, 2), pointText(gap.from),
+                              pointText(gap.to), oneLine(boundsText(gap, scene))));
     }
     if (report.gaps.size() > kMost)
         tell(out, fmt::format("  and {} smaller ones (--json lists them)\n", grouped(report.gaps.size() - kMost)));
@@ -76,10 +77,10 @@ void printWalls(std::FILE* out, const SoupCellReport& report) {
     tell(out,
          fmt::format("walls: {} of {} faces between cells are shut, {} portals are seen through from one side alone\n",
                      grouped(report.closed), grouped(report.faces), grouped(report.one_way)));
-    tell(out, fmt::format("  {} planes with surfaces from {:.3g} x {:.3g} on; holes narrower than {:.2g} are shut; the "
+    tell(out, fmt::format("  {} planes with surfaces from {} x {} on; holes narrower than {} are shut; the "
                           "tree is {} deep\n",
-                          grouped(report.sheets), report.smallest_occluder, report.smallest_occluder,
-                          report.smallest_hole, report.depth));
+                          grouped(report.sheets), readable(report.smallest_occluder, 3),
+                          readable(report.smallest_occluder, 3), readable(report.smallest_hole, 2), report.depth));
     if (!report.trials.empty()) tell(out, "  smallest occluder      cells    portals  objects seen from a place\n");
     for (const SoupTrial& trial : report.trials)
         tell(out, fmt::format("  {:>17.3g} {:>10} {:>10} {:>10.1f} of {}{}\n", trial.smallest_occluder,
@@ -94,19 +95,21 @@ void printViews(std::FILE* out, const Baked& baked) {
     if (!baked.cells.views) return;
     const ViewCells& views = *baked.cells.views;
     if (views.tree.contents.empty())
-        return tell(
-            out, fmt::format("view cells: none, for flat parts hide {:.2g} % of the objects from a cell in the mean\n",
-                             100 * views.hidden));
-    tell(out, fmt::format("view cells: {}; of {} flat parts from {:.3g} x {:.3g} on {} hide something from a cell\n",
-                          grouped(views.tree.contents.size()), grouped(views.hiders), views.smallest_occluder,
-                          views.smallest_occluder, grouped(views.used)));
+        return tell(out,
+                    fmt::format("view cells: none, for flat parts hide {} % of the objects from a cell in the mean\n",
+                                readable(100 * views.hidden, 2)));
+    tell(out,
+         fmt::format("view cells: {}; of {} flat parts from {} x {} on {} hide something from a cell\n",
+                     grouped(views.tree.contents.size()), grouped(views.hiders), readable(views.smallest_occluder, 3),
+                     readable(views.smallest_occluder, 3), grouped(views.used)));
     tell(out,
          fmt::format("  a cell sees {:.1f} of {} objects in the mean\n",
                      ratio(baked.view_rows.count(), baked.view_rows.rows()), grouped(baked.objects.places.size())));
     if (baked.view_counts.hidden)
-        tell(out,
-             fmt::format("  of those that flat parts leave, portals hide {:.3g} %\n",
-                         100 * ratio(baked.view_counts.hidden, baked.view_rows.count() + baked.view_counts.hidden)));
+        tell(out, fmt::format("  of those that flat parts leave, portals hide {} %\n",
+                              readable(100 * ratio(baked.view_counts.hidden,
+                                                   baked.view_rows.count() + baked.view_counts.hidden),
+                                       3)));
     if (views.over_budget)
         tell(out,
              fmt::format("  cells over budget {}: what was not asked counts as visible\n", grouped(views.over_budget)));
@@ -176,16 +179,17 @@ void printVisSummary(std::FILE* out, const VisSummary& s) {
                           grouped(s.witnessed_pairs), grouped(s.unresolved_pairs),
                           percentText(s.unresolved_pairs, s.visible_leaf_pairs)));
     if (s.before)
-        tell(out, fmt::format("the lump that it came with had {} visible pairs: {} of them are gone, {} are new{}\n",
+        tell(out, fmt::format("in pairs of rows, as the lump that it came with counts: {} then, less {} that are gone, "
+                              "and {} new, are {} now{}\n",
                               grouped(s.before->visible_pairs), grouped(s.before->removed), grouped(s.before->added),
+                              grouped(s.before->visible_pairs - s.before->removed + s.before->added),
                               s.before->added > s.before->removed ? ", so that this one is looser" : ""));
     printLimits(out, s);
     for (const VisSummary::Leak& leak : s.leaks)
-        tell(out,
-             fmt::format("leaks: from {} at {:g} {:g} {:g} there is a way of {} points to the outside, which stays in "
-                         "the rows (--leak FILE.pts writes it, as dots)\n",
-                         leak.from, leak.path.front().x + 0.0, 0.0 - leak.path.front().z, leak.path.front().y + 0.0,
-                         leak.path.size()));
+        tell(out, fmt::format("leaks: from {} at {} {} {} there is a way of {} points to the outside, which stays in "
+                              "the rows (--leak FILE.pts writes it, as dots)\n",
+                              leak.from, readable(leak.path.front().x + 0.0, 6), readable(0.0 - leak.path.front().z, 6),
+                              readable(leak.path.front().y + 0.0, 6), leak.path.size()));
     if (s.objects)
         tell(out,
              fmt::format("faces: {} pairs of cells and faces, {} of those in visible cells, in {:.2f} s of CPU\n",

@@ -44,9 +44,16 @@ bool readWhole(std::string_view text, T& out) {
     return error == std::errc() && end == text.data() + text.size();
 }
 
+std::vector<std::string> chosenStageNames() {
+    std::vector<std::string> names;
+    for (int stage = 0; stage < kStageCount; ++stage)
+        if (kAllStages >> stage & 1) names.emplace_back(kStageNames[stage]);
+    return names;
+}
+
 std::string stageNames() {
     std::string names;
-    for (const char* name : kStageNames) names += (names.empty() ? "" : ", ") + std::string(name);
+    for (const std::string& name : chosenStageNames()) names += (names.empty() ? "" : ", ") + name;
     return names;
 }
 
@@ -56,9 +63,14 @@ Result<uint32_t> readStages(const std::string& option, const std::vector<std::st
         const auto* const found = std::find(std::begin(kStageNames), std::end(kStageNames), name);
         if (found == std::end(kStageNames))
             return usageError(fmt::format("{}: there is no stage \"{}\"{} (there are: {})", option, name,
-                                          suggestion(name, {std::begin(kStageNames), std::end(kStageNames)}),
-                                          stageNames()));
-        bits |= 1u << (found - std::begin(kStageNames));
+                                          suggestion(name, chosenStageNames()), stageNames()));
+        const uint32_t bit = 1u << (found - std::begin(kStageNames));
+        if (!(bit & kAllStages))
+            return usageError(
+                fmt::format("{}: \"{}\" is counted, not chosen: it goes with frustum and occlusion; "
+                            "--no-second-look turns it off",
+                            option, name));
+        bits |= bit;
     }
     return bits;
 }
@@ -253,13 +265,16 @@ Status finish(const Command& verb, RunOptions& options) {
     if (std::isnan(options.stereo)) return usageError("--stereo: not a number");
     if (Status settings = checkSettings(options.settings); !settings) return settings;
     const QuerySettings& settings = options.settings;
-    if (settings.hysteresis > 0 && !(settings.max_distance > 0) && !(settings.contribution > 0))
-        return usageError("--hysteresis: there is no limit; see --distance and --contribution");
+    if (settings.hysteresis > 0 && !(settings.max_distance > 0) && !(settings.contribution > 0) &&
+        !(settings.lod_error > 0) && !(settings.budget > 0))
+        return usageError("--hysteresis: there is no limit; see --distance, --contribution and --lod-error");
     if (!settings.stateless) {
         const Option repeat = verb.get_option_no_throw("--repeat");
         if (repeat && repeat->count() > 0 && options.repeat > 1)
             return usageError("--remember: each frame is asked once; --repeat would ask it again");
         options.repeat = 1;
+        if (options.threads > 1)
+            note("--threads: with --remember frames are culled in order, by one thread; the others judge and draw");
     }
     if (options.propose && settings.stateless)
         return usageError("--propose: only a query that remembers takes proposals; see --remember");
@@ -274,9 +289,13 @@ Status finish(const Command& verb, RunOptions& options) {
     if (!skip) return skip.error();
     // Clusters take long to prepare: they are for those who ask for them.
     options.settings.stages = (options.use.empty() ? kDefaultStages & ~stageBit(Stage::kClusters) : *use) & ~*skip;
+    const Option cluster_test = verb.get_option_no_throw("--cluster-test");
+    if (cluster_test && cluster_test->count() > 0 && !options.calibration.empty())
+        return usageError("--cluster-test: --calibration tells it, too; give one of them");
     if (Status clusters = finishClusterOptions(options); !clusters) return clusters;
     if (Status sizes = finishSizeOptions(options); !sizes) return sizes;
     if (Status cells = finishVisibilityOptions(options); !cells) return cells;
+    noteIdleSettings(options.settings, !options.calibration.empty());
     if (Status path = finishPath(verb, options); !path) return path;
     if (options.threads == 0) options.threads = std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads);
     const Option json = verb.get_option_no_throw("--json");  // not every verb has it

@@ -34,6 +34,7 @@
 #include "sightline/tools/report/pictures/depth_picture.h"
 #include "sightline/tools/report/pictures/png.h"
 #include "sightline/tools/report/pictures/window_picture.h"
+#include "sightline/tools/report/readable.h"
 #include "sightline/tools/report/run/cull_run.h"
 #include "sightline/tools/report/run/trace_json.h"
 #include "sightline/tools/scene/one_line.h"
@@ -265,7 +266,9 @@ void noteEmptyFrames(const Scene& scene, const CullRun& run) {
     const auto empty = static_cast<size_t>(std::count_if(run.frames.begin(), run.frames.end(), isEmpty));
     const Box3d box = coreOf(scene).bounds;
     if (empty == 0 || box.empty()) return;
-    const auto text = [](const glm::dvec3& p) { return fmt::format("{:.4g},{:.4g},{:.4g}", p.x, p.y, p.z); };
+    const auto text = [](const glm::dvec3& p) {
+        return fmt::format("({}, {}, {})", readable(p.x), readable(p.y), readable(p.z));
+    };
     note(fmt::format("{} of {} frames {} nothing; the scene lies from {} to {}", empty, run.frames.size(),
                      empty == 1 ? "sees" : "see", text(box.min), text(box.max)));
 }

@@ -18,6 +18,7 @@
 #include "sightline/studies/hidden/zbuffer/zbuffer.h"
 #include "sightline/tools/load/seeded_cameras.h"
 #include "sightline/tools/report/pictures/render_list.h"
+#include "sightline/tools/report/readable.h"
 #include "sightline/tools/report/run/explain_text.h"
 #include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/scene/suggestion.h"
@@ -155,7 +156,8 @@ Json frustumJson(const FrustumReason& reason) {
 }
 
 Json occlusionJson(const AskedScene& asked, const OcclusionReason& reason) {
-    constexpr const char* kWithout[] = {"not asked", "visible", "occluded", "outside frustum", "too far", "too small"};
+    constexpr const char* kWithout[] = {"not asked", "visible",   "occluded",  "outside frustum",
+                                        "too far",   "too small", "faces away"};
     Json out;
     out["occluders"] = hidersJson(asked, reason.hiders);
     if (reason.stage == Stage::kOcclusion) out["asked"] = askedName(reason.by_faces, reason.by_triangles);
@@ -400,9 +402,10 @@ Sighting lookFor(const Scene& scene, const View& view, uint32_t object, std::vec
 
 std::string frameLine(const Scene& scene, const ExplainOptions& options, size_t frames, const View& view) {
     const glm::dvec3 eye = standingAt(view), along = lookingAlong(view);
-    return wrapped(fmt::format("{} of {}: the eye at ({:.5g}, {:.5g}, {:.5g}), looking along ({:.2g}, {:.2g}, {:.2g})",
-                               frameOf(options.first_frame, frames), ownerOfPath(scene, options), eye.x, eye.y, eye.z,
-                               along.x, along.y, along.z),
+    return wrapped(fmt::format("{} of {}: the eye at ({}, {}, {}), looking along ({}, {}, {})",
+                               frameOf(options.first_frame, frames), ownerOfPath(scene, options), readable(eye.x, 5),
+                               readable(eye.y, 5), readable(eye.z, 5), readable(along.x, 2), readable(along.y, 2),
+                               readable(along.z, 2)),
                    kColumns, "  ") +
            "\n";
 }

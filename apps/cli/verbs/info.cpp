@@ -20,6 +20,7 @@
 #include "sightline/tools/import/foreign/foreign.h"
 #include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/import/scene_kind.h"
+#include "sightline/tools/report/readable.h"
 #include "sightline/tools/report/run/cull_run.h"
 #include "sightline/tools/scene/json_text.h"
 #include "sightline/tools/scene/one_line.h"
@@ -207,10 +208,17 @@ void printFiles(std::FILE* out, const SceneReport& report) {
         if (report.files[0].map) fmt::print(out, "{}", report.files[0].map->text);
     }
     if (report.files.size() < 2) return;
-    fmt::print(out, "  files                   first key\n");
-    for (const FileFacts& file : report.files)
+    constexpr size_t kMost = 8;
+    const size_t shown = report.files.size() > kMost ? 3 : report.files.size();
+    fmt::print(out, "  files               {:>14}\n                          first key\n",
+               grouped(report.files.size()));
+    for (size_t i = 0; i < shown; ++i) {
+        const FileFacts& file = report.files[i];
         fmt::print(out, "  {:>32}  {}: {}, read by {}\n", grouped(file.first_key), oneLine(file.name), file.format,
                    file.reader);
+    }
+    if (shown < report.files.size())
+        fmt::print(out, "  {:>32}  and {} more (--json lists them)\n", "", grouped(report.files.size() - shown));
 }
 
 void printInfo(std::FILE* out, const SceneReport& report) {
@@ -239,8 +247,9 @@ void printInfo(std::FILE* out, const SceneReport& report) {
     row("  transmissive", facts.transmissive);
     const Box3d& bounds = report.bounds;
     if (!bounds.empty())
-        fmt::print(out, "  bounds              ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", bounds.min.x,
-                   bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z);
+        fmt::print(out, "  bounds              ({}, {}, {}) to ({}, {}, {})\n", readable(bounds.min.x, 6),
+                   readable(bounds.min.y, 6), readable(bounds.min.z, 6), readable(bounds.max.x, 6),
+                   readable(bounds.max.y, 6), readable(bounds.max.z, 6));
     const std::vector<LargeMesh> largest = largestMeshes(scene);
     const auto named = [](const LargeMesh& large) { return !large.name.empty(); };
     if (largest.size() < 2 || std::none_of(largest.begin(), largest.end(), named)) return;

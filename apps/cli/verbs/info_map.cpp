@@ -14,6 +14,7 @@
 #include "sightline/tools/import/quake/quake_scene.h"
 #include "sightline/tools/import/quake/quake_visibility.h"
 #include "sightline/tools/import/scene_kind.h"
+#include "sightline/tools/report/readable.h"
 #include "sightline/tools/scene/one_line.h"
 
 namespace sightline::cli {
@@ -112,10 +113,10 @@ Result<MapReport> reportPortals(const std::string& name) {
     row(out.text, "clusters", graph->cells);
     row(out.text, "portals", graph->portals.size(), fmt::format("{} points", grouped(graph->points.size())));
     row(out.text, "  without area", notes.flat_lines.size());
-    row(out.text, "  bent", faults.bent_portals, fmt::format("at most {:.3g} units", faults.worst_bend));
+    row(out.text, "  bent", faults.bent_portals, fmt::format("at most {} units", readable(faults.worst_bend, 3)));
     row(out.text, "  concave", faults.concave_portals);
     row(out.text, "concave clusters", faults.concave_cells,
-        fmt::format("at most {:.3g} units", faults.worst_concavity));
+        fmt::format("at most {} units", readable(faults.worst_concavity, 3)));
     return out;
 }
 

@@ -180,7 +180,7 @@ bool isRecordedFrame(const std::string& name) {
     return file.read(head, sizeof head) && isRecording(head);
 }
 
-std::string SceneChoice::title() const { return joined(names, " + "); }
+std::string SceneChoice::title() const { return joinedFew(names); }
 
 std::string SceneChoice::words() const {
     std::string words;

@@ -63,15 +63,15 @@ std::string helpOf(const SettingRow<Value>& row) {
     return std::string(row.help) + (*row.unit ? fmt::format(" [{}]", row.unit) : "");
 }
 
-/// Reads a number above 0, which may have its unit behind it, as in 2px.
-double readAbove(const std::string& option, const SettingRow<double>& row, std::string text) {
+/// Reads a number from 0, which may have its unit behind it, as in 2px. Without an upper limit it may be infinite.
+double readFromZero(const std::string& option, const SettingRow<double>& row, std::string text) {
     const std::string given = text;
     if (text.size() > 2 && text.ends_with("px")) text.resize(text.size() - 2);
     double value = 0;
-    if (!readNumber(text, value) || !(value > 0.0 && value <= row.most))
-        refuse(option, row.most < 1e9
-                           ? fmt::format("wants {}, above 0 and up to {}, not '{}'", row.unit, row.most, given)
-                           : fmt::format("wants a distance above 0, not '{}'", given));
+    const bool endless = row.most >= 1e300;
+    if (!readNumber(text, value) || !(value >= 0.0 && (endless || value <= row.most)))
+        refuse(option, endless ? fmt::format("wants a distance from 0 (off), not '{}'", given)
+                               : fmt::format("wants {} from 0 (off) to {}, not '{}'", row.unit, row.most, given));
     return value;
 }
 
@@ -105,7 +105,7 @@ void addSetting(Command& verb, const SettingRow<uint32_t>& row, QuerySettings& s
 
 void addSetting(Command& verb, const SettingRow<double>& row, QuerySettings& settings) {
     const std::string option = optionOf(row);
-    // Those that are off unless they are asked for want a number that means something.
+    // Those that are off unless they are asked for may have their unit behind them.
     const bool off = row.member == &QuerySettings::max_distance || row.member == &QuerySettings::contribution;
     const bool gap = row.member == &QuerySettings::close_gaps;
     if (!off && !gap) {
@@ -120,7 +120,7 @@ void addSetting(Command& verb, const SettingRow<double>& row, QuerySettings& set
         option,
         [&settings, row, option, gap](const std::string& text) {
             const bool alone = gap && (text.empty() || text == "true" || text == "{}");
-            settings.*row.member = alone ? kGapIfNotSaid : readAbove(option, row, text);
+            settings.*row.member = alone ? kGapIfNotSaid : readFromZero(option, row, text);
         },
         helpOf(row) + (gap ? fmt::format(" [alone: 1/{:g}]", 1.0 / kGapIfNotSaid) : ""));
     added->type_name("X")->group("Culling");
@@ -159,6 +159,7 @@ void addVisibilityOptions(Command& verb, RunOptions& options) {
 Status finishVisibilityOptions(RunOptions& options) {
     const VisibilityAsked& asked = options.visibility;
     if (!asked.file.empty()) return success();
+    if (options.settings.windows != QuerySettings().windows) return usageError("--windows goes with --visibility");
     if (options.settings.portal_depth > 0) return usageError("--portal-depth goes with --visibility");
     if (!asked.doors.empty()) return usageError("--door goes with --visibility");
     for (const Stage stage : {Stage::kPvs, Stage::kPortals})
@@ -291,6 +292,64 @@ Status checkSettings(const QuerySettings& settings) {
                 status = Error{Error::Kind::kUsage, optionOf(row) + ": not a number"};
     });
     return status;
+}
+
+namespace {
+
+constexpr const char* kNoOcclusion = "the stage occlusion is off";
+constexpr const char* kNoBudget = "there is no budget; see --budget";
+
+/// A setting that does nothing beside others.
+struct IdleRow {
+    const char* name;  ///< of kQuerySettings
+    bool (*idle)(const QuerySettings& settings);
+    const char* why;
+};
+bool hasNoOcclusion(const QuerySettings& s) { return !(s.stages & stageBit(Stage::kOcclusion)); }
+bool hasNoBudget(const QuerySettings& s) { return !(s.budget > 0); }
+constexpr IdleRow kIdleRows[] = {
+    {"occluder_triangles_limit", hasNoOcclusion, kNoOcclusion},
+    {"occlusion_size", hasNoOcclusion, kNoOcclusion},
+    {"masked", hasNoOcclusion, kNoOcclusion},
+    {"occluder_error", hasNoOcclusion, kNoOcclusion},
+    {"close_gaps", hasNoOcclusion, kNoOcclusion},
+    {"faces", hasNoOcclusion, kNoOcclusion},
+    {"second_look", hasNoOcclusion, kNoOcclusion},
+    {"second_look_polygons_limit", hasNoOcclusion, kNoOcclusion},
+    {"second_look_polygons_limit", [](const QuerySettings& s) { return !s.second_look; }, "--no-second-look"},
+    {"lod_fade", [](const QuerySettings& s) { return !(s.stages & stageBit(Stage::kLod)); },
+     "no levels of detail are chosen; see --lod-error and --budget"},
+    {"cost_object", hasNoBudget, kNoBudget},
+    {"cost_triangle", hasNoBudget, kNoBudget},
+    {"cost_vertex", hasNoBudget, kNoBudget},
+    {"cost_pixel", hasNoBudget, kNoBudget},
+};
+
+}  // namespace
+
+void noteIdleSettings(const QuerySettings& settings, bool calibrated) {
+    const QuerySettings standard = toolSettings();
+    for (const IdleRow& idle : kIdleRows)
+        forEachSetting([&](const auto& row) {
+            if (std::string_view(row.name) != idle.name || settings.*row.member == standard.*row.member) return;
+            if (calibrated && idle.why == kNoBudget) return;  // nobody asked for these costs by name
+            if (idle.idle(settings)) note(fmt::format("{} has no effect: {}", optionOf(row), idle.why));
+        });
+}
+
+std::string ownDefaults(const QuerySettings& settings) {
+    const QuerySettings tool = toolSettings(), library;
+    std::string words;
+    forEachSetting([&](const auto& row) {
+        using Value = std::decay_t<decltype(settings.*row.member)>;
+        const Value value = settings.*row.member;
+        if (std::string_view(row.name) == "stages" || value != tool.*row.member || value == library.*row.member) return;
+        words += words.empty() ? "" : ", ";
+        if constexpr (std::is_same_v<Value, bool>) words += fmt::format("{} {}", row.name, value ? "on" : "off");
+        else if constexpr (!std::is_same_v<Value, PortalWindows>)
+            words += fmt::format("{} {} (there {})", row.name, value, library.*row.member);
+    });
+    return words;
 }
 
 std::string settingWords(const QuerySettings& settings) {

@@ -50,6 +50,13 @@ void addOtherSettingOptions(Command& verb, QuerySettings& settings);
 /// What no range of a single option leaves out: numbers that are none. Errors are kUsage.
 Status checkSettings(const QuerySettings& settings);
 
+/// Notes which settings were given that do nothing beside the others: each with its reason.
+/// @param calibrated  the costs of drawing are a calibration's
+void noteIdleSettings(const QuerySettings& settings, bool calibrated);
+
+/// The settings that are as the tool has them by default, and the library has not: "hysteresis 0 (there 0.1)".
+std::string ownDefaults(const QuerySettings& settings);
+
 /// The options again, as a shell takes them, each with a space before it; what is as the tool has it is left out.
 std::string settingWords(const QuerySettings& settings);
 

@@ -18,6 +18,7 @@
 #include "apps/cli/verbs/visibility_choice.h"
 #include "sightline/query/connectivity.h"
 #include "sightline/query/sight_query.h"
+#include "sightline/tools/report/readable.h"
 #include "sightline/tools/scene/json_text.h"
 
 namespace sightline::cli {
@@ -49,8 +50,9 @@ void answerLine(const AskedScene& asked, const glm::dvec3& from, const glm::dvec
 }
 
 /// How far two points are apart for whoever goes through open portals of the file's cells.
-void answerWay(const AskedScene& asked, const glm::dvec3& from, const glm::dvec3& to, double narrowest, std::FILE* out,
-               Json& body) {
+/// @param blocked  the straight line between them is
+void answerWay(const AskedScene& asked, const glm::dvec3& from, const glm::dvec3& to, double narrowest, bool blocked,
+               std::FILE* out, Json& body) {
     constexpr size_t kMost = 4;
     ConnectivityQuery query;
     query.begin(asked.now, from, {.narrowest = narrowest});
@@ -66,12 +68,16 @@ void answerWay(const AskedScene& asked, const glm::dvec3& from, const glm::dvec3
     for (const uint32_t cell : way.cells) told["cells"].push_back(cell);
     const size_t bends = way.points.size() - 2;
     std::string text =
-        fmt::format("a way: {:.6g} long, {}", way.distance,
-                    bends == 0 ? "straight" : fmt::format("with {} bend{}", bends, bends == 1 ? "" : "s"));
-    if (std::isfinite(way.narrowest)) text += fmt::format("; the narrowest hole on it is {:.3g} wide", way.narrowest);
+        fmt::format("a way through the cells: {} long, {}", readable(way.distance, 6),
+                    bends > 0 ? fmt::format("with {} bend{}", bends, bends == 1 ? "" : "s")
+                    : blocked ? "straight through open cells and portals, for what stands in cells is no wall to it"
+                              : "straight");
+    if (std::isfinite(way.narrowest))
+        text += fmt::format("; the narrowest hole on it is {} wide", readable(way.narrowest, 3));
     fmt::print(out, "{}\n", text);
     for (size_t i = 1; i <= std::min(bends, kMost); ++i)
-        fmt::print(out, "  bends at {:.6g}, {:.6g}, {:.6g}\n", way.points[i].x, way.points[i].y, way.points[i].z);
+        fmt::print(out, "  bends at {}, {}, {}\n", readable(way.points[i].x, 6), readable(way.points[i].y, 6),
+                   readable(way.points[i].z, 6));
     if (bends > kMost) fmt::print(out, "  and at {} more (--json lists them)\n", bends - kMost);
     fmt::print(out, "  through {}\n", cellNames(asked, way.cells, ", "));
 }
@@ -115,7 +121,8 @@ Status runSight(SightOptions& options) {
     Json body = {{"schema", "sightline.sight/1"}, {"scene", options.scene.title()}, {"from", pointJson(*from)}};
     if (options.to.empty()) answerRegion(asked, *from, options.within, out, body);
     else answerLine(asked, *from, *to, out, body);
-    if (!options.to.empty() && options.opened) answerWay(asked, *from, *to, options.narrowest, out, body);
+    if (!options.to.empty() && options.opened)
+        answerWay(asked, *from, *to, options.narrowest, body["blocked"].get<bool>(), out, body);
     if (options.json.empty()) return success();
     return writeText(options.json, jsonText(body, 1) + "\n");
 }

@@ -50,11 +50,16 @@ std::string slowNote(const CullRun& run, const FrameResult& frame) {
                            fmt::format("{} {} ({:.1f} times)", grouped(static_cast<uint64_t>(here)), work.name, ratio));
     }
     std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-    std::string text = fmt::format("{:.0f} us, the median frame {:.0f} us. Beside the medians of the path",
-                                   frame.query_microseconds, usual);
-    for (size_t i = 0; i < parts.size(); ++i) text += (i ? ", " : ": ") + parts[i].second;
+    std::string text = fmt::format("{} us, the median frame {} us.",
+                                   grouped(static_cast<uint64_t>(std::llround(frame.query_microseconds))),
+                                   grouped(static_cast<uint64_t>(std::llround(usual))));
     if (parts.empty() || parts.front().first < 1.05)
-        text += ". It did no more than others: the machine was busy, or memory was cold";
+        return text +
+               " Only the clock differs: no count of its work is larger than the path's median by a twentieth. The "
+               "machine was "
+               "busy, or memory was cold.";
+    text += " Beside the medians of the path";
+    for (size_t i = 0; i < parts.size(); ++i) text += (i ? ", " : ": ") + parts[i].second;
     return text + ".";
 }
 
@@ -132,7 +137,12 @@ std::string rounded(double number) {
     if (number >= 1e9) return fmt::format("{:.2f} G", number * 1e-9);
     if (number >= 1e6) return fmt::format("{:.2f} M", number * 1e-6);
     if (number >= 1e4) return fmt::format("{:.1f} k", number * 1e-3);
-    return fmt::format("{:.4g}", number);
+    return fmt::format("{}", readable(number));
+}
+
+/// "1.234", or that nothing is visible.
+std::string fixedRatio(double ratio) {
+    return std::isfinite(ratio) ? fmt::format("{:.3f}", ratio) : "without a measure";
 }
 
 double medianQuery(const CullRun& run) {
@@ -141,24 +151,48 @@ double medianQuery(const CullRun& run) {
     return medianOf(std::move(times));
 }
 
+/// What is culled is judged drawn object by drawn object: of several that share a key, each is an instance.
+bool countsInstances(const CullRun& run) { return run.instances != run.objects; }
+
+/// "49 culled instances"; over several frames each cull counts.
+std::string culledText(uint64_t count, const CullRun& run, size_t frames) {
+    const char* const unit = countsInstances(run) ? "instance" : "object";
+    if (frames == 1) return grouped(count) + " culled " + unit + "s";
+    return fmt::format("{} of {} over {} frames", counted(count, "cull"),
+                       counted(countsInstances(run) ? run.instances : run.objects, unit), frames);
+}
+
+/// What the exact proofs say, if there are any.
+void addProofs(std::string& text, const Verification& sum, const CullRun& run, size_t judged) {
+    if (!sum.proofs) return;
+    const ProofCounts& proofs = *sum.proofs;
+    const uint64_t culled = proofs.culled_hidden + proofs.culled_undecided + sum.false_instances;
+    if (culled > 0)
+        text += fmt::format(
+            "proved       {} of {} hidden, by exact arithmetic{}{}\n", grouped(proofs.culled_hidden),
+            culledText(culled, run, judged), run.stereo > 0 ? "; each eye counts" : "",
+            proofs.culled_undecided > 0 ? fmt::format("; {} undecided", grouped(proofs.culled_undecided)) : "");
+    if (proofs.kept_hidden + proofs.kept_undecided > 0)
+        text +=
+            fmt::format("kept         {} although hidden, by exact arithmetic: no error, but work for the renderer{}\n",
+                        grouped(proofs.kept_hidden),
+                        proofs.kept_undecided > 0 ? fmt::format("; {} undecided", grouped(proofs.kept_undecided)) : "");
+}
+
 void addSums(std::string& text, const Verification& sum, const CullRun& run) {
     const size_t judged = judgedFrames(run);
-    text += fmt::format("verified     {} of {} culled objects were visible, by {} rays and {} id samples\n",
-                        grouped(sum.false_culls), grouped(sum.culled), rounded(static_cast<double>(sum.rays)),
-                        rounded(static_cast<double>(sum.id_samples)));
-    text += fmt::format("over-estimate {:.3f}: {} reported, {} exactly visible, over {}\n", sum.overEstimate(),
-                        grouped(sum.reported), grouped(sum.exactly_visible), counted(judged, "frame"));
-    if (sum.proofs) {
-        const ProofCounts& proofs = *sum.proofs;
-        text += fmt::format(
-            "proved       {} of {} culled objects hidden, by exact arithmetic; so are {} that were kept",
-            grouped(proofs.culled_hidden), grouped(proofs.culled_hidden + proofs.culled_undecided + sum.false_culls),
-            grouped(proofs.kept_hidden));
-        if (proofs.culled_undecided + proofs.kept_undecided > 0)
-            text += fmt::format("; undecided: {} culled, {} kept", grouped(proofs.culled_undecided),
-                                grouped(proofs.kept_undecided));
-        text += "\n";
-    }
+    const std::string by = fmt::format("by {} rays and {} id samples", rounded(static_cast<double>(sum.rays)),
+                                       rounded(static_cast<double>(sum.id_samples)));
+    if (sum.culled_instances == 0)
+        text += fmt::format("verified     nothing: no {} was culled, so there was nothing to judge\n",
+                            countsInstances(run) ? "instance" : "object");
+    else
+        text +=
+            fmt::format("verified     {} of {} {} visible, {}\n", grouped(sum.false_instances),
+                        culledText(sum.culled_instances, run, judged), sum.false_instances == 1 ? "was" : "were", by);
+    text += fmt::format("over-estimate {}: {} reported, {} exactly visible, over {}\n", fixedRatio(sum.overEstimate()),
+                        counted(sum.reported, "object"), grouped(sum.exactly_visible), counted(judged, "frame"));
+    addProofs(text, sum, run, judged);
     if (sum.lossy_seen > 0)
         text += fmt::format(
             "not proved   {} objects that were culled by distance, contribution, budget or depth were seen: so "
@@ -166,6 +200,19 @@ void addSums(std::string& text, const Verification& sum, const CullRun& run) {
             grouped(sum.lossy_seen));
     if (judged < run.frames.size())
         text += fmt::format("unverified   {} of {} frames\n", run.frames.size() - judged, run.frames.size());
+}
+
+/// What one setting switched off of another: a line each.
+void addOff(std::string& text, const CullRun& run) {
+    const uint32_t of_tool = run.settings.stateless ? offBit(Off::kMemoryByStateless) : 0;  // --remember is asked for
+    for (const OffRow& row : kOffRows) {
+        const auto is_off = [&](const FrameResult& frame) { return (frame.stats.off & offBit(row.off)) != 0; };
+        const auto count = static_cast<size_t>(std::count_if(run.frames.begin(), run.frames.end(), is_off));
+        if (count == 0 || offBit(row.off) & of_tool) continue;
+        text += fmt::format(
+            "switched off {}{}\n", row.words,
+            count < run.frames.size() ? fmt::format(" (in {} of {} frames)", count, run.frames.size()) : "");
+    }
 }
 
 void addChanges(std::string& text, const CullRun& run) {
@@ -215,11 +262,12 @@ void addLods(std::string& text, const CullRun& run) {
     text += fmt::format("levels       {:>10} triangles {:.3f} % of the finest levels'", rounded(drawn / frames),
                         percentOf(drawn, finest));
     if (run.settings.budget == 0)
-        text += fmt::format("; they err by {:g} px at most, in a corner {:.3g}", run.settings.lod_error,
-                            run.settings.lod_error * run.corner_stretch);
+        text += fmt::format("; they err by {} px at most, in a corner {}", readable(run.settings.lod_error, 6),
+                            readable(run.settings.lod_error * run.corner_stretch, 3));
     text += '\n';
     if (run.settings.budget == 0) return;
-    text += fmt::format("budget       {:>10.3f} ms of {:g} ms modelled", 1e-6 * cost / frames, run.settings.budget);
+    text += fmt::format("budget       {:>10.3f} ms of {} ms modelled", 1e-6 * cost / frames,
+                        readable(run.settings.budget, 6));
     if (exceeded > 0) text += fmt::format("; exceeded in {}", counted(exceeded, "frame"));
     text += '\n';
 }
@@ -256,32 +304,45 @@ void noteFrames(const Scene& scene, const RunOptions& options, std::optional<Loa
 
 void printSummary(std::FILE* out, const CullRun& run) {
     const auto frames = static_cast<double>(run.frames.size());
-    double visible = 0, triangles = 0, time = 0, slowest = 0;
-    StageRow sums[kStageCount];
+    const bool instances = countsInstances(run);
+    const auto all = static_cast<double>(instances ? run.instances : run.objects);
+    double visible = 0, drawn = 0, triangles = 0, time = 0, slowest = 0;
+    double culled[kStageCount] = {}, took[kStageCount] = {};
     bool budget_spent = false;
     for (const FrameResult& frame : run.frames) {
         visible += static_cast<double>(frame.visible.size());
+        drawn += static_cast<double>(frame.objects_visible);
         triangles += static_cast<double>(frame.triangles);
         time += frame.query_microseconds;
         slowest = std::max(slowest, frame.query_microseconds);
         budget_spent |= frame.stats.budget_spent;
         for (int stage = 0; stage < kStageCount; ++stage) {
-            sums[stage].culled += frame.stages[stage].culled;
-            sums[stage].microseconds += frame.stages[stage].microseconds;
+            const StageRow& row = frame.stages[stage];
+            culled[stage] += static_cast<double>(instances ? row.instances : row.culled);
+            took[stage] += row.microseconds;
         }
     }
     std::string text;
-    text += fmt::format("{}: {}, {}; {} of {}x{}, means over the frames\n", oneLine(run.scene),
-                        counted(run.objects, "object"), counted(run.triangles, "triangle"),
-                        counted(run.frames.size(), "frame"), run.width, run.height);
+    text +=
+        fmt::format("{}: {}{}, {}; {} of {}x{}, means over the frames\n", oneLine(run.scene),
+                    counted(run.objects, "object"), instances ? " drawn as " + counted(run.instances, "instance") : "",
+                    counted(run.triangles, "triangle"), counted(run.frames.size(), "frame"), run.width, run.height);
     text += fmt::format("visible      {:>10} {:<8} {:7.3f} %\n", rounded(visible / frames),
                         visible == frames ? "object" : "objects",
                         percentOf(visible / frames, static_cast<double>(run.objects)));
-    for (int stage = 0; stage < kStageCount; ++stage) {
-        if (!(run.settings.stages >> stage & 1)) continue;
-        const double culled = static_cast<double>(sums[stage].culled) / frames;
-        text += fmt::format("{:<12} {:>10} culled   {:7.3f} %  {:9.1f} us\n", kStageNames[stage], rounded(culled),
-                            percentOf(culled, static_cast<double>(run.objects)), sums[stage].microseconds / frames);
+    if (instances)
+        text +=
+            fmt::format("             {:>10} {:<8} {:6.3f} %; culls below are of instances\n", rounded(drawn / frames),
+                        drawn == frames ? "instance" : "instances", percentOf(drawn / frames, all));
+    for (const Stage stage : kStageOrder) {
+        if (!(countedStages(run.settings.stages) & stageBit(stage))) continue;
+        const int at = static_cast<int>(stage);
+        // What the second look finds is timed with the stage of occlusion.
+        if (stage == Stage::kFacing && culled[at] == 0) continue;
+        text += fmt::format("{:<12} {:>10} culled   {:7.3f} %", kStageNames[at], rounded(culled[at] / frames),
+                            percentOf(culled[at] / frames, all));
+        text += stage == Stage::kFacing ? "  their faces in the view look away\n"
+                                        : fmt::format("  {:9.1f} us\n", took[at] / frames);
     }
     text += fmt::format("triangles    {:>10} submitted {:6.3f} % of the scene's\n", rounded(triangles / frames),
                         percentOf(triangles / frames, static_cast<double>(run.triangles)));
@@ -290,6 +351,9 @@ void printSummary(std::FILE* out, const CullRun& run) {
     text += fmt::format("query        {:>10.1f} us mean, {:.1f} us median, {:.1f} us at most\n", time / frames,
                         medianQuery(run), slowest);
     addMemory(text, run);
+    addOff(text, run);
+    if (const std::string own = ownDefaults(run.settings); !own.empty())
+        text += fmt::format("defaults     unlike the library's: {}\n", own);
     if (budget_spent) text += fmt::format("the work budget was spent in some frames: more was kept than need be\n");
     addChanges(text, run);
     if (const auto sum = sumVerification(run)) addSums(text, *sum, run);
@@ -305,11 +369,14 @@ void printVerdicts(std::FILE* out, const CullRun& run) {
         Verification one;
         one.reported = frame.visible.size();
         one.exactly_visible = row.exactly_visible;
-        text +=
-            fmt::format("frame {:>4}: {}, {} false culls, {} reported, {} exactly visible, over-estimate {:.3f}\n", i,
-                        row.false_culls == 0 ? paint(out, Tone::kGood, "sound") : paint(out, Tone::kBad, "WRONG"),
-                        row.false_culls, frame.visible.size(), row.exactly_visible, one.overEstimate());
+        const std::string verdict = row.false_culls > 0                      ? paint(out, Tone::kBad, "WRONG")
+                                    : frame.objects_visible == run.instances ? "nothing culled"
+                                                                             : paint(out, Tone::kGood, "sound");
+        text += fmt::format("frame {:>4}: {}, {} false culls, {} reported, {} exactly visible, over-estimate {}\n", i,
+                            verdict, row.false_culls, frame.visible.size(), row.exactly_visible,
+                            fixedRatio(one.overEstimate()));
     }
+    addOff(text, run);
     addChanges(text, run);
     if (const auto sum = sumVerification(run)) addSums(text, *sum, run);
     tell(out, text);

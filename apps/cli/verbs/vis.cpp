@@ -33,6 +33,7 @@
 #include "sightline/tools/import/quake/quake_visibility.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/page/vis_page.h"
+#include "sightline/tools/report/readable.h"
 #include "sightline/tools/report/run/vis_json.h"
 #include "sightline/tools/truth/graph_rays.h"
 #include "sightline/tools/truth/tree_rays.h"
@@ -252,9 +253,9 @@ Result<VisMap> loadCheckedMap(VisOptions& options) {
 void chooseFarthest(VisOptions& options, double of_map) {
     options.farthest = options.farthest_given.value_or(writesRows(options) ? 0 : of_map);
     if (options.farthest_given || of_map == 0) return;
-    note(writesRows(options)
-             ? "the map's _farplanedist has no effect: a visibility file holds at any distance"
-             : fmt::format("sight ends at {:g} units, by the map's _farplanedist (--farthest 0: nowhere)", of_map));
+    note(writesRows(options) ? "the map's _farplanedist has no effect: a visibility file holds at any distance"
+                             : fmt::format("sight ends at {} units, by the map's _farplanedist (--farthest 0: nowhere)",
+                                           readable(of_map, 6)));
 }
 
 Result<int> runVis(VisOptions& options) {

@@ -45,11 +45,12 @@ _lib = _open()
 _VISIBLE = numpy.dtype([("key", "u8"), ("index", "u4"), ("generation", "u4")])
 _ID = numpy.dtype([("index", "u4"), ("generation", "u4")])
 _LOD = numpy.dtype([("level", "u1"), ("from", "u1"), ("fade", "f4"), ("morph", "f4")], align=True)
-STAGES = ("pvs", "portals", "frustum", "distance", "contribution", "volumes", "occlusion", "lod", "clusters")
+STAGES = ("pvs", "portals", "frustum", "distance", "contribution", "volumes", "occlusion", "lod", "clusters",
+          "facing")
 CLIP_SPACES = ("opengl", "direct3d", "vulkan", "direct3d-reversed", "vulkan-reversed", "direct3d-left-handed",
                "direct3d-left-handed-reversed")
 _VERDICTS = ("no such object", "outside layers", "visible", "outside frustum", "occluded", "too far", "too small",
-             "no cluster", "no time", "not in pvs", "no window")
+             "no cluster", "no time", "not in pvs", "no window", "faces away")
 
 
 class Error(Exception):
@@ -325,6 +326,7 @@ class Visible:
         self.problem = None if answer.problem == _ffi.NULL else _ffi.string(answer.problem).decode()
         self.stages = {name: (s.tested, s.culled) for name, s in zip(STAGES, stats.stages)}  #: (tested, culled) of each
         self.proved = stats.proved  #: nodes and objects culled by certificates
+        self.off = [_ffi.string(_lib.slOffWords(bit)).decode() for bit in range(32) if stats.off >> bit & 1]  #: what another setting switched off, in sentences
         self.microseconds = stats.nanoseconds / 1000
 
     @property

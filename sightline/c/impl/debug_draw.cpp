@@ -72,6 +72,7 @@ uint32_t colorOf(uint8_t reason) {
         case Stage::kPortals:
             return kYellow;
         case Stage::kFrustum:
+        case Stage::kFacing:
             return kGrey;
         case Stage::kVolumes:
         case Stage::kOcclusion:

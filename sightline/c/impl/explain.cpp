@@ -157,6 +157,9 @@ size_t slExplanationWords(const slExplanation* why, char* text_out, size_t capac
         case SL_NO_WINDOW:
             text.add("culled by portals: it lies beside every window into its cells");
             break;
+        case SL_FACES_AWAY:
+            text.add("culled by facing: its faces in the view look away, and are drawn from their fronts alone");
+            break;
     }
     return text.length + 1;
 }

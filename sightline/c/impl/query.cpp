@@ -180,9 +180,12 @@ slStatus slQueryGetStats(const slQuery* query, slQueryStats* stats_out) {
     to.nanoseconds = from.nanoseconds;
     to.budget_spent = from.budget_spent;
     to.second_look_spent = from.second_look_spent;
+    to.off = from.off;
     *stats_out = to;
     return SL_OK;
 }
+
+const char* slOffWords(uint32_t bit) { return bit < std::size(kOffRows) ? kOffRows[bit].words : nullptr; }
 
 slStatus slQueryReasons(const slQuery* query, uint8_t* reasons_out, size_t capacity, size_t* count_out) {
     if (!query || !count_out || (!reasons_out && capacity > 0)) return failNull(query, __func__);

@@ -323,6 +323,7 @@ void Explainer::Impl::lookWithout(const SnapshotState& others, uint32_t self, Oc
     const Verdict verdict = trial.run(others, view, settings, self);
     out.without = verdict == Verdict::kOccluded         ? Without::kOccluded
                   : verdict == Verdict::kOutsideFrustum ? Without::kOutsideFrustum
+                  : verdict == Verdict::kFacesAway      ? Without::kFacesAway
                   : verdict == Verdict::kTooFar         ? Without::kTooFar
                   : verdict == Verdict::kTooSmall       ? Without::kTooSmall
                                                         : Without::kVisible;
@@ -396,7 +397,7 @@ Explanation Explainer::explain(ObjectId id, const ExplainSettings& asked_for) {
         }
     }
     const bool by_frustum = out.verdict == Verdict::kOutsideFrustum;
-    if (out.verdict != Verdict::kVisible) {
+    if (by_frustum || out.verdict == Verdict::kOccluded) {
         const detail::Look look = impl.trial.cull.look;
         (by_frustum ? out.frustum.by_faces : out.occlusion.by_faces) = look == detail::Look::kFaces;
         (by_frustum ? out.frustum.by_triangles : out.occlusion.by_triangles) = look == detail::Look::kTriangles;

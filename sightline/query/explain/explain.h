@@ -47,7 +47,7 @@ inline constexpr const char* kPlaneNames[FrustumReason::kPlanes] = {
     "window 3",  "window 4",  "window 5",  "window 6",  "window 7",  "window 8"};
 
 /// What the answer would be in a world without the object's hiders.
-enum class Without : uint8_t { kNotAsked, kVisible, kOccluded, kOutsideFrustum, kTooFar, kTooSmall };
+enum class Without : uint8_t { kNotAsked, kVisible, kOccluded, kOutsideFrustum, kTooFar, kTooSmall, kFacesAway };
 
 struct OcclusionReason {
     /// The stage that culled it. The stage of volumes has one hider: the shadow of this holds the whole box of the

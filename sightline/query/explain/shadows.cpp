@@ -27,11 +27,9 @@ bool findShadows(const Snapshot& now, const View& view, ObjectId id, const Query
     outlines.clear();
     corners.clear();
     QuerySettings sought = settings;
-    sought.stages =
-        (settings.stages | stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion)) & ~stageBit(Stage::kClusters);
+    sought.stages = settings.stages | stageBit(Stage::kFrustum) | stageBit(Stage::kOcclusion);
     sought.stateless = false;
     sought.proofs = true;
-    sought.bins = 1;
     Frame frame;
     frame.begin(now, view, sought);
     ProofMemory proofs(memory);

@@ -13,6 +13,8 @@ Verdict verdictOf(Stage stage) {
             return Verdict::kNoWindow;
         case Stage::kFrustum:
             return Verdict::kOutsideFrustum;
+        case Stage::kFacing:
+            return Verdict::kFacesAway;
         case Stage::kDistance:
             return Verdict::kTooFar;
         case Stage::kContribution:

@@ -18,7 +18,8 @@ enum class Verdict : uint8_t {
     kNoCluster,       ///< culled by the stage of clusters: none of its clusters is left
     kNoTime,          ///< left out by the stage of levels of detail under a hard budget, although it may be visible
     kNotInPvs,  ///< culled by the stage of the PVS: not seen from the eye's view cells, or no cell that it stands in from its cells
-    kNoWindow,  ///< culled by the stage of portals: it lies in no window into a cell that it stands in
+    kNoWindow,   ///< culled by the stage of portals: it lies in no window into a cell that it stands in
+    kFacesAway,  ///< Stage::kFacing: each of its faces that lies in the view is single-sided, and looks away
 };
 
 }  // namespace sightline

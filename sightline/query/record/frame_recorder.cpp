@@ -17,7 +17,7 @@ namespace {
 /// Whether an object is no part of a recording, by what became of it.
 bool isLeftOut(uint8_t reason) {
     const auto by = [&](Stage stage) { return reason == 1 + static_cast<uint8_t>(stage); };
-    return reason == 255 || by(Stage::kFrustum) || by(Stage::kPvs) || by(Stage::kPortals);
+    return reason == 255 || by(Stage::kFrustum) || by(Stage::kFacing) || by(Stage::kPvs) || by(Stage::kPortals);
 }
 
 /// Settings within their limits; what is not a number is as it is by default.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sightline/tools/import/scene_file.h"
+#include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/scene/marked_cells.h"
 
 namespace sightline::tools {
@@ -95,6 +96,7 @@ Scene joinScenes(std::vector<Scene> scenes) {
     if (scenes.size() == 1) return std::move(scenes.front());
     Scene out;
     uint64_t next_key = 0;
+    std::vector<std::string> names;
     for (Scene& scene : scenes) {
         const auto root = static_cast<uint32_t>(out.nodes.size());
         out.nodes.push_back({stemOf(scene), SceneNode::kNone});
@@ -104,7 +106,7 @@ Scene joinScenes(std::vector<Scene> scenes) {
                          static_cast<uint32_t>(out.cells.size()),     next_key};
         shift(scene, by, root);
         for (const SceneObject& object : scene.objects) next_key = std::max(next_key, object.key + 1);
-        out.name += (out.name.empty() ? "" : " + ") + scene.name;
+        names.push_back(scene.name);
         append(out.materials, std::move(scene.materials));
         append(out.meshes, std::move(scene.meshes));
         append(out.objects, std::move(scene.objects));
@@ -115,6 +117,7 @@ Scene joinScenes(std::vector<Scene> scenes) {
         append(out.portals, std::move(scene.portals));
         append(out.files, std::move(scene.files));
     }
+    out.name = joinedFew(names);
     resolvePortals(out);  // cells of one file and portals of another may belong together
     return out;
 }

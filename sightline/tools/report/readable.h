@@ -7,8 +7,9 @@
 
 namespace sightline::tools {
 
-/// A number for reading: 4 digits, grouped if it is large.
-std::string readable(double value);
+/// A number for reading: so many digits, more if its whole part has more, which is grouped; no exponent, no zeros at the
+/// end. What rounding leaves of zero is 0.
+std::string readable(double value, int digits = 4);
 
 /// "1 frame", "1,234 frames".
 /// @param what  one of them

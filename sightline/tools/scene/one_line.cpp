@@ -74,4 +74,12 @@ std::string joined(const std::vector<std::string>& texts, std::string_view betwe
     return all;
 }
 
+std::string joinedFew(const std::vector<std::string>& names) {
+    const size_t shown = names.size() > 4 ? 3 : names.size();
+    std::string text;
+    for (size_t i = 0; i < shown; ++i) text += (i ? " + " : "") + names[i];
+    if (shown < names.size()) text += " + " + std::to_string(names.size() - shown) + " more";
+    return text;
+}
+
 }  // namespace sightline::tools

@@ -24,4 +24,7 @@ std::string shortened(std::string_view text, size_t most);
 /// The texts with something between each two.
 std::string joined(const std::vector<std::string>& texts, std::string_view between);
 
+/// "a + b"; of more than four names the first three and a count: "a + b + c + 126 more".
+std::string joinedFew(const std::vector<std::string>& names);
+
 }  // namespace sightline::tools

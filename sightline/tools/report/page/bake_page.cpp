@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sightline/tools/report/page/page_pictures.h"
+#include "sightline/tools/report/readable.h"
 
 namespace sightline::tools {
 namespace {
@@ -68,7 +69,7 @@ nlohmann::ordered_json askedViews(const BakePlan& plan, const DrawnBake& bake) {
 Status writeBakePage(const DrawnBake& bake, const std::string& json, const std::string& directory) {
     PagePictures page(directory);
     const BakePlan plan(bake);
-    const std::string height = fmt::format("{:.4g}", bake.eye.y);
+    const std::string height = fmt::format("{}", readable(bake.eye.y));
     page.add("cells", plan.cells(),
              "From above, cut at the height " + height +
                  ": walls are black, borders of cells grey, portals blue; gaps between walls are red, whatever their "

@@ -12,16 +12,27 @@ const overEstimate = ({kept, verification}) =>
 const against = (value, middle) => middle > 0 ? short(value / middle) + '×' : value > 0 ?
   'where the median is 0' : '1×';
 
-function cullVerdict({verification, frames}) {
+/** Where several objects share a key, what is culled and judged is instances of them. */
+const countsInstances = ({scene}) => scene.instances > scene.objects;
+const unitOf = (run) => countsInstances(run) ? 'instance' : 'object';
+const culledOf = (run, stage) => countsInstances(run) ? stage.instances : stage.culled;
+
+function cullVerdict(run) {
+  const {verification, frames, scene} = run;
   if (!verification)
     return verdict('', 'Not verified', 'Run it with --verify to let two witnesses judge every cull.');
-  const {false_culls: wrong, culled, samples, id_samples: ids, proofs} = verification;
+  const {samples, id_samples: ids, proofs} = verification;
+  const wrong = verification.false_instances, culled = verification.culled_instances;
+  if (!culled)
+    return verdict('', 'Nothing to judge', `No ${unitOf(run)} was culled in ${plural(frames.length, 'frame')}.`);
+  const what = frames.length === 1 ? `culled ${unitOf(run)}s`
+    : `culls of ${plural(countsInstances(run) ? scene.instances : scene.objects, unitOf(run))} over ` +
+      plural(frames.length, 'frame');
   const exactly = proofs && ` ${grouped(proofs.culled_hidden)} are proved to be hidden by exact arithmetic` +
     (proofs.culled_undecided ? `, and of ${grouped(proofs.culled_undecided)} neither is known.` : '.');
   return verdict(wrong ? 'bad' : 'good',
-    `${grouped(wrong)} of ${grouped(culled)} culled objects ${wrong === 1 ? 'was' : 'were'} visible`,
-    `held against ${grouped(samples)} rays and ${grouped(ids)} id-buffer samples over ` +
-    `${plural(frames.length, 'frame')}.${exactly || ''}`);
+    `${grouped(wrong)} of ${grouped(culled)} ${what} ${wrong === 1 ? 'was' : 'were'} visible`,
+    `held against ${grouped(samples)} rays and ${grouped(ids)} id-buffer samples.${exactly || ''}`);
 }
 const interruption = (run) => run.interrupted && verdict('note', 'The run was interrupted',
   `${run.frames.length} of ${run.frames_wanted > run.frames.length ? grouped(run.frames_wanted) : 'more'} frames ` +
@@ -44,7 +55,7 @@ function leftTable({scene, frames}) {
   const row = (name, objects, triangles) =>
     tableRow([name, share(objects, scene.objects), share(triangles, scene.triangles)]);
   const rows = (of) => [row('everything', scene.objects, scene.triangles),
-    frames.every((frame) => frame.frustum_alone) && row('frustum alone',
+    frames.every((frame) => frame.frustum_alone) && row('frustum alone, by boxes',
       of((frame) => frame.frustum_alone.objects), of((frame) => frame.frustum_alone.triangles)),
     row('all stages', of((frame) => frame.kept), of((frame) => frame.triangles))].filter(Boolean);
   const group = (name) => h('tr', {class: 'groups'}, h('th', {colspan: 3, scope: 'rowgroup'}, name));
@@ -177,8 +188,10 @@ function outliers(run) {
   if (run.frames.length < 2) return null;
   const notes = ({notes: said}) => said && h('ul', {}, said.map((text) => h('li', {}, named(text, 600))));
   const times = run.frames.map((frame) => frame.query_microseconds), slow = largest(times), frame = run.frames[slow];
+  const busier = kMeasures.some(([key]) => frame[key] > 1.05 * median(run.frames.map((one) => one[key])));
   const slowest = card('slowest', 'The slowest: frame ' + slow,
     h('p', {}, h('b', {}, readable(times[slow]) + ' µs'), `, ${against(times[slow], median(times))} the median.`,
+      !busier && ' Only the clock differs: no count of its work is larger than the median by a twentieth.',
       frame.budget_spent && ' It spent its work budget: some visible occluders were left out.'), notes(frame),
     table('Against the median', ['', 'this frame', 'median', 'ratio'], kMeasures.map(([key, name]) =>
       [name, run.frames.map((one) => one[key]), frame[key]]).filter(([, values]) => values.some((value) => value > 0))
@@ -199,27 +212,35 @@ function outliers(run) {
 }
 
 function stagesCard(run) {
-  const average = (i, key) => mean(run.frames.map((frame) => frame.stages[i][key]));
-  const kept = mean(run.frames.map((frame) => frame.kept)), {objects} = run.scene;
+  const average = (i, of) => mean(run.frames.map((frame) => of(frame.stages[i], i, frame)));
+  const kCounts = [({tested}, i, {stages}) => !countsInstances(run) ? tested
+    : whole - sum(stages.slice(0, i).map((stage) => stage.instances)),
+  (stage) => culledOf(run, stage), ({doubt}) => doubt];
+  const whole = countsInstances(run) ? run.scene.instances : run.scene.objects;
+  const keptOf = (frame) => countsInstances(run) ? frame.instances : frame.kept, kept = mean(run.frames.map(keptOf));
   const row = (cells) => {
     const made = tableRow(cells);
     made.children[5].className = 'apart';
     return made;
   };
-  const rows = (f) => [...run.frames[f].stages.map(({name, tested, culled, doubt, microseconds}, i) => row(
-    [[stageSwatch(name), name], grouped(tested), grouped(culled), grouped(doubt), microseconds.toFixed(1),
-      ...['tested', 'culled', 'doubt'].map((key) => grouped(average(i, key))), average(i, 'microseconds').toFixed(1)])),
-  row(['whole query', grouped(objects), grouped(objects - run.frames[f].kept), '',
-    run.frames[f].query_microseconds.toFixed(1), grouped(objects), grouped(objects - kept), '',
-    median(run.frames.map((frame) => frame.query_microseconds)).toFixed(1)])];
+  const rows = (f) => [...run.frames[f].stages.map((stage, i) => row(
+    [[stageSwatch(stage.name), stage.name], ...kCounts.map((count) => grouped(count(stage, i, run.frames[f]))),
+      stage.microseconds.toFixed(1), ...kCounts.map((count) => grouped(average(i, count))),
+      average(i, ({microseconds}) => microseconds).toFixed(1)])),
+  row(['whole query', grouped(whole), grouped(whole - keptOf(run.frames[f])), '',
+    run.frames[f].query_microseconds.toFixed(1), grouped(whole), grouped(whole - kept), '',
+    mean(run.frames.map((frame) => frame.query_microseconds)).toFixed(1)])];
   const heads = ['tested', 'culled', 'in doubt', 'µs'], made = table('What each stage did', ['stage', ...heads,
     ...heads], []);
   made.querySelector('thead').prepend(h('tr', {class: 'groups'}, h('td'),
     live(h('th', {colspan: 4, scope: 'colgroup'}), (f) => 'frame ' + f),
     h('th', {colspan: 4, scope: 'colgroup', class: 'apart'}, 'mean over the frames')));
   live(made.querySelector('tbody'), rows);
-  return card('stages', 'What each stage did', made, note('An object in doubt is kept. The stages are timed in a run ' +
-    'of their own, the whole query without that; in place of its mean the median stands.'));
+  const off = [...new Set(run.frames.flatMap((frame) => frame.off || []))].map((name) => h('li', {},
+    'Switched off: ' + data.off_words[name]));
+  return card('stages', 'What each stage did', made, note(`Culled are ${unitOf(run)}s. What is in doubt is kept. All ` +
+    'times are means, those of the stages of a run of their own, which the clocks slow down. Facing is timed with ' +
+    'occlusion.'), off.length > 0 && h('ul', {}, off));
 }
 
 /** A count that several may share. */
@@ -277,7 +298,7 @@ function objectsCard({rows, stages, left_out: left}, frames) {
     found.textContent = grouped(list.length) + ' found';
     frameText.textContent = player.frame;
     more.hidden = list.length <= shown;
-    body.replaceChildren(...list.slice(0, shown).map((i) => line(rows[i], +digits[i])));
+    body.replaceChildren(...list.slice(0, shown).map((i) => line(rows[i], parseInt(digits[i], 36))));
   };
   const sort = (button) => {
     const by = +button.dataset.by;

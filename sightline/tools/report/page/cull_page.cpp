@@ -108,6 +108,7 @@ std::string cullPage(const CullRun& run, const Film& film, const NamedObjects& t
     page["page"] = "cull";
     page["command"] = run.command;
     page["stage_names"] = kStageNames;
+    for (const OffRow& row : kOffRows) page["off_words"][row.name] = row.words;
     page["whole"] = scene != nullptr;
     page["film"] = filmJson(film);
     page["table"] = tableJson(table);

@@ -66,7 +66,8 @@ NamedObjects objectTable(const Scene& scene, const CullRun& run, size_t most, si
                 visible |= reason == 0;
                 finest = std::max(finest, reason);
             }
-            digits += static_cast<char>('0' + (visible ? 0 : std::min<int>(finest, kStageCount)));
+            const int reason = visible ? 0 : std::min<int>(finest, kStageCount);
+            digits += static_cast<char>(reason < 10 ? '0' + reason : 'a' + (reason - 10));
         }
         table.stages.push_back(std::move(digits));
     }

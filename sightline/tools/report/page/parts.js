@@ -24,8 +24,8 @@ function h(tag, attributes, ...children) {
 const grouped = (value) => Math.round(value).toString().replace(/\B(?=(\d{3})+$)/g, ',');
 /** Four digits, grouped if it is large. */
 const readable = (value) => value === null || value === undefined || !isFinite(value) ? '–'
-  : Math.abs(value) < 1000 ? String(+value.toPrecision(4)) : grouped(value);
-const short = (value) => String(+value.toPrecision(3));
+  : Math.abs(value) < 1e-6 ? '0' : Math.abs(value) < 1000 ? String(+value.toPrecision(4)) : grouped(value);
+const short = (value) => Math.abs(value) < 1e-6 ? '0' : value < 1000 ? String(+value.toPrecision(3)) : grouped(value);
 const plural = (count, one, many = one + 's') => grouped(count) + ' ' + (count === 1 ? one : many);
 function percent(part, whole) {
   const value = whole > 0 ? 100 * part / whole : 0;

@@ -14,6 +14,7 @@
 #include "sightline/tools/report/pictures/picture.h"
 #include "sightline/tools/report/pictures/plan.h"
 #include "sightline/tools/report/pictures/plan_section.h"
+#include "sightline/tools/report/readable.h"
 
 namespace sightline::tools {
 
@@ -65,7 +66,7 @@ struct Counts {
 std::string sectionText(const PlanArea& section) {
     const double stretch = sectionStretch(section);
     return fmt::format("From the side, along {}{}.", section.across == 0 ? "x" : "z",
-                       stretch > 1.01 ? fmt::format("; heights drawn {:.3g} times as large", stretch) : "");
+                       stretch > 1.01 ? fmt::format("; heights drawn {} times as large", readable(stretch, 3)) : "");
 }
 
 /// Draws the frames of a film one by one, on any threads, and its heat maps once the scale of all is known.

@@ -59,7 +59,7 @@ PlanBand sliceOf(const PlanArea& section, const glm::dvec3& eye);
 
 /// Colours: visible, then one per stage; further stages share the last. Blue, two violets, grey, green, ochre, pink,
 /// orange and dark brown: all but the violets are told apart by eyes that lack any one of the receptors.
-inline constexpr int kPlanColours = 9;
+inline constexpr int kPlanColours = 11;
 extern const glm::u8vec4 kPlanPalette[kPlanColours];
 
 /// Draws the boxes of the objects, larger ones below smaller ones, flat ones and those outside the band pale;

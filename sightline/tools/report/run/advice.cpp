@@ -49,14 +49,15 @@ std::string adviceLine(const Advice& advice, double frame) {
     if (!advice.how.empty() && !kept && (advice.saves > 0 || off)) line += " (" + advice.how + ")";
     const double by = std::abs(advice.saves);
     if (kept) {
-        line += fmt::format(": without it a frame takes {:.3g} ms more, {:.2g} times as long", by, 1 + by / frame);
+        line += fmt::format(": without it a frame takes {} ms more, {} times as long", readable(by, 3),
+                            readable(1 + by / frame, 2));
         if (!advice.helps.empty()) line += fmt::format("; it spares {}", advice.helps);
     } else if (advice.saves > 0 || off) {
-        line += fmt::format(": saves {:.3g} ms a frame, {:.0f} %", by, 100 * by / frame);
+        line += fmt::format(": saves {} ms a frame, {:.0f} %", readable(by, 3), 100 * by / frame);
     } else {
-        line += fmt::format(": it would cost {:.3g} ms a frame, {:.0f} %", by, 100 * by / frame);
+        line += fmt::format(": it would cost {} ms a frame, {:.0f} %", readable(by, 3), 100 * by / frame);
     }
-    return line + fmt::format(" (+- {:.2g})", advice.spread);
+    return line + fmt::format(" (+- {})", readable(advice.spread, 2));
 }
 
 /// Those that matter, the largest first, as far as there are lines; then the others.
@@ -83,10 +84,10 @@ bool matters(const Advice& advice, double frame_milliseconds) {
 
 std::string adviceText(const AdviceRun& run) {
     std::string text = fmt::format(
-        "measured: {} at {}x{}, the reference renderer on {}, medians of {}: {:.4g} ms a frame, {:.3g} of it the "
+        "measured: {} at {}x{}, the reference renderer on {}, medians of {}: {} ms a frame, {} of it the "
         "query\n",
         counted(run.frames, "frame"), run.width, run.height, counted(run.threads, "thread"), run.rounds,
-        run.frame_milliseconds, 1e-3 * run.query_microseconds);
+        readable(run.frame_milliseconds), readable(1e-3 * run.query_microseconds, 3));
     text += fmt::format("{} (confidence {:.0f} %)\n", verdictWords(run.bottleneck), 100 * run.bottleneck.confidence);
     size_t shown = 0;
     const std::vector<const Advice*> order = ranked(run, shown);
@@ -94,8 +95,8 @@ std::string adviceText(const AdviceRun& run) {
     std::string smaller, none;
     for (size_t i = shown; i < order.size(); ++i) {
         std::string& rest = matters(*order[i], run.frame_milliseconds) ? smaller : none;
-        rest += fmt::format("{}{} ({:+.2g} +- {:.2g} ms)", rest.empty() ? "" : ", ", order[i]->what, -order[i]->saves,
-                            order[i]->spread);
+        rest += fmt::format("{}{} ({:+.2g} +- {} ms)", rest.empty() ? "" : ", ", order[i]->what, -order[i]->saves,
+                            readable(order[i]->spread, 2));
     }
     if (!smaller.empty()) text += fmt::format("smaller ones: {}\n", smaller);
     if (!none.empty()) text += fmt::format("no difference to speak of: {}\n", none);

@@ -181,12 +181,13 @@ std::string sentenceOfSets(const RunComparison& out) {
 }
 
 std::string sentenceOfTimes(const RunComparison& out) {
-    const std::string range =
-        fmt::format("{:.3g} to {:.3g} in the middle eight tenths of the frames", out.ratio_low, out.ratio_high);
+    const std::string range = fmt::format("{} to {} in the middle eight tenths of the frames",
+                                          readable(out.ratio_low, 3), readable(out.ratio_high, 3));
     if (out.ratio_low <= 1 && out.ratio_high >= 1)
-        return fmt::format("Times do not tell them apart: B takes {:.3g} times as long as A, {}.", out.ratio, range);
-    return fmt::format("B is {}: it takes {:.3g} times as long as A, {}.", out.ratio < 1 ? "faster" : "slower",
-                       out.ratio, range);
+        return fmt::format("Times do not tell them apart: B takes {} times as long as A, {}.", readable(out.ratio, 3),
+                           range);
+    return fmt::format("B is {}: it takes {} times as long as A, {}.", out.ratio < 1 ? "faster" : "slower",
+                       readable(out.ratio, 3), range);
 }
 
 void judge(RunComparison& out, std::optional<double> most_ratio) {
@@ -206,7 +207,8 @@ void judge(RunComparison& out, std::optional<double> most_ratio) {
     }
     if (most_ratio && !out.pairs.empty() && out.ratio > *most_ratio) {
         out.ok = false;
-        out.verdict.push_back(fmt::format("That is slower than the {:.3g} times that were allowed.", *most_ratio));
+        out.verdict.push_back(
+            fmt::format("That is slower than the {} times that were allowed.", readable(*most_ratio, 3)));
     }
 }
 

@@ -51,16 +51,18 @@ Json frameJson(const FrameResult& frame, const CullRun& run, const Scene* scene)
     out["camera"] = cameraJson(frame.camera);
     if (scene) out["visible"] = frame.visible;
     else out["kept"] = frame.visible.size();
+    out["instances"] = frame.objects_visible;
     if (scene && run.stereo > 0) out["eyes"] = frame.eyes;
     if (scene && !frame.lods.empty()) out["lods"] = lodsByKey(frame, *scene);
     if (!scene && !frame.notes.empty()) out["notes"] = frame.notes;
     out["stages"] = Json::array();
-    for (int stage = 0; stage < kStageCount; ++stage) {
-        if (!(run.settings.stages >> stage & 1)) continue;
-        const StageRow& row = frame.stages[stage];
-        out["stages"].push_back({{"name", kStageNames[stage]},
+    for (const Stage stage : kStageOrder) {
+        if (!(countedStages(run.settings.stages) & stageBit(stage))) continue;
+        const StageRow& row = frame.stages[static_cast<int>(stage)];
+        out["stages"].push_back({{"name", kStageNames[static_cast<int>(stage)]},
                                  {"tested", row.tested},
                                  {"culled", row.culled},
+                                 {"instances", row.instances},
                                  {"doubt", row.doubt},
                                  {"microseconds", row.microseconds}});
     }
@@ -87,6 +89,8 @@ Json frameJson(const FrameResult& frame, const CullRun& run, const Scene* scene)
         if (rare || work) out[row.name] = frame.stats.*row.member;
     }
     for (const CounterFlagRow& row : kQueryFlags) out[row.name] = frame.stats.*row.member;
+    for (const OffRow& row : kOffRows)
+        if (frame.stats.off & offBit(row.off)) out["off"].push_back(row.name);
     if (scene && !run.scene_hash.empty()) {
         out["certificates"] = Json::array();
         for (const CertificateRow& row : frame.certificates)
@@ -165,6 +169,8 @@ Json sumsJson(const Verification& sum) {
     if (sum.proofs) out["proofs"] = proofsJson(*sum.proofs);
     if (sum.lossy_seen > 0) out["lossy_seen"] = sum.lossy_seen;
     out["culled"] = sum.culled;
+    out["culled_instances"] = sum.culled_instances;
+    out["false_instances"] = sum.false_instances;
     out["over_estimate"] = std::isfinite(sum.overEstimate()) ? Json(sum.overEstimate()) : Json(nullptr);
     return out;
 }

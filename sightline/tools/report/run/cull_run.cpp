@@ -34,6 +34,8 @@ std::optional<Verification> sumVerification(const CullRun& run) {
         sum->exactly_visible += row.exactly_visible;
         sum->reported += frame.visible.size();
         sum->culled += run.objects - frame.visible.size();
+        sum->culled_instances += run.instances - frame.objects_visible;
+        sum->false_instances += row.rows.size();
     }
     return sum;
 }
@@ -79,6 +81,7 @@ void countByKey(const Scene& scene, const std::vector<uint32_t>& key_order, uint
             finest = std::max(finest, reason);
             for (int eye = 0; two_eyes && eye < 2; ++eye)
                 eyes |= static_cast<uint8_t>((frame.eye_reasons[eye][key_order[i]] == 0) << eye);
+            if (reason > 0 && reason <= kStageCount) ++frame.stages[reason - 1].instances;
             if (reason != 0) continue;
             visible = true;
             ++frame.objects_visible;
@@ -93,10 +96,11 @@ void countByKey(const Scene& scene, const std::vector<uint32_t>& key_order, uint
     frame.triangles -= frame.stats.lod_finest;
     frame.triangles += frame.stats.lod_triangles;
     uint64_t left = keys;
-    for (int stage = 0; stage < kStageCount; ++stage) {
-        if (!(stages >> stage & 1)) continue;
-        frame.stages[stage].tested = left;
-        left -= frame.stages[stage].culled;
+    for (const Stage at : kStageOrder) {
+        if (!(countedStages(stages) & stageBit(at))) continue;
+        StageRow& row = frame.stages[static_cast<int>(at)];
+        row.tested = left;
+        left -= row.culled;
     }
 }
 

@@ -22,7 +22,8 @@ namespace sightline::tools {
 struct StageRow {
     uint64_t tested = 0;
     uint64_t culled = 0;
-    uint64_t doubt = 0;  ///< kept because the stage could not decide; counts objects
+    uint64_t instances = 0;  ///< objects, not keys, that it culled
+    uint64_t doubt = 0;      ///< kept because the stage could not decide; counts objects
     double microseconds = 0;
 };
 
@@ -154,7 +155,9 @@ struct CullRun {
 /// Sums over the frames of a verified run.
 struct Verification {
     uint64_t false_culls = 0, rays = 0, id_samples = 0, exactly_visible = 0, reported = 0;
-    uint64_t culled = 0;  ///< object-frames that were judged
+    uint64_t culled = 0;            ///< keys, each in each frame that was judged
+    uint64_t culled_instances = 0;  ///< the same of objects: several may share a key
+    uint64_t false_instances = 0;   ///< of these, those that a witness saw
     uint64_t aimed_rays = 0, unconfirmed = 0, lossy_seen = 0;
     std::optional<ProofCounts> proofs;  ///< of the frames that have some
     uint32_t least_supersampling = 0, most_supersampling = 0;

@@ -16,12 +16,7 @@ namespace sightline::tools {
 namespace {
 
 /// A length with three or four digits that matter.
-std::string units(double length) {
-    const double size = std::abs(length);
-    return size >= 1000 ? fmt::format("{:.0f}", length)
-           : size >= 10 ? fmt::format("{:.1f}", length)
-                        : fmt::format("{:.3g}", length);
-}
+std::string units(double length) { return readable(length, std::abs(length) < 100 ? 3 : 4); }
 
 std::string percent(double share) {
     if (share > 0 && share < 0.005) return "under 1 %";
@@ -58,8 +53,9 @@ std::string clustersText(const ClustersReason& found) {
 std::string lodText(const LodReason& found) {
     if (found.levels < 2) return "";
     std::string text = fmt::format(" It is drawn by level {} of {}", found.drawn.level, found.levels);
-    if (found.drawn.level > 0) text += fmt::format(", which errs by {:.2g} pixels", found.error);
-    if (std::isfinite(found.next_error)) text += fmt::format("; the next would err by {:.2g}", found.next_error);
+    if (found.drawn.level > 0) text += fmt::format(", which errs by {} pixels", readable(found.error, 2));
+    if (std::isfinite(found.next_error))
+        text += fmt::format("; the next would err by {}", readable(found.next_error, 2));
     return text + ".";
 }
 
@@ -85,8 +81,7 @@ std::string rectangleText(const Explanation& why) {
 
 /// "beyond the left plane by 3.2 units".
 std::string planeText(const FrustumReason& reason) {
-    if (reason.by_triangles)
-        return "out of view: its box reaches into it, but none of its triangles that would be drawn";
+    if (reason.by_triangles) return "out of view: its box reaches into it, but none of its triangles does";
     if (reason.by_faces) return "out of view: the box along the axes reaches into it, but not its own, which is turned";
     const char* const name = kPlaneNames[reason.plane];
     const std::string where = reason.plane < FrustumReason::kFirstSection ? fmt::format("the {} plane", name) : name;
@@ -120,6 +115,18 @@ std::string frustumText(const Explanation& why, const std::string& subject, cons
     return text + togetherText(why) + certificateText(why, name);
 }
 
+/// Of an object of which all that lies in the view is turned away.
+std::string awayText() { return "faces in the view that all look away from the eye"; }
+
+std::string facingText(const Explanation& why, const std::string& subject) {
+    return fmt::format(
+               "culled by facing: {} has {}, and they are single-sided: a face is drawn from its front alone. (Sides "
+               "that "
+               "are wrongly turned in the file are drawn by --sides both.)",
+               subject, awayText()) +
+           togetherText(why) + rectangleText(why);
+}
+
 std::string withoutText(const OcclusionReason& reason, const NameOfObject& name) {
     const std::string who = fmt::format("without {}", pronoun(reason.hiders.size()));
     switch (reason.without) {
@@ -129,6 +136,8 @@ std::string withoutText(const OcclusionReason& reason, const NameOfObject& name)
             return "; " + who + " it would be kept";
         case Without::kOutsideFrustum:
             return "; " + who + " the frustum would cull it";
+        case Without::kFacesAway:
+            return "; " + who + " it would be culled, for its faces look away";
         case Without::kTooFar:
             return "; " + who + " it would be left out as too far away";
         case Without::kTooSmall:
@@ -178,8 +187,8 @@ std::string farText(const SizeReason& reason) {
 }
 
 std::string smallText(const SizeReason& reason) {
-    return fmt::format("as large as a disk of radius {:.3g} pixels, less than {:.3g}", reason.radius,
-                       reason.radius_limit);
+    return fmt::format("as large as a disk of radius {} pixels, less than {}", readable(reason.radius, 3),
+                       readable(reason.radius_limit, 3));
 }
 
 std::string keptText(const Explanation& why, const NameOfObject& name) {
@@ -269,6 +278,8 @@ std::string explanationText(const Explanation& why, const std::string& subject, 
             return fmt::format("culled by pvs: {}: {}.", subject, rowsText(why.cells));
         case Verdict::kNoWindow:
             return fmt::format("culled by portals: {}: {}.", subject, cellsText(why.cells));
+        case Verdict::kFacesAway:
+            return facingText(why, subject);
         case Verdict::kVisible:
             break;
     }
@@ -304,6 +315,8 @@ std::string explanationClause(const Explanation& why, const NameOfObject& name, 
             return rowsText(why.cells);
         case Verdict::kNoWindow:
             return cellsText(why.cells);
+        case Verdict::kFacesAway:
+            return awayText();
         case Verdict::kVisible:
             break;
     }
@@ -319,13 +332,14 @@ std::string stageOf(const Explanation& why) {
     if (why.verdict == Verdict::kNoTime) return kStageNames[static_cast<int>(Stage::kLod)];
     if (why.verdict == Verdict::kNotInPvs) return kStageNames[static_cast<int>(Stage::kPvs)];
     if (why.verdict == Verdict::kNoWindow) return kStageNames[static_cast<int>(Stage::kPortals)];
+    if (why.verdict == Verdict::kFacesAway) return kStageNames[static_cast<int>(Stage::kFacing)];
     return "";
 }
 
 const char* verdictName(Verdict verdict) {
     constexpr const char* kNames[] = {"no such object", "outside layers", "visible",   "outside frustum",
                                       "occluded",       "too far",        "too small", "no cluster",
-                                      "no time",        "not in PVS",     "no window"};
+                                      "no time",        "not in PVS",     "no window", "faces away"};
     return kNames[static_cast<int>(verdict)];
 }
 

@@ -34,7 +34,7 @@ std::string growthWords(double share) {
     if (std::abs(share) < kWorthAWord) return "-";
     if (std::isinf(share)) return "all";
     if (share < 1) return fmt::format("{:.0f} %", 100 * share);
-    return fmt::format("{:.3g} x", 1 + share);
+    return fmt::format("{} x", readable(1 + share, 3));
 }
 
 std::string milliseconds(double seconds) { return fmt::format("{:.3f}", 1e3 * seconds); }
@@ -74,12 +74,13 @@ void printBottleneck(const ProfileRun& run, std::string& text) {
 void printCosts(const ProfileRun& run, std::string& text) {
     const DrawCosts& costs = run.costs;
     text += fmt::format(
-        "\ncosts of {} [ns]: an object {:.4g}, a triangle {:.3g}, a vertex {:.3g}, a covered pixel {:.3g}, "
-        "a pixel of the image {:.3g}, a frame {:.4g}\n"
+        "\ncosts of {} [ns]: an object {}, a triangle {}, a vertex {}, a covered pixel {}, "
+        "a pixel of the image {}, a frame {}\n"
         "  fitted to {} frames of parts of the scene; half of them are within {:.1f} %\n"
-        "  a cluster's test {:.2f}, a back face dropped {:.3g}, drawn {:.3g}\n",
-        run.renderer, costs.object, costs.triangle, costs.vertex, costs.pixel, costs.sample, costs.frame, costs.samples,
-        100 * costs.error, run.facing.test, run.facing.dropped, run.facing.drawn);
+        "  a cluster's test {:.2f}, a back face dropped {}, drawn {}\n",
+        run.renderer, readable(costs.object), readable(costs.triangle, 3), readable(costs.vertex, 3),
+        readable(costs.pixel, 3), readable(costs.sample, 3), readable(costs.frame), costs.samples, 100 * costs.error,
+        run.facing.test, readable(run.facing.dropped, 3), readable(run.facing.drawn, 3));
 }
 
 void printAblation(const ProfileRun& run, std::string& text) {
@@ -94,9 +95,10 @@ void printAblation(const ProfileRun& run, std::string& text) {
     text += fmt::format("\n{:<21} {:>9} {:>11} {:>10}   {}\n", "without it, more", "geometry", "rasterizer", "bus",
                         "it saves a frame of the reference renderer [ms]");
     for (const StageBenefit& benefit : benefitsOf(run.ablation))
-        text += fmt::format("{:<21} {:>9} {:>11} {:>10}   {:.4g} +- {:.2g}{}\n", stageName(benefit.stage),
+        text += fmt::format("{:<21} {:>9} {:>11} {:>10}   {} +- {}{}\n", stageName(benefit.stage),
                             growthWords(benefit.geometry), growthWords(benefit.rasterizer), growthWords(benefit.bus),
-                            benefit.milliseconds, benefit.spread, benefit.in_use ? "" : ", if it were on");
+                            readable(benefit.milliseconds), readable(benefit.spread, 2),
+                            benefit.in_use ? "" : ", if it were on");
 }
 
 Json bottleneckJson(const Bottleneck& found) {

@@ -189,14 +189,24 @@ void readStages(const At& list, FrameResult& frame, uint32_t& stages) {
         if (found == std::end(kStageNames)) at.member("name").fail("there is no such stage");
         const auto stage = static_cast<size_t>(found - std::begin(kStageNames));
         if (stages >> stage & 1) at.member("name").fail("named twice");
-        stages |= 1u << stage;
+        stages |= 1u << stage;  // facing, too, to find what is named twice
         StageRow& row = frame.stages[stage];
         row.tested = at.member("tested").whole();
         row.culled = at.member("culled").whole();
         if (row.culled > row.tested) at.member("culled").fail("more than were tested");
+        row.instances = row.culled;
+        if (const auto instances = at.maybe("instances")) row.instances = instances->whole();
         if (const auto doubt = at.maybe("doubt")) row.doubt = doubt->whole();
         row.microseconds = at.member("microseconds").positive();
     }
+    stages &= kAllStages;
+}
+
+uint32_t offOf(const At& at) {
+    const std::string name = at.text();
+    for (const OffRow& row : kOffRows)
+        if (name == row.name) return offBit(row.off);
+    at.fail("nothing of this name can be switched off");
 }
 
 /// Keys stand where places in the list of names will be.
@@ -237,6 +247,7 @@ void readFrame(const At& at, CullRun& run, uint32_t& stages, FrameResult& frame,
     frame.visible = keysOf(visible);
     if (frame.visible.size() > run.objects) visible.fail("more than the scene has");
     frame.objects_visible = frame.visible.size();
+    if (const auto instances = at.maybe("instances")) frame.objects_visible = instances->whole(0, run.instances);
     if (const auto eyes = at.maybe("eyes")) {
         if (eyes->size() != frame.visible.size()) eyes->fail("not one for each that is visible");
         for (size_t i = 0; i < eyes->size(); ++i)
@@ -261,6 +272,8 @@ void readFrame(const At& at, CullRun& run, uint32_t& stages, FrameResult& frame,
         if (row.kind != CounterRow::kOfAnswer) count(row.name, frame.stats.*row.member);
     for (const CounterFlagRow& row : kQueryFlags)
         if (const auto flag = at.maybe(row.name)) frame.stats.*row.member = flag->flag();
+    if (const auto off = at.maybe("off"))
+        for (size_t i = 0; i < off->size(); ++i) frame.stats.off |= offOf(off->element(i));
     if (const auto changed = at.maybe("changed_pixels"))
         frame.changed_pixels = changed->whole(0, uint64_t{run.width} * run.height);
     if (const auto thread = at.maybe("thread")) frame.thread = static_cast<uint32_t>(thread->whole(0, 65535));

@@ -46,10 +46,10 @@ void addFrame(const CullRun& run, size_t index, double begin, double end, Json& 
     for (const StageRow& row : frame.stages) sum += row.microseconds;
     const double scale = sum > length ? length / sum : 1;
     double at = begin;
-    for (int stage = 0; stage < kStageCount; ++stage) {
-        if (!(run.settings.stages >> stage & 1)) continue;
-        const StageRow& row = frame.stages[stage];
-        Json part = slice(kStageNames[stage], "stage", frame.thread, at, row.microseconds * scale);
+    for (const Stage stage : kStageOrder) {
+        if (!(countedStages(run.settings.stages) & stageBit(stage))) continue;
+        const StageRow& row = frame.stages[static_cast<int>(stage)];
+        Json part = slice(kStageNames[static_cast<int>(stage)], "stage", frame.thread, at, row.microseconds * scale);
         part["args"] = {
             {"microseconds", row.microseconds}, {"tested", row.tested}, {"culled", row.culled}, {"doubt", row.doubt}};
         events.push_back(std::move(part));
