@@ -45,6 +45,9 @@ struct WitnessSettings {
     /// Prove of each object that it is hidden, or find where it is seen: cull_proof.h. `seen` is then what is seen, and no
     /// lower bound, but for what is undecided.
     bool prove = false;
+    /// With proofs: where a culled object touches another one in a line, at equal depth, it is seen by rays; a proof says that
+    /// no area of it is. True: the proof counts. Our own answers are held to the rays.
+    bool lines_are_hidden = false;
 };
 
 /// Holds the scene in the form that the witnesses need (an Embree scene and draw lists). The scene must
