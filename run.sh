@@ -56,7 +56,7 @@ for word in "$@"; do
     case $word in
         bench) programs+=(sightline-bench) ;;
         view) programs+=(sightline-view) ;;
-        render|sight|replay|check|export|calibrate|profile|advise|report|config) programs+=(sightline-lab) ;;
+        render|sight|replay|check|judge|export|calibrate|profile|advise|report|config) programs+=(sightline-lab) ;;
         *.glb|*.gltf|*.bsp|*.map|*.prt|*.pak|*.pk3|*.vis|*.json|*.toml|*.frame|*.png) ;;
         *.*) if [ -f "$word" ]; then programs+=(sightline-import); fi ;;
     esac

@@ -10,6 +10,7 @@ int main(int count, char** words) {
                      {"sight", addSight},
                      {"replay", addReplay},
                      {"check", addCheck},
+                     {"judge", addJudge},
                      {"export", addExport},
                      {"calibrate", addCalibrate},
                      {"profile", addProfile},

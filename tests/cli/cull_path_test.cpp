@@ -44,14 +44,43 @@ TEST_F(CullPath, FalseCullIsNamedWithItsPlaceAndItsReplay) {
     const std::string said = testing::internal::GetCapturedStderr();
     for (const char* word :
          {"frame 1", "object 7", "\"a lamp\"", "(12.500, 99.250)", "rays", "sightline verify 'my scene.glb' --cameras ",
-          "replay-frame-1.json", "--size 640x360", "--rays 1234", "--jitter 0.25", "--skip occlusion"})
+          "replay-frames.json", "--size 640x360", "--rays 1234", "--jitter 0.25", "--skip occlusion"})
         EXPECT_NE(said.find(word), std::string::npos) << word << " in\n" << said;
 
-    const Result<CameraPath> camera = readCameraPath(path("replay-frame-1.json"));
+    const Result<CameraPath> camera = readCameraPath(path("replay-frames.json"));
     ASSERT_TRUE(camera.ok()) << camera.error().message;
     ASSERT_EQ(camera->frames.size(), 1u);
     EXPECT_EQ(camera->frames[0].eye, wrong.run.frames[1].camera.eye);
-    EXPECT_FALSE(std::filesystem::exists(path("replay-frame-0.json")));
+}
+
+// One file for all, however many frames are wrong: with a memory the frames before them, too; with a limit that gives way, the one before.
+TEST_F(CullPath, AllWrongFramesAreInOneFile) {
+    struct {
+        bool stateless;
+        double hysteresis;
+        std::vector<double> eyes;
+    } const cases[] = {{true, 0, {2, 3, 7}}, {true, 0.1, {1, 2, 3, 6, 7}}, {false, 0, {0, 1, 2, 3, 4, 5, 6, 7}}};
+    for (const auto& [stateless, hysteresis, eyes] : cases) {
+        WrongRun wrong;
+        const FrameResult sound = wrong.run.frames[0], bad = wrong.run.frames[1];
+        wrong.run.frames.assign(9, sound);
+        for (const size_t i : {2, 3, 7}) wrong.run.frames[i] = bad;
+        for (size_t i = 0; i < 9; ++i) wrong.run.frames[i].camera.eye = {double(i), 0, 5};
+        wrong.run.settings.stateless = stateless;
+        wrong.run.settings.hysteresis = hysteresis;
+        wrong.options.report = path("");
+        testing::internal::CaptureStderr();
+        ASSERT_TRUE(explainFalseCulls(wrong.scene, wrong.options, wrong.run).ok());
+        const std::string said = testing::internal::GetCapturedStderr();
+        EXPECT_EQ(said.find("replay: "), said.rfind("replay: ")) << said;
+        const Result<CameraPath> cameras = readCameraPath(path("replay-frames.json"));
+        ASSERT_TRUE(cameras.ok()) << cameras.error().message;
+        std::vector<double> found;
+        for (const CameraFrame& frame : cameras->frames) found.push_back(frame.eye.x);
+        EXPECT_EQ(found, eyes);
+        const auto files = std::filesystem::directory_iterator(path(""));
+        EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+    }
 }
 
 TEST_F(CullPath, SoundRunsSayNothing) {

@@ -19,6 +19,9 @@ constexpr OtherVerb kOthers[] = {
      "repeat target verify rays json= image= quiet -q"},
     {"check", "the certificates of a run or a recorded frame, each held to exact arithmetic", "sightline-lab",
      "split up unit sides import-memory import-time threads json= quiet -q"},
+    {"judge", "what any engine drew, frame by frame: what it missed, and what it drew in vain", "sightline-lab",
+     "split up unit sides import-memory import-time cameras eye look path frames seed fps speed size threads json= "
+     "answers pictures= section stereo jitter rays no-proofs quiet -q"},
     {"export", "the scene as glTF, cut into objects and without what is not seen", "sightline-lab",
      "split up unit sides import-memory import-time cameras eye look path frames seed fps speed size threads json= "
      "output= outside from-path quiet -o -q"},

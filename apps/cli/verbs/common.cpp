@@ -170,12 +170,16 @@ void addSceneOptions(Command& verb, RunOptions& options) {
     addSectionOptions(verb, options);
     addVisibilityOptions(verb, options);
     addClusterOptions(verb, options);
+    addOtherSettingOptions(verb, options.settings);
+    addWitnessOptions(verb, options);
+}
+
+void addWitnessOptions(Command& verb, RunOptions& options) {
     verb.add_option("--jitter", options.jitter, "largest shift of the image that the answer must hold for")
         ->check(Range{0.0, 1024.0})
         ->type_name("PX")
         ->capture_default_str()
         ->group("Culling");
-    addOtherSettingOptions(verb, options.settings);
     verb.add_option("--rays", options.rays, "that the first witness casts for a frame")
         ->check(Range{uint64_t{1}, uint64_t{1} << 40})
         ->type_name("N")

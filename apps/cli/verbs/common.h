@@ -27,6 +27,8 @@ constexpr uint32_t kMostThreads = 1024;
 void addCameraOptions(Command& verb, RunOptions& options, const std::string& shared);
 /// These, and what culling needs.
 void addSceneOptions(Command& verb, RunOptions& options);
+/// What an answer must hold for, and who judges it: --jitter, --rays and --no-proofs.
+void addWitnessOptions(Command& verb, RunOptions& options);
 /// --stereo.
 void addStereoOption(Command& verb, RunOptions& options);
 void addRememberOption(Command& verb, RunOptions& options);

@@ -32,6 +32,7 @@
 #include "sightline/tools/load/mesh_lods.h"
 #include "sightline/tools/load/scene_levels.h"
 #include "sightline/tools/report/output_file.h"
+#include "sightline/tools/report/readable.h"
 #include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/truth/changed_pixels.h"
 #include "sightline/tools/truth/verify.h"
@@ -142,7 +143,7 @@ std::string directoryOfOutputs(const RunOptions& options) {
     return directory.empty() ? "" : (directory / "").string();
 }
 
-/// The command that judges one frame again in the same way.
+/// The command that judges frames again in the same way.
 std::string replayCommand(const RunOptions& options, const CullRun& run, const std::string& camera_file) {
     std::string command = fmt::format("sightline verify {} --cameras {} --size {}x{} --rays {}", options.scene.words(),
                                       quoted(camera_file), run.width, run.height, options.rays);
@@ -280,11 +281,13 @@ void verifyPath(const Scene& scene, const RunOptions& options, CullRun& run) {
     settings.aimed_rays = std::min(settings.aimed_rays, options.rays / 5);
     settings.prove = !options.no_proofs;
     settings.stop = interrupted;
+    settings.lines_are_hidden = options.lines_are_hidden;
     if (interrupted()) return;
     const Witness witness(scene);
     Progress progress("verifying", "frames", run.frames.size());
     const Worker judge = [&](size_t i) {
         FrameResult& frame = run.frames[i];
+        if (frame.reasons.empty() && !scene.objects.empty()) return;
         const FrameVerdict verdict = judgeFrame(witness, run, frame, settings);
         if (verdict.stopped && verdict.false_culls.empty()) return;  // it was not judged; what was found is found
         frame.verification = rowOf(verdict, frame, scene, run);
@@ -330,32 +333,44 @@ int exitCodeOf(const CullRun& run, size_t frames, bool verify) {
     return sum && sum->false_culls > 0 ? kAnswerIsNo : exit_code;
 }
 
-Status explainFalseCulls(const Scene& scene, const RunOptions& options, const CullRun& run) {
+void tellFalseCulls(const Scene& scene, const CullRun& run) {
     constexpr size_t kMostLines = 20;  // a frame
-    const auto say = [](auto format, const auto&... values) {
-        const std::string line = fmt::format(fmt::runtime(format), values...);
-        (void)std::fwrite(line.data(), 1, line.size(), stderr);
-    };
-    bool first_fault = true;
+    std::string text;
     for (size_t i = 0; i < run.frames.size(); ++i) {
-        const FrameResult& frame = run.frames[i];
-        if (!frame.verification || frame.verification->rows.empty()) continue;
-        const std::string file = fmt::format("{}replay-frame-{}.json", directoryOfOutputs(options), i);
-        CameraPath path;
-        // What remembers is repeated from the first frame on; one file does.
-        const bool remembers = !run.settings.stateless;
-        const bool again = !remembers || std::exchange(first_fault, false);
-        const size_t first = remembers ? 0 : run.settings.hysteresis > 0 && i > 0 ? i - 1 : i;
-        for (size_t k = first; k <= i && again; ++k) path.frames.push_back(run.frames[k].camera);
-        if (again)
-            if (Status written = writeFileAside(file, cameraPathJson(path)); !written) return written;
-        const auto& rows = frame.verification->rows;
-        for (size_t k = 0; k < std::min(rows.size(), kMostLines); ++k)
-            say("false cull: frame {}: object {} \"{}\" is seen at pixel ({:.3f}, {:.3f}) by {}\n", i, rows[k].key,
-                oneLine(objectPath(scene, scene.objects[rows[k].object]), 200), rows[k].x, rows[k].y, rows[k].witness);
-        if (rows.size() > kMostLines) say("false cull: frame {}: and {} more\n", i, rows.size() - kMostLines);
-        if (again) say("replay: {}\n", replayCommand(options, run, file));
+        if (!run.frames[i].verification) continue;
+        const auto& rows = run.frames[i].verification->rows;
+        for (size_t k = 0; k < std::min(rows.size(), kMostLines); ++k) {
+            text += fmt::format("false cull: frame {}: object {} \"{}\" is seen at pixel ({:.3f}, {:.3f}) by {}", i,
+                                rows[k].key, oneLine(objectPath(scene, scene.objects[rows[k].object]), 200), rows[k].x,
+                                rows[k].y, rows[k].witness);
+            text += rows[k].pixels ? fmt::format("; {} show it\n", counted(*rows[k].pixels, "pixel")) : "\n";
+        }
+        if (rows.size() > kMostLines)
+            text += fmt::format("false cull: frame {}: and {} more\n", i, rows.size() - kMostLines);
     }
+    (void)std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+Status explainFalseCulls(const Scene& scene, const RunOptions& options, const CullRun& run) {
+    const auto is_wrong = [](const FrameResult& frame) {
+        return frame.verification && !frame.verification->rows.empty();
+    };
+    // Who remembers is asked all that came before; a limit that gives way, the frame before.
+    const bool remembers = !run.settings.stateless, looks_back = run.settings.hysteresis > 0;
+    CameraPath path;
+    size_t taken = 0;  // of the run's frames
+    for (size_t i = 0; i < run.frames.size(); ++i) {
+        if (!is_wrong(run.frames[i])) continue;
+        const size_t first = remembers ? 0 : looks_back && i > 0 ? i - 1 : i;
+        for (size_t k = std::max(first, taken); k <= i; ++k) path.frames.push_back(run.frames[k].camera);
+        taken = i + 1;
+    }
+    if (path.frames.empty()) return success();
+    const std::string file = directoryOfOutputs(options) + "replay-frames.json";
+    if (Status written = writeFileAside(file, cameraPathJson(path)); !written) return written;
+    tellFalseCulls(scene, run);
+    const std::string line = fmt::format("replay: {}\n", replayCommand(options, run, file));
+    (void)std::fwrite(line.data(), 1, line.size(), stderr);
     return success();
 }
 

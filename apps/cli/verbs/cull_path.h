@@ -28,7 +28,7 @@ using FrameHook = std::function<void(size_t frame, const Query& query)>;
 CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options,
                  std::optional<LoadedWorld>* world = nullptr, const FrameHook& answered = {});
 
-/// Judges every frame of a run. Fills FrameResult::verification; interrupted, of the first frames only.
+/// Judges every frame of a run that has reasons. Fills FrameResult::verification; interrupted, of the first frames only.
 void verifyPath(const Scene& scene, const RunOptions& options, CullRun& run);
 
 /// Fills FrameResult::changed_pixels, if a stage of distance or contribution was in use; interrupted, of the first frames
@@ -43,8 +43,11 @@ size_t judgedFrames(const CullRun& run);
 /// @param verify  whether every frame was to be judged
 int exitCodeOf(const CullRun& run, size_t frames, bool verify);
 
-/// For each frame with false culls: writes its camera beside the run's other files as replay-frame-N.json, and
-/// prints each false cull with the command that replays it on standard error.
+/// Names each false cull on standard error, at most 20 a frame.
+void tellFalseCulls(const Scene& scene, const CullRun& run);
+
+/// tellFalseCulls(), and writes the cameras of the frames that have some beside the run's other files, as
+/// replay-frames.json, and prints the command that judges them again. Nothing, if there are no false culls.
 Status explainFalseCulls(const Scene& scene, const RunOptions& options, const CullRun& run);
 
 /// Calls work(i) for i in [0, count) on so many threads, in any order; returns when all are done. Where memory does not

@@ -40,13 +40,14 @@ struct RunOptions {
     double stereo = 0;           ///< distance of the eyes  [world units]; 0: one eye
     uint32_t query_threads = 1;  ///< that share one query's bins
     uint64_t rays = 1000000;
-    bool no_proofs = false;     ///< rays and samples alone judge
-    std::string json;           ///< file, `-`, or empty
-    std::string report;         ///< directory, or empty
-    bool propose = false;       ///< tell the query what an image does not show: Proposer
-    bool taught = false;        ///< another query draws each frame after this one, which learns from it
-    bool certificates = false;  ///< fill FrameResult::certificates
-    bool credits = false;       ///< fill FrameResult::credits: costs some tens of queries a frame
+    bool no_proofs = false;         ///< rays and samples alone judge
+    bool lines_are_hidden = false;  ///< WitnessSettings
+    std::string json;               ///< file, `-`, or empty
+    std::string report;             ///< directory, or empty
+    bool propose = false;           ///< tell the query what an image does not show: Proposer
+    bool taught = false;            ///< another query draws each frame after this one, which learns from it
+    bool certificates = false;      ///< fill FrameResult::certificates
+    bool credits = false;           ///< fill FrameResult::credits: costs some tens of queries a frame
 };
 
 }  // namespace sightline::cli

@@ -17,6 +17,7 @@ void addVis(Command& tool, int& exit_code);
 void addBake(Command& tool, int& exit_code);
 void addExport(Command& tool, int& exit_code);
 void addCheck(Command& tool, int& exit_code);
+void addJudge(Command& tool, int& exit_code);
 void addReplay(Command& tool, int& exit_code);
 void addCalibrate(Command& tool, int& exit_code);
 void addProfile(Command& tool, int& exit_code);

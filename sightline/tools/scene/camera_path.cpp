@@ -229,11 +229,14 @@ View makeView(const CameraFrame& frame, uint32_t width, uint32_t height) {
 }
 
 Result<CameraPath> readCameraPath(const std::string& file) {
-    Result<std::string> text = readTextFile(file);
-    if (!text) return text.error();
+    const Result<std::string> text = readTextFile(file);
+    return text ? parseCameraPath(*text, file) : text.error();
+}
+
+Result<CameraPath> parseCameraPath(std::string_view text, const std::string& file) {
     std::string what;
     try {
-        return readFrames(parseJson(*text));
+        return readFrames(parseJson(text));
     } catch (const Complaint& complaint) { what = complaint.what; } catch (const json::exception& exception) {
         what = "not JSON: " + parseMessage(exception.what());
     }

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -39,6 +40,9 @@ View makeView(const CameraFrame& frame, uint32_t width, uint32_t height);
 /// that are not rigid. Matrices of other clip spaces are declared ("clip", a name of kClipSpaces), or told where they
 /// tell (tellClipSpace()); a frame's are those of a View.
 Result<CameraPath> readCameraPath(const std::string& file);
+/// The same of a text.
+/// @param file  named by errors
+Result<CameraPath> parseCameraPath(std::string_view text, const std::string& file);
 
 /// The same text back; reading it gives the same path bit by bit.
 std::string cameraPathJson(const CameraPath& path);

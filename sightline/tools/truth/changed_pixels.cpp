@@ -31,11 +31,17 @@ Band drawBand(std::vector<DrawItem> items, const View& view, const ZBufferSettin
     return band;
 }
 
-uint64_t countChanges(const Band& a, const Band& b) {
+uint64_t countChanges(const Band& a, const Band& b, std::span<uint64_t> shown) {
     uint64_t changed = 0;
     const std::vector<uint32_t>& solid_a = a.solid.empty() ? a.plain : a.solid;
     const std::vector<uint32_t>& solid_b = b.solid.empty() ? b.plain : b.solid;
-    for (size_t i = 0; i < a.plain.size(); ++i) changed += a.plain[i] != b.plain[i] || solid_a[i] != solid_b[i];
+    for (size_t i = 0; i < a.plain.size(); ++i) {
+        const bool solid = solid_a[i] != solid_b[i];
+        if (!solid && a.plain[i] == b.plain[i]) continue;
+        ++changed;
+        // As if all hid, a pixel shows what was left out itself; as they are, perhaps what lies behind it.
+        if (const uint32_t object = solid ? solid_a[i] : a.plain[i]; object < shown.size()) ++shown[object];
+    }
     return changed;
 }
 
@@ -89,9 +95,11 @@ private:
 }  // namespace
 
 uint64_t countChangedPixels(const SceneFacts& facts, const View& view, std::span<const Drawn> drawn,
-                            std::span<const uint8_t> lods) {
+                            std::span<const uint8_t> lods, std::span<uint64_t> shown) {
     SIGHTLINE_ASSERT(drawn.size() == facts.scene().objects.size());
     SIGHTLINE_ASSERT(lods.empty() || lods.size() == drawn.size());
+    SIGHTLINE_ASSERT(shown.empty() || shown.size() == drawn.size());
+    std::fill(shown.begin(), shown.end(), uint64_t{0});
     CoarseItems coarse(facts, lods);
     const SightLines sight(view);
     std::vector<uint32_t> full, kept;
@@ -113,7 +121,7 @@ uint64_t countChangedPixels(const SceneFacts& facts, const View& view, std::span
     uint64_t changed = 0;
     for (uint64_t row = 0; row < view.height; row += pass.row_count) {
         pass.first_row = static_cast<uint32_t>(row);
-        changed += countChanges(drawBand(all, view, pass), drawBand(some, view, pass));
+        changed += countChanges(drawBand(all, view, pass), drawBand(some, view, pass), shown);
     }
     return changed;
 }

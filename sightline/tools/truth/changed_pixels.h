@@ -24,7 +24,9 @@ enum class Drawn : uint8_t {
 /// @param drawn  [size: objects of the scene]
 /// @param lods   per object the level of detail that it is drawn by where something is left out: 0, or 1 + an index
 ///               into Mesh::lods. Empty: all by their finest  [size: objects of the scene, or 0]
+/// @param shown  receives per object how many of these pixels show it where nothing is left out; may be empty
+///               [size: objects of the scene, or 0]
 uint64_t countChangedPixels(const SceneFacts& facts, const View& view, std::span<const Drawn> drawn,
-                            std::span<const uint8_t> lods = {});
+                            std::span<const uint8_t> lods = {}, std::span<uint64_t> shown = {});
 
 }  // namespace sightline::tools

@@ -77,6 +77,13 @@ public:
         verdict.seen[object] = 1;
     }
 
+    /// It was convicted, and is hidden.
+    void acquit(uint32_t object) {
+        verdict.seen[object] = 0;
+        std::erase_if(verdict.false_culls, [&](const FalseCull& cull) { return cull.object == object; });
+        ++verdict.unconfirmed;
+    }
+
     FrameVerdict finish() {
         std::sort(verdict.false_culls.begin(), verdict.false_culls.end(),
                   [](const FalseCull& a, const FalseCull& b) { return a.object < b.object; });
@@ -153,14 +160,17 @@ struct Witness::Impl {
     }
 
     /// Decides of each object whether it is seen.
-    void prove(Trial& trial, const View& view, std::span<const uint8_t> culled) const {
+    void prove(Trial& trial, const View& view, std::span<const uint8_t> culled, bool lines_are_hidden) const {
         constexpr uint64_t kMostWork = 1000000;  // shadows of an object
         CullProver prover(facts, view, kMostWork, [&] { return trial.isStopped(); });
         ProofCounts counts;
         const std::vector<uint8_t> together = prover.hiddenTogether();
         for (uint32_t object = 0; object < culled.size() && !trial.isStopped(); ++object) {
-            if (trial.verdict.seen[object]) continue;
+            const bool convicted = culled[object] && trial.verdict.seen[object];
+            if (trial.verdict.seen[object] && !(convicted && lines_are_hidden)) continue;
             const CullProof proof = together[object] ? CullProof() : prover.prove(object);
+            if (convicted && proof.result != ProofResult::kProved) continue;
+            if (convicted) trial.acquit(object);
             if (proof.result == ProofResult::kSeen) trial.found(object, proof.x, proof.y);
             else if (proof.result == ProofResult::kProved)
                 ++(culled[object] ? counts.culled_hidden : counts.kept_hidden);
@@ -199,7 +209,7 @@ FrameVerdict Witness::judge(const View& view, std::span<const uint8_t> culled, c
             drawIdBuffer(impl_->facts, view, sight, pass,
                          [&](uint32_t object, const glm::dvec2& place) { trial.sighted(object, place, "id-buffer"); });
     }
-    if (settings.prove && !trial.isStopped()) impl_->prove(trial, view, culled);
+    if (settings.prove && !trial.isStopped()) impl_->prove(trial, view, culled, settings.lines_are_hidden);
     return trial.finish();
 }
 

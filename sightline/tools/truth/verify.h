@@ -49,6 +49,9 @@ struct WitnessSettings {
     bool prove = false;
     /// Asked within the frame; true: end at once. FrameVerdict::stopped then says so. May be empty.
     std::function<bool()> stop = {};
+    /// With proofs: where a culled object touches another one in a line, at equal depth, it is seen by rays; a proof says that
+    /// no area of it is. True: the proof counts. Our own answers are held to the rays.
+    bool lines_are_hidden = false;
 };
 
 /// Holds the scene in the form that the witnesses need (an Embree scene and draw lists). The scene must

@@ -229,6 +229,32 @@ TEST(Witness, EqualDepthIsVisible) {
 
 /// Walls of many pieces, each with its own transform, turned at random: the seams are tight but for rounding, and
 /// nothing behind them may be reported.
+// A ceiling behind a wall, which touches it from behind in a line.
+TEST(Witness, WhatTouchesInALineIsSeenByRaysAndProvedToBeHidden) {
+    Scene scene = emptyScene();
+    const uint32_t square = addSquare(scene, 2);
+    addObject(scene, square, moved({0, 0, -4}));
+    addObject(scene, square, {1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0.5, -6, 1});
+    addObject(scene, square, moved({0, 4, -9}));  // and a square that looks out above the wall
+    const auto falseCulls = [&](bool prove, bool lines_are_hidden) {
+        WitnessSettings settings;
+        settings.prove = prove;
+        settings.lines_are_hidden = lines_are_hidden;
+        const FrameVerdict verdict = Witness(scene).judge(usualView(), std::vector<uint8_t>{0, 1, 1}, settings);
+        if (prove && lines_are_hidden) {
+            EXPECT_EQ(verdict.proofs->culled_hidden, 1u);
+            EXPECT_EQ(verdict.exactly_visible, 2u);
+        }
+        Objects out;
+        for (const FalseCull& cull : verdict.false_culls) out.push_back(cull.object);
+        return out;
+    };
+    EXPECT_EQ(falseCulls(false, false), (Objects{1, 2}));
+    EXPECT_EQ(falseCulls(true, false), (Objects{1, 2}));
+    EXPECT_EQ(falseCulls(false, true), (Objects{1, 2})) << "nothing was proved";
+    EXPECT_EQ(falseCulls(true, true), Objects{2});
+}
+
 TEST(Witness, SeamsBetweenObjectsAreTight) {
     for (uint64_t seed = 0; seed < 6; ++seed) {
         Random random(seed);

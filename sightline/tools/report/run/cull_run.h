@@ -33,6 +33,7 @@ struct FalseCullRow {
     uint64_t key = 0;
     double x = 0, y = 0;  ///< [pixels from the left and the top]
     std::string witness;
+    std::optional<uint64_t> pixels = {};  ///< that would show it, if they were counted
 };
 
 /// What the witnesses said about one frame. Counts keys.

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sightline/geom/setting_rows.h"
+#include "sightline/tools/report/run/json_place.h"
 #include "sightline/tools/scene/json_text.h"
 #include "sightline/tools/scene/text_file.h"
 
@@ -18,77 +19,11 @@ namespace sightline::tools {
 namespace {
 
 using nlohmann::json;
+using Fault = JsonFault;
+using At = JsonAt;
 
-constexpr double kMostExact = 9007199254740992.0;  // whole numbers up to here are exact in JSON of any origin
-constexpr double kMostMeasured = 1e15;             // [us, pixels]: 31 years; sums of a path stay finite
-constexpr uint64_t kMostSide = 1u << 20;           // [pixels]
+constexpr uint64_t kMostSide = 1u << 20;  // [pixels]
 constexpr uint64_t kMostSupersampling = 1024;
-
-/// What is wrong, with its place; never leaves this file.
-struct Fault {
-    std::string what;
-};
-
-/// A value and the way to it, for messages.
-struct At {
-    const json* value;
-    std::string place;
-
-    [[noreturn]] void fail(const std::string& what) const { throw Fault{place.empty() ? what : place + ": " + what}; }
-    At member(const char* name) const {
-        if (!value->is_object()) fail("not an object");
-        const auto found = value->find(name);
-        const std::string there = place.empty() ? name : place + "." + name;
-        if (found == value->end()) At{nullptr, there}.fail("missing");
-        return {&*found, there};
-    }
-    std::optional<At> maybe(const char* name) const {
-        if (!value->is_object()) fail("not an object");
-        if (!value->contains(name) || (*value)[name].is_null()) return std::nullopt;
-        return member(name);
-    }
-    size_t size() const {
-        if (!value->is_array()) fail("not an array");
-        return value->size();
-    }
-    At element(size_t index) const { return {&(*value)[index], fmt::format("{}[{}]", place, index)}; }
-
-    double number() const {
-        if (!value->is_number()) fail("not a number");
-        const double out = value->get<double>();
-        if (!std::isfinite(out)) fail("not finite");
-        return out;
-    }
-    double positive() const {
-        const double out = number();
-        if (out < 0) fail("negative");
-        if (out > kMostMeasured) fail("too large");
-        return out;
-    }
-    uint64_t whole() const {
-        if (value->is_number_unsigned()) return value->get<uint64_t>();
-        const double out = value->is_number_float() ? value->get<double>() : -1;
-        if (!(out >= 0 && out <= kMostExact && out == std::floor(out))) fail("not a whole number");
-        return static_cast<uint64_t>(out);
-    }
-    uint64_t whole(uint64_t least, uint64_t most) const {
-        const uint64_t out = whole();
-        if (out < least || out > most) fail(fmt::format("not between {} and {}", least, most));
-        return out;
-    }
-    bool flag() const {
-        if (!value->is_boolean()) fail("not true or false");
-        return value->get<bool>();
-    }
-    std::string text() const {
-        if (!value->is_string()) fail("not a string");
-        return value->get<std::string>();
-    }
-    void numbers(double* out, size_t count) const {
-        if (size() != count) fail(fmt::format("not {} numbers", count));
-        for (size_t i = 0; i < count; ++i) out[i] = element(i).number();
-    }
-};
 
 /// Keys from here on are none of ours: a comparison marks what only B has by the highest bit.
 constexpr uint64_t kMostKey = (1ull << 63) - 1;
@@ -363,12 +298,6 @@ RunFile readHead(const At& head) {
     return file;
 }
 
-/// The place within nlohmann's message, without its name and number.
-std::string parseFault(const std::string& what) {
-    const size_t end = what.find("] ");
-    return end == std::string::npos ? what : what.substr(end + 2);
-}
-
 }  // namespace
 
 std::string RunFile::labelOf(uint64_t key) const {
@@ -389,7 +318,7 @@ Result<RunFile> parseRun(std::string_view text, const std::string& file) {
         const size_t first = text.find_first_not_of(" \t\r\n");
         if (first == std::string_view::npos || text[first] != '{')
             return Error{Error::Kind::kInput, file + ": is no run: `sightline cull --json FILE` writes one"};
-        return Error{Error::Kind::kInput, file + ": not JSON: " + parseFault(error.what())};
+        return Error{Error::Kind::kInput, file + ": not JSON: " + jsonFaultOf(error.what())};
     }
 }
 
