@@ -58,6 +58,7 @@ if(SIGHTLINE_TOOLS)
   endif()
   if(SIGHTLINE_HAS_ASSIMP)
     install(TARGETS sightline-import DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/sightline COMPONENT tools OPTIONAL)
+    install(DIRECTORY ${PROJECT_BINARY_DIR}/bin/ifc DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/sightline COMPONENT tools OPTIONAL)
   endif()
 endif()
 

@@ -31,6 +31,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${runtime} ${same}, libglm-dev, libhwy-dev")
 set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME sightline)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS nodejs)  # which reads IFC
 set(CPACK_DEBIAN_TOOLS-DEVELOPMENT_PACKAGE_NAME libsightline-tools-dev)
 set(CPACK_DEBIAN_TOOLS-DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_TOOLS-DEVELOPMENT_PACKAGE_DEPENDS "libsightline-dev ${same}, libembree-dev, libgmp-dev, libfmt-dev, nlohmann-json3-dev, libmeshoptimizer-dev, libdraco-dev, zlib1g-dev")

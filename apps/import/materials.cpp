@@ -132,7 +132,7 @@ Material Materials::convert(const aiMaterial& material) {
     Material out;
     aiString text;
     if (material.Get(AI_MATKEY_NAME, text) == aiReturn_SUCCESS) out.name = text.C_Str();
-    const bool made_up = out.name == AI_DEFAULT_MATERIAL_NAME || out.name == "<IFCDefault>";
+    const bool made_up = out.name == AI_DEFAULT_MATERIAL_NAME;
     if (!made_up) out.base_color = baseColour(material);
     out.double_sided = flag(material, AI_MATKEY_TWOSIDED, sides_ == SidesRule::kNothing);
 

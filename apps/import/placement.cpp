@@ -45,17 +45,6 @@ glm::dmat4 placementOf(const aiScene& scene, const std::string& suffix) {
     return suffix == "fbx" && scene.mMetaData ? fbxPlacement(*scene.mMetaData) : glm::dmat4(1.0);
 }
 
-void straighten(aiNode& root) {
-    aiMatrix4x4& matrix = root.mTransformation;
-    double largest = 0;
-    for (unsigned row = 0; row < 3; ++row)
-        for (unsigned column = 0; column < 3; ++column)
-            largest = std::max(largest, std::abs(double(matrix[row][column])));
-    for (unsigned row = 0; row < 3; ++row)
-        for (unsigned column = 0; column < 3; ++column)
-            if (std::abs(matrix[row][column]) < 1e-6 * largest) matrix[row][column] = 0;
-}
-
 std::optional<SceneCamera> cameraOf(const aiCamera& camera, const glm::dmat4& node) {
     const auto vector = [](const aiVector3D& v) { return glm::dvec3(v.x, v.y, v.z); };
     const glm::dmat3 turn(node);

@@ -17,10 +17,6 @@ using namespace tools;
 /// its global settings. The identity for all others.
 glm::dmat4 placementOf(const aiScene& scene, const std::string& suffix);
 
-/// Takes the rounding out of the turn that Assimp gives to an IFC's root: what is almost nothing beside the rest of its
-/// matrix becomes nothing.
-void straighten(aiNode& root);
-
 /// A camera in the world; none if it looks nowhere.
 /// @param node  node to world
 std::optional<SceneCamera> cameraOf(const aiCamera& camera, const glm::dmat4& node);

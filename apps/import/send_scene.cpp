@@ -28,7 +28,6 @@
 #include <fmt/core.h>
 
 #include "apps/import/fault.h"
-#include "apps/import/ifc_rewrite.h"
 #include "apps/import/obj_rewrite.h"
 #include "apps/import/materials.h"
 #include "apps/import/placement.h"
@@ -220,14 +219,13 @@ public:
 private:
     std::string nodeName(const aiNode& node) const {
         const std::string name = node.mName.C_Str();
-        // Names that Assimp made up: of the root, of what relates IFC's things to one another, of what has no name.
+        // Names that Assimp made up: of the root, of what has no name.
         const bool root = !node.mParent;
         if (root && (name == std::filesystem::path(file_).filename().string() || name == "RootNode" || name == "ROOT" ||
                      name == "3MF" || name == "DXCC_ROOT" || name == "<DXF_ROOT>" || suffix_ == "dae" ||
                      suffix_ == "zae" || name == alias_))
             return {};
         if (name.starts_with('<') && name.ends_with('>')) return {};
-        if (name.starts_with("$Rel") || name.starts_with("$dummy")) return {};
         return name;
     }
 
@@ -379,7 +377,6 @@ void sendScene(const std::string& file, const std::string& suffix, SceneStreamWr
     Assimp::Importer importer;
     FileAccess* const access = new FileAccess(file, suffix);  // the importer's from here on
     importer.SetIOHandler(access);
-    if (suffix == "ifc") access->replace(rewriteIfc(access->text()));
     if (suffix == "obj") access->replace(rewriteObj(access->text()));
     importer.SetProgressHandler(new ReadProgress(out));
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);  // one node a node
@@ -390,7 +387,6 @@ void sendScene(const std::string& file, const std::string& suffix, SceneStreamWr
     const aiScene* scene = importer.ReadFile(access->alias(), 0);
     if (!scene) throw Fault{importer.GetErrorString()};
     if (!scene->mRootNode) throw Fault{"draws nothing: there is no node in it"};
-    if (suffix == "ifc" || suffix == "ifczip") straighten(*const_cast<aiNode*>(scene->mRootNode));  // the scene is ours
     out.progress(kReadSteps, kSteps);
     Sender(*scene, file, suffix, out).send();
     warnings.send(out);

@@ -110,7 +110,7 @@ std::vector<FileFacts> countFiles(const Scene& scene) {
         FileFacts facts{file.name, "procedural", "sightline", file.first_key, 0, {}};
         if (const Result<SceneKind> kind = fileKind(file.name); kind && kind->format) {
             facts.format = kind->format->name;
-            facts.reader = kind->format->ours ? "sightline" : "assimp";
+            facts.reader = kind->format->reader;
             std::error_code error;
             facts.bytes = std::filesystem::file_size(splitMapName(file.name).file, error);
             facts.map = reportMap(file.name);
@@ -160,6 +160,19 @@ struct SceneReport {
     Box3d bounds;
 };
 
+Json boxJson(const Box3d& box) {
+    return {{"min", {box.min.x, box.min.y, box.min.z}}, {"max", {box.max.x, box.max.y, box.max.z}}};
+}
+
+/// The first rooms by name, and how many there are besides.
+std::string roomsInWords(const Scene& scene) {
+    constexpr size_t kMost = 3;
+    std::string out;
+    for (size_t i = 0; i < std::min(kMost, scene.rooms.size()); ++i)
+        out += (i > 0 ? ", " : "") + oneLine(roomPath(scene, scene.rooms[i]));
+    return out + (scene.rooms.size() > kMost ? ", ..." : "");
+}
+
 Json infoJson(const SceneReport& report) {
     const Scene& scene = report.scene;
     const SceneCounts& facts = report.facts;
@@ -185,6 +198,11 @@ Json infoJson(const SceneReport& report) {
     out["nodes"] = {{"count", report.tree.nodes}, {"named", report.tree.named}, {"depth", report.tree.depth}};
     out["cells"] = scene.cells.size();
     out["portals"] = scene.portals.size();
+    out["rooms"] = Json::array();
+    for (const SceneRoom& room : scene.rooms) {
+        out["rooms"].push_back({{"name", roomPath(scene, room)}});
+        if (!room.bounds.empty()) out["rooms"].back()["bounds"] = boxJson(room.bounds);
+    }
     out["triangles"] = {{"drawn", facts.drawn},
                         {"stored", facts.stored},
                         {"occluding", facts.hiding},
@@ -197,8 +215,7 @@ Json infoJson(const SceneReport& report) {
         out["largest_meshes"].push_back({{"name", large.name}, {"triangles", large.mesh->triangles()}});
     const Box3d& bounds = report.bounds;
     if (bounds.empty()) return out;
-    out["bounds"] = {{"min", {bounds.min.x, bounds.min.y, bounds.min.z}},
-                     {"max", {bounds.max.x, bounds.max.y, bounds.max.z}}};
+    out["bounds"] = boxJson(bounds);
     return out;
 }
 
@@ -239,6 +256,7 @@ void printInfo(std::FILE* out, const SceneReport& report) {
     row("cameras", scene.cameras.size());
     row("cells", scene.cells.size());
     row("portals", scene.portals.size());
+    if (!scene.rooms.empty()) row("rooms", scene.rooms.size(), roomsInWords(scene));
     row("triangles drawn", facts.drawn, grouped(facts.stored) + " stored");
     row("  occluding", facts.hiding);
     row("  double-sided", facts.double_sided);
@@ -272,14 +290,13 @@ Status printFormats(const std::string& json) {
     const bool foreign = !findImportWorker({}).empty();
     Json list = Json::array();
     for (const SceneFormat& format : sceneFormats()) {
-        const char* reader = format.ours ? "sightline" : "assimp";
-        const bool can = format.ours || foreign;
+        const bool can = format.ours() || foreign;
         if (json != "-")
-            fmt::print("{:<16}{:<54}{}{}{}\n", format.suffixes, format.name, reader, format.tested ? "" : ", untested",
-                       can ? "" : ", not in this build");
+            fmt::print("{:<16}{:<54}{}{}{}\n", format.suffixes, format.name, format.reader,
+                       format.tested ? "" : ", untested", can ? "" : ", not in this build");
         list.push_back({{"suffixes", format.suffixes},
                         {"name", format.name},
-                        {"reader", reader},
+                        {"reader", format.reader},
                         {"tested", format.tested},
                         {"available", can}});
     }

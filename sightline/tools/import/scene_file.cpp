@@ -71,7 +71,7 @@ Result<Scene> loadSceneFile(const std::string& file, const ImportSettings& setti
     const Result<SceneKind> kind = fileKind(file);
     if (!kind) return kind.error();
     if (!kind->format) return inputError(file, kind->refusal);
-    Result<Scene> scene = !kind->format->ours         ? loadForeign(file, kind->suffix, settings)
+    Result<Scene> scene = !kind->format->ours()       ? loadForeign(file, kind->suffix, settings)
                           : isMapSuffix(kind->suffix) ? loadQuakeScene(file)
                                                       : loadGltf(file, settings.progress, settings.note);
     if (!scene) return scene;

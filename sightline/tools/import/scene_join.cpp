@@ -60,6 +60,7 @@ void shift(Scene& scene, const Offsets& by, uint32_t root) {
             if (cell != ScenePortal::kNone) cell += by.cells;
         if (portal.door != ScenePortal::kNone) portal.door += by.objects;
     }
+    for (SceneRoom& room : scene.rooms) room.node = room.node == SceneNode::kNone ? root : room.node + by.nodes;
     for (SceneFile& file : scene.files) file.first_key += by.key;
 }
 
@@ -81,6 +82,7 @@ void placeScene(Scene& scene, const ImportSettings& settings) {
         camera.z_near *= scale;
         if (camera.z_far) *camera.z_far *= scale;
     }
+    for (SceneRoom& room : scene.rooms) room.bounds = transformBox(room.bounds, place);
     for (SceneCell& cell : scene.cells) {
         for (glm::dvec4& plane : cell.planes) plane = glm::dvec4(turn * glm::dvec3(plane), scale * plane.w);
         cell.bounds = transformBox(cell.bounds, place);
@@ -115,6 +117,7 @@ Scene joinScenes(std::vector<Scene> scenes) {
         append(out.nodes, std::move(scene.nodes));
         append(out.cells, std::move(scene.cells));
         append(out.portals, std::move(scene.portals));
+        append(out.rooms, std::move(scene.rooms));
         append(out.files, std::move(scene.files));
     }
     out.name = joinedFew(names);

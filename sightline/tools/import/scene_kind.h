@@ -20,9 +20,11 @@ enum class SidesRule : uint8_t {
 struct SceneFormat {
     std::string_view suffixes;  ///< "obj"; several are separated by blanks, the first is the usual one
     std::string_view name;
-    bool ours;    ///< read by Sightline itself; else by sightline-import
-    bool tested;  ///< by the project's own tests
+    std::string_view reader;  ///< "sightline"; others read in sightline-import
+    bool tested;              ///< by the project's own tests
     SidesRule sides;
+
+    bool ours() const { return reader == "sightline"; }
 };
 
 /// All formats that can be read.

@@ -57,4 +57,10 @@ std::string objectPath(const Scene& scene, const SceneObject& object) {
     return path;
 }
 
+std::string roomPath(const Scene& scene, const SceneRoom& room) {
+    SceneObject object;
+    object.node = room.node;
+    return objectPath(scene, object);
+}
+
 }  // namespace sightline::tools

@@ -89,6 +89,12 @@ struct SceneLevel {
     glm::dmat4 transform{1.0};  ///< of the mesh to the object's own space
 };
 
+/// A room that a file tells of (IFC: a space). It is not drawn and hides nothing.
+struct SceneRoom {
+    uint32_t node = SceneNode::kNone;  ///< whose path is its name; index into Scene::nodes
+    Box3d bounds;                      ///< in the world; empty: the file gives it no shape
+};
+
 /// A convex region that was declared to be a cell: by hand in the file, or by the generator that made the world.
 struct SceneCell {
     std::string name;
@@ -138,6 +144,7 @@ struct Scene {
     std::vector<SceneNode> nodes;      ///< parents need not come first; no cycles
     std::vector<SceneCell> cells;      ///< may be empty
     std::vector<ScenePortal> portals;  ///< between these cells
+    std::vector<SceneRoom> rooms;      ///< may be empty
     std::vector<SceneFile> files;      ///< empty: procedural
 };
 
@@ -147,6 +154,9 @@ constexpr size_t kLongestPath = 4096;  // [bytes]: in a deep tree the paths of a
 /// left out, and so is a node that only repeats the object's name. Of a path longer than kLongestPath the end is left,
 /// behind ".../".
 std::string objectPath(const Scene& scene, const SceneObject& object);
+
+/// The same of a room.
+std::string roomPath(const Scene& scene, const SceneRoom& room);
 
 /// Triangles that would be drawn: each object's mesh counted once per object.
 uint64_t drawnTriangles(const Scene& scene);

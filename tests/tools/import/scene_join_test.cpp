@@ -66,6 +66,8 @@ TEST(SceneJoin, KeysDoNotRepeatAndPathsNameTheFile) {
         EXPECT_EQ(portal.door, 3 * i + 1);
     }
     EXPECT_EQ(joined.cameras.size(), 6u);
+    ASSERT_EQ(joined.rooms.size(), 6u);
+    EXPECT_EQ(roomPath(joined, joined.rooms[2]), "mep/House/Room");
     EXPECT_EQ(joined.meshes[3].primitives[1].material, 3u);
 }
 
@@ -104,6 +106,7 @@ TEST(SceneJoin, ATurnAndAScaleMoveEverything) {
                 EXPECT_NEAR(glm::dot(glm::dvec3(is), moved(p)) + is.w, 2.5 * (glm::dot(glm::dvec3(was), p) + was.w),
                             1e-12);
             }
+        EXPECT_LT(glm::length(after.rooms[0].bounds.size() - glm::abs(moved(before.rooms[0].bounds.size()))), 1e-9);
         EXPECT_TRUE(near(after.cells[0].bounds.size(), glm::abs(moved(before.cells[0].bounds.size()))));
     }
 }

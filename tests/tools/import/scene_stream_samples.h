@@ -27,6 +27,7 @@ inline Scene sampleScene() {
     scene.objects = {{0, 0, glm::dmat4(1.0), "Door", 1}, {1, 1, moved, "Cat", 2}, {2, 0, moved, "", 0}};
     scene.cameras.push_back({"eye", moved, 1, 0, 0.5, 100});
     scene.cameras.push_back({"plan", moved, 0, 20, 0.5, {}});
+    scene.rooms = {{1, {glm::dvec3(-1), glm::dvec3(2)}}, {0, {}}};
     return scene;
 }
 
@@ -40,6 +41,8 @@ inline std::string streamOf(const Scene& scene) {
     for (const Mesh& mesh : scene.meshes) writer.mesh(mesh);
     for (const SceneObject& object : scene.objects) writer.object(object);
     for (const SceneCamera& camera : scene.cameras) writer.camera(camera);
+    for (const SceneRoom& room : scene.rooms) writer.room(room);
+    writer.part("the last part");
     writer.note("something");
     writer.end();
     return out;

@@ -51,6 +51,11 @@ TEST(SceneStream, GivesBackWhatWasWritten) {
     EXPECT_EQ(read.scene.cameras[0].fov_y, 1);
     EXPECT_EQ(read.scene.cameras[0].z_far, 100);
     EXPECT_FALSE(read.scene.cameras[1].z_far);
+    ASSERT_EQ(read.scene.rooms.size(), 2u);
+    EXPECT_EQ(roomPath(read.scene, read.scene.rooms[0]), "House/Room");
+    EXPECT_EQ(read.scene.rooms[0].bounds.max, glm::dvec3(2));
+    EXPECT_TRUE(read.scene.rooms[1].bounds.empty());
+    EXPECT_EQ(read.part, "the last part");
     EXPECT_EQ(read.notes, std::vector<std::string>{"something"});
 }
 
@@ -98,6 +103,8 @@ TEST(SceneStream, RefusesScenesThatDoNotHold) {
     expectBroken("nowhere", [](Scene& s) { s.cameras[0].transform[1] = s.cameras[0].transform[2]; });
     expectBroken("near", [](Scene& s) { s.cameras[0].z_near = -1; });
     expectBroken("colour", [&](Scene& s) { s.materials[0].base_color.r = nan; });
+    expectBroken("node", [](Scene& s) { s.rooms[0].node = 7; });
+    expectBroken("bounds", [](Scene& s) { s.rooms[0].bounds.max.x = 1e200; });
     expectBroken("object", [](Scene& s) { s.objects.clear(); });
 }
 

@@ -69,6 +69,17 @@ TEST_F(SceneWorker, CrashesAreOneLine) {
     expectRefusedBy("exit 3", "its reader ended without a word (exit code 3)");
     expectRefusedBy("exit 12", "needs more memory than 2 GiB (--import-memory)");
     expectRefusedBy("kill -XCPU $$", "took longer than 60 s");
+    // With what was read then, where the reader has told.
+    std::string begun;
+    SceneStreamWriter writer(
+        [&](const void* bytes, size_t size) { begun.append(static_cast<const char*>(bytes), size); });
+    writer.part("IfcWall #12");
+    write("begun", begun);
+    const std::string tell = "cat " + path("begun") + "; ";
+    expectRefusedBy(tell + "kill -SEGV $$", "(Segmentation fault), at IfcWall #12: leave that out of the file");
+    expectRefusedBy(tell + "kill -XCPU $$", "took longer than 60 s to read (--import-time), at IfcWall #12");
+    expectRefusedBy(tell + "exit 12", "needs more memory than 2 GiB (--import-memory), at IfcWall #12");
+    expectRefusedBy(tell + "exit 3", "(exit code 3), at IfcWall #12: leave that out");
 }
 
 TEST_F(SceneWorker, SlowOnesAreEndedWithAllThatTheyStarted) {

@@ -211,15 +211,17 @@ std::string oneLine(std::string_view text) {
 std::string reason(const SceneStream& stream, const WorkerProcess::Exit& exit, bool late,
                    const ImportSettings& settings) {
     if (stream.end == SceneStream::End::kFault) return oneLine(stream.what);
+    const std::string at = stream.part.empty() ? "" : ", at " + oneLine(stream.part);
     if (late || exit.signal == SIGXCPU)
-        return fmt::format("took longer than {:g} s to read (--import-time)", settings.time_limit);
+        return fmt::format("took longer than {:g} s to read (--import-time){}", settings.time_limit, at);
     if (stream.end == SceneStream::End::kLarge || exit.code == kImportOutOfMemory)
-        return fmt::format("needs more memory than {} (--import-memory)", bytesInWords(settings.memory_limit));
+        return fmt::format("needs more memory than {} (--import-memory){}", bytesInWords(settings.memory_limit), at);
     if (stream.end == SceneStream::End::kBroken)
         return fmt::format("its reader sent what is no scene: {}", stream.what);
-    if (exit.signal == SIGKILL) return "its reader was killed: perhaps the machine lacks memory";
-    if (exit.signal != 0) return fmt::format("the reader crashed on it ({})", strsignal(exit.signal));
-    return fmt::format("its reader ended without a word (exit code {})", exit.code);
+    if (exit.signal == SIGKILL) return fmt::format("its reader was killed{}: perhaps the machine lacks memory", at);
+    const std::string rid = at.empty() ? "" : ": leave that out of the file, or export the file as glTF";
+    if (exit.signal != 0) return fmt::format("the reader crashed on it ({}){}{}", strsignal(exit.signal), at, rid);
+    return fmt::format("its reader ended without a word (exit code {}){}{}", exit.code, at, rid);
 }
 
 std::vector<std::string> commandOf(const std::string& worker, const std::string& file, std::string_view suffix,

@@ -218,9 +218,20 @@ SceneCamera takeCamera(StreamRecords& in) {
     return out;
 }
 
+SceneRoom takeRoom(StreamRecords& in, const Scene& scene) {
+    SceneRoom out;
+    out.node = in.take<uint32_t>();
+    out.bounds.min = in.take<glm::dvec3>();
+    out.bounds.max = in.take<glm::dvec3>();
+    if (out.node >= scene.nodes.size()) throw Broken{"a node is out of range"};
+    if (out.bounds.empty()) out.bounds = {};
+    else if (!within(out.bounds)) throw Broken{"bounds are not finite"};
+    return out;
+}
+
 void takeEnd(StreamRecords& in, const Scene& scene) {
-    const uint64_t counts[5] = {scene.materials.size(), scene.nodes.size(), scene.meshes.size(), scene.objects.size(),
-                                scene.cameras.size()};
+    const uint64_t counts[kCounts] = {scene.materials.size(), scene.nodes.size(),   scene.meshes.size(),
+                                      scene.objects.size(),   scene.cameras.size(), scene.rooms.size()};
     for (const uint64_t count : counts)
         if (in.take<uint64_t>() != count) throw Broken{"records are missing"};
     in.finish();
@@ -259,6 +270,12 @@ void readAll(StreamRecords& in, const std::function<void(size_t, size_t)>& progr
                 break;
             case kCamera:
                 scene.cameras.push_back(takeCamera(in));
+                break;
+            case kRoom:
+                scene.rooms.push_back(takeRoom(in, scene));
+                break;
+            case kPart:
+                out.part = in.takeText();
                 break;
             case kFault:
                 out.what = in.takeText();

@@ -19,11 +19,11 @@ namespace sightline::tools {
 
 namespace scene_stream {
 
-inline constexpr char kMagic[16] = {'s', 'i', 'g', 'h', 't', 'l', 'i', 'n', 'e', ' ', 's', 'c', 'e', 'n', 'e', 1};
+inline constexpr char kMagic[16] = {'s', 'i', 'g', 'h', 't', 'l', 'i', 'n', 'e', ' ', 's', 'c', 'e', 'n', 'e', 2};
 inline constexpr uint64_t kLongestText = 1 << 16;  // [bytes]
 
-enum Kind : uint32_t { kProgress = 1, kNote, kMaterial, kNode, kMesh, kObject, kCamera, kFault, kEnd };
-enum Count : size_t { kMaterials, kNodes, kMeshes, kObjects, kCameras };
+enum Kind : uint32_t { kProgress = 1, kNote, kMaterial, kNode, kMesh, kObject, kCamera, kFault, kEnd, kRoom, kPart };
+enum Count : size_t { kMaterials, kNodes, kMeshes, kObjects, kCameras, kRooms, kCounts };
 
 /// What goes into a stream as it lies in memory.
 template <class T>
@@ -54,6 +54,10 @@ public:
     /// Its mesh and node must have been written before it. The key is not written: it is the object's place.
     void object(const SceneObject& object);
     void camera(const SceneCamera& camera);
+    /// Its node must have been written before it.
+    void room(const SceneRoom& room);
+    /// What is being read from here on, one line: it is told if the writer ends without a word.
+    void part(const std::string& text);
     /// Instead of the rest: why there is no scene, one line.
     void fault(const std::string& text);
     /// Without it the scene does not count.
@@ -68,7 +72,7 @@ private:
     void putAll(const std::vector<T>& values);
 
     Sink sink_;
-    uint64_t counts_[5] = {};
+    uint64_t counts_[scene_stream::kCounts] = {};
 };
 
 /// Gives the next bytes, at least one and at most `size`; 0 at the end.
@@ -84,6 +88,7 @@ struct SceneStream {
     };
     End end = End::kCut;
     std::string what;
+    std::string part;  ///< what was being read; empty: not told
     std::vector<std::string> notes;
     Scene scene;  ///< without name and files
 };

@@ -111,6 +111,20 @@ void SceneStreamWriter::camera(const SceneCamera& camera) {
     ++counts_[kCameras];
 }
 
+void SceneStreamWriter::room(const SceneRoom& room) {
+    head(kRoom, 4 + 48);
+    put(room.node);
+    put(room.bounds.min);
+    put(room.bounds.max);
+    ++counts_[kRooms];
+}
+
+void SceneStreamWriter::part(const std::string& text) {
+    head(kPart, textSize(text));
+    put(text);
+    sink_(kMagic, 0);
+}
+
 void SceneStreamWriter::end() {
     head(kEnd, sizeof counts_);
     put(counts_);
