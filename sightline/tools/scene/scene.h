@@ -132,6 +132,7 @@ struct Scene {
     std::vector<SceneCell> cells;      ///< may be empty
     std::vector<ScenePortal> portals;  ///< between these cells
     std::vector<SceneFile> files;      ///< empty: procedural
+    double walk_speed = 0;             ///< how fast its game walks [world units a second]; 0: nothing says so
 };
 
 constexpr size_t kLongestPath = 4096;  // [bytes]: in a deep tree the paths of all would not fit into any memory
