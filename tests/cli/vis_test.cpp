@@ -86,6 +86,97 @@ TEST_F(Vis, ASourceIsHeldAgainstRays) {
     EXPECT_EQ(verified["false_negatives"], 0);
 }
 
+/// Two rooms of 256, 256 and 128 with a wall between them, of textures of their own.
+std::string twoRooms(const std::string& room, const std::string& wall) {
+    const auto box = [](int x0, int y0, int z0, int x1, int y1, int z1, const std::string& side) {
+        const auto plane = [&](int axis, int at, bool up) {
+            int points[3][3] = {};
+            for (auto& point : points) point[axis] = at;
+            points[up ? 1 : 2][(axis + 1) % 3] = 1;
+            points[up ? 2 : 1][(axis + 2) % 3] = 1;
+            std::string out;
+            for (const auto& p : points) out += fmt::format("( {} {} {} ) ", p[0], p[1], p[2]);
+            return out + side + "\n";
+        };
+        return "{\n" + plane(0, x1, false) + plane(0, x0, true) + plane(1, y1, false) + plane(1, y0, true) +
+               plane(2, z1, false) + plane(2, z0, true) + "}\n";
+    };
+    std::string map = "{\n\"classname\" \"worldspawn\"\n";
+    map += box(-272, -144, -16, 272, 144, 0, room) + box(-272, -144, 128, 272, 144, 144, room);
+    map += box(-272, -144, 0, -256, 144, 128, room) + box(256, -144, 0, 272, 144, 128, room);
+    map += box(-256, -144, 0, 256, -128, 128, room) + box(-256, 128, 0, 256, 144, 128, room);
+    return map + box(-8, -128, 0, 8, 128, 128, wall) +
+           "}\n{\n\"classname\" \"light\"\n\"origin\" \"128 0 48\"\n}\n"
+           "{\n\"classname\" \"light\"\n\"origin\" \"-128 0 48\"\n}\n";
+}
+
+TEST_F(Vis, WhatIsNotKnownHidesNothingAndIsTold) {
+    const std::string tail = " 0 0 0 1 1", flags = " 0 0 0 1 1 0 0 0";
+    const auto pairs = [&](const std::string& options) {
+        return vis("m.map " + options)["visible_leaf_pairs"].get<int>();
+    };
+    const auto said = [&] { return run("vis m.map").err; };
+    // Names are the whole rule of Quake: no word of them.
+    write("m.map", twoRooms("brick" + tail, "stone" + tail));
+    EXPECT_EQ(pairs(""), 2);
+    EXPECT_EQ(said().find("not known"), std::string::npos) << said();
+    write("m.map", twoRooms("brick" + tail, "skip" + tail));
+    EXPECT_EQ(pairs("--game quake"), 2);
+    EXPECT_EQ(pairs("--game halflife"), 1);
+    EXPECT_EQ(pairs(""), 1);
+    EXPECT_NE(said().find("m.map: 1 brush hides nothing, because 1 texture is not known (skip); Quake or Half-Life is "
+                          "assumed. --game NAME, "
+                          "--shaders PATH (with the game's .shader or .wal files) or --solid PATTERN tells"),
+              std::string::npos)
+        << said();
+    // Flags are the rule of Quake 2.
+    write("m.map", twoRooms("e1u1/floor 0 0 0 1 1 1 0 0", "e1u1/wall" + flags));
+    EXPECT_EQ(pairs(""), 2);
+    EXPECT_EQ(pairs("--game quake3 --solid e1u1/floor"), 1);
+    // Shaders are the rule of Quake 3.
+    write("m.map", twoRooms("common/caulk" + flags, "my/wall" + flags));
+    EXPECT_EQ(pairs(""), 1);
+    EXPECT_NE(said().find("(my/wall); Quake 3 is assumed"), std::string::npos) << said();
+    EXPECT_EQ(pairs("--solid my/*"), 2);
+    EXPECT_EQ(pairs("--solid other --solid MY/WALL"), 2);
+    for (const char* folder : {"scripts", "bad"}) std::filesystem::create_directories(path(folder));
+    write("scripts/my.shader", "textures/my/wall\n{\n{\nmap a.tga\n}\n}\ntextures/my/glass\n{\nsurfaceparm trans\n}\n");
+    EXPECT_EQ(pairs("--shaders scripts"), 2);
+    EXPECT_EQ(pairs("--shaders scripts/my.shader"), 2);
+    write("x.pk3", pk3Bytes({{"textures/my/wall.jpg", "", false}}));
+    EXPECT_EQ(pairs("--shaders x.pk3"), 2);
+    write("bad/bad.shader", "my/other\n");
+    EXPECT_EQ(pairs("--shaders x.pk3 --shaders bad"), 1);
+    EXPECT_NE(run("vis m.map --shaders bad").err.find("bad.shader: line 1: shader my/other has no body"),
+              std::string::npos);
+    write("m.map", twoRooms("common/caulk" + flags, "my/glass" + flags));
+    EXPECT_EQ(pairs("--shaders scripts --solid my/glass"), 1);
+    EXPECT_EQ(run("bake m.map --shaders scripts -o m.see").exit_code, 0);
+
+    expectError("vis m.map --shaders none", 3, "none: does not exist");
+    expectError("vis m.map --shaders bad/bad.shader", 3, "bad.shader: line 1: shader my/other has no body");
+    expectError("vis m.map --game doom", 2, "doom");
+    write("rooms.prt", kRooms);
+    expectError("vis rooms.prt --game quake", 2, "--game, --shaders and --solid go with a .map");
+    expectError("bake building:1:3 --solid wall -o b.see", 2, "--game, --shaders and --solid go with a .map");
+}
+
+TEST_F(Vis, BrushesJudgeTheirTree) {
+    write("m.map", twoRooms("brick 0 0 0 1 1", "*water 0 0 0 1 1"));
+    const json verified = vis("m.map --verify --rays 40000")["verification"];
+    EXPECT_GT(verified["brushes"]["segments"], 5000);
+    EXPECT_EQ(verified["brushes"]["false_negatives"], 0);
+    EXPECT_EQ(verified["brushes"]["solid_leaves"], 0);
+    EXPECT_NE(run("vis m.map --verify --rays 40000").out.find("verified by the brushes: "), std::string::npos);
+    // Two sides on a line: the parser reads them, the witness does not, and says so.
+    std::string joined = twoRooms("brick 0 0 0 1 1", "stone 0 0 0 1 1");
+    joined.replace(joined.rfind("1 1\n}"), 5, "1 1 }");
+    write("m.map", joined);
+    EXPECT_NE(run("vis m.map --verify --rays 1000").err.find("the brushes are not judged: "), std::string::npos);
+    write("rooms.prt", kRooms);
+    EXPECT_FALSE(vis("rooms.prt --verify --rays 1000")["verification"].contains("brushes"));
+}
+
 TEST_F(Vis, BytesAreTheSameForAnyThreads) {
     write("rooms.prt", kRooms);
     for (const char* threads : {"1", "2", "8"})

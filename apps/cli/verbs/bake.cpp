@@ -93,6 +93,7 @@ Result<int> runBake(SceneBakeOptions& options) {
     const Clock::time_point begin = Clock::now();
     ApartFiles files;
     for (const std::string& name : options.scene.names) files.read("SCENE", splitMapName(name).file);
+    for (const std::string& path : options.source.rules.shaders) files.read("--shaders", path);
     if (Status good = finishBakeOptions(options, files); !good) return good.error();
     const std::string title = options.scene.title();
     BakeRun run(options);
@@ -173,6 +174,7 @@ void addBake(Command& tool, int& exit_code) {
                      "units]; 0: none (default: 2^-12 of the diagonal of what is near together)")
         ->check(Range{0.0, 1e9})
         ->type_name("L");
+    addMapRules(*verb, options->source.rules);
     verb->add_option("--moves", options->source.moves,
                      "of a scene: objects that may be elsewhere at run time, as doors that stand in no portal: they "
                      "hide nothing. A key, or what their paths have in common, as door [may be given many times] "

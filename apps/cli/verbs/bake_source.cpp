@@ -48,6 +48,7 @@ Result<BakeSource> loadMapSource(const std::string& name, const BakeSourceChoice
     choice.name = name;
     choice.cells = visCellsOf(asked.cells);
     choice.keep_leaves = true;
+    choice.rules = asked.rules;
     Result<VisMap> map = loadVisMap(choice);
     if (!map) return map.error();
     CellSpace leaves;
@@ -200,6 +201,7 @@ Result<BakeSource> loadBakeSource(const SceneChoice& scene, const BakeSourceChoi
     if (map == scene.names.end()) {
         if (!choice.cells.empty() && choice.cells != "walls" && choice.cells != "none")
             return Error{Error::Kind::kUsage, "--cells " + choice.cells + " goes with a .bsp"};
+        if (choice.rules.given()) return Error{Error::Kind::kUsage, "--game, --shaders and --solid go with a .map"};
         return loadScene(scene, choice);
     }
     if (scene.names.size() > 1) return Error{Error::Kind::kUsage, *map + ": a map is baked alone"};

@@ -36,6 +36,7 @@ struct BakeSourceChoice {
     double widest_gap = -1;          ///< SoupCellSettings
     bool of_walls = false;           ///< one of these three was given
     std::vector<std::string> moves;  ///< of --moves: keys, or parts of the paths of objects that hide nothing
+    MapRules rules;                  ///< for a .map
     uint32_t view_cells = 0;         ///< ViewCellSettings::most_cells; below 2: none
     Jobs* jobs = nullptr;
     /// Gives the journal of view cells, right before they are divided; from then on interrupted() ends that early.

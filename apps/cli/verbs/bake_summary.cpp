@@ -202,6 +202,11 @@ void printVisSummary(std::FILE* out, const VisSummary& s) {
     if (s.verification)
         tell(out, fmt::format("verified: {} segments, {} false negatives\n", grouped(s.verification->segments),
                               grouped(s.verification->false_negatives)));
+    if (s.verification && s.verification->brushes)
+        tell(out, fmt::format(
+                      "verified by the brushes: {} segments, {} false negatives, {} leaves solid where no brush is\n",
+                      grouped(s.verification->brushes->segments), grouped(s.verification->brushes->false_negatives),
+                      grouped(s.verification->brushes->solid_leaves)));
 }
 
 void printBakeSummary(std::FILE* out, const BakeSource& source, const Baked& baked, const BakeSummary& summary) {

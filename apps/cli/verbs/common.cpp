@@ -136,7 +136,8 @@ void addCameraOptions(Command& verb, RunOptions& options, const std::string& sha
         ->type_name("N")
         ->capture_default_str()
         ->group("Cameras");
-    verb.add_option("--speed", walk.speed, "of a walk [world units a second]")
+    verb.add_option("--speed", walk.speed,
+                    "of a walk [world units a second]; a map of the Quake family is walked at 320 without it")
         ->check(Range{0.0, 1e9})
         ->type_name("N")
         ->capture_default_str()
@@ -239,6 +240,7 @@ namespace {
 Status finishPath(const Command& verb, RunOptions& options) {
     PathChoice& choice = options.choice;
     choice.seeded = verb.count("--seed") > 0;
+    choice.speed_given = verb.count("--speed") > 0;
     const bool made = choice.walk.frames > 0 || choice.seeded || !options.path.empty();
     if (!choice.file.empty() && made) return usageError("--cameras excludes --path, --frames and --seed");
     if (!options.eye.empty() && (made || !choice.file.empty()))

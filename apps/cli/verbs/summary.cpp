@@ -392,7 +392,7 @@ std::string replayOfRun(const RunOptions& options, bool verify) {
     if (choice.walk.frames > 0) command += fmt::format(" --frames {}", choice.walk.frames);
     if (choice.seeded) command += fmt::format(" --seed {}", choice.walk.seed);
     if (choice.walk.fps != WalkSettings().fps) command += fmt::format(" --fps {}", choice.walk.fps);
-    if (choice.walk.speed != WalkSettings().speed) command += fmt::format(" --speed {}", choice.walk.speed);
+    if (choice.speed_given) command += fmt::format(" --speed {}", choice.walk.speed);
     command += fmt::format(" --size {}x{}", options.width, options.height);
     const auto list = [&](const char* option, const std::vector<std::string>& names) {
         if (!names.empty()) command += fmt::format(" {} {}", option, joined(names, ","));

@@ -25,6 +25,7 @@
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/verbs.h"
 #include "apps/cli/verbs/vis_map.h"
+#include "sightline/bake/brushes/brush_tree.h"
 #include "sightline/bake/brushes/outside.h"
 #include "sightline/bake/flow/flow_portals.h"
 #include "sightline/base/jobs.h"
@@ -35,6 +36,7 @@
 #include "sightline/tools/report/page/vis_page.h"
 #include "sightline/tools/report/readable.h"
 #include "sightline/tools/report/run/vis_json.h"
+#include "sightline/tools/truth/brush_rays.h"
 #include "sightline/tools/truth/graph_rays.h"
 #include "sightline/tools/truth/tree_rays.h"
 
@@ -64,10 +66,35 @@ void addReport(const RowReport& report, VisSummary::Verification& out, const std
         out.examples.push_back({leaf_of_row[miss.row], leaf_of_row[miss.column], miss.from, miss.to});
 }
 
+/// None: the brushes are not written as the witness reads them, which is noted.
+std::optional<VisSummary::Verification::Brushes> verifyByBrushes(const VisMap& map, const BitMatrix& visible,
+                                                                 const AimedHoles& holes,
+                                                                 const RowCheckSettings& settings,
+                                                                 const std::vector<uint32_t>& leaf_of_cell) {
+    std::vector<uint8_t> stops;
+    for (const BrushRole role : map.roles) stops.push_back(role <= BrushRole::kSky);
+    const Result<BrushRays> rays =
+        BrushRays::read(map.source, stops, BrushTreeSettings().snap_distance + map.tolerance);
+    if (!rays) {
+        note("the brushes are not judged: " + rays.error().message);
+        return std::nullopt;
+    }
+    const BrushReport report = checkBrushRows(*rays, *map.tree, visible, map.graph.cell_of_leaf, holes, settings);
+    VisSummary::Verification::Brushes out;
+    out.segments = report.rows.segments;
+    out.false_negatives = report.rows.misses;
+    out.solid_leaves = report.solid.size();
+    for (const RowMiss& miss : report.rows.examples)
+        out.examples.push_back({leaf_of_cell[miss.row], leaf_of_cell[miss.column], miss.from, miss.to});
+    for (size_t i = 0; i < std::min(report.solid.size(), settings.most_examples); ++i)
+        out.examples.push_back({report.solid[i].row, report.solid[i].row, report.solid[i].from, report.solid[i].to});
+    return out;
+}
+
 /// Rays pass a portal only within its outline by twice what its points are known by: narrower ones are no openings, but
 /// what cells that touch in an edge share by the tolerance of the tree.
 /// Half of the rays go through the map's own tree, if it has one: then the rows hold for the map, and not only for its
-/// portals. The others go through the portals.
+/// portals. The others go through the portals. Of a source as many as through the tree go through its brushes.
 VisSummary::Verification verifyVis(const VisMap& map, const BitMatrix& visible, const VisOptions& options, Jobs& jobs) {
     const CellGraph& graph = map.graph;
     VisSummary::Verification out;
@@ -90,6 +117,7 @@ VisSummary::Verification verifyVis(const VisMap& map, const BitMatrix& visible, 
         through.contents_stop = map.contents_stop;
         addReport(checkLeafRows(TreeRays(*map.tree, through), visible, graph.cell_of_leaf, holes, settings), out,
                   leaf_of_cell);
+        if (!map.source.empty()) out.brushes = verifyByBrushes(map, visible, holes, settings, leaf_of_cell);
     }
     return out;
 }
@@ -125,6 +153,7 @@ Status checkVisFiles(VisOptions& options) {
     for (const auto& [option, name] : {std::pair("MAP", options.map.name), std::pair("--bsp", options.map.bsp)})
         if (!(writesMap(options) && sameFile(options.output, name))) files.read(option, name);
     files.read("--prt", portalFileOf(options.map));
+    for (const std::string& path : options.map.rules.shaders) files.read("--shaders", path);
     files.write("--leak", options.leak);
     if (Status good = finishBakeOptions(options, files); !good) return good.error();
     return canWriteFiles({options.leak});
@@ -303,7 +332,10 @@ Result<int> runVis(VisOptions& options) {
         note("nothing was written: -o writes the map with its lump, or a visibility file");
     if (!options.json.empty())
         if (Status written = writeText(options.json, visJson(summary)); !written) return written.error();
-    return summary.verification && summary.verification->false_negatives > 0 ? kAnswerIsNo : kDone;
+    const auto& verified = summary.verification;
+    const bool wrong =
+        verified && (verified->false_negatives > 0 || (verified->brushes && verified->brushes->wrong() > 0));
+    return wrong ? kAnswerIsNo : kDone;
 }
 
 }  // namespace
@@ -325,6 +357,7 @@ void addVis(Command& tool, int& exit_code) {
     verb->add_option("--prt", options->map.prt,
                      "take the clusters of a .bsp from this portal file (default: beside it, of the same name)")
         ->type_name("FILE");
+    addMapRules(*verb, options->map.rules);
     verb->add_option("--farthest", options->farthest_given,
                      "sight ends so far from the eye, as at a far plane or in fog; 0: nowhere (default: _farplanedist "
                      "of the map's worldspawn, or nowhere)")
@@ -339,7 +372,9 @@ void addVis(Command& tool, int& exit_code) {
         ->delimiter(',')
         ->check(OneOf{"all", "water", "sky", "slime", "lava"})
         ->type_name("LIST");
-    verb->add_flag("--verify", options->verify, "hold the rows against rays through the map, and through its portals");
+    verb->add_flag(
+        "--verify", options->verify,
+        "hold the rows against rays through the map, through its portals, and through the brushes of a .map");
     verb->add_option("--rays", options->rays, "of --verify")
         ->check(Range{uint64_t{1}, uint64_t{1} << 40})
         ->capture_default_str();

@@ -204,7 +204,7 @@ double farPlaneOf(const QuakeMap& map) {
 
 /// The source of a map, by our own tree of its brushes.
 Result<VisMap> loadSource(const VisMapChoice& choice) {
-    const Result<std::string> text = readTextFile(choice.name);
+    Result<std::string> text = readTextFile(choice.name);
     if (!text) return text.error();
     const Result<QuakeMap> source =
         parseQuakeMap({reinterpret_cast<const unsigned char*>(text->data()), text->size()}, choice.name);
@@ -215,7 +215,11 @@ Result<VisMap> loadSource(const VisMapChoice& choice) {
     VisMap out;
     out.content_hash = contentHash(*text);
     out.farthest = farPlaneOf(*source);
-    BrushTree brushes = treeOfBrushes(*source);
+    MapMaterials materials;
+    const Result<BrushRules> rules = brushRulesOf(choice.rules, materials);
+    if (!rules) return rules.error();
+    BrushTree brushes = treeOfBrushes(*source, {.rules = *rules});
+    noteUnknown(choice.name, brushes.roles);
     MapCells cells = cellsInside(*source, brushes);
     out.graph = std::move(cells.graph);
     out.leaks = std::move(cells.leaks);
@@ -223,6 +227,8 @@ Result<VisMap> loadSource(const VisMapChoice& choice) {
     out.tolerance = brushes.tolerance;
     out.tree = std::move(brushes.tree);
     out.cells_are = "of the brushes";
+    out.roles = std::move(brushes.roles.roles);
+    out.source = std::move(*text);
     return out;
 }
 
@@ -245,6 +251,7 @@ Result<VisMap> loadVisMap(const VisMapChoice& choice) {
     if (is_source && choice.needs_bsp)
         return usageError(
             "a .map has no lump to write: name an output that does not end in .bsp, or give the compiled map");
+    if (!is_source && choice.rules.given()) return usageError("--game, --shaders and --solid go with a .map");
     if (!is_prt && !choice.bsp.empty()) return usageError("--bsp goes with a .prt");
     if (isProcedural(choice.name))
         return usageError(choice.name + ": vis takes maps; for the cells of a scene that is made: sightline bake");

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/cli/verbs/map_rules.h"
 #include "sightline/bake/brushes/outside.h"
 #include "sightline/bake/objects/box_visibility.h"
 #include "sightline/base/bit_matrix.h"
@@ -30,6 +31,7 @@ struct VisMapChoice {
     std::string name;  ///< .prt, .bsp, .map, or in an archive
     std::string bsp;   ///< for a .prt: the map that it belongs to; empty: none was named
     std::string prt;   ///< for a .bsp: the portal file that tells its clusters; empty: none was named
+    MapRules rules;    ///< for a .map
     VisCells cells = VisCells::kClusters;
     bool water_is_opaque = false;
     bool needs_bsp = false;    ///< its lump is to be written
@@ -47,6 +49,8 @@ struct VisMap {
     double tolerance = 0;                 ///< how far portals of the tree may be off [world units]
     bool contents_stop = false;           ///< TreePortalSettings
     std::vector<MapLeak> leaks;           ///< of a .map
+    std::string source;                   ///< of a .map: its text
+    std::vector<BrushRole> roles;         ///< of a .map: its brushes
     double farthest = 0;                  ///< _farplanedist of its worldspawn: sight ends there; 0: none  [map units]
     std::string map_name;                 ///< of its bytes
     std::vector<unsigned char> map_bytes;

@@ -3,19 +3,28 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
-#include "sightline/geom/leaf_tree.h"
+#include "sightline/tools/scene/map_materials.h"
 #include "sightline/tools/scene/quake_map.h"
 
 namespace sightline::bake {
 using namespace tools;
 
-/// What a brush does to the tree.
-enum class BrushRole : uint8_t {
-    kSolid,    ///< hides, and seals
-    kSky,      ///< seals; a sight line ends in it
-    kLiquid,   ///< another medium
-    kNothing,  ///< neither: detail, clips, triggers, hints; what hides only sometimes hides nothing here
+/// What is known of a map beside its file.
+struct BrushRules {
+    MapGames games = kNoGame;  ///< kNoGame: gamesOf() guesses
+    /// Patterns (matches()) of textures that are solid where nothing else is known of them.
+    std::vector<std::string> solid = {};
+    const MapMaterials* materials = nullptr;  ///< outlives the call
+};
+
+struct BrushRoles {
+    std::vector<BrushRole> roles;  ///< [size: the map's brushes]
+    MapGames games = kNoGame;      ///< by whose rules
+    uint64_t unknown = 0;          ///< brushes that hide nothing because a texture or a flag of theirs is not known
+    std::vector<std::string> unknown_textures;  ///< of these, the most frequent first
 };
 
 /// Whether an entity's brushes are part of the world, as of func_group; of func_detail and its kin they are, too, but
@@ -23,12 +32,14 @@ enum class BrushRole : uint8_t {
 /// leaves out is no part of it.
 bool isWorldEntity(const QuakeMap& map, const QuakeMapEntity& entity);
 
-/// Of a brush of an entity. A brush is what the least hiding of its sides says it is.
+/// Of each brush what the least hiding of its sides says it is. What is not known hides nothing.
 ///
-/// Names are Quake's and Half-Life's (sky..., *water, clip, hint, origin, ...), without the folders of Quake 2 and 3, of
-/// which `common/` and `system/` hold what is not drawn: of them only caulk is solid. Names with a folder that speak of
-/// liquids, fog, glass or windows are that. Flags of Quake 2 and 3: detail, liquids, sky, windows, clips, hints. What
-/// another name of Quake 3's shaders means is not known here: it is solid, which is wrong of what one sees through.
-BrushRole roleOf(const QuakeMap& map, const QuakeMapEntity& entity, const QuakeMapBrush& brush);
+/// Quake and Half-Life: compilers know some names (sky..., *water, clip, hint, origin, ...); every other one is solid by their
+/// rule. Quake 2: the flags of the side decide, or where it has none those of the texture's .wal. Quake 3: the texture's shader
+/// decides; of a texture without one that it is solid is known only if its picture, and no fault, is among the materials. Names
+/// in `common/` and `system/` are tools, of which caulk alone is solid; names with a folder that speak of liquids, fog, glass or
+/// windows are that. Detail, liquids, windows, clips, hints by a flag are so in each game. Of a map that may be of several
+/// games a brush hides only if it hides in each of them.
+BrushRoles brushRoles(const QuakeMap& map, const BrushRules& rules = {});
 
 }  // namespace sightline::bake

@@ -77,12 +77,13 @@ public:
 private:
     void gather() {
         std::vector<glm::dvec3> points;
+        BrushRoles& roles = out_.roles = brushRoles(map_, settings_.rules);
         for (const QuakeMapEntity& entity : map_.entities) {
             if (!isWorldEntity(map_, entity)) continue;
             for (const QuakeMapBrush& source : map_.brushesOf(entity)) {
-                const BrushRole role = roleOf(map_, entity, source);
+                const BrushRole role = roles.roles[static_cast<size_t>(&source - map_.brushes.data())];
                 BrushTreeCounts& counts = out_.counts;
-                if (role == BrushRole::kNothing) {
+                if (role >= BrushRole::kUnknown) {
                     ++counts.nothing;
                     continue;
                 }

@@ -15,6 +15,7 @@ namespace sightline::bake {
 using namespace tools;
 
 struct BrushTreeSettings {
+    BrushRules rules = {};
     /// Planes of brushes that are so close, and all but parallel, are one: what was drawn on two grids closes. It
     /// moves faces, by so much at most near the origin: what is known of the result is known of the moved brushes.
     /// [world units]
@@ -38,6 +39,7 @@ struct BrushTree {
     std::vector<glm::dvec3> edge_points;  ///< of each of them, a point on the bounds
     double tolerance = 0;                 ///< see below [world units]
     BrushTreeCounts counts;
+    BrushRoles roles;
 };
 
 /// The tree of the world's brushes. A leaf is solid only if it lies in one solid brush but for the tolerance, 2^-36

@@ -83,6 +83,7 @@ void placeScene(Scene& scene, const ImportSettings& settings) {
         if (camera.z_far) *camera.z_far *= scale;
     }
     for (SceneRoom& room : scene.rooms) room.bounds = transformBox(room.bounds, place);
+    scene.walk_speed *= scale;
     for (SceneCell& cell : scene.cells) {
         for (glm::dvec4& plane : cell.planes) plane = glm::dvec4(turn * glm::dvec3(plane), scale * plane.w);
         cell.bounds = transformBox(cell.bounds, place);
@@ -113,6 +114,7 @@ Scene joinScenes(std::vector<Scene> scenes) {
         append(out.meshes, std::move(scene.meshes));
         append(out.objects, std::move(scene.objects));
         append(out.levels, std::move(scene.levels));
+        out.walk_speed = std::max(out.walk_speed, scene.walk_speed);
         append(out.cameras, std::move(scene.cameras));
         append(out.nodes, std::move(scene.nodes));
         append(out.cells, std::move(scene.cells));

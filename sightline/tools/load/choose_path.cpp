@@ -43,6 +43,7 @@ Result<CameraPath> choosePath(const Scene& scene, const PathChoice& choice) {
     switch (choice.kind) {
         case PathKind::kWalk:
             walk.frames = framesOr(WalkSettings().frames);
+            if (!choice.speed_given && scene.walk_speed > 0) walk.speed = scene.walk_speed;
             return walkThrough(scene, walk);
         case PathKind::kOrbit:
             return orbitAround(scene, framesOr(kFrames), walk.seed);

@@ -29,6 +29,7 @@ struct PathChoice {
     PathKind kind = PathKind::kAny;
     bool seeded = false;             ///< a seed was asked for
     WalkSettings walk{.frames = 0};  ///< frames and seed are any kind's; 0 frames: not asked for
+    bool speed_given = false;        ///< the walk's speed was asked for; else it is the scene's own, if it has one
 };
 
 /// Whether nothing else was asked for and the scene has cameras, so that choosePath() takes those.

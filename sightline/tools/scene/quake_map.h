@@ -17,6 +17,7 @@ struct QuakeMapSide {
     glm::dvec3 points[3];
     uint32_t texture = 0;                ///< index into QuakeMap::textures
     uint32_t contents = 0, surface = 0;  ///< flags of Quake 2 and 3; 0 where the file has none
+    bool has_flags = false;              ///< the file has them
 };
 
 /// Convex: what lies behind all its sides. May be empty, or without end: nothing of this has been looked at.
@@ -44,6 +45,8 @@ struct QuakeMap {
     std::vector<QuakeMapSide> sides;
     std::vector<std::string> textures;  ///< each name once, as it was written
     uint64_t patches = 0;               ///< curved surfaces, left out
+    bool primitives = false;            ///< some sides are brush primitives
+    std::string game;                   ///< as an editor names it in a comment, `// Game: Quake 2`; or empty
 
     std::span<const QuakeMapSide> sidesOf(const QuakeMapBrush& brush) const {
         return {sides.data() + brush.first_side, brush.side_count};

@@ -146,6 +146,7 @@ struct Scene {
     std::vector<ScenePortal> portals;  ///< between these cells
     std::vector<SceneRoom> rooms;      ///< may be empty
     std::vector<SceneFile> files;      ///< empty: procedural
+    double walk_speed = 0;             ///< how fast its game walks [world units a second]; 0: nothing says so
 };
 
 constexpr size_t kLongestPath = 4096;  // [bytes]: in a deep tree the paths of all would not fit into any memory

@@ -27,6 +27,7 @@ LeafContents contentsAt(const LeafTree& tree, const glm::dvec3& point) {
 void expectContents(const QuakeMap& map, const BrushTree& brushes, double least, uint64_t seed, int count) {
     Random random(seed);
     const Box3d& bounds = brushes.tree.bounds;
+    const std::vector<BrushRole> roles = brushRoles(map).roles;
     uint64_t asked = 0, solid = 0;
     for (int i = 0; i < count; ++i) {
         const glm::dvec3 point =
@@ -35,8 +36,8 @@ void expectContents(const QuakeMap& map, const BrushTree& brushes, double least,
         bool near = false;
         for (const QuakeMapEntity& entity : map.entities)
             for (const QuakeMapBrush& brush : map.brushesOf(entity)) {
-                const BrushRole role = roleOf(map, entity, brush);
-                if (role == BrushRole::kNothing) continue;
+                const BrushRole role = roles[static_cast<size_t>(&brush - map.brushes.data())];
+                if (role >= BrushRole::kUnknown) continue;
                 const double depth = depthIn(map, brush, point);
                 near |= std::abs(depth) < least;
                 if (depth <= 0) continue;
@@ -143,75 +144,13 @@ TEST(BrushTree, StandsMapsOfNothingAndOfEverything) {
     EXPECT_EQ(contentsAt(treeOfBrushes(far.map).tree, {8, 8, 8}), LeafContents::kSolid);
 }
 
-TEST(BrushTree, RolesAreByNameAndFlags) {
-    BrushMaker maker;
-    const auto role = [&](const std::string& name, uint32_t contents = 0, uint32_t surface = 0) {
-        maker.box({0, 0, 0}, {1, 1, 1}, name);
-        for (uint32_t i = maker.map.brushes.back().first_side; i < maker.map.sides.size(); ++i) {
-            maker.map.sides[i].contents = contents;
-            maker.map.sides[i].surface = surface;
-        }
-        return roleOf(maker.map, maker.map.entities.back(), maker.map.brushes.back());
-    };
-    for (const char* name : {"brick", "null", "skip", "textures/base/skyline_wall2/x", "common/caulk", "system/caulk",
-                             "e1u1/metal", "window01", "waterfall"})
-        EXPECT_EQ(role(name), BrushRole::kSolid) << name;
-    for (const char* name : {"sky1", "SKY_void", "env/sky", "CONTENTSKY"})
-        EXPECT_EQ(role(name), BrushRole::kSky) << name;
-    for (const char* name : {"*water1", "*lava", "!slime", "CONTENTWATER", "ContentSlime", "contentlava",
-                             "liquids/clear_ripple1", "textures/liquids/slime1", "gothic/lavahell", "e1u1/watrt_water"})
-        EXPECT_EQ(role(name), BrushRole::kLiquid) << name;
-    for (const char* name : {"clip",
-                             "HINT",
-                             "hintskip",
-                             "origin",
-                             "trigger",
-                             "common/clip",
-                             "textures/common/hint",
-                             "common/nodraw",
-                             "{grate",
-                             "@glow",
-                             "CLIPBEVEL",
-                             "ClipBevelBrush",
-                             "CLIPHULL1",
-                             "cliphull2",
-                             "CLIPHULL3",
-                             "CONTENTEMPTY",
-                             "BOUNDINGBOX",
-                             "SPLITFACE",
-                             "BEVELHINT",
-                             "SOLIDHINT",
-                             "AAATRIGGER",
-                             "system/physics_clip",
-                             "textures/system/nodraw",
-                             "sfx/fog_red",
-                             "base/glass01",
-                             "textures/gothic_glass/x",
-                             "e1u1/window1"})
-        EXPECT_EQ(role(name), BrushRole::kNothing) << name;
-    EXPECT_EQ(role("wall", 0x8000000), BrushRole::kNothing);  // detail
-    EXPECT_EQ(role("wall", 1), BrushRole::kSolid);
-    EXPECT_EQ(role("wall", 2), BrushRole::kNothing);  // a window
-    EXPECT_EQ(role("wall", 32), BrushRole::kLiquid);
-    EXPECT_EQ(role("wall", 0, 4), BrushRole::kSky);
-    EXPECT_EQ(role("wall", 0, 32), BrushRole::kNothing);
-    EXPECT_EQ(role("wall", 0, 256), BrushRole::kNothing);  // a hint
-    EXPECT_EQ(role("wall", 0, 512), BrushRole::kNothing);  // skip
-    EXPECT_EQ(role("wall", 1, 768), BrushRole::kNothing);
-    maker.entity({{"classname", "func_detail_wall"}});
-    EXPECT_EQ(role("brick"), BrushRole::kNothing);
-    EXPECT_EQ(role("sky1"), BrushRole::kSky);
-    maker.entity({{"classname", "func_door"}});
-    EXPECT_EQ(role("sky1"), BrushRole::kNothing);
-}
-
 TEST(BrushTree, LeavesOutWhatEditorsAndCompilersLeaveOut) {
     using Pairs = std::vector<std::pair<std::string, std::string>>;
     BrushMaker maker;
     const auto isLeftOut = [&](const Pairs& pairs) {
         maker.entity(pairs);
         maker.box({0, 0, 0}, {1, 1, 1}, "wall");
-        return roleOf(maker.map, maker.map.entities.back(), maker.map.brushes.back()) == BrushRole::kNothing;
+        return roleOf(maker.map, maker.map.brushes.back()) == BrushRole::kNothing;
     };
     const auto layer = [](const char* id, const char* omit) {
         return Pairs{{"classname", "func_group"},

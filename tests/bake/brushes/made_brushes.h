@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "sightline/bake/brushes/brush_role.h"
 #include "sightline/base/random.h"
 #include "sightline/math/box.h"
 #include "sightline/tools/scene/quake_map.h"
@@ -71,6 +72,11 @@ public:
         }
     }
 };
+
+/// The role of one brush.
+inline bake::BrushRole roleOf(const QuakeMap& map, const QuakeMapBrush& brush) {
+    return bake::brushRoles(map).roles[static_cast<size_t>(&brush - map.brushes.data())];
+}
 
 /// How far inside of a brush a point is; below 0: outside. [world units]
 inline double depthIn(const QuakeMap& map, const QuakeMapBrush& brush, const glm::dvec3& point) {

@@ -7,11 +7,13 @@
 #include <string>
 
 #include "gltf_check.h"
+#include "sightline/tools/import/quake/map_materials_files.h"
 #include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/import/quake/prt.h"
 #include "sightline/tools/import/quake/quake_map.h"
 #include "sightline/tools/import/quake/quake_scene.h"
 #include "sightline/tools/import/quake/quake_visibility.h"
+#include "sightline/tools/import/quake/shader_script.h"
 #include "tests/support/line_fault.h"
 
 namespace sightline::test {
@@ -141,6 +143,23 @@ inline std::string sourceFault(const std::string& bytes) {
         if (const auto vector = quakeVector(pair.value); vector && !(std::abs(vector->x) <= 1e9))
             return "a vector is not finite, or too far";
     return "";
+}
+
+/// Empty, or what is wrong with the answer to these bytes, a shader script.
+inline std::string shaderFault(const std::string& bytes) {
+    MapMaterials materials;
+    const Status read = parseShaderScript(bytesOf(bytes), "fuzz.shader", materials);
+    for (const auto& [name, role] : materials.shaders) {
+        if (role > BrushRole::kNothing) return "a role is out of range";
+        if (nameOfTexture(name) != name && !name.starts_with("textures/")) return "a name is not as maps have it";
+    }
+    return read.ok() ? "" : lineFault(read.error(), "fuzz.shader");
+}
+
+/// Empty, or what is wrong with the answer to these bytes, a .wal.
+inline std::string walFault(const std::string& bytes) {
+    const Result<MapFlags> flags = parseWal(bytesOf(bytes), "fuzz.wal");
+    return flags.ok() ? bytes.size() < 100 ? "it has no header" : "" : lineFault(flags.error(), "fuzz.wal");
 }
 
 /// Empty, or what is wrong with how an archive of these bytes is listed and unpacked.

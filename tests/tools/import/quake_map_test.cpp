@@ -78,6 +78,22 @@ TEST(QuakeMap, ReadsTheDialectsOfASide) {
     EXPECT_EQ(sideOf(*map).surface, 2u);
 }
 
+TEST(QuakeMap, SaysWhatTellsTheGame) {
+    const auto read = [](const std::string& before, const std::string& side) {
+        const Result<QuakeMap> map = parseText(before + world(side + "\n"));
+        EXPECT_TRUE(map.ok()) << map.error().message;
+        return *map;
+    };
+    EXPECT_EQ(read("", kPoints + "a 0 0 0 1 1").game, "");
+    EXPECT_EQ(read("// Game: Quake 2 \r\n// Format: Valve\n// Game: Other\n", kPoints + "a 0 0 0 1 1").game, "Quake 2");
+    EXPECT_EQ(read("//Game: Quake\n// x\n", kPoints + "a 0 0 0 1 1 // Game: Quake").game, "");
+    EXPECT_FALSE(sideOf(read("", kPoints + "a 0 0 0 1 1")).has_flags);
+    EXPECT_FALSE(sideOf(read("", kPoints + "a [ 1 0 0 0 ] [ 0 -1 0 0 ] 0 1 1")).has_flags);
+    EXPECT_TRUE(sideOf(read("", kPoints + "a 0 0 0 1 1 0 0 0")).has_flags);
+    EXPECT_FALSE(read("", kPoints + "a 0 0 0 1 1 0 0 0").primitives);
+    EXPECT_TRUE(read("", "brushDef { " + kPoints + "( ( 1 0 0 ) ( 0 1 0 ) ) a 0 0 0 }").primitives);
+}
+
 TEST(QuakeMap, TakesSignsInNames) {
     for (const char* name : {"{grate", "*water[2]", "+0a(b)", "a}b", "#c", "64", "a//b"}) {
         const Result<QuakeMap> map = parseText(world(kPoints + name + std::string(" 0 0 0 1 1\n")));

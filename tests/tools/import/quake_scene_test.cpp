@@ -139,6 +139,7 @@ TEST(QuakeScene, PlayersBeginWithOpenEyes) {
     EXPECT_LT(glm::distance(-glm::dvec3(camera.transform[2]), glm::dvec3(0, 0, -1)), 1e-12);  // along the file's y
     EXPECT_GT(glm::determinant(glm::dmat3(camera.transform)), 0.99);
     EXPECT_EQ(scene->cameras[1].name, "info_intermission");
+    EXPECT_EQ(scene->walk_speed, 320);
 }
 
 TEST(QuakeScene, SaysWhatIsWrongWithItsEntities) {

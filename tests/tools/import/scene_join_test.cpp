@@ -72,7 +72,8 @@ TEST(SceneJoin, KeysDoNotRepeatAndPathsNameTheFile) {
 }
 
 TEST(SceneJoin, ATurnAndAScaleMoveEverything) {
-    const Scene before = sample("a.glb", 0);
+    Scene before = sample("a.glb", 0);
+    before.walk_speed = 320;
     for (const UpAxis up : {UpAxis::kX, UpAxis::kZ}) {
         Scene after = before;
         ImportSettings settings;
@@ -95,6 +96,8 @@ TEST(SceneJoin, ATurnAndAScaleMoveEverything) {
                 EXPECT_TRUE(near(2.5 * glm::dvec3(b[axis]), moved(glm::dvec3(a[axis]))))
                     << "directions keep their length";
         }
+        EXPECT_EQ(after.walk_speed, 800);
+        EXPECT_EQ(joinScenes({sample("b.glb", 0), after}).walk_speed, 800);
         EXPECT_EQ(after.cameras[0].z_near, 1.25);
         EXPECT_EQ(after.cameras[0].z_far, 250);
         EXPECT_EQ(after.cameras[1].orthographic_height, 50);

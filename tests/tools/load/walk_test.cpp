@@ -116,6 +116,11 @@ TEST(ChoosePath, FileThenKindThenTheScenesOwnThenATour) {
     choice.walk.frames = 5;
     choice.walk.seed = 9;
     EXPECT_TRUE(samePaths(*choosePath(scene, choice), walkThrough(scene, {.frames = 5, .seed = 9})));
+    scene.walk_speed = 30;
+    EXPECT_TRUE(samePaths(*choosePath(scene, choice), walkThrough(scene, {.frames = 5, .seed = 9, .speed = 30})));
+    EXPECT_FALSE(samePaths(*choosePath(scene, choice), walkThrough(scene, {.frames = 5, .seed = 9})));
+    choice.speed_given = true;
+    EXPECT_TRUE(samePaths(*choosePath(scene, choice), walkThrough(scene, {.frames = 5, .seed = 9})));
     choice.kind = PathKind::kAny;
     EXPECT_TRUE(samePaths(*choosePath(scene, choice), tourOf(scene, 5, 9)));
     choice.walk.frames = 0;

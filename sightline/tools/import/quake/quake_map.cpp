@@ -57,11 +57,21 @@ private:
 
     void skipBlanks() {
         for (; at_ < end_; ++at_) {
-            if (*at_ == '/' && end_ - at_ > 1 && at_[1] == '/')
-                while (at_ + 1 < end_ && at_[1] != '\n') ++at_;
+            if (*at_ == '/' && end_ - at_ > 1 && at_[1] == '/') skipComment();
             else if (!isBlankOrControl(*at_)) return;
             line_ += *at_ == '\n';
         }
+    }
+
+    /// To before the line's end.
+    void skipComment() {
+        constexpr std::string_view kGame = "// Game: ";
+        const char* first = at_;
+        while (at_ + 1 < end_ && at_[1] != '\n') ++at_;
+        const std::string_view text(first, static_cast<size_t>(at_ + 1 - first));
+        if (!map_.entities.empty() || !map_.game.empty() || !text.starts_with(kGame)) return;
+        map_.game = text.substr(kGame.size(), 80);
+        while (!map_.game.empty() && isBlankOrControl(map_.game.back())) map_.game.pop_back();
     }
 
     /// Takes the next word, sign or text in quotes; empty and not quoted at the end.
@@ -179,6 +189,7 @@ private:
         const bool primitive = !quoted_ && word_ == "brushDef";
         if (!quoted_ && word_ == "brushDef3") return fail("a brush of Doom 3, which is not read");
         if (primitive) {
+            map_.primitives = true;
             next();
             take('{');
         }
@@ -216,6 +227,7 @@ private:
             for (int i = 0; i < 5; ++i) number();
         }
         // Contents, surface and value, as far as they are there.
+        side.has_flags = isNumber();
         if (isNumber()) side.contents = flags();
         if (isNumber()) side.surface = flags();
         while (isNumber()) next();

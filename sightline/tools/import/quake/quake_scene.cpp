@@ -238,6 +238,7 @@ Scene sceneOf(const QuakeMapFile& map, const QuakeMap& text) {
     }
     if (scene.objects.empty()) fail("", "has no face that is drawn");
     addCameras(text, scene);
+    scene.walk_speed = 320;  // of the family's players
     return scene;
 }
 

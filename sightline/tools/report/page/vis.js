@@ -4,6 +4,10 @@
 
 const kVisOrder = ['most', 'sightline', 'graph', 'middle', 'matrix', 'matrix-alike'];
 
+/** How often the witnesses say that rows or their tree are wrong. */
+const wrongBy = ({false_negatives: wrong, brushes}) =>
+  wrong + (brushes ? brushes.false_negatives + brushes.solid_leaves : 0);
+
 function visFacts(run) {
   const {verification, objects, leaks} = run;
   return card('how', 'The bake', definitions([
@@ -16,6 +20,9 @@ function visFacts(run) {
       `object, where the cells alone give ${grouped(objects.pairs_by_cells)}`],
     verification && ['Verified', `${grouped(verification.false_negatives)} of ${grouped(verification.segments)} ` +
       `sight lines join leaves that the rows call hidden; ${grouped(verification.doubtful)} are in doubt`],
+    verification && verification.brushes && ['By brushes', `${grouped(verification.brushes.false_negatives)} of ` +
+      `${grouped(verification.brushes.segments)} sight lines through the brushes join leaves that the rows call hidden; ` +
+      `${grouped(verification.brushes.solid_leaves)} leaves are solid where no brush is`],
     leaks.length > 0 && ['Leaks', `from ${leaks[0].from}: the map is not sealed`],
     run.pvs_bytes > 0 && ['Size', `${bytes(run.pvs_bytes)} packed, ${bytes(run.resident_bytes)} when opened` +
       (run.lump_bytes > 0 ? `, ${bytes(run.lump_bytes)} as a lump` : '')],
@@ -54,8 +61,9 @@ function visPage() {
   const {run, pictures, plan} = data;
   setHead('Visibility of ' + fileName(run.map), `${grouped(run.leafs)} leaves in ${grouped(run.clusters)} cells, ` +
     `with ${grouped(run.portals)} portals`,
-  run.verification && verdict(run.verification.false_negatives ? 'bad' : 'good',
-    `${grouped(run.verification.false_negatives)} of ${grouped(run.verification.segments)} sight lines were missed`));
+  run.verification && verdict(wrongBy(run.verification) ? 'bad' : 'good',
+    `${grouped(run.verification.false_negatives)} of ${grouped(run.verification.segments)} sight lines were missed` +
+    (run.verification.brushes ? `, ${grouped(wrongBy(run.verification) - run.verification.false_negatives)} by brushes` : '')));
   const sorted = [...pictures].sort((a, b) => kVisOrder.indexOf(a.name) - kVisOrder.indexOf(b.name));
   at('main').append(
     tiles([percent(run.visible_leaf_pairs, run.leafs ** 2), 'of all pairs of leaves are visible'],

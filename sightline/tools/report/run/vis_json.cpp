@@ -49,14 +49,24 @@ std::string visJson(const VisSummary& summary) {
                           {"cpu_seconds", summary.objects->cpu_seconds}};
     if (summary.verification) {
         const VisSummary::Verification& verified = *summary.verification;
-        Json examples = Json::array();
-        for (const VisSummary::Verification::Example& e : verified.examples)
-            examples.push_back(
-                {{"from_leaf", e.from_leaf}, {"to_leaf", e.to_leaf}, {"from", vector(e.from)}, {"to", vector(e.to)}});
+        const auto examples = [&](const std::vector<VisSummary::Verification::Example>& of) {
+            Json all = Json::array();
+            for (const VisSummary::Verification::Example& e : of)
+                all.push_back({{"from_leaf", e.from_leaf},
+                               {"to_leaf", e.to_leaf},
+                               {"from", vector(e.from)},
+                               {"to", vector(e.to)}});
+            return all;
+        };
         out["verification"] = {{"segments", verified.segments},
                                {"false_negatives", verified.false_negatives},
                                {"doubtful", verified.doubtful},
-                               {"examples", examples}};
+                               {"examples", examples(verified.examples)}};
+        if (verified.brushes)
+            out["verification"]["brushes"] = {{"segments", verified.brushes->segments},
+                                              {"false_negatives", verified.brushes->false_negatives},
+                                              {"solid_leaves", verified.brushes->solid_leaves},
+                                              {"examples", examples(verified.brushes->examples)}};
     }
     return jsonText(out, 2) + "\n";
 }

@@ -54,6 +54,14 @@ struct VisSummary {
             glm::dvec3 from{0.0}, to{0.0};
         };
         std::vector<Example> examples;
+        /// Segments through the brushes of a .map, as its text has them.
+        struct Brushes {
+            uint64_t segments = 0, false_negatives = 0;
+            uint64_t solid_leaves = 0;      ///< of the tree, that stop sight where no brush does
+            std::vector<Example> examples;  ///< of a solid leaf both leaves are the same
+            uint64_t wrong() const { return false_negatives + solid_leaves; }
+        };
+        std::optional<Brushes> brushes;
     };
     std::optional<Verification> verification;
 };
