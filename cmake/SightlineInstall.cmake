@@ -16,6 +16,12 @@ include(CMakePackageConfigHelpers)
 function(sightline_install)
   cmake_parse_arguments(arg "" "EXPORT;COMPONENT" "LIBRARIES;HEADERS;BUT" ${ARGN})
   list(TRANSFORM arg_LIBRARIES PREPEND sightline_ OUTPUT_VARIABLE targets)
+  set(shared ${targets})
+  list(FILTER shared INCLUDE REGEX "shared$")
+  sightline_builds_first(${arg_COMPONENT} TARGETS ${targets})
+  if(shared)
+    sightline_builds_first(runtime TARGETS ${shared})
+  endif()
   install(TARGETS ${targets} EXPORT ${arg_EXPORT}
     ARCHIVE COMPONENT ${arg_COMPONENT} LIBRARY COMPONENT runtime NAMELINK_COMPONENT ${arg_COMPONENT}
     RUNTIME COMPONENT runtime)
@@ -40,7 +46,8 @@ if(SIGHTLINE_TOOLS)
     HEADERS bake/bake.h prepare/lod/lod_chain.h tools/scene/procedural.h tools/import/scene_file.h
             tools/load/load_world.h tools/truth/verify.h tools/report/page/page.h
     BUT sightline.h c/sightline.h studies/hidden/render.h studies/hidden/zbuffer/zbuffer.h)
-  # ./run.sh builds the tool alone: what it has not built is left out.
+  # ./run.sh builds the tool alone. Of the other programs, those that were not built are left out.
+  sightline_builds_first(tools TARGETS sightline)
   install(TARGETS sightline COMPONENT tools)
   install(TARGETS sightline-lab COMPONENT tools OPTIONAL)
   install(TARGETS sightline-bench COMPONENT tools OPTIONAL)

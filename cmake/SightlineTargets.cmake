@@ -157,3 +157,27 @@ function(sightline_share_precompiled target)
   target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
   sightline_keep_precompiled(${target})
 endfunction()
+
+# Lets the installation of a component begin with a build of what it holds, if some of that is not there: ./run.sh builds
+# the tool alone. What is there is not built anew.
+#   TARGETS  that are built together
+#   FILES    that are looked for; default: those of the targets
+function(sightline_builds_first component)
+  cmake_parse_arguments(arg "" "" "TARGETS;FILES" ${ARGN})
+  if(NOT arg_FILES)
+    list(TRANSFORM arg_TARGETS REPLACE "(.+)" "$<TARGET_FILE:\\1>" OUTPUT_VARIABLE arg_FILES)
+  endif()
+  install(CODE "
+    set(files \"${arg_FILES}\")
+    foreach(file IN LISTS files)
+      if(NOT EXISTS \"\${file}\")
+        message(STATUS \"Sightline: ${component} is not built yet: building ${arg_TARGETS}\")
+        execute_process(COMMAND \"${CMAKE_COMMAND}\" --build \"${CMAKE_BINARY_DIR}\" --config \"\${CMAKE_INSTALL_CONFIG_NAME}\"
+          --target ${arg_TARGETS} RESULT_VARIABLE result)
+        if(NOT result EQUAL 0)
+          message(FATAL_ERROR \"Sightline: ${component} could not be built\")
+        endif()
+        break()
+      endif()
+    endforeach()" COMPONENT ${component})
+endfunction()

@@ -9,6 +9,8 @@
 #error "Sightline needs C++20: compile with -std=c++20 or later"
 #endif
 
+#include "sightline/math/glm_types.h"
+
 // Asking: a World, its Snapshots, a View, and a Query, which answers with a VisibleSet.
 #include "sightline/geom/clip_space.h"     // a View from the matrices of Vulkan, Direct3D, reversed depth, either hand
 #include "sightline/geom/mirror.h"         // a View of what a flat mirror shows

@@ -10,8 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <glm/glm.hpp>
-
+#include "sightline/math/glm_types.h"
 #include "sightline/base/array.h"
 
 namespace sightline {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include <glm/glm.hpp>
+#include "sightline/math/glm_types.h"
 
 namespace sightline {
 

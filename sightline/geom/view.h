@@ -6,8 +6,7 @@
 #include <limits>
 #include <span>
 
-#include <glm/glm.hpp>
-
+#include "sightline/math/glm_types.h"
 #include "sightline/geom/query_settings.h"
 
 namespace sightline {

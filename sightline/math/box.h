@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include <glm/glm.hpp>
+#include "sightline/math/glm_types.h"
 
 namespace sightline {
 

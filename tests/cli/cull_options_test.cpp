@@ -153,6 +153,15 @@ TEST_F(SizeOptions, HysteresisKeepsWhatTheFrameBeforeShowed) {
     expectError("cull city:1:10 --distance 5 --hysteresis 1.5", 2, "--hysteresis");
 }
 
+// docs/tour.md, "A walk, as a game asks".
+TEST_F(MemoryOptions, AnswerMostOfTheToursWalkWithoutDrawing) {
+    const json run = answer("cull building:1:1 --path walk --frames 200 --seed 2 --remember");
+    size_t undrawn = 0;
+    for (const json& frame : run["frames"])
+        undrawn += !frame.contains("occluder_triangles") || frame["occluder_triangles"] == 0;
+    EXPECT_EQ(undrawn, 191u);
+}
+
 TEST_F(MemoryOptions, AQueryThatRemembersIsJudgedInOrder) {
     const std::string walk = "city:1:400 --path walk --frames 60 --seed 3 ";
     const json alone = cull(walk), kept = cull(walk + "--remember --verify --rays 2000 --threads 2"),

@@ -193,7 +193,7 @@ class Answers(unittest.TestCase):
         self.assertEqual(covered[covered.shape[0] // 2, covered.shape[1] // 2], 1)
 
     def test_bad_input_is_told(self):
-        with self.assertRaisesRegex(ValueError, "positions has shape"):
+        with self.assertRaisesRegex(ValueError, r"positions has shape \[[0-9, ]+\], not \[N, 3\]"):
             sightline.Occluder([1, 2, 3], FACES)
         with self.assertRaisesRegex(sightline.Error, "index 0 of the mesh is 9"):
             sightline.Occluder(CUBE, [[9, 0, 1]])

@@ -15,7 +15,8 @@
 Matrices are NumPy's: m @ column vector, last row 0 0 0 1. What is seen is never missing from an answer; an answer's arrays are
 the query's own memory, and hold until it is asked again: copy() what must last longer. A query is one thread's.
 
-The library is libsightline, found by the system's loader, or named by SIGHTLINE_LIBRARY in the environment.
+The library is libsightline: named by SIGHTLINE_LIBRARY in the environment, or of the same build or installation as this package,
+or found by the system's loader.
 """
 import ctypes.util
 import os
@@ -36,8 +37,11 @@ _ffi.cdef(_cdef.TEXT)
 
 def _open():
     wish = os.environ.get("SIGHTLINE_LIBRARY")
-    beside = pathlib.Path(__file__).resolve().parent / "libsightline.so"
-    return _ffi.dlopen(wish or (str(beside) if beside.exists() else ctypes.util.find_library("sightline") or "libsightline.so.0.1"))
+    here = pathlib.Path(__file__).resolve().parent
+    # Beside it; in a build, BUILD/python/sightline; in an installation, PREFIX/lib/python3/dist-packages/sightline.
+    near = (place / "libsightline.so" for place in (here, *here.parents[1:3]))
+    beside = next((str(library) for library in near if library.exists()), None)
+    return _ffi.dlopen(wish or beside or ctypes.util.find_library("sightline") or "libsightline.so.0.1")
 
 
 _lib = _open()
@@ -89,7 +93,9 @@ def _array(values, dtype, shape, name):
     """A contiguous array of that shape, in which None stands for any size."""
     array = numpy.ascontiguousarray(values, dtype=dtype)
     if array.ndim != len(shape) or any(want not in (None, have) for want, have in zip(shape, array.shape)):
-        raise ValueError(f"{name} has shape {array.shape}, not {tuple('any' if s is None else s for s in shape)}")
+        def words(sizes):
+            return "[" + ", ".join("N" if size is None else str(size) for size in sizes) + "]"
+        raise ValueError(f"{name} has shape {words(array.shape)}, not {words(shape)}")
     return array
 
 
