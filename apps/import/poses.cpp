@@ -24,6 +24,12 @@ glm::dmat4 worldOf(const aiNode* node) {
     return out;
 }
 
+/// Whether some key's value is not that of the first.
+template <class Key>
+bool differ(const Key* keys, unsigned count) {
+    return std::any_of(keys, keys + count, [&](const Key& key) { return !(key.mValue == keys[0].mValue); });
+}
+
 }  // namespace
 
 glm::dmat4 toMatrix(const aiMatrix4x4& m) {
@@ -48,6 +54,13 @@ void Poses::readMotions(const aiAnimation& animation) {
     for (unsigned c = 0; c < animation.mNumChannels; ++c) {
         const aiNodeAnim& channel = *animation.mChannels[c];
         Motion& motion = motions_[channel.mNodeName.C_Str()];
+        motion.changes = motion.changes || differ(channel.mPositionKeys, channel.mNumPositionKeys) ||
+                         differ(channel.mRotationKeys, channel.mNumRotationKeys) ||
+                         differ(channel.mScalingKeys, channel.mNumScalingKeys);
+        if (channel.mNumPositionKeys > 0 && channel.mNumRotationKeys > 0 && channel.mNumScalingKeys > 0)
+            motion.first.emplace_back(channel.mScalingKeys[0].mValue, channel.mRotationKeys[0].mValue,
+                                      channel.mPositionKeys[0].mValue);
+        else motion.changes = true;  // what has no key is not at rest, but at its default
         for (unsigned k = 0; k < channel.mNumPositionKeys; ++k) {
             motion.longest_shift =
                 std::max(motion.longest_shift, glm::length(toVector(channel.mPositionKeys[k].mValue)));
@@ -64,6 +77,22 @@ void Poses::readMotions(const aiAnimation& animation) {
             for (unsigned w = 0; w < channel.mKeys[k].mNumValuesAndWeights; ++w)
                 largest_weight_ = std::max(largest_weight_, std::abs(channel.mKeys[k].mWeights[w]));
     }
+}
+
+bool Poses::moves(const aiNode& node) const {
+    const Motion* motion = motionOf(node);
+    if (!motion || motion->changes) return motion != nullptr;
+    // Exporters write a key for what stands still: it is the node's place but for rounding.
+    constexpr double kRounding = 1e-5;
+    const glm::dmat4 rest = toMatrix(node.mTransformation);
+    for (const aiMatrix4x4& first : motion->first) {
+        const glm::dmat4 there = toMatrix(first);
+        for (int column = 0; column < 4; ++column) {
+            const double size = column < 3 ? largestStretch(rest) : glm::length(glm::dvec3(rest[3]));
+            if (!(glm::length(there[column] - rest[column]) <= kRounding * size)) return true;
+        }
+    }
+    return false;
 }
 
 const Poses::Motion* Poses::motionOf(const aiNode& node) const {

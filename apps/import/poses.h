@@ -22,6 +22,9 @@ class Poses {
 public:
     explicit Poses(const aiScene& scene);
 
+    /// Whether an animation takes a node from where it stands at rest.
+    bool moves(const aiNode& node) const;
+
     static bool deforms(const aiMesh& mesh) { return mesh.HasBones() || mesh.mNumAnimMeshes > 0; }
 
     /// A box, in the space of its node, around all poses of a mesh.
@@ -34,6 +37,8 @@ private:
         double longest_shift = 0;  ///< of any key
         double largest_scale = 0;
         bool shifts = false;
+        std::vector<aiMatrix4x4> first;  ///< place at the first key, of each animation
+        bool changes = false;            ///< some key differs from the first
     };
     /// A joint's origin is in this sphere, in the world, and the joint stretches what hangs on it no more than so.
     struct Reach {

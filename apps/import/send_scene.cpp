@@ -203,14 +203,20 @@ public:
           materials_(scene, suffix, std::filesystem::path(file).parent_path().string(), out) {}
 
     void send() {
-        std::vector<std::pair<const aiNode*, uint32_t>> todo{{scene_.mRootNode, SceneNode::kNone}};
+        struct Todo {
+            const aiNode* node;
+            uint32_t parent;
+            bool moves;  // with what is above it
+        };
+        std::vector<Todo> todo{{scene_.mRootNode, SceneNode::kNone, false}};
         while (!todo.empty()) {
-            const auto [node, parent] = todo.back();
+            const auto [node, parent, goes_along] = todo.back();
             todo.pop_back();
             const uint32_t index = nodes_++;
+            const bool moves = goes_along || poses_.moves(*node);
             out_.node({nodeName(*node), parent});
-            sendObject(*node, index);
-            for (unsigned c = node->mNumChildren; c-- > 0;) todo.emplace_back(node->mChildren[c], index);
+            sendObject(*node, index, moves);
+            for (unsigned c = node->mNumChildren; c-- > 0;) todo.push_back({node->mChildren[c], index, moves});
         }
         if (objects_ == 0) throw Fault{nothing()};
         for (unsigned c = 0; c < scene_.mNumCameras; ++c) sendCamera(*scene_.mCameras[c]);
@@ -239,7 +245,7 @@ private:
         return out;
     }
 
-    void sendObject(const aiNode& node, uint32_t index) {
+    void sendObject(const aiNode& node, uint32_t index, bool moves) {
         const glm::dmat4 world = worldOf(&node);
         if (node.mNumChildren > 0) worlds_.emplace(&node, world);
         if (node.mNumMeshes == 0) return;
@@ -252,6 +258,7 @@ private:
         SceneObject object;
         object.mesh = *mesh;
         object.node = index;
+        object.changes = moves ? SceneObject::kAnimated : 0;
         object.transform = place_ * world;
         object.name = nodeName(node);
         if (object.name.empty()) object.name = scene_.mMeshes[group[0]]->mName.C_Str();

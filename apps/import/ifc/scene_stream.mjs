@@ -92,9 +92,10 @@ export class SceneStream {
     /** @param transform  16 numbers, column after column */
     object(name, mesh, node, transform) {
         const text = bytesOf(name);
-        this.head(kObject, 8 + 128 + 4 + text.length);
+        this.head(kObject, 9 + 128 + 4 + text.length);
         this.u32(mesh);
         this.u32(node);
+        this.u8(0);  // it stands still
         for (const x of transform) this.f64(x);
         this.text(text);
         return this.counts[kObjects]++;

@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include <fmt/core.h>
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
@@ -189,6 +190,36 @@ TEST_F(SceneFormats, FacesOfAnObjNeedTheirPositionsAlone) {
     const Result<Scene> named = load(write("named.obj", points + "o a/b\n# f 1/2\nusemtl x/y\nf 1/1 2/1 3/1\n"));
     ASSERT_TRUE(named.ok()) << named.error().message;
     EXPECT_TRUE(paths(*named)[0].ends_with("a/b")) << paths(*named)[0];
+}
+
+// What stands still at its key, as exporters write of every node, may hide.
+TEST_F(SceneFormats, WhatAnAnimationMovesIsKnown) {
+    const auto changesOf = [&](const std::string& keys, const std::string& of) {
+        const std::string mesh = "Mesh { 3; 0;0;0;, 1;0;0;, 0;1;0;; 1; 3;0,1,2;; }\n";
+        const auto frame = [&](const std::string& name, const std::string& below) {
+            return "Frame " + name + " { FrameTransformMatrix { 1,0,0,0, 0,1,0,0, 0,0,1,0, 2,0,0,1;; }\n" + mesh + below +
+                   "}\n";
+        };
+        const std::string animation =
+            keys.empty() ? "" : "AnimationSet Open { Animation { {" + of + "} " + keys + " } }\n";
+        const Result<Scene> scene =
+            load(write("door.x", "xof 0303txt 0032\n" + frame("Wall", "") + frame("Door", frame("Knob", "")) + animation));
+        EXPECT_TRUE(scene.ok()) << scene.error().message;
+        std::string out;
+        for (size_t i = 0; scene.ok() && i < scene->objects.size(); ++i)
+            if (scene->objects[i].changes == SceneObject::kAnimated) out += scene->objects[i].name + " ";
+        return out;
+    };
+    const auto places = [](double first, double second) {
+        return fmt::format("AnimationKey {{ 2; 2; 0;3;{:f},0.0,0.0;;, 10;3;{:f},0.0,0.0;;; }}", first, second);
+    };
+    const std::string turn = "AnimationKey { 0; 1; 0;4;1.0,0.0,0.0,0.0;;; } ";
+    const std::string size = "AnimationKey { 1; 1; 0;3;1.0,1.0,1.0;;; } ";
+    EXPECT_EQ(changesOf("", ""), "");
+    EXPECT_EQ(changesOf(turn + size + places(2, 3), "Door"), "Door Knob ");
+    EXPECT_EQ(changesOf(turn + size + places(2, 3), "Knob"), "Knob ");
+    EXPECT_EQ(changesOf(turn + size + places(2, 2), "Door"), "") << "it stands where it stands";
+    EXPECT_EQ(changesOf(turn + size + places(5, 5), "Door"), "Door Knob ") << "it stands elsewhere";
 }
 
 TEST_F(SceneFormats, AMissingMaterialFileIsNoted) {

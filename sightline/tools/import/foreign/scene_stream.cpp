@@ -189,6 +189,8 @@ SceneObject takeObject(StreamRecords& in, const Scene& scene) {
     out.key = scene.objects.size();
     out.mesh = in.take<uint32_t>();
     out.node = in.take<uint32_t>();
+    out.changes = in.take<uint8_t>();
+    if (out.changes > SceneObject::kAnimated) throw Broken{"an object changes in a way that is not known"};
     out.transform = in.take<glm::dmat4>();
     out.name = in.takeText();
     if (out.mesh >= scene.meshes.size()) throw Broken{"a mesh is out of range"};

@@ -92,9 +92,10 @@ void SceneStreamWriter::mesh(const Mesh& mesh) {
 }
 
 void SceneStreamWriter::object(const SceneObject& object) {
-    head(kObject, 8 + 128 + textSize(object.name));
+    head(kObject, 9 + 128 + textSize(object.name));
     put(object.mesh);
     put(object.node);
+    put(object.changes);
     put(object.transform);
     put(object.name);
     ++counts_[kObjects];
