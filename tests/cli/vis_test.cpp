@@ -138,7 +138,8 @@ TEST_F(Vis, WhatIsNotKnownHidesNothingAndIsTold) {
     EXPECT_EQ(pairs(""), 1);
     EXPECT_NE(said().find("(my/wall); Quake 3 is assumed"), std::string::npos) << said();
     EXPECT_EQ(pairs("--solid my/*"), 2);
-    EXPECT_EQ(pairs("--solid other --solid MY/WALL"), 2);
+    EXPECT_EQ(pairs("--solid common/caulk --solid Textures/MY/WALL"), 2);
+    expectError("vis m.map --solid other", 2, "--solid other: m.map has no texture of such a name");
     for (const char* folder : {"scripts", "bad"}) std::filesystem::create_directories(path(folder));
     write("scripts/my.shader", "textures/my/wall\n{\n{\nmap a.tga\n}\n}\ntextures/my/glass\n{\nsurfaceparm trans\n}\n");
     EXPECT_EQ(pairs("--shaders scripts"), 2);

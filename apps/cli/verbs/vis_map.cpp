@@ -26,6 +26,7 @@
 #include "sightline/tools/import/quake/prt.h"
 #include "sightline/tools/import/quake/quake_map.h"
 #include "sightline/tools/import/quake/quake_scene.h"
+#include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/scene/procedural.h"
 #include "sightline/tools/scene/text_file.h"
 
@@ -218,6 +219,12 @@ Result<VisMap> loadSource(const VisMapChoice& choice) {
     MapMaterials materials;
     const Result<BrushRules> rules = brushRulesOf(choice.rules, materials);
     if (!rules) return rules.error();
+    for (const std::string& pattern : rules->solid)
+        if (std::none_of(source->textures.begin(), source->textures.end(), [&](const std::string& name) {
+                return matches(nameOfTexture(name), patternOfTextures(pattern));
+            }))
+            return usageError(
+                fmt::format("--solid {}: {} has no texture of such a name", oneLine(pattern, 80), choice.name));
     BrushTree brushes = treeOfBrushes(*source, {.rules = *rules});
     noteUnknown(choice.name, brushes.roles);
     MapCells cells = cellsInside(*source, brushes);

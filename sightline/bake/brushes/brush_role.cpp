@@ -126,7 +126,7 @@ public:
         for (const std::string& full : map.textures) {
             const std::string name = nameOfTexture(full);
             const bool solid = std::any_of(rules.solid.begin(), rules.solid.end(), [&](const std::string& pattern) {
-                return matches(name, nameOfPattern(pattern));
+                return matches(name, patternOfTextures(pattern));
             });
             Texture texture{.solid = solid};
             for (size_t i = 0; i < std::size(kGames); ++i)
@@ -157,13 +157,6 @@ private:
         bool solid = false;
         BrushRole roles[std::size(kGames)] = {};
     };
-
-    static std::string nameOfPattern(const std::string& pattern) {
-        std::string low(pattern);
-        for (char& c : low)
-            if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-        return low.starts_with("textures/") ? low.substr(9) : low;
-    }
 
     MapGames games_;
     std::vector<Texture> textures_;

@@ -72,6 +72,14 @@ inline std::string nameOfTexture(std::string_view full) {
     return name.starts_with("textures/") ? name.substr(9) : name;
 }
 
+/// The same of a pattern, whose backslashes are its own.
+inline std::string patternOfTextures(std::string_view full) {
+    std::string pattern(full);
+    for (char& c : pattern)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return pattern.starts_with("textures/") ? pattern.substr(9) : pattern;
+}
+
 /// Whether a whole name is a pattern's: `*` stands for any letters, `?` for one, a backslash takes the sign after it as it is.
 /// O(name * pattern).
 inline bool matches(std::string_view name, std::string_view pattern) {

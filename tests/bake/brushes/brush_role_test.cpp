@@ -326,9 +326,7 @@ TEST_P(MapCases, RoomsSeeOneAnother) {
     const bool hidden = std::string(GetParam()).ends_with("solid");
     // One cell, or cells of a liquid between the two; of the solid wall two cells without a portal.
     EXPECT_EQ(cells.graph.portals.empty() && cells.graph.cells == 2, hidden);
-    if (!hidden) {
-        EXPECT_EQ(cells.graph.portals.size(), cells.graph.cells - 1);
-    }
+    if (!hidden) { EXPECT_EQ(cells.graph.portals.size(), cells.graph.cells - 1); }
 }
 
 INSTANTIATE_TEST_SUITE_P(Shared, MapCases,

@@ -69,7 +69,7 @@ private:
         const char* first = at_;
         while (at_ + 1 < end_ && at_[1] != '\n') ++at_;
         const std::string_view text(first, static_cast<size_t>(at_ + 1 - first));
-        if (!map_.entities.empty() || !map_.game.empty() || !text.starts_with(kGame)) return;
+        if (begun_ || !map_.game.empty() || !text.starts_with(kGame)) return;
         map_.game = text.substr(kGame.size(), 80);
         while (!map_.game.empty() && isBlankOrControl(map_.game.back())) map_.game.pop_back();
     }
@@ -77,6 +77,7 @@ private:
     /// Takes the next word, sign or text in quotes; empty and not quoted at the end.
     void next() {
         skipBlanks();
+        begun_ = true;
         word_line_ = line_;
         quoted_ = at_ < end_ && *at_ == '"';
         if (quoted_) return readQuoted();
@@ -255,7 +256,7 @@ private:
     const char *at_, *end_;
     uint32_t line_ = 1, word_line_ = 1;
     std::string_view word_;
-    bool quoted_ = false;
+    bool quoted_ = false, begun_ = false;
     std::string fault_;
     QuakeMap& map_;
     std::unordered_map<std::string, uint32_t> texture_numbers_;
