@@ -28,10 +28,13 @@ fresh() {
         -newer "$oldest" -print -quit 2>/dev/null)" ]
 }
 
+# False if an IFC file is named, and what reads it is not there.
+ifc_is_there() { [ -z "$ifc" ] || [ -f "$build/bin/ifc/web-ifc/web-ifc-node.wasm" ]; }
+
 # Paths in the arguments are the caller's: nothing here changes the working directory.
 prepare() {
-    fresh "$@" && return
-    "$root/tools/setup"
+    fresh "$@" && ifc_is_there && return
+    "$root/tools/setup" ${ifc:+--ifc}
     mkdir -p "$build"
     # Two runs at once build one after the other. The lock must not outlive this block in the tool itself.
     exec {lock}>"$build/.lock"
@@ -51,14 +54,15 @@ prepare() {
     exec {lock}>&-
 }
 
-programs=(sightline)
+programs=(sightline) ifc=
 for word in "$@"; do
     case $word in
         bench) programs+=(sightline-bench) ;;
         view) programs+=(sightline-view) ;;
         render|sight|replay|check|judge|export|calibrate|profile|advise|report|config) programs+=(sightline-lab) ;;
         *.glb|*.gltf|*.bsp|*.map|*.prt|*.pak|*.pk3|*.vis|*.json|*.toml|*.frame|*.png) ;;
-        *.*) if [ -f "$word" ]; then programs+=(sightline-import); fi ;;
+        *.*) if [ -f "$word" ]; then programs+=(sightline-import); fi
+             case $word in *.[iI][fF][cC]|*.[iI][fF][cC][zZ][iI][pP]) ifc=yes ;; esac ;;
     esac
 done
 # The case `bench ablate` builds the tool itself, once without each mechanism.

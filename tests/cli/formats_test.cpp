@@ -6,6 +6,7 @@
 #include "sightline/base/sanitized.h"
 #include "tests/cli/tool.h"
 #include "tests/tools/import/foreign_files.h"
+#include "tests/tools/import/ifc_files.h"
 
 namespace sightline {
 namespace {
@@ -109,8 +110,35 @@ TEST_F(Formats, ForeignFilesAreSeenAsGltfIs) {
         if (!file.objects) continue;
         EXPECT_EQ(seen, expected) << file.name;
     }
+}
+
+TEST_F(Formats, IfcIsAScene) {
     write("wall.ifc", ifcText("IFC2X3"));
-    const Outcome together = succeed("cull wall.ifc boxes.obj arch.glb --frames 3 --size 64x64 --verify --rays 10000");
+    const Outcome first = run("info wall.ifc --json -");
+    if (first.err.find("IFC is read by") != std::string::npos) GTEST_SKIP() << first.err;
+    const json facts = json::parse(first.out);
+    EXPECT_EQ(facts["files"][0]["reader"], "web-ifc");
+    EXPECT_EQ(facts["triangles"]["double_sided"], 12);
+    EXPECT_TRUE(facts["rooms"].empty());
+    EXPECT_NE(first.err.find("wall.ifc: read 1 of 1 products with a shape"), std::string::npos) << first.err;
+    EXPECT_NE(run("info wall.ifc --objects").out.find("0\t12\tSite/House/Level 1/IfcWallStandardCase North wall"),
+              std::string::npos);
+    write("boxes.obj", objText(twoBoxes()));
+    succeed("cull wall.ifc boxes.obj arch.glb --frames 3 --size 64x64 --verify --rays 10000");
+
+    IfcFile file;
+    file.solid("IFCWALL", "", file.brep({0, 0, 0}, {4, 1, 3}), ",$,$");
+    for (const char* name : {"Hall", "Kitchen"})
+        file.solid("IFCSPACE", name, file.brep({0, 1, 0}, {4, 3, 2.5}), ",$,$,$");
+    write("rooms.ifc", file.text());
+    const json rooms = info("rooms.ifc --unit 2")["rooms"];
+    ASSERT_EQ(rooms.size(), 2u);
+    EXPECT_EQ(rooms[1]["name"], "IfcSpace Kitchen");
+    EXPECT_NEAR(rooms[1]["bounds"]["min"][2].get<double>(), -8, 1e-5);
+    EXPECT_NE(run("info rooms.ifc").out.find("rooms                            2  IfcSpace Hall, IfcSpace Kitchen"),
+              std::string::npos);
+    write("cut.ifc", file.text().substr(0, file.text().size() / 2));
+    expectError("cull cut.ifc", 3, "cut.ifc: ");
 }
 
 TEST_F(Formats, LimitsOfReadersAreOneLine) {
