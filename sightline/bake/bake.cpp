@@ -183,6 +183,7 @@ Result<CellVisibility> bakeRows(const CellGraph& rows, const BakeSettings& setti
     CellVisibilitySettings flows;
     flows.jobs = settings.jobs;
     flows.budget = settings.budget;
+    flows.work = settings.work;
     flows.farthest = settings.farthest;
     flows.keep_follows = settings.object_rows;
     flows.resume = settings.resume;
@@ -196,7 +197,7 @@ Result<CellVisibility> bakeRows(const CellGraph& rows, const BakeSettings& setti
             if (state.flowed == state.order.size()) return;  // the end is near
             if (!asksToStop(settings) && secondsSince(saved) < settings.checkpoint_seconds) return;
             written = settings.checkpoint((settings.journal ? settings.journal->bytes() : std::string()) +
-                                          bakeStateBytes(state, hashOf(rows, settings.farthest), settings.budget));
+                                          bakeStateBytes(state, hashOf(rows, settings.farthest), settings.budget, settings.work));
             saved = Clock::now();
         };
     CellVisibility visibility = bakeCellVisibility(rows, flows);

@@ -47,6 +47,7 @@ struct BakeSettings {
     Jobs* jobs = nullptr;  ///< threads to share the work out to
     /// Work limit: portals that are clipped for one portal and direction. What is left then stays visible. 0: none.
     uint64_t budget = 0;
+    uint64_t work = 0;  ///< CellVisibilitySettings
     double farthest = 0;    ///< CellVisibilitySettings  [world units]
     double time_limit = 0;  ///< for the rows of cells; what is not settled by then stays visible; 0: none  [s]
     bool object_rows =
@@ -56,7 +57,7 @@ struct BakeSettings {
     std::span<const PreparedMesh> prepared;
     std::span<const uint32_t> prepared_of_object;  ///< per object of the scene which of these  [size: Scene::objects]
 
-    /// Asked between pieces of work, on the thread of the caller; true ends the bake without a file.
+    /// Asked between pieces of work, by whichever thread works, one at a time; true ends the bake without a file.
     std::function<bool()> stop;
     /// Told between pieces of work how far the step is: "base", "rays", "flow", "places", "view cells",
     /// "objects".

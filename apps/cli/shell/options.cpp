@@ -102,6 +102,7 @@ template Option Command::add_option(const std::string&, float&, const std::strin
 template Option Command::add_option(const std::string&, double&, const std::string&);
 template Option Command::add_option(const std::string&, std::optional<double>&, const std::string&);
 template Option Command::add_option(const std::string&, std::optional<uint32_t>&, const std::string&);
+template Option Command::add_option(const std::string&, std::optional<uint64_t>&, const std::string&);
 template Option Command::add_option(const std::string&, std::vector<double>&, const std::string&);
 template Option Command::add_option(const std::string&, std::string&, const std::string&);
 template Option Command::add_option(const std::string&, std::vector<std::string>&, const std::string&);

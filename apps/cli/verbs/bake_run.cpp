@@ -75,8 +75,8 @@ void addBakeOptions(Command& verb, BakeOptions& options, const std::string& outp
     verb.add_option("--threads", options.threads, "share the portals among so many threads (default: one a core)")
         ->check(Range{1u, 1024u});
     verb.add_option("--budget", options.budget,
-                    "portals that may be clipped for each portal and direction; what is not settled by then is "
-                    "visible, and counted (default: no limit)")
+                    "portals that may be clipped for each portal and direction, 0: no limit; what is not settled by then "
+                    "is visible, and counted (default: work of some minutes, shared out among all portals)")
         ->type_name("WORK");
     verb.add_option("--time-limit", options.time_limit,
                     "stop after so many seconds; what is not settled by then is visible")
@@ -128,17 +128,18 @@ Result<RowJournal*> BakeRun::beginViewCells() {
 
 Result<BakeSettings> BakeRun::begin(const CellGraph& rows) {
     stopGently();
+    BakeSettings settings;
+    settings.budget = options_.budget.value_or(0);
+    settings.work = options_.budget ? 0 : kUsualWork;
     const Result<Left> left = readLeft(options_.state);
     if (!left) return left.error();
     if (!left->rows.empty()) {
         Result<CellVisibilityState> state =
-            readBakeState(left->rows, options_.state, rows, options_.budget, options_.farthest);
+            readBakeState(left->rows, options_.state, rows, settings.budget, options_.farthest, settings.work);
         if (state) left_ = std::move(*state);
         note(state ? "goes on from " + options_.state : state.error().message + ": the bake begins anew");
     }
-    BakeSettings settings;
     settings.jobs = &pool_;
-    settings.budget = options_.budget;
     settings.time_limit = options_.time_limit;
     settings.farthest = options_.farthest;
     settings.object_rows = options_.objects;

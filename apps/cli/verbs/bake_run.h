@@ -23,7 +23,7 @@ struct BakeOptions {
     std::string cells;                 ///< empty: not given
     std::string state;                 ///< file; empty: finish() names it after the output, if there is one
     uint32_t threads = 0;              ///< 0: all cores
-    uint64_t budget = 0;               ///< BakeSettings
+    std::optional<uint64_t> budget;    ///< BakeSettings; 0: no limit; none given: kUsualWork bounds the whole bake
     double time_limit = 0;             ///< BakeSettings  [s]
     double farthest = 0;               ///< BakeSettings  [world units]
     bool in_place = false, objects = false;

@@ -19,6 +19,7 @@
 
 #include "apps/cli/shell/options.h"
 #include "apps/cli/shell/apart.h"
+#include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/bake_run.h"
 #include "apps/cli/verbs/bake_summary.h"
@@ -36,6 +37,7 @@
 #include "sightline/tools/report/page/vis_page.h"
 #include "sightline/tools/report/readable.h"
 #include "sightline/tools/report/run/vis_json.h"
+#include "sightline/tools/scene/one_line.h"
 #include "sightline/tools/truth/brush_rays.h"
 #include "sightline/tools/truth/graph_rays.h"
 #include "sightline/tools/truth/tree_rays.h"
@@ -97,6 +99,7 @@ std::optional<VisSummary::Verification::Brushes> verifyByBrushes(const VisMap& m
 /// portals. The others go through the portals. Of a source as many as through the tree go through its brushes.
 VisSummary::Verification verifyVis(const VisMap& map, const BitMatrix& visible, const VisOptions& options, Jobs& jobs) {
     const CellGraph& graph = map.graph;
+    Progress progress("verifying by rays", "", 0);
     VisSummary::Verification out;
     std::vector<uint32_t> leaf_of_cell(graph.cells, 0);
     for (size_t leaf = graph.cell_of_leaf.size(); leaf-- > 0;)
@@ -290,7 +293,9 @@ void chooseFarthest(VisOptions& options, double of_map) {
 Result<int> runVis(VisOptions& options) {
     const Clock::time_point begin = Clock::now();
     options.map.name = mapFileOf(options.map.name);
+    std::optional<Progress> reading(std::in_place, "reading " + oneLine(options.map.name), "", 0);
     const Result<VisMap> map = loadCheckedMap(options);
+    reading.reset();
     if (!map) return map.error();
     chooseFarthest(options, map->farthest);
     BakeRun run(options);
@@ -300,6 +305,7 @@ Result<int> runVis(VisOptions& options) {
     if (!visibility) return visibility.error();
     if (visibility->stopped && interrupted()) return run.reportInterrupted();
 
+    std::optional<Progress> writing(std::in_place, "packing rows", "", 0);
     const Result<VisOutputs> outputs = makeOutputs(options, *map, *visibility);
     if (!outputs) return outputs.error();
     if (Status written = writeOutput(options.output, *outputs, settings->form); !written) return written.error();
@@ -307,6 +313,7 @@ Result<int> runVis(VisOptions& options) {
 
     VisSummary summary = summaryOf(*map, *visibility, *outputs);
     summary.before = compareWithLump(*map, visibility->visible);
+    writing.reset();
     summary.map = options.map.name;
     summary.farthest = options.farthest;
     summary.threads = run.threads();

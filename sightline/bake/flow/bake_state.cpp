@@ -14,7 +14,7 @@
 namespace sightline::bake {
 namespace {
 
-constexpr uint64_t kMagic = 0x31656b6162736c73ull;  // "slsbake1"
+constexpr uint64_t kMagic = 0x32656b6162736c73ull;  // "slsbake2"
 
 void putMatrix(ByteWriter& out, const BitMatrix& matrix) {
     for (size_t r = 0; r < matrix.rows(); ++r) putBits(out, matrix.row(r));
@@ -42,15 +42,17 @@ uint64_t hashOf(const CellGraph& graph, double farthest) {
     return farthest > 0 ? mixSeed(hash, std::bit_cast<uint64_t>(farthest)) : hash;
 }
 
-std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash, uint64_t budget) {
+std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash, uint64_t budget, uint64_t work) {
     Array<char> bytes;
     ByteWriter out(bytes);
     out.put(kMagic);
     out.put(graph_hash);
     out.put(budget);
+    out.put(work);
     out.put(state.flowed);
     out.put(state.over_budget);
     out.put(state.steps);
+    out.put(state.work);
     out.put(state.empty_chains);
     for (const uint32_t p : state.order) out.put(p);
     putMatrix(out, state.may);
@@ -63,8 +65,8 @@ std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash
 bool isBakeState(std::span<const char> bytes) { return ByteCursor(bytes).take<uint64_t>() == kMagic; }
 
 Result<CellVisibilityState> readBakeState(std::span<const char> bytes, const std::string& name, const CellGraph& graph,
-                                          uint64_t budget, double farthest) {
-    constexpr size_t kHead = 7 * 8, kEnd = 8;
+                                          uint64_t budget, double farthest, uint64_t work) {
+    constexpr size_t kHead = 9 * 8, kEnd = 8;
     const ThinMerged thin = mergeThinCells(graph);
     const CellGraph& baked = thin.any ? thin.graph : graph;
     const size_t ways = 2 * baked.portals.size();
@@ -73,11 +75,13 @@ Result<CellVisibilityState> readBakeState(std::span<const char> bytes, const std
     ByteCursor end(bytes.last(kEnd));
     if (end.take<uint64_t>() != contentHash(bytes.first(bytes.size() - kEnd))) return wrong(name, "damaged");
     if (in.take<uint64_t>() != hashOf(graph, farthest)) return wrong(name, "the state of another bake");
-    if (in.take<uint64_t>() != budget) return wrong(name, "the state of a bake with another budget");
+    const uint64_t its_budget = in.take<uint64_t>(), its_work = in.take<uint64_t>();
+    if (its_budget != budget || its_work != work) return wrong(name, "the state of a bake with another budget");
     CellVisibilityState state;
     state.flowed = in.take<uint64_t>();
     state.over_budget = in.take<uint64_t>();
     state.steps = in.take<uint64_t>();
+    state.work = in.take<uint64_t>();
     state.empty_chains = in.take<uint64_t>();
     if (state.flowed > ways || in.left() < 4 * ways) return wrong(name, "damaged");
     std::vector<uint8_t> seen(ways, 0);

@@ -16,7 +16,8 @@ namespace sightline::bake {
 uint64_t hashOf(const CellGraph& graph, double farthest = 0);
 
 /// The bytes: small where the matrices are empty far and wide.
-std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash, uint64_t budget);
+/// @param budget, work  CellVisibilitySettings
+std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash, uint64_t budget, uint64_t work = 0);
 
 /// Whether bytes begin as a state does.
 bool isBakeState(std::span<const char> bytes);
@@ -25,6 +26,6 @@ bool isBakeState(std::span<const char> bytes);
 /// @param name      what errors call the bytes
 /// @param farthest  CellVisibilitySettings
 Result<CellVisibilityState> readBakeState(std::span<const char> bytes, const std::string& name, const CellGraph& graph,
-                                          uint64_t budget, double farthest = 0);
+                                          uint64_t budget, double farthest = 0, uint64_t work = 0);
 
 }  // namespace sightline::bake

@@ -126,7 +126,8 @@ HWY_EXPORT(flood);
 
 namespace {
 
-constexpr uint32_t kTask = 64;  // portals
+constexpr uint32_t kTask = 16;    // portals
+constexpr uint32_t kSlice = 512;  // portals between two words to the caller
 
 /// Transposes a block of 64 x 64 bits.
 /// Henry Warren. Hacker's Delight. 2002.
@@ -140,14 +141,33 @@ void transpose(uint64_t block[64]) {
         }
 }
 
+/// Calls work(first, end) for runs of portals.
+/// @returns false if it was stopped
+template <class Work>
+bool forPortals(const FlowPortals& directed, const BaseSettings& settings, Work&& work) {
+    const uint32_t count = directed.size();
+    for (uint32_t begin = 0; begin < count; begin += kSlice) {
+        const uint32_t end = std::min(count, begin + kSlice);
+        runJobs(settings.jobs, (end - begin + kTask - 1) / kTask, [&](uint32_t task) {
+            if (settings.stop && settings.stop->asks()) return;
+            const uint32_t first = begin + task * kTask;
+            work(first, std::min(end, first + kTask));
+        });
+        if (settings.stop && settings.stop->stopped()) return false;
+        if (settings.tell) settings.tell(end, count);
+    }
+    return true;
+}
+
 /// out[q][p] = in[reverse of p][reverse of q], for all p and q.
-BitMatrix reversed(const FlowPortals& directed, const BitMatrix& in) {
+BitMatrix reversed(const FlowPortals& directed, const BitMatrix& in, const BaseSettings& settings) {
     const uint32_t count = directed.size();
     const size_t words = in.wordsPerRow();
     // Sorts the rows by their reverses, transposes all by blocks, and sorts the rows by their reverses again.
     BitMatrix turned(count, count);
     uint64_t block[64];
-    for (size_t i = 0; i < words; ++i)
+    for (size_t i = 0; i < words; ++i) {
+        if (settings.stop && settings.stop->asks()) break;
         for (size_t j = 0; j < words; ++j) {
             bool any = false;
             for (uint32_t k = 0; k < 64; ++k) {
@@ -162,74 +182,90 @@ BitMatrix reversed(const FlowPortals& directed, const BitMatrix& in) {
                 if (q < count) turned.row(directed.portals[q].reverse)[i] = block[k];
             }
         }
+    }
     return turned;
 }
 
-/// Floods along the steps that are left: from r to q only if r's own row has q.
-class Steps {
+/// Of each portal the portals that leave the cell behind it and may follow: what a flood along steps asks, close together
+/// in memory, where whole rows are not.
+class NextSteps {
 public:
-    Steps(const FlowPortals& directed, const BitMatrix& may) : directed_(directed), may_(may) {}
-
-    /// The part of p's row that steps within the row reach from p.
-    void from(uint32_t p, std::span<uint64_t> out) {
-        const std::span<const uint64_t> row = may_.row(p);
-        std::fill(out.begin(), out.end(), 0);
-        leave(p, row, row, out);
-        while (!stack_.empty()) {
-            const uint32_t r = stack_.back();
-            stack_.pop_back();
-            leave(r, may_.row(r), row, out);
+    NextSteps(const FlowPortals& directed, const BitMatrix& may) : directed_(directed), first_(directed.size() + 1, 0) {
+        for (uint32_t p = 0; p < directed.size(); ++p) {
+            const auto [begin, end] = rangeOf(p);
+            first_[p] = static_cast<uint32_t>(words_.size());
+            for (uint32_t w = begin / 64; w * 64 < end; ++w) {
+                uint64_t next = may.row(p)[w];
+                if (w == begin / 64) next &= ~uint64_t(0) << (begin % 64);
+                if (w == end / 64) next &= ~(~uint64_t(0) << (end % 64));
+                words_.push_back(next);
+            }
         }
+    }
+
+    /// Replaces a row by the part of it that steps within it reach from p.
+    /// @param stack  scratch memory
+    void keepReached(uint32_t p, std::span<uint64_t> row, std::span<uint64_t> reached,
+                     std::vector<uint32_t>& stack) const {
+        std::fill(reached.begin(), reached.end(), 0);
+        for (stack.assign(1, p); !stack.empty();) {
+            const uint32_t r = stack.back();
+            stack.pop_back();
+            const uint64_t* next = words_.data() + first_[r];
+            const auto [begin, end] = rangeOf(r);
+            for (uint32_t w = begin / 64; w * 64 < end; ++w) {
+                uint64_t fresh = *next++ & row[w] & ~reached[w];
+                reached[w] |= fresh;
+                for (; fresh; fresh &= fresh - 1)
+                    stack.push_back(w * 64 + static_cast<uint32_t>(std::countr_zero(fresh)));
+            }
+        }
+        std::copy(reached.begin(), reached.end(), row.begin());
     }
 
 private:
-    void leave(uint32_t r, std::span<const uint64_t> onward, std::span<const uint64_t> row, std::span<uint64_t> out) {
-        const uint32_t cell = directed_.portals[r].to;
-        const uint32_t first = directed_.first_of_cell[cell], end = directed_.first_of_cell[cell + 1];
-        for (uint32_t w = first / 64; w * 64 < end; ++w) {
-            uint64_t fresh = onward[w] & row[w] & ~out[w];
-            if (w == first / 64) fresh &= ~uint64_t(0) << (first % 64);
-            if (w == end / 64) fresh &= ~(~uint64_t(0) << (end % 64));
-            out[w] |= fresh;
-            for (; fresh; fresh &= fresh - 1) stack_.push_back(w * 64 + static_cast<uint32_t>(std::countr_zero(fresh)));
-        }
+    struct Range {
+        uint32_t begin = 0, end = 0;
+    };
+    Range rangeOf(uint32_t p) const {
+        const uint32_t cell = directed_.portals[p].to;
+        return {directed_.first_of_cell[cell], directed_.first_of_cell[cell + 1]};
     }
 
     const FlowPortals& directed_;
-    const BitMatrix& may_;
-    std::vector<uint32_t> stack_;
+    std::vector<uint32_t> first_;
+    std::vector<uint64_t> words_;
 };
 
 }  // namespace
 
-BitMatrix baseVisibility(const FlowPortals& directed, Jobs* jobs) {
+BitMatrix baseVisibility(const FlowPortals& directed, const BaseSettings& settings) {
     const uint32_t count = directed.size();
     BitMatrix may(count, count);
     const detail::FloodPlaces places(directed);
-    runJobs(jobs, (count + kTask - 1) / kTask, [&](uint32_t task) {
+    forPortals(directed, settings, [&](uint32_t first, uint32_t end) {
         detail::FloodScratch scratch;
-        for (uint32_t p = task * kTask; p < std::min(count, (task + 1) * kTask); ++p)
-            HWY_DYNAMIC_DISPATCH(flood)(places, p, scratch, may.row(p));
+        for (uint32_t p = first; p < end; ++p) HWY_DYNAMIC_DISPATCH(flood)(places, p, scratch, may.row(p));
     });
     return may;
 }
 
-void tightenBase(const FlowPortals& directed, BitMatrix& may, Jobs* jobs) {
-    const uint32_t count = directed.size();
+void tightenBase(const FlowPortals& directed, BitMatrix& may, const BaseSettings& settings) {
     {
-        const BitMatrix turned = reversed(directed, may);
-        for (uint32_t p = 0; p < count; ++p) {
+        const BitMatrix turned = reversed(directed, may, settings);
+        if (settings.stop && settings.stop->stopped()) return;
+        for (uint32_t p = 0; p < directed.size(); ++p) {
             const std::span<uint64_t> row = may.row(p);
             const std::span<const uint64_t> other = turned.row(p);
             for (size_t w = 0; w < row.size(); ++w) row[w] &= other[w];
         }
     }
-    BitMatrix left(count, count);
-    runJobs(jobs, (count + kTask - 1) / kTask, [&](uint32_t task) {
-        Steps steps(directed, may);
-        for (uint32_t p = task * kTask; p < std::min(count, (task + 1) * kTask); ++p) steps.from(p, left.row(p));
+    const NextSteps steps(directed, may);
+    forPortals(directed, settings, [&](uint32_t first, uint32_t end) {
+        std::vector<uint64_t> reached(may.wordsPerRow());
+        std::vector<uint32_t> stack;
+        for (uint32_t p = first; p < end; ++p) steps.keepReached(p, may.row(p), reached, stack);
     });
-    may = std::move(left);
 }
 
 }  // namespace sightline::bake

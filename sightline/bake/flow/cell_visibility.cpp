@@ -18,6 +18,7 @@
 namespace sightline::bake {
 namespace {
 
+constexpr double kBaseShare = 0.6;  // of the base's time, for the first flood
 constexpr uint32_t kRaysPerPortal = 8;
 constexpr uint32_t kRayTask = 64;  // portals
 /// This many flows read the same frozen state. The answer depends on the number, and so the number does not depend on
@@ -64,6 +65,7 @@ class Bake {
 public:
     Bake(const CellGraph& graph, const CellVisibilitySettings& settings)
         : settings_(settings),
+          stop_(settings.stop),
           thin_(mergeThinCells(graph)),
           directed_(flowPortalsOf(thin_.any ? thin_.graph : graph)),
           rays_(directed_),
@@ -74,21 +76,49 @@ public:
             state_ = std::move(*settings_.resume);
         } else {
             tell("base", 0);
-            state_.may = baseVisibility(directed_, settings_.jobs);
+            BaseSettings base{settings_.jobs, &stop_};
+            base.tell = [&](uint32_t done, uint32_t all) { tell("base", kBaseShare * done / all); };
+            state_.may = baseVisibility(directed_, base);
+            if (stop_.stopped()) return allVisible();
             dropFarFollowers();
-            tightenBase(directed_, state_.may, settings_.jobs);
+            base.tell = [&](uint32_t done, uint32_t all) { tell("base", kBaseShare + (1 - kBaseShare) * done / all); };
+            tightenBase(directed_, state_.may, base);
             state_.witnessed = BitMatrix(directed_.cells(), directed_.cells());
             state_.reached = BitMatrix(directed_.cells(), directed_.cells());
             for (uint32_t cell = 0; cell < directed_.cells(); ++cell) state_.witnessed.set(cell, cell);
             tell("rays", 0);
             castRays();
             orderFlows();
+            if (stop_.stopped()) return join();  // not all that a bake that goes on rests on
         }
         flow();
+        if (stop_.stopped() && settings_.checkpoint) settings_.checkpoint(state_);
         return join();
     }
 
 private:
+    /// Nothing is known of any pair.
+    CellVisibility allVisible() const {
+        const size_t cells = thin_.any ? thin_.cell_of_cell.size() : directed_.cells();
+        CellVisibility answer;
+        answer.stopped = true;
+        answer.visible = filled(cells);
+        answer.witnessed = BitMatrix(cells, cells);
+        for (size_t cell = 0; cell < cells; ++cell) answer.witnessed.set(cell, cell);
+        if (settings_.keep_follows) answer.follows = filled(directed_.size());
+        return answer;
+    }
+
+    static BitMatrix filled(size_t size) {
+        BitMatrix matrix(size, size);
+        for (size_t row = 0; row < size; ++row) {
+            const std::span<uint64_t> words = matrix.row(row);
+            std::fill(words.begin(), words.end(), ~uint64_t(0));
+            if (size % 64 != 0) words.back() = ~(~uint64_t(0) << (size % 64));
+        }
+        return matrix;
+    }
+
     void tell(const char* step, double done) const {
         if (settings_.progress) settings_.progress({step, done});
     }
@@ -143,6 +173,7 @@ private:
         const uint32_t tasks = (directed_.size() + kRayTask - 1) / kRayTask;
         std::vector<Runs> found(tasks);
         runJobs(settings_.jobs, tasks, [&](uint32_t task) {
+            if (stop_.asks()) return;
             std::vector<uint32_t> may, run;
             for (uint32_t p = task * kRayTask; p < std::min(directed_.size(), (task + 1) * kRayTask); ++p) {
                 may.clear();
@@ -177,20 +208,19 @@ private:
         std::vector<std::vector<uint64_t>> asked(kBatch);
         const size_t words = state_.witnessed.wordsPerRow();
         while (state_.flowed < state_.order.size()) {
-            if (settings_.stop && settings_.stop()) {
-                stopped_ = true;
-                break;
-            }
+            if (stop_.asks()) break;
             const auto batch = std::span<const uint32_t>(state_.order)
                                    .subspan(state_.flowed)
                                    .first(std::min<size_t>(kBatch, state_.order.size() - state_.flowed));
+            const FlowLimits limits{settings_.budget, shareOfWork(), &stop_};
             runJobs(settings_.jobs, static_cast<uint32_t>(batch.size()), [&](uint32_t i) {
                 const uint32_t from = directed_.portals[batch[i]].from;
                 asked[i].resize(words);
                 for (size_t w = 0; w < words; ++w) asked[i][w] = ~state_.witnessed.row(from)[w];
                 if (directed_.cells() % 64 != 0) asked[i].back() &= ~(~uint64_t(0) << (directed_.cells() % 64));
-                pool.from(batch[i], asked[i], settings_.budget, answers[i]);
+                pool.from(batch[i], asked[i], limits, answers[i]);
             });
+            if (stop_.stopped()) break;  // some of the batch have not ended by themselves
             for (uint32_t i = 0; i < batch.size(); ++i) apply(batch[i], asked[i], answers[i]);
             state_.flowed += batch.size();
             tell("flow", shareOf(state_.flowed));
@@ -198,14 +228,26 @@ private:
         }
     }
 
+    /// What one of the next flows may cost; 0: no limit.
+    uint64_t shareOfWork() const {
+        if (settings_.work == 0) return 0;
+        const uint64_t left = settings_.work - std::min(settings_.work, state_.work);
+        const uint64_t spare = left - std::min(left, settings_.work / 2);
+        const uint64_t alike = (left - spare) / (state_.order.size() - state_.flowed);
+        return std::max<uint64_t>(1, alike + spare / kBatch);
+    }
+
     /// The share of the work that is done. Late flows have more to do than early ones.
     double shareOf(uint64_t flowed) const {
         const double share = static_cast<double>(flowed) / static_cast<double>(state_.order.size());
-        return share * share;
+        const double of_work =
+            settings_.work == 0 ? 0 : static_cast<double>(state_.work) / static_cast<double>(settings_.work);
+        return std::max(share * share, std::min(0.99 * of_work, 0.99));
     }
 
     void apply(uint32_t p, std::span<const uint64_t> asked, const FlowAnswer& answer) {
         state_.steps += answer.steps;
+        state_.work += answer.work;
         state_.over_budget += answer.spent;
         state_.empty_chains += answer.empty_chains;
         const FlowPortal& portal = directed_.portals[p];
@@ -224,18 +266,12 @@ private:
     }
 
     CellVisibility join() {
-        // Portals whose flow was not run see all that may follow them.
-        for (size_t i = state_.flowed; i < state_.order.size(); ++i) {
-            const FlowPortal& portal = directed_.portals[state_.order[i]];
-            state_.reached.set(portal.from, portal.to);
-            forEachBit(state_.may.row(state_.order[i]),
-                       [&](uint32_t q) { state_.reached.set(portal.from, directed_.portals[q].to); });
-        }
+        seeAllThatMayFollow();
         CellVisibility answer;
         answer.over_budget = state_.over_budget;
         answer.steps = state_.steps;
         answer.empty_chains = state_.empty_chains;
-        answer.stopped = stopped_;
+        answer.stopped = stop_.stopped();
         answer.visible = state_.witnessed;
         for (uint32_t a = 0; a < directed_.cells(); ++a)
             forEachBit(state_.reached.row(a), [&](uint32_t b) {
@@ -252,6 +288,23 @@ private:
         }
         if (settings_.keep_follows) answer.follows = std::move(state_.may);
         return answer;
+    }
+
+    /// Portals whose flow was not run see all that may follow them.
+    void seeAllThatMayFollow() {
+        std::vector<uint8_t> flowed(directed_.size(), 0);
+        for (size_t i = 0; i < state_.flowed; ++i) flowed[state_.order[i]] = 1;
+        std::vector<uint64_t> any(state_.may.wordsPerRow());
+        for (uint32_t cell = 0; cell < directed_.cells(); ++cell) {
+            std::fill(any.begin(), any.end(), 0);
+            for (uint32_t p = directed_.first_of_cell[cell]; p < directed_.first_of_cell[cell + 1]; ++p) {
+                if (flowed[p]) continue;
+                state_.reached.set(cell, directed_.portals[p].to);
+                const std::span<const uint64_t> row = state_.may.row(p);
+                for (size_t w = 0; w < any.size(); ++w) any[w] |= row[w];
+            }
+            forEachBit(any, [&](uint32_t q) { state_.reached.set(cell, directed_.portals[q].to); });
+        }
     }
 
     /// Takes back the witness of every pair with a part of a merged cell, unless both are the same cell.
@@ -276,12 +329,12 @@ private:
     }
 
     const CellVisibilitySettings& settings_;
+    StopAsker stop_;
     const ThinMerged thin_;
     const FlowPortals directed_;
     const WitnessRays rays_;
     const FlowPlaces places_;
     CellVisibilityState state_;
-    bool stopped_ = false;
 };
 
 }  // namespace

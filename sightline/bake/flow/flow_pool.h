@@ -15,11 +15,11 @@ public:
     FlowPool(const FlowPlaces& places, const WitnessRays& rays, const BitMatrix& may)
         : places_(places), rays_(rays), may_(may) {}
 
-    void from(uint32_t portal, std::span<const uint64_t> asked, uint64_t budget, FlowAnswer& answer) {
-        withFlow([&](PortalFlow& flow) { flow.from(portal, asked, budget, answer); });
+    void from(uint32_t portal, std::span<const uint64_t> asked, const FlowLimits& limits, FlowAnswer& answer) {
+        withFlow([&](PortalFlow& flow) { flow.from(portal, asked, limits, answer); });
     }
-    void find(uint32_t portal, const FlowBoxes& boxes, uint64_t budget, FlowAnswer& answer) {
-        withFlow([&](PortalFlow& flow) { flow.find(portal, boxes, budget, answer); });
+    void find(uint32_t portal, const FlowBoxes& boxes, const FlowLimits& limits, FlowAnswer& answer) {
+        withFlow([&](PortalFlow& flow) { flow.find(portal, boxes, limits, answer); });
     }
 
 private:

@@ -20,6 +20,10 @@ namespace sightline::bake {
 /// Up to this many targets are clipped by all planes together. More are only tested against each plane by itself.
 constexpr uint32_t kFewTargets = 4;
 
+/// The costs of FlowLimits::work, in looks at a target.
+constexpr uint64_t kClipWork = 64, kRayClipWork = 16;
+constexpr uint64_t kAskedEvery = 1 << 16;
+
 constexpr double kTowardsEdge = 0.9;  // a ray aims this far from a window's middle towards its outline
 constexpr int kPasses = 3;
 
@@ -61,7 +65,8 @@ struct PortalFlow::Scratch {
     const FlowBoxes* boxes = nullptr;  ///< what is looked for; null: cells
     std::vector<Box3d> left;           ///< per cell: around its boxes that were not found when the flow began
     FlowAnswer* answer = nullptr;
-    uint64_t budget = 0;
+    FlowLimits limits;
+    uint64_t ask_at = 0;  ///< the work at which it is asked whether to stop
 };
 
 }  // namespace sightline::bake
@@ -128,6 +133,7 @@ private:
 
     /// The portals of a word of the row that leave the cell and may follow every portal of the chain.
     uint64_t mayFollow(uint32_t depth, uint32_t w) const {
+        s_.answer->work += depth + 1;
         const uint32_t cell = directed_.portals[s_.states[depth]->portal].to;
         const uint32_t first = directed_.first_of_cell[cell], end = directed_.first_of_cell[cell + 1];
         uint64_t may = ~uint64_t(0);
@@ -152,12 +158,14 @@ private:
             words += then.targets[words] != 0;
         }
         then.words = words;
+        s_.answer->work += now.words;
         if (words == 0 && !asked) return false;
-        if (s_.budget && s_.answer->steps >= s_.budget) {
+        if (isSpent()) {
             s_.answer->spent = true;
             return false;
         }
         ++s_.answer->steps;
+        s_.answer->work += kClipWork;
         then.portal = next;
         if (!then.window.assign(directed_.outline(next), directed_.portals[next].straight)) {
             s_.answer->spent =
@@ -178,6 +186,15 @@ private:
         separate(then.source, planeOf(directed_.portals[s_.states[0]->portal]), then.window,
                  planeOf(directed_.portals[next]), 1, precision_, then.onward);
         return keepTargets(then);
+    }
+
+    bool isSpent() {
+        const FlowLimits& limits = s_.limits;
+        const FlowAnswer& answer = *s_.answer;
+        if ((limits.steps && answer.steps >= limits.steps) || (limits.work && answer.work >= limits.work)) return true;
+        if (answer.work < s_.ask_at) return false;
+        s_.ask_at = answer.work + kAskedEvery;
+        return limits.stop && limits.stop->asks();
     }
 
     /// The rest of enter(), where the search is for boxes.
@@ -264,6 +281,7 @@ private:
         uint32_t left = 0, words = 0;
         for (uint32_t i = 0; i < state.words; ++i) {
             uint64_t word = state.targets[i];
+            s_.answer->work += static_cast<uint64_t>(std::popcount(word));
             for (uint64_t bits = word; bits; bits &= bits - 1)
                 if (isBelow(targetOf(state.word[i], bits), state.onward)) word &= ~(bits & -bits);
             state.word[words] = state.word[i];
@@ -348,6 +366,7 @@ private:
             for (uint32_t i = 0; i < window.count; ++i) s_.corners.push_back(window.corner(i));
             s_.chain.add(s_.corners);
         };
+        s_.answer->work += kClipWork * depth;
         s_.chain.begin(first.normal, directed_.extent, precision_.points);
         add(state.source);
         for (uint32_t i = 1; i <= depth; ++i) s_.chain.add(directed_.outline(s_.states[i]->portal));
@@ -375,6 +394,7 @@ private:
 
     /// The part of a window that a point sees through the portals between.
     bool narrow(uint32_t depth, const glm::dvec3& from, double sign, Window& window) const {
+        s_.answer->work += kRayClipWork * depth;
         for (uint32_t i = 1; i <= depth; ++i) {
             const std::span<const glm::dvec3> outline = directed_.outline(s_.states[i]->portal);
             for (size_t k = 0; k < outline.size(); ++k) {
@@ -428,15 +448,17 @@ PortalFlow::PortalFlow(const FlowPlaces& places, const WitnessRays& rays, const 
     : scratch_(std::make_unique<Scratch>(places, rays, may)) {}
 PortalFlow::~PortalFlow() = default;
 
-void PortalFlow::begin(uint32_t portal, uint64_t budget, FlowAnswer& answer) {
+void PortalFlow::begin(uint32_t portal, const FlowLimits& limits, FlowAnswer& answer) {
     answer.reached.clear();
     answer.seen.clear();
     answer.seen_first.assign(1, 0);
     answer.steps = 0;
+    answer.work = 0;
     answer.spent = false;
     answer.empty_chains = 0;
     scratch_->answer = &answer;
-    scratch_->budget = budget;
+    scratch_->limits = limits;
+    scratch_->ask_at = 0;
     scratch_->at(0).portal = portal;
 }
 
@@ -469,16 +491,23 @@ bool PortalFlow::chaseFrom(uint32_t portal, IsAsked&& is_asked) {
     return true;
 }
 
-void PortalFlow::from(uint32_t portal, std::span<const uint64_t> asked, uint64_t budget, FlowAnswer& answer) {
-    begin(portal, budget, answer);
+void PortalFlow::from(uint32_t portal, std::span<const uint64_t> asked, const FlowLimits& limits, FlowAnswer& answer) {
+    begin(portal, limits, answer);
     answer.reached.assign(asked.size(), 0);
     scratch_->boxes = nullptr;
     chaseFrom(portal, [&](uint32_t cell) { return asked[cell / 64] >> (cell % 64) & 1; });
-    if (answer.spent) answer.reached.assign(asked.begin(), asked.end());
+    if (!answer.spent) return;
+    const FlowPortals& directed = scratch_->places.directed;
+    const std::span<const uint64_t> row = scratch_->may.row(portal);
+    const auto reach = [&](uint32_t cell) { answer.reached[cell / 64] |= asked[cell / 64] & uint64_t(1) << (cell % 64); };
+    reach(directed.portals[portal].to);
+    for (uint32_t w = 0; w < row.size(); ++w)
+        for (uint64_t left = row[w]; left; left &= left - 1)
+            reach(directed.portals[w * 64 + static_cast<uint32_t>(std::countr_zero(left))].to);
 }
 
-void PortalFlow::find(uint32_t portal, const FlowBoxes& boxes, uint64_t budget, FlowAnswer& answer) {
-    begin(portal, budget, answer);
+void PortalFlow::find(uint32_t portal, const FlowBoxes& boxes, const FlowLimits& limits, FlowAnswer& answer) {
+    begin(portal, limits, answer);
     scratch_->boxes = &boxes;
     const auto forBoxesOf = [&](uint32_t cell, auto&& visit) {
         for (uint32_t i = boxes.first[cell]; i < boxes.first[cell + 1]; ++i) visit(boxes.inside[i]);

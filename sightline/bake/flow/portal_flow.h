@@ -12,6 +12,7 @@
 
 #include "sightline/bake/flow/flow_portals.h"
 #include "sightline/bake/flow/stabbing.h"
+#include "sightline/bake/flow/stop_asker.h"
 #include "sightline/bake/flow/window.h"
 #include "sightline/bake/flow/witness_rays.h"
 #include "sightline/base/bit_matrix.h"
@@ -25,8 +26,17 @@ struct FlowAnswer {
     std::vector<uint32_t> seen;        ///< the cells of each ray that passes, ray after ray
     std::vector<uint32_t> seen_first;  ///< where the cells of each ray begin, and the end
     uint64_t steps = 0;                ///< portals that were clipped
+    uint64_t work = 0;                 ///< FlowLimits::work that was done
     uint64_t empty_chains = 0;         ///< chains that Teller's test proved empty
-    bool spent = false;                ///< the budget is spent: all cells that were asked for count as reached
+    /// A limit ended it: all cells that were asked for and that a portal leads into which may follow count as reached.
+    bool spent = false;
+};
+
+/// What ends a flow early.
+struct FlowLimits {
+    uint64_t steps = 0;         ///< portals that are clipped; 0: no limit
+    uint64_t work = 0;          ///< in the cost of looking at one target, some nanoseconds; 0: no limit
+    StopAsker* stop = nullptr;  ///< asked every millisecond or so
 };
 
 /// Boxes in cells, and which of them have been found.
@@ -57,19 +67,18 @@ public:
 
     /// Chases light from a portal into the cells that are asked for.
     /// @param asked   [size: words of a row of cells]
-    /// @param budget  steps; 0: no limit
-    void from(uint32_t portal, std::span<const uint64_t> asked, uint64_t budget, FlowAnswer& answer);
+    void from(uint32_t portal, std::span<const uint64_t> asked, const FlowLimits& limits, FlowAnswer& answer);
 
     /// Chases light from a portal to boxes that are not found yet: a box is found if it reaches above all planes that
     /// bound the light in one of its cells. Of the answer, `reached` and `seen` stay empty; if the budget is spent,
     /// all boxes in cells that the portal may lead to count as found.
-    void find(uint32_t portal, const FlowBoxes& boxes, uint64_t budget, FlowAnswer& answer);
+    void find(uint32_t portal, const FlowBoxes& boxes, const FlowLimits& limits, FlowAnswer& answer);
 
     struct State;    ///< of the search
     struct Scratch;  ///< of a thread
 
 private:
-    void begin(uint32_t portal, uint64_t budget, FlowAnswer& answer);
+    void begin(uint32_t portal, const FlowLimits& limits, FlowAnswer& answer);
     template <class IsAsked>
     bool chaseFrom(uint32_t portal, IsAsked&& is_asked);
 

@@ -55,6 +55,7 @@ BoxVisibility bakeBoxes(const CellGraph& graph, const CellVisibility& cells, con
     answer.visible = BitMatrix(graph.cells, count);
     std::vector<uint64_t> by_cells(graph.cells, 0), spent(graph.cells, 0);
 
+    StopAsker stop(settings.stop);
     const auto flow = [&](uint32_t cell) {
         // Boxes that lie only in hidden cells are not looked for.
         std::vector<uint8_t> found(count, 1);
@@ -68,7 +69,7 @@ BoxVisibility bakeBoxes(const CellGraph& graph, const CellVisibility& cells, con
         FlowAnswer flowed;
         const FlowBoxes looked_for{shifted, of_cells.first, of_cells.inside, found};
         for (uint32_t p = directed.first_of_cell[cell]; p < directed.first_of_cell[cell + 1]; ++p) {
-            pool.find(p, looked_for, settings.budget, flowed);
+            pool.find(p, looked_for, {settings.budget, 0, &stop}, flowed);
             spent[cell] += flowed.spent;
         }
         for (uint32_t box = 0; box < count; ++box)
@@ -76,8 +77,7 @@ BoxVisibility bakeBoxes(const CellGraph& graph, const CellVisibility& cells, con
     };
     for (uint32_t done = 0; done < graph.cells; done += kBatch) {
         const uint32_t size = std::min(kBatch, graph.cells - done);
-        if (settings.stop && settings.stop()) {
-            answer.stopped = true;
+        if (stop.asks()) {
             for (uint32_t cell = done; cell < graph.cells; ++cell)
                 for (uint32_t box = 0; box < count; ++box) answer.visible.set(cell, box);
             break;
@@ -86,6 +86,7 @@ BoxVisibility bakeBoxes(const CellGraph& graph, const CellVisibility& cells, con
         if (settings.progress)
             settings.progress({"objects", static_cast<double>(done + size) / static_cast<double>(graph.cells)});
     }
+    answer.stopped = stop.stopped();
     for (uint32_t cell = 0; cell < graph.cells; ++cell) {
         answer.by_cells += by_cells[cell];
         answer.over_budget += spent[cell];
