@@ -263,7 +263,9 @@ TEST(Proofs, AreToldOfByExplanations) {
                     continue;
                 }
                 // One that is beside the image may be in a node that is hidden.
-                EXPECT_TRUE(why.verdict == Verdict::kOccluded || why.verdict == Verdict::kOutsideFrustum) << object;
+                EXPECT_TRUE(why.verdict == Verdict::kOccluded || why.verdict == Verdict::kOutsideFrustum ||
+                            why.verdict == Verdict::kFacesAway)
+                    << object;
                 EXPECT_FALSE(why.certificate.empty()) << object;
                 EXPECT_TRUE(has_certificate) << object;
                 for (const Visible& hider : why.certificate) {
