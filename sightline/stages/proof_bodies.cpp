@@ -111,17 +111,19 @@ bool ProofMemory::looksAway(const Frame& frame, const Pending& entry) const {
     for (const OccluderCluster& cluster : shape->clusters)
         for (uint32_t p = cluster.first_polygon; p < cluster.first_polygon + cluster.polygon_count; ++p) {
             const OccluderPolygon& polygon = shape->polygons[p];
-            uint32_t beside =
-                31;  // a bit for each side of the image, and the near plane, that has all corners beyond it
+            if (polygon.double_sided) continue;
+            glm::dvec3 corner[4];
+            uint32_t beside = 31;  // a bit for each side of the image and the near plane: all corners lie beyond it
             for (int k = 0; k < polygon.corners(); ++k) {
                 const uint32_t v = cluster.first_vertex + polygon.vertex[k];
                 const glm::dvec3 q = linear * glm::dvec3(shape->x[v], shape->y[v], shape->z[v]) + shift;
+                corner[k] = q;
                 const double x = glm::dot(image_.x, q), y = glm::dot(image_.y, q), w = glm::dot(image_.w, q);
                 const bool before = glm::dot(glm::dvec3(view_.near), q) + view_.near.w < 0;
                 beside &= uint32_t{x > w} | uint32_t{-x > w} << 1 | uint32_t{y > w} << 2 | uint32_t{-y > w} << 3 |
                           uint32_t{before} << 4;
             }
-            if (!beside) return true;
+            if (!beside && facesAway(polygon, corner, flips, 0)) return true;
         }
     return false;
 }

@@ -63,12 +63,8 @@ TEST_F(SettingTable, OptionsTakeTheirDefaultsTheirLimitsAndNothingBeyond) {
             EXPECT_FALSE(takes(option, "much")) << option;
             const bool costly = option == "occlusion-size" || option == "occluder-triangles";
             const bool endless = row.most >= 1e300;
-            if (!costly) {
-                EXPECT_TRUE(takes(option, endless ? "inf" : text(row.most))) << option << " at most";
-            }
-            if (!endless) {
-                EXPECT_FALSE(takes(option, text(row.most + 1))) << option << " above the most";
-            }
+            if (!costly) { EXPECT_TRUE(takes(option, endless ? "inf" : text(row.most))) << option << " at most"; }
+            if (!endless) { EXPECT_FALSE(takes(option, text(row.most + 1))) << option << " above the most"; }
             // What the help says of 0 holds.
             if (std::string(row.help).find("0: ") == std::string::npos) return;
             ++zeros;
@@ -175,10 +171,10 @@ TEST_F(SettingTable, InstancesAreCountedAsTheyAreProved) {
     if (!scene || !camera) GTEST_SKIP() << "without the shared cases";
     const std::string words = "cull '" + *scene + "' --cameras '" + *camera + "' --verify --rays 1000";
     const Outcome outcome = run(words);
-    for (const char* line : {": 1 object drawn as 50 instances, 600 triangles; 1 frame", "49 culled    98.000 %",
-                             "1 instance  2.000 %; culls below are of instances",
-                             "verified     0 of 49 culled instances were visible",
-                             "proved       49 of 49 culled instances hidden"})
+    for (const char* line :
+         {": 1 object drawn as 50 instances, 600 triangles; 1 frame", "49 culled    98.000 %",
+          "1 instance  2.000 %; culls below are of instances", "verified     0 of 49 culled instances were visible",
+          "proved       49 of 49 culled instances hidden"})
         EXPECT_NE(outcome.out.find(line), std::string::npos) << line << "\n" << outcome.out;
     ASSERT_EQ(run(words + " --json run.json").exit_code, 0);
     const json run = json::parse(read(path("run.json")));

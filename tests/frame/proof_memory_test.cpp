@@ -427,8 +427,7 @@ TEST(Proofs, OfProposalsEndWithTheNextCall) {
     // They do nothing where each view is answered by itself.
     query.propose(rooms.ids);
     const View view = steps.next();
-    for (const QuerySettings& settings :
-         {QuerySettings{.stateless = true}, QuerySettings{.proofs = false}, QuerySettings{.bins = 4}})
+    for (const QuerySettings& settings : {QuerySettings{.stateless = true}, QuerySettings{.proofs = false}})
         EXPECT_EQ(query.visible(now, view, settings).stats.proofs_sought, 0u);
 }
 

@@ -73,7 +73,8 @@ const Mode kModes[] = {
      [](const Done& d) { return uint64_t{d.sum.second_looks == 0}; }},
     {"few occluders", [](Asked& a) { a.settings.occluder_triangles = 40; },
      [](const Done& d) { return uint64_t{d.sum.budget_spent}; }},
-    {"levels of detail", [](Asked& a) { a.settings.lod_error = 8; }, [](const Done& d) { return d.sum.lod_triangles; }},
+    {"levels of detail", [](Asked& a) { a.settings.lod_error = 8; },
+     [](const Done& d) { return d.sum.lod_triangles + d.culled(Stage::kLod); }},
     {"hard budget",
      [](Asked& a) {
          a.settings.budget = 0.02;

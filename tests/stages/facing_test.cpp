@@ -79,7 +79,8 @@ struct Sheets {
             bool beside = false;
             for (int axis = 0; axis < 2; ++axis)
                 for (const double side : {-1.0, 1.0})
-                    beside = beside || std::all_of(p, p + 3, [&](const glm::dvec4& c) { return side * c[axis] > 1.02 * c.w; });
+                    beside = beside ||
+                             std::all_of(p, p + 3, [&](const glm::dvec4& c) { return side * c[axis] > 1.02 * c.w; });
             beside = beside || std::all_of(p, p + 3, [](const glm::dvec4& c) { return c.z < -c.w; });
             if (beside) continue;
             ++out.may_be;
