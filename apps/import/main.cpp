@@ -142,7 +142,7 @@ std::string readInto(const Options& options, SceneStreamWriter& out) {
         return {};
     } catch (const Fault& fault) { return fault.message; } catch (const std::bad_alloc&) {
         _exit(kImportOutOfMemory);
-    } catch (const std::exception& error) { return error.what(); } catch (...) {
+    } catch (const std::exception& error) { return importerFault(error.what()).message; } catch (...) {
         return "cannot be read";
     }
 }

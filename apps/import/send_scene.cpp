@@ -392,7 +392,7 @@ void sendScene(const std::string& file, const std::string& suffix, SceneStreamWr
     importer.SetPropertyBool(AI_CONFIG_IMPORT_AC_SEPARATE_BFCULL, false);
     // No steps after reading: joining and triangulating there moves or drops what is small.
     const aiScene* scene = importer.ReadFile(access->alias(), 0);
-    if (!scene) throw Fault{importer.GetErrorString()};
+    if (!scene) throw importerFault(importer.GetErrorString());
     if (!scene->mRootNode) throw Fault{"draws nothing: there is no node in it"};
     out.progress(kReadSteps, kSteps);
     Sender(*scene, file, suffix, out).send();

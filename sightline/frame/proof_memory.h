@@ -131,9 +131,9 @@ public:
     /// A view was answered: compares the work of both ways, and decides how the next one is.
     void noteAnswered(const QueryStats& stats, size_t visible);
 
-    /// Of the last certificate that held or was found, if it names nobody: whether some of what it culls looks away; else
-    /// all of it lies outside of the view.
-    bool looksAway() const { return looks_away_; }
+    /// Of the last certificate that held or was found, if it names nobody: whether some of the object that it culls may
+    /// lie in the view, and looks away; else all of it lies outside. It decides nothing but what is told.
+    bool looksAway(const Frame& frame, const Pending& entry) const;
 
     /// The parts whose shadows hid a node or an object by the last certificate that held or was found; good until the
     /// next call.

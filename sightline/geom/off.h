@@ -27,7 +27,7 @@ inline constexpr uint32_t offBit(Off off) { return static_cast<uint32_t>(off); }
 /// One row of the table.
 struct OffRow {
     Off off;
-    const char* name;  ///< as JSON has it
+    const char* name;   ///< as JSON has it
     const char* words;  ///< what is off, and why
 };
 
@@ -39,24 +39,21 @@ inline constexpr OffRow kOffRows[] = {
      "certificates, unasked answers: they need a perspective view; this one is parallel, or too wide"},
     {Off::kCertificatesByStages, "certificates_by_stages",
      "certificates: they need the stage frustum beside the stage occlusion"},
-    {Off::kBinsByStages, "bins_by_stages",
-     "bins: strips need the stages frustum and occlusion"},
+    {Off::kBinsByStages, "bins_by_stages", "bins: strips need the stages frustum and occlusion"},
     {Off::kBinsByCertificates, "bins_by_certificates",
      "bins: the answer rests on certificates or proposals, which one thread checks"},
     {Off::kClusterLookByCertificates, "cluster_look_by_certificates",
      "occlusion of clusters: the answer rests on certificates: nothing is drawn that clusters could be held against"},
     {Off::kGapsByCertificates, "gaps_by_certificates",
      "close_gaps: the answer rests on certificates: nothing is drawn that has gaps"},
-    {Off::kClustersByTwoEyes, "clusters_by_two_eyes",
-     "stage clusters: it chooses the triangles of one eye alone"},
+    {Off::kClustersByTwoEyes, "clusters_by_two_eyes", "stage clusters: it chooses the triangles of one eye alone"},
     {Off::kHardBudgetByTwoEyes, "hard_budget_by_two_eyes",
      "hard_budget: of two eyes nothing is left out: the coarsest levels are drawn"},
     {Off::kCellsBySections, "cells_by_sections",
      "stages pvs and portals: sections open walls that cells take for shut"},
     {Off::kStagesByEyeRadius, "stages_by_eye_radius",
      "all stages but pvs and distance: eye_radius asks for every eye and every direction around"},
-    {Off::kWindowByStages, "window_by_stages",
-     "View::window: it needs the stage frustum"},
+    {Off::kWindowByStages, "window_by_stages", "View::window: it needs the stage frustum"},
     {Off::kOccludersByLods, "occluders_by_lods",
      "hiding by objects that a coarser level may stand for: a coarser level may show what the finest hides"},
 };

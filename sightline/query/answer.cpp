@@ -270,7 +270,7 @@ void Answer::reasons(std::span<uint8_t> reasons) const {
             for (uint32_t place = range.places.first; place < range.places.first + range.places.count; ++place) {
                 if (isEmpty(place) || !frame_.isCandidate(place)) continue;
                 uint8_t& reason = reasons[world->itemAt(place)];
-                reason = std::max(reason, reasonOf(range.stage));
+                reason = finerReason(reason, reasonOf(range.stage));
             }
     for (uint32_t part = 0; part < count_; ++part)
         for (const KeptPlace& object : parts_[part]->kept) reasons[world->itemAt(object.place)] = 0;

@@ -7,6 +7,7 @@
 // so does the answer, for they are put together in their order.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "sightline/frame/frame.h"
@@ -15,6 +16,13 @@
 #include "sightline/stages/pipeline.h"
 
 namespace sightline::detail {
+
+/// Of two reasons of Query::reasons() for one object, by two strips or two eyes, the one to tell: that of a stage that
+/// culls what may be visible, for it may be; else the finer one.
+inline uint8_t finerReason(uint8_t a, uint8_t b) {
+    const auto isLossy = [](uint8_t reason) { return reason > 0 && (kLossyStages >> (reason - 1) & 1) != 0; };
+    return isLossy(a) != isLossy(b) ? (isLossy(a) ? a : b) : std::max(a, b);
+}
 
 /// Keeps its scratch memory from answer to answer.
 class Answer {
@@ -55,8 +63,7 @@ public:
     const LodMemory& lods() const { return memory_of_stages_.lods; }
     AnswerView view() { return {visible(), stats, tiles_}; }
 
-    /// As Query::reasons(). An object that one part hides and another part does not meet is hidden: of two stages the
-    /// finer one is reported.
+    /// As Query::reasons(). An object that one part hides and another part does not meet is hidden: finerReason().
     void reasons(std::span<uint8_t> reasons) const;
     /// The stage that culled an object in the first part of the image; kFrustum if none did.
     Stage reasonOf(ObjectId id) const;

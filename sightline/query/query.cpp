@@ -282,7 +282,7 @@ void Query::reasons(std::span<uint8_t> reasons) const {
     for (size_t i = 0; i < reasons.size(); ++i) {
         const uint8_t a = reasons[i], b = impl.other[i];
         if (a == 0 || b == 0) reasons[i] = 0;
-        else reasons[i] = a == kOutside ? b : b == kOutside ? a : std::max(a, b);
+        else reasons[i] = a == kOutside ? b : b == kOutside ? a : detail::finerReason(a, b);
     }
 }
 

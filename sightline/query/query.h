@@ -148,7 +148,7 @@ public:
     /// For each object of the last answer's snapshot, in the order of World::add with removed objects
     /// left out: 0 visible, 1 + Stage of the stage that culled it, 255 outside View::layers.
     /// @param reasons  [size: Snapshot::objectCount()]
-    /// Of visibleStereo(): 0 if either eye may see it, else the finer of both stages.
+    /// Of visibleStereo(): 0 if either eye may see it; else a stage that culls what may be visible, or the finer of both.
     void reasons(std::span<uint8_t> reasons) const;
     /// The same of one eye of visibleStereo().
     /// @param eye  kLeftEye or kRightEye; after visible() both are that view

@@ -100,6 +100,34 @@ void ProofMemory::takeUpObject(const Frame& frame, uint32_t place, const Body& b
     if (many) setBox(bounds);
 }
 
+bool ProofMemory::looksAway(const Frame& frame, const Pending& entry) const {
+    if (entry.kind != Pending::Kind::kObject) return false;
+    const Occluder* const shape = shapeAt(frame, entry.index);
+    if (!shape || (!looks_away_ && shape->polygons.size() > kMostPolygons)) return false;
+    const glm::dmat4& transform = frame.world->objectAt(entry.index).transform;
+    const glm::dvec3 shift = glm::dvec3(transform[3]) - frame.frustum.eye;
+    const glm::dmat3 linear(transform);
+    const double flips = glm::determinant(linear) < 0 ? -1 : 1;
+    for (const OccluderCluster& cluster : shape->clusters)
+        for (uint32_t p = cluster.first_polygon; p < cluster.first_polygon + cluster.polygon_count; ++p) {
+            const OccluderPolygon& polygon = shape->polygons[p];
+            if (polygon.double_sided) continue;
+            glm::dvec3 corner[4];
+            uint32_t beside = 31;  // a bit for each side of the image and the near plane: all corners lie beyond it
+            for (int k = 0; k < polygon.corners(); ++k) {
+                const uint32_t v = cluster.first_vertex + polygon.vertex[k];
+                const glm::dvec3 q = linear * glm::dvec3(shape->x[v], shape->y[v], shape->z[v]) + shift;
+                corner[k] = q;
+                const double x = glm::dot(image_.x, q), y = glm::dot(image_.y, q), w = glm::dot(image_.w, q);
+                const bool before = glm::dot(glm::dvec3(view_.near), q) + view_.near.w < 0;
+                beside &= uint32_t{x > w} | uint32_t{-x > w} << 1 | uint32_t{y > w} << 2 | uint32_t{-y > w} << 3 |
+                          uint32_t{before} << 4;
+            }
+            if (!beside && facesAway(polygon, corner, flips, 0)) return true;
+        }
+    return false;
+}
+
 /// Finds the corners of a node's box, or of a body of an object.
 void ProofMemory::takeUp(const Frame& frame, Pending::Kind kind, uint32_t index, const Box3f& box, const Body& body) {
     SIGHTLINE_DEBUG_ASSERT(kind != Pending::Kind::kCluster);

@@ -265,11 +265,11 @@ bool ProofMemory::proveProposed(const Frame& frame, const Pending& entry) {
 namespace {
 
 /// Culls what was just proved to be hidden.
-TurnAnswer cull(ProofMemory& proofs, const Pending& entry) {
+TurnAnswer cull(const Frame& frame, ProofMemory& proofs, const Pending& entry) {
     const Certificate certificate = proofs.certificateOf(entry.kind, entry.index);
     proofs.culled.push_back({entry.below, certificate});
-    const Stage unhidden = proofs.looksAway() ? Stage::kFacing : Stage::kFrustum;
-    return {.culled = true, .stage = certificate.count > 0 ? Stage::kOcclusion : unhidden};
+    if (certificate.count > 0) return {.culled = true};
+    return {.culled = true, .stage = proofs.looksAway(frame, entry) ? Stage::kFacing : Stage::kFrustum};
 }
 
 }  // namespace
@@ -285,7 +285,7 @@ TurnAnswer cullProposed(const Frame& frame, TraversalState& state, const Pending
         return {.settled = sought && proofs.way() == ProofMemory::Way::kProofs};
     }
     ++state.stats.proved;
-    TurnAnswer answer = cull(proofs, entry);
+    TurnAnswer answer = cull(frame, proofs, entry);
     answer.drawn = true;
     return answer;
 }
@@ -304,7 +304,7 @@ TurnAnswer cullProved(const Frame& frame, TraversalState& state, const Pending& 
         return {.settled = true};
     }
     if (!proved && !proofs.seek(frame, entry.kind, entry.index, entry.box, before)) return {};
-    return cull(proofs, entry);
+    return cull(frame, proofs, entry);
 }
 
 }  // namespace sightline::detail

@@ -40,7 +40,7 @@ TEST(ValidateProofsDeathTest, ReportsEachKindOfDamage) {
     expectReport("kMost", [&] { proofs.culled.push_back({places, too_long}); });
     expectReport("hider < hiders", [&] { proofs.culled.push_back({places, unknown}); });
     expectReport("places.count", [&] { proofs.culled.push_back({{place, 0, 0}, {}}); });
-    expectReport("kCluster", [&] { proofs.hidden.push_back({{}, place, Pending::Kind::kCluster}); });
+    expectReport("kCluster", [&] { proofs.hidden.push_back({{}, place, Pending::Kind::kCluster, {}}); });
     expectReport("found", [&] { proofs.found = proofs.sought + 1; });
 }
 

@@ -70,6 +70,8 @@ inline uint8_t reasonOf(const Explanation& why) {
             return 0;
         case Verdict::kOutsideFrustum:
             return kByFrustum;
+        case Verdict::kFacesAway:
+            return 1 + static_cast<uint8_t>(Stage::kFacing);
         case Verdict::kOccluded:
             return 1 + static_cast<uint8_t>(why.occlusion.stage);
         default:

@@ -83,7 +83,7 @@ void printWalls(std::FILE* out, const SoupCellReport& report) {
                           readable(report.smallest_occluder, 3), readable(report.smallest_hole, 2), report.depth));
     if (!report.trials.empty()) tell(out, "  smallest occluder      cells    portals  objects seen from a place\n");
     for (const SoupTrial& trial : report.trials)
-        tell(out, fmt::format("  {:>17.3g} {:>10} {:>10} {:>10.1f} of {}{}\n", trial.smallest_occluder,
+        tell(out, fmt::format("  {:>17} {:>10} {:>10} {:>10.1f} of {}{}\n", readable(trial.smallest_occluder, 3),
                               grouped(trial.cells), grouped(trial.portals), trial.objects_seen, grouped(report.objects),
                               trial.smallest_occluder == report.smallest_occluder ? ", taken" : ""));
     if (report.hardlyAnInside())

@@ -20,6 +20,7 @@
 #include "apps/cli/verbs/visibility_choice.h"
 #include "sightline/query/explain/shadows.h"
 #include "sightline/query/query.h"
+#include "sightline/tools/report/readable.h"
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/pictures/explain_picture.h"
 #include "sightline/tools/report/pictures/shadow_picture.h"
@@ -255,7 +256,7 @@ Status explainPixel(const ExplainOptions& options, const AskedScene& asked, Fram
         const uint32_t object = layers[i].object;
         const ObjectAnswer answer = asker.answer(options.first_frame, object, {view, 0}, false);
         const std::string line = fmt::format(
-            "{:>10.4g} units  {:<10} {}{}", layers[i].depth,
+            "{:>10} units  {:<10} {}{}", readable(layers[i].depth),
             answer.kept || answer.why.verdict == Verdict::kVisible ? "kept" : verdictName(answer.why.verdict),
             layers[i].shines_through ? "see-through: " : "", titleOf(asked.scene, object));
         fmt::print(out, "{}\n", shortened(line, 100));

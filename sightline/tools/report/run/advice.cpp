@@ -95,8 +95,9 @@ std::string adviceText(const AdviceRun& run) {
     std::string smaller, none;
     for (size_t i = shown; i < order.size(); ++i) {
         std::string& rest = matters(*order[i], run.frame_milliseconds) ? smaller : none;
-        rest += fmt::format("{}{} ({:+.2g} +- {} ms)", rest.empty() ? "" : ", ", order[i]->what, -order[i]->saves,
-                            readable(order[i]->spread, 2));
+        rest +=
+            fmt::format("{}{} ({}{} +- {} ms)", rest.empty() ? "" : ", ", order[i]->what,
+                        order[i]->saves > 0 ? "" : "+", readable(-order[i]->saves, 2), readable(order[i]->spread, 2));
     }
     if (!smaller.empty()) text += fmt::format("smaller ones: {}\n", smaller);
     if (!none.empty()) text += fmt::format("no difference to speak of: {}\n", none);

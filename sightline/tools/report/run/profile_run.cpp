@@ -87,11 +87,11 @@ void printAblation(const ProfileRun& run, std::string& text) {
     text += fmt::format("\n{:<21} {:>9} {:>11} {:>10} {:>12} {:>11} {:>9} {:>9} {:>10}\n", "stages", "objects",
                         "triangles", "drawn", "fragments", "shaded", "KiB", "query us", "frame ms");
     for (const AblationRow& row : run.ablation)
-        text += fmt::format("{:<21} {:>9} {:>11} {:>10} {:>12} {:>11} {:>9.4g} {:>9.4g} {:>10.4g}\n", row.name(),
+        text += fmt::format("{:<21} {:>9} {:>11} {:>10} {:>12} {:>11} {:>9} {:>9} {:>10}\n", row.name(),
                             readable(std::round(row.objects)), readable(std::round(row.triangles)),
                             readable(std::round(row.drawn)), readable(std::round(row.fragments)),
-                            readable(std::round(row.shaded)), row.bytes / 1024, row.query_microseconds,
-                            row.frame_milliseconds);
+                            readable(std::round(row.shaded)), readable(row.bytes / 1024),
+                            readable(row.query_microseconds), readable(row.frame_milliseconds));
     text += fmt::format("\n{:<21} {:>9} {:>11} {:>10}   {}\n", "without it, more", "geometry", "rasterizer", "bus",
                         "it saves a frame of the reference renderer [ms]");
     for (const StageBenefit& benefit : benefitsOf(run.ablation))
