@@ -202,5 +202,44 @@ TEST_F(Comfort, FullAndClosedOutputsExitWithFour) {
     }
 }
 
+TEST_F(Comfort, ProceduralScenesAreNamedWhereSomethingLikeOneIsAsked) {
+    for (const char* name : {"town:1:5", "house:3", "forest:1:100:2"})
+        expectError("cull " + std::string(name), 3,
+                    std::string(name) + ": no such file; procedural scenes are city:SEED:OBJECTS");
+    expectError("cull dir/a:b.glb", 3, "no such file");
+}
+
+// A program that is not built is told of, not missed.
+TEST_F(Comfort, HelpOfAVerbThatIsNotBuiltSaysWhatItIs) {
+    std::filesystem::create_directories(path("alone"));
+    std::filesystem::copy_file(SIGHTLINE_TOOL, path("alone/sightline"));
+    const auto shell = [&](const std::string& words, const std::string& expected, int code) {
+        const int status = std::system(("cd '" + path("") + "' && alone/sightline " + words + " >out 2>err").c_str());
+        EXPECT_EQ(WEXITSTATUS(status), code) << words;
+        EXPECT_NE(read(path("out")).find(expected), std::string::npos) << words << read(path("out"));
+        EXPECT_EQ(read(path("err")).empty(), code == 0) << words;
+    };
+    for (const char* verb : {"view", "bench", "render", "judge"})
+        for (const std::string ask : {"help ", ""})
+            shell(ask + verb + (ask.empty() ? " --help" : ""), "`./run.sh help " + std::string(verb) + "` builds it",
+                  0);
+    shell("view made:walls", "", 2);
+}
+
+TEST_F(Comfort, HelpOfCullSetsApartWhatIsOftenUsed) {
+    const std::string help = succeed("help cull").out;
+    const size_t often = help.find("Often used:"), input = help.find("Input:");
+    ASSERT_LT(often, input);
+    for (const char* option :
+         {"--cameras", "--eye", "--frames", "--verify", "--list", "--report", "--json", "--remember"}) {
+        const size_t at = help.find(std::string("  ") + option + " ");
+        EXPECT_TRUE(often < at && at < input) << option;
+        EXPECT_EQ(help.find(std::string("\n  ") + option + " ", at + 1), std::string::npos)
+            << option << " is there twice";
+    }
+    for (const char* verb : {"vis", "bake", "cull", "explain"})
+        EXPECT_EQ(succeed("help " + std::string(verb)).out.find("UINT"), std::string::npos) << verb;
+}
+
 }  // namespace
 }  // namespace sightline

@@ -57,6 +57,24 @@ TEST_F(Export, LeavesOutWhatClosedSurfacesEncase) {
     EXPECT_EQ(answer("export nested.glb -o all.glb")["written"]["triangles"], 24);
 }
 
+TEST_F(Export, LeavesOutWhatNoRegionSees) {
+    succeed("bake building:1:1 -o house.vis");
+    const std::string regions = " --from-node 'corridor ?.?' --inset 0.1 --visibility house.vis";
+    const json unseen = answer("sight building:1:1" + regions)["unseen"];
+    for (const std::string split : {"", " --split grid:2"}) {
+        const json told = answer("export building:1:1 -o part.glb" + split + regions);
+        ASSERT_EQ(told["left_out"].size(), unseen.size());
+        for (size_t i = 0; i < unseen.size(); ++i) EXPECT_EQ(told["left_out"][i]["key"], unseen[i]["key"]);
+        EXPECT_GT(told["regions"]["triangles_left_out"], 0);
+        EXPECT_EQ(told["written"]["triangles"].get<uint64_t>() + told["regions"]["triangles_left_out"].get<uint64_t>(),
+                  told["scene"]["triangles"]);
+    }
+    const Outcome text = succeed("export building:1:1 --list -o part.glb" + regions);
+    EXPECT_NE(text.out.find(unseen[0]["path"].get<std::string>() + "\n"), std::string::npos) << text.out;
+    expectError("export building:1:1 -o a.glb --visibility house.vis", 2, "--from-node");
+    expectError("export building:1:1 -o a.glb --from-node 'corridor*'", 2, "--visibility");
+}
+
 TEST_F(Export, LeavesOutWhatAPathDoesNotSee) {
     const json told = answer("export city:1:200 --from-path --path walk --frames 3 --seed 4 -o walk.glb");
     EXPECT_EQ(told["path"]["frames"], 3);

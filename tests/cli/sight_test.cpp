@@ -1,5 +1,8 @@
 // The verb `sight`: lines between points, and what a region sees by a file.
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <set>
+
 #include "tests/cli/tool.h"
 
 namespace sightline {
@@ -41,6 +44,63 @@ TEST_F(SightVerb, TellsWhatMayBeSeenFromARegion) {
     const Outcome text = run("sight building:1:1 --from -15,1.5,4 --visibility house.vis");
     EXPECT_NE(text.out.find(" objects may be seen from there\n"), std::string::npos) << text.out;
     EXPECT_NE(run("sight building:1:1 --from -15,1.5,4").out.find("not known: "), std::string::npos);
+}
+
+// What is never seen from any corridor: a witness that stands in one sees none of it.
+TEST_F(SightVerb, TellsWhatNoRegionSees) {
+    ASSERT_EQ(run("bake building:1:1 -o house.vis").exit_code, 0);
+    const std::string of = "building:1:1 --from-node 'corridor ?.?' --inset 0.1 --visibility house.vis";
+    const json said = answer(of);
+    EXPECT_EQ(said["known"], true);
+    std::set<uint64_t> unseen;
+    for (const json& object : said["unseen"]) unseen.insert(object["key"].get<uint64_t>());
+    EXPECT_GT(unseen.size(), 50u);
+    EXPECT_EQ(unseen.size() + said["objects"].size(), 1052u);
+    ASSERT_FALSE(said["regions"].empty());
+    json frames = json::array();
+    for (const json& region : said["regions"])
+        for (const double part : {0.1, 0.5, 0.9})
+            for (const double along : {-1.0, 1.0}) {
+                const double x = region["min"][0], z = region["min"][2];
+                const double wide = region["max"][0].get<double>() - x, deep = region["max"][2].get<double>() - z;
+                const json eye = {x + part * wide, 1.6, z + part * deep};
+                frames.push_back({{"eye", eye}, {"target", {eye[0].get<double>() + along, 1.6, eye[2]}}});
+                frames.push_back({{"eye", eye}, {"target", {eye[0], 1.6, eye[2].get<double>() + along}}});
+            }
+    write("eyes.json", json{{"fov_y_degrees", 90}, {"near", 0.05}, {"frames", frames}}.dump());
+    const Outcome culled =
+        run("cull building:1:1 --cameras eyes.json --size 160x160 --repeat 1 --verify --rays 20000 --json -");
+    const json seen = json::parse(culled.out);
+    size_t judged = 0;
+    for (const json& frame : seen["frames"]) {
+        const std::vector<uint64_t> hidden = frame["verification"]["kept_unseen"];
+        for (const uint64_t key : frame["visible"].get<std::vector<uint64_t>>()) {
+            if (std::binary_search(hidden.begin(), hidden.end(), key)) continue;
+            EXPECT_FALSE(unseen.contains(key)) << key;
+            ++judged;
+        }
+    }
+    EXPECT_GT(judged, 200u);
+
+    // The list in words, and the same by a box.
+    const Outcome text = run("sight " + of + " --unseen");
+    EXPECT_NE(text.out.find(std::to_string(unseen.size()) + " from none\nnever seen:\n"), std::string::npos)
+        << text.out;
+    EXPECT_EQ(std::count(text.out.begin(), text.out.end(), '\n'), unseen.size() + 2);
+    const json& first = said["regions"][0];
+    std::string box;
+    for (const char* corner : {"min", "max"})
+        for (const json& number : first[corner]) box += (box.empty() ? "" : ",") + number.dump();
+    EXPECT_GE(answer("building:1:1 --from-box " + box + " --visibility house.vis")["unseen"].size(), unseen.size());
+    EXPECT_EQ(answer("building:1:1 --from-node 'corridor ?.?'")["known"], false);
+    // A node, here with all that hangs below it.
+    EXPECT_EQ(answer("building:1:1 --from-node 'floor 0/outside'")["regions"].size(), 1u);
+    expectError("sight building:1:1 --from-node 'attic*'", 2, "no cell and no node");
+    expectError("sight building:1:1 --from-box 1,2,3", 2, "--from-box 1,2,3");
+    expectError("sight building:1:1 --from-box 1,1,1,0,0,0", 2, "--from-box");
+    expectError("sight building:1:1 --from 1,1,1 --from-node 'floor*'", 2, "--from excludes");
+    expectError("sight building:1:1", 2, "--from is required");
+    expectError("sight building:1:1 --from-node 'corridor*' --inset 99", 2, "nothing is left");
 }
 
 TEST_F(SightVerb, TellsTheWayThatOneCanGo) {

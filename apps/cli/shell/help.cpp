@@ -78,6 +78,10 @@ constexpr Example kExamples[] = {
     {"sight", "sight model.glb --from 0,1.6,0 --to 12,1.6,3", "does something stand between two points?"},
     {"sight", "sight model.glb --from 0,1.6,0 --within 2 --visibility model.vis",
      "what a player who is there may see within two metres"},
+    {"sight", "sight house.glb --from-node 'Corridor*' --inset 0.1 --visibility house.vis --unseen",
+     "what is never seen from any corridor"},
+    {"export", "export house.glb --from-node 'Corridor*' --inset 0.1 --visibility house.vis -o seen.glb",
+     "the same left out"},
     {"view", "view model.glb", "fly through it; F leaves the culling camera where it is"},
     {"view", "view model.glb --headless --screenshot p.png --frozen 6", "what the seventh camera left, as a picture"},
     {"profile", "profile model.glb", "what its frames wait for, and what each stage of the query is worth"},
@@ -102,6 +106,15 @@ constexpr Example kExamples[] = {
 /// Headings in their order; those that verbs bring stand where the empty one does.
 constexpr std::string_view kHeadings[] = {"Input", "Cameras", "Culling", "", "Output", "General"};
 
+/// Options that most runs are made of: set apart where there are many.
+constexpr std::string_view kOftenUsed[] = {"--cameras",    "--eye",      "--look",   "--path", "--frames", "--size",
+                                           "--visibility", "--remember", "--verify", "--list", "--report", "--json"};
+constexpr size_t kManyOptions = 40;
+
+bool isOftenUsed(const CLI::Option* option) {
+    return std::find(std::begin(kOftenUsed), std::end(kOftenUsed), option->get_name()) != std::end(kOftenUsed);
+}
+
 size_t rankOf(const std::string& group) {
     const auto* const found = std::find(std::begin(kHeadings), std::end(kHeadings), group);
     return static_cast<size_t>((found == std::end(kHeadings) ? &kHeadings[3] : found) - kHeadings);
@@ -123,9 +136,12 @@ public:
         std::vector<std::string> groups = app->get_groups();
         std::stable_sort(groups.begin(), groups.end(),
                          [](const auto& a, const auto& b) { return rankOf(a) < rankOf(b); });
+        const bool many = app->get_options([](const CLI::Option*) { return true; }).size() > kManyOptions;
+        if (many) text += make_group("Often used", false, app->get_options(isOftenUsed));
         for (const std::string& group : groups) {
-            const auto options = app->get_options(
-                [&](const CLI::Option* option) { return option->get_group() == group && option->nonpositional(); });
+            const auto options = app->get_options([&](const CLI::Option* option) {
+                return option->get_group() == group && option->nonpositional() && !(many && isOftenUsed(option));
+            });
             if (!options.empty()) text += make_group(group, false, options);
         }
         return text + "\n" + make_footer(app);
@@ -183,7 +199,9 @@ std::string valueName(const CLI::Option& option) {
     const std::string type = option.get_type_name();
     // Behind a colon stand the names of checks, but in "grid:N".
     const size_t colon = type.find(':');
-    return colon != std::string::npos && type.substr(colon) == ":N" ? type : type.substr(0, colon);
+    if (colon != std::string::npos && type.substr(colon) == ":N") return type;
+    const std::string name = type.substr(0, colon);
+    return name == "UINT" || name == "INT" ? "N" : name;
 }
 
 std::vector<std::string> choicesOf(const CLI::Option& option) {

@@ -14,7 +14,10 @@ constexpr OtherVerb kOthers[] = {
      "heat report= shading shadows depth-format depth-comparison depth-write polygon-offset early-z "
      "hierarchical-z fast-clear depth-compression quiet -o -q"},
     {"sight", "whether two points see each other, the way between them, and what a region sees", "sightline-lab",
-     "split up unit sides import-memory import-time from to within visibility= narrowest json= quiet -q"},
+     "split up unit sides import-memory import-time from to within from-box from-node inset unseen visibility= "
+     "narrowest "
+     "json= "
+     "quiet -q"},
     {"replay", "a recorded frame asked again: the same answer, and how long it takes", "sightline-lab",
      "repeat target verify rays json= image= quiet -q"},
     {"check", "the certificates of a run or a recorded frame, each held to exact arithmetic", "sightline-lab",
@@ -24,7 +27,7 @@ constexpr OtherVerb kOthers[] = {
      "answers pictures= section stereo jitter rays no-proofs quiet -q"},
     {"export", "the scene as glTF, cut into objects and without what is not seen", "sightline-lab",
      "split up unit sides import-memory import-time cameras eye look path frames seed fps speed size threads json= "
-     "output= outside from-path quiet -o -q"},
+     "output= outside from-path from-box from-node inset visibility= list quiet -o -q"},
     {"calibrate", "what a cluster's test and a triangle cost on this machine", "sightline-lab", "json= quiet -q"},
     {"profile", "what limits a scene's frames, what its parts cost, and what each stage is worth there",
      "sightline-lab",

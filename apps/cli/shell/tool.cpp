@@ -316,6 +316,16 @@ int runBeside(const OtherVerb& verb, const std::vector<std::string>& words) {
     pointers.push_back(nullptr);
     std::fflush(nullptr);
     execv(program.c_str(), pointers.data());
+    const auto asks = [&](const char* word) { return std::find(words.begin(), words.end(), word) != words.end(); };
+    if (words[0] == "completions") return kDone;  // nothing is offered
+    if (words[0] == "help" || asks("--help") || asks("-h")) {
+        const Status told = writeText(
+            "-", fmt::format(
+                     "{0}: {1}\n\nThe program {2} has this verb, and is not built. `./run.sh help {0}` builds it and "
+                     "tells its options;\n`./run.sh {0} ...` runs it. docs/command-line.md has them, too.\n",
+                     verb.name, verb.about, verb.program));
+        return told ? kDone : report(told.error());
+    }
     return report(
         {Error::Kind::kUsage, fmt::format("{0}: the program {1} is not beside this one; `./run.sh {0}` builds it",
                                           verb.name, verb.program)});

@@ -17,7 +17,9 @@
 #include "apps/cli/shell/progress.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/cull_path.h"
+#include "apps/cli/verbs/regions.h"
 #include "apps/cli/verbs/verbs.h"
+#include "apps/cli/verbs/visibility_choice.h"
 #include "sightline/tools/export/encased.h"
 #include "sightline/tools/export/gltf_cut.h"
 #include "sightline/tools/export/gltf_scene.h"
@@ -25,6 +27,7 @@
 #include "sightline/tools/report/output_file.h"
 #include "sightline/tools/report/readable.h"
 #include "sightline/tools/scene/json_text.h"
+#include "sightline/tools/scene/one_line.h"
 
 namespace sightline::cli {
 using namespace tools;
@@ -34,6 +37,8 @@ struct ExportOptions : RunOptions {
     std::string output;
     bool outside = false;    ///< leave out what closed surfaces encase
     bool from_path = false;  ///< leave out objects that no frame sees
+    RegionChoice regions;    ///< leave out objects that none of these sees
+    bool list = false;       ///< name what is left out
 };
 
 /// What went into a file and what did not.
@@ -41,7 +46,10 @@ struct Exported {
     uint64_t objects = 0, triangles = 0;           ///< of the scene, drawn
     uint64_t objects_written = 0, written = 0;     ///< drawn triangles
     uint64_t shells = 0, encased = 0, unseen = 0;  ///< triangles that were left out
-    size_t frames = 0;
+    size_t frames = 0, regions = 0;
+    uint64_t region_unseen = 0;                              ///< triangles that no region sees
+    std::vector<std::string> unknown;                        ///< regions of which nothing is known
+    std::vector<std::pair<uint64_t, std::string>> left_out;  ///< objects of which nothing is left: keys and paths
     bool keeps_textures = false;
 };
 
@@ -51,6 +59,8 @@ Status checkExport(const Command& verb, const ExportOptions& options) {
     for (const char* option : {"--cameras", "--path", "--frames", "--seed", "--fps", "--speed", "--size"})
         if (!options.from_path && verb.count(option) > 0)
             return usageError(fmt::format("{} goes with --from-path", option));
+    if (options.regions.any() == options.visibility.file.empty())
+        return usageError("--visibility goes with --from-box or --from-node, and they with it");
     ApartFiles files = filesRead(options);
     files.write("-o", options.output);
     files.write("--json", options.json);
@@ -77,18 +87,32 @@ std::vector<std::vector<uint32_t>> findEncased(const Scene& scene, Exported& out
     return std::move(encased.triangles);
 }
 
-/// All triangles of the objects that no frame sees.
-std::vector<std::vector<uint32_t>> unseenObjects(const Scene& scene, const CullRun& run) {
+/// All triangles of the objects that are not seen, which are noted.
+/// @param is_seen  of an object's place in the scene
+template <class IsSeen>
+std::vector<std::vector<uint32_t>> unseenObjects(const Scene& scene, const IsSeen& is_seen, Exported& told) {
     std::vector<std::vector<uint32_t>> out(scene.objects.size());
     for (size_t i = 0; i < out.size(); ++i) {
-        if (scene.objects[i].changes != 0) continue;  // it may stand elsewhere
-        const bool is_seen = std::any_of(run.frames.begin(), run.frames.end(),
-                                         [&](const FrameResult& frame) { return frame.reasons[i] == 0; });
-        if (is_seen) continue;
+        if (is_seen(i) || scene.objects[i].changes != 0) continue;  // what changes may stand elsewhere
         out[i].resize(scene.meshes[scene.objects[i].mesh].triangles());
         std::iota(out[i].begin(), out[i].end(), 0u);
+        told.left_out.emplace_back(scene.objects[i].key, objectPath(scene, scene.objects[i]));
     }
     return out;
+}
+
+/// All triangles of the objects that no eye in the regions sees.
+Result<std::vector<std::vector<uint32_t>>> unseenOfRegions(const Scene& scene, ExportOptions& options, Exported& told) {
+    const Result<std::vector<NamedRegion>> regions = regionsOf(scene, options.regions);
+    if (!regions) return regions.error();
+    if (Status opened = openVisibility(scene, options); !opened) return opened.error();
+    SeenFromRegions from = seenFrom(AskedScene(scene, options), *regions);
+    options.opened = nullptr;  // the path is asked of the scene that is left
+    options.visibility = {};
+    told.regions = regions->size();
+    told.unknown = std::move(from.unknown);
+    return unseenObjects(
+        scene, [&](size_t i) { return from.seen[i] != 0; }, told);
 }
 
 double percentOf(uint64_t part, uint64_t whole) {
@@ -109,6 +133,17 @@ void printExported(std::FILE* out, const ExportOptions& options, const Exported&
              fmt::format("left out: {} ({:.1f} %) of objects; it is proved that none of {} sees any, and nothing "
                          "is said of eyes between them\n",
                          counted(e.unseen, "triangle"), percentOf(e.unseen, e.triangles), counted(e.frames, "frame")));
+    if (options.regions.any())
+        tell(out, fmt::format("left out: {} ({:.1f} %) of objects that no eye in {} sees, by the file's rows\n",
+                              counted(e.region_unseen, "triangle"), percentOf(e.region_unseen, e.triangles),
+                              counted(e.regions, "region")));
+    if (!e.unknown.empty())
+        tell(out, fmt::format("nothing is known of {} of these regions, as '{}', for they reach out of the file's "
+                              "cells (see --inset): "
+                              "all is kept\n",
+                              e.unknown.size(), oneLine(e.unknown.front())));
+    if (!options.list) return;
+    for (const auto& [key, path] : e.left_out) tell(out, fmt::format("  {:>8}  {}\n", key, oneLine(path)));
 }
 
 std::string exportJson(const ExportOptions& options, const Exported& e) {
@@ -122,6 +157,10 @@ std::string exportJson(const ExportOptions& options, const Exported& e) {
     if (options.outside)
         out["outside"] = {{"closed_surfaces", e.shells}, {"triangles_left_out", e.encased}, {"proved", true}};
     if (options.from_path) out["path"] = {{"frames", e.frames}, {"triangles_left_out", e.unseen}, {"proved", true}};
+    if (options.regions.any())
+        out["regions"] = {{"count", e.regions}, {"unknown", e.unknown}, {"triangles_left_out", e.region_unseen}};
+    out["left_out"] = nlohmann::ordered_json::array();
+    for (const auto& [key, path] : e.left_out) out["left_out"].push_back({{"key", key}, {"path", path}});
     return jsonText(out, 1) + "\n";
 }
 
@@ -138,8 +177,18 @@ Result<int> runExport(const Command& verb, ExportOptions& options) {
     stopGently();
     if (options.outside) encased = findEncased(*scene, out);
     if (interrupted()) return reportInterruption("the closed surfaces", false);
+    std::vector<std::vector<uint32_t>> unseen(scene->objects.size());
+    if (options.regions.any()) {  // of the whole scene, which the file was baked of
+        Result<std::vector<std::vector<uint32_t>>> found = unseenOfRegions(*scene, options, out);
+        if (!found) return found.error();
+        unseen = std::move(*found);
+    }
+    for (size_t i = 0; i < unseen.size(); ++i) {
+        (unseen[i].empty() ? out.encased : out.region_unseen) += std::max(unseen[i].size(), encased[i].size());
+        if (!unseen[i].empty()) encased[i] = std::move(unseen[i]);
+    }
     CutScene cut = cutScene(std::move(*scene), split);
-    out.encased = leaveOut(cut, inPieces(cut, encased));
+    leaveOut(cut, inPieces(cut, encased));
     if (options.from_path) {
         const Result<CameraPath> path = loadPath(cut.scene, options);
         if (!path) return path.error();
@@ -147,7 +196,11 @@ Result<int> runExport(const Command& verb, ExportOptions& options) {
         if (run.interrupted)
             return reportInterruption(fmt::format("{} of {} frames", run.frames.size(), path->frames.size()), false);
         out.frames = run.frames.size();
-        out.unseen = leaveOut(cut, unseenObjects(cut.scene, run));
+        const auto is_seen = [&](size_t i) {
+            return std::any_of(run.frames.begin(), run.frames.end(),
+                               [&](const FrameResult& frame) { return frame.reasons[i] == 0; });
+        };
+        out.unseen = leaveOut(cut, unseenObjects(cut.scene, is_seen, out));
     }
     if (cut.scene.objects.empty())
         return Error{Error::Kind::kInput, options.scene.title() + ": nothing is left to write"};
@@ -176,6 +229,13 @@ void addExport(Command& tool, int& exit_code) {
     verb->add_flag("--outside", options->outside,
                    "leave out triangles within closed surfaces, which no eye outside of these can see");
     verb->add_flag("--from-path", options->from_path, "leave out objects that no frame of the path can see");
+    addRegionOptions(*verb, options->regions);
+    verb->add_option(
+            "--visibility", options->visibility.file,
+            "rows that `bake` made of this scene, for --from-box and --from-node: leave out objects that no eye "
+            "there can see")
+        ->type_name("FILE");
+    verb->add_flag("--list", options->list, "name the objects of which nothing is left: key and path");
     verb->callback([verb, options, &exit_code] {
         const Result<int> done = runExport(*verb, *options);
         exit_code = done ? *done : report(done.error());

@@ -137,9 +137,22 @@ Result<Scene> loadRecordedFrame(const std::string& name, const ImportSettings& s
     return scene;
 }
 
+/// Of a name that no file has: whether it is written as a procedural scene is, as "town:1:5".
+bool seemsProcedural(const std::string& name) {
+    std::error_code ignored;
+    const size_t colon = name.find(':');
+    return colon != std::string::npos && colon > 1 && name.find_first_of("./\\") == std::string::npos &&
+           !std::filesystem::exists(name, ignored);
+}
+
 Result<Scene> loadOne(const std::string& name, ImportSettings settings) {
     if (isProcedural(name)) return makeProcedural(name);
     if (isBegun(name)) return makeProcedural(name);  // which says what there is
+    if (seemsProcedural(name))
+        return Error{Error::Kind::kInput,
+                     oneLine(name) +
+                         ": no such file; procedural scenes are city:SEED:OBJECTS, building:SEED:FLOORS, "
+                         "terrain:SEED:SIZE and made:NAME"};
     if (isRecordedFrame(name)) return loadRecordedFrame(name, settings);
     Progress progress("reading " + std::filesystem::path(name).filename().string(), "parts", 0);
     settings.progress = [&](size_t done, size_t total) { progress.set(done, total); };

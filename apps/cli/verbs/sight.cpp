@@ -14,12 +14,14 @@
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/explain_object.h"
+#include "apps/cli/verbs/regions.h"
 #include "apps/cli/verbs/verbs.h"
 #include "apps/cli/verbs/visibility_choice.h"
 #include "sightline/query/connectivity.h"
 #include "sightline/query/sight_query.h"
 #include "sightline/tools/report/readable.h"
 #include "sightline/tools/scene/json_text.h"
+#include "sightline/tools/scene/one_line.h"
 
 namespace sightline::cli {
 using namespace tools;
@@ -30,6 +32,8 @@ using Json = nlohmann::ordered_json;
 struct SightOptions : RunOptions {
     std::string from, to;
     double within = 0, narrowest = 0;
+    RegionChoice regions;
+    bool unseen = false;  ///< name what no region sees
 };
 
 Json pointJson(const glm::dvec3& point) { return {point.x, point.y, point.z}; }
@@ -100,6 +104,39 @@ void answerRegion(const AskedScene& asked, const glm::dvec3& from, double within
     if (set.objects.size() > kMost) fmt::print(out, "  and {} more (--json lists them)\n", set.objects.size() - kMost);
 }
 
+/// What may be seen from several regions together, and what never is.
+Status answerRegions(const AskedScene& asked, const SightOptions& options, std::FILE* out, Json& body) {
+    constexpr size_t kMost = 8;
+    const Result<std::vector<NamedRegion>> regions = regionsOf(asked.scene, options.regions);
+    if (!regions) return regions.error();
+    const SeenFromRegions from = seenFrom(asked, *regions);
+    body["known"] = from.unknown.empty();
+    for (const NamedRegion& region : *regions)
+        body["regions"].push_back(
+            {{"name", region.name}, {"min", pointJson(region.box.min)}, {"max", pointJson(region.box.max)}});
+    body["unknown"] = from.unknown;
+    body["objects"] = body["unseen"] = Json::array();
+    std::vector<uint32_t> unseen;
+    for (uint32_t i = 0; i < from.seen.size(); ++i) {
+        const SceneObject& object = asked.scene.objects[i];
+        body[from.seen[i] ? "objects" : "unseen"].push_back(
+            {{"key", object.key}, {"name", object.name}, {"path", objectPath(asked.scene, object)}});
+        if (!from.seen[i]) unseen.push_back(i);
+    }
+    if (!from.unknown.empty())
+        fmt::print(out, "not known of {} of {}, as '{}': all may be seen ({})\n", from.unknown.size(),
+                   counted(regions->size(), "region"), oneLine(from.unknown.front()),
+                   options.opened ? "it reaches out of the cells of the file: --inset keeps eyes off its sides"
+                                  : "sightline bake tells more: --visibility FILE");
+    fmt::print(out, "{} of {} objects may be seen from {}; {} from none\n", grouped(from.seen.size() - unseen.size()),
+               grouped(from.seen.size()), counted(regions->size(), "region"), grouped(unseen.size()));
+    const size_t most = options.unseen ? unseen.size() : std::min(unseen.size(), kMost);
+    if (most > 0) fmt::print(out, "never seen:\n");
+    for (size_t i = 0; i < most; ++i) fmt::print(out, "  {}\n", titleOf(asked.scene, unseen[i]));
+    if (most < unseen.size()) fmt::print(out, "  and {} more (--unseen and --json list them)\n", unseen.size() - most);
+    return success();
+}
+
 Status checkOutput(const SightOptions& options) {
     ApartFiles files = filesRead(options);
     files.write("--json", options.json);
@@ -108,6 +145,10 @@ Status checkOutput(const SightOptions& options) {
 }
 
 Status runSight(SightOptions& options) {
+    if (options.from.empty() != options.regions.any())
+        return usageError(options.from.empty() ? "--from is required: a point; or --from-box, or --from-node"
+                                               : "--from excludes --from-box and --from-node");
+    if (options.from.empty()) options.from = "0,0,0";
     const Result<glm::dvec3> from = readPoint("--from", options.from);
     if (!from) return from.error();
     const Result<glm::dvec3> to = options.to.empty() ? from : readPoint("--to", options.to);
@@ -119,7 +160,10 @@ Status runSight(SightOptions& options) {
     const AskedScene asked(*scene, options);
     std::FILE* const out = options.json == "-" ? stderr : stdout;
     Json body = {{"schema", "sightline.sight/1"}, {"scene", options.scene.title()}, {"from", pointJson(*from)}};
-    if (options.to.empty()) answerRegion(asked, *from, options.within, out, body);
+    if (options.regions.any()) {
+        body.erase("from");
+        if (Status told = answerRegions(asked, options, out, body); !told) return told;
+    } else if (options.to.empty()) answerRegion(asked, *from, options.within, out, body);
     else answerLine(asked, *from, *to, out, body);
     if (!options.to.empty() && options.opened)
         answerWay(asked, *from, *to, options.narrowest, body["blocked"].get<bool>(), out, body);
@@ -133,7 +177,7 @@ void addSight(Command& tool, int& exit_code) {
     Command verb = addOtherVerb(tool, "sight");
     const auto options = std::make_shared<SightOptions>();
     addSceneChoice(*verb, options->scene);
-    verb->add_option("--from", options->from, "where one stands [world units]")->required()->type_name("X,Y,Z");
+    verb->add_option("--from", options->from, "where one stands [world units]")->type_name("X,Y,Z");
     Option to =
         verb->add_option("--to", options->to, "a point: does an occluder stand in between?")->type_name("X,Y,Z");
     verb->add_option(
@@ -142,6 +186,9 @@ void addSight(Command& tool, int& exit_code) {
         ->check(Range{0.0, 1e9})
         ->excludes(to)
         ->type_name("R");
+    addRegionOptions(*verb, options->regions);
+    verb->add_flag("--unseen", options->unseen, "with these, name all that is never seen from any of them");
+    for (const char* option : {"--from-box", "--from-node"}) verb->get_option(option)->excludes(to);
     Option visibility =
         verb->add_option(
                 "--visibility", options->visibility.file,
