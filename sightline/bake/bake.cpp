@@ -196,8 +196,9 @@ Result<CellVisibility> bakeRows(const CellGraph& rows, const BakeSettings& setti
         flows.checkpoint = [&](const CellVisibilityState& state) {
             if (state.flowed == state.order.size()) return;  // the end is near
             if (!asksToStop(settings) && secondsSince(saved) < settings.checkpoint_seconds) return;
-            written = settings.checkpoint((settings.journal ? settings.journal->bytes() : std::string()) +
-                                          bakeStateBytes(state, hashOf(rows, settings.farthest), settings.budget, settings.work));
+            written = settings.checkpoint(
+                (settings.journal ? settings.journal->bytes() : std::string()) +
+                bakeStateBytes(state, hashOf(rows, settings.farthest), settings.budget, settings.work));
             saved = Clock::now();
         };
     CellVisibility visibility = bakeCellVisibility(rows, flows);

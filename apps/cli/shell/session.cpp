@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <initializer_list>
 #include <malloc.h>
+#include <mutex>
 #include <poll.h>
 #include <string>
 #include <sys/resource.h>
@@ -19,7 +20,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
-#include "apps/cli/shell/progress.h"
 #include "sightline/tools/scene/one_line.h"
 
 namespace sightline::cli {
@@ -29,6 +29,8 @@ namespace {
 bool g_quiet = false;
 // What a signal's handler may touch.
 std::atomic<bool> g_gentle{false}, g_interrupted{false}, g_waits{false};
+// A handler may find a half of two names: no harm.
+char g_step[128] = "";
 constexpr unsigned kHearing = 1;  // for work that is to hear of it  [s]
 static_assert(std::atomic<bool>::is_always_lock_free);
 
@@ -43,7 +45,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 /// Work that has not asked for a second whether to stop is not waited for.
 extern "C" void onAlarm(int) {
     if (!g_waits) return;
-    const std::string_view step = stepAtHand();
+    const std::string_view step = g_step;
     endAtOnce({"sightline: interrupted in the midst of ", step.empty() ? "a step" : step,
                ", which cannot stop half-way: what was not written is lost\n"});
 }
@@ -79,6 +81,12 @@ bool readerHasLeft() {
 }
 
 }  // namespace
+
+void noteStep(const std::string& what) {
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    g_step[what.copy(g_step, sizeof g_step - 1)] = 0;
+}
 
 int report(const Error& error) {
     const std::string line = "sightline: " + oneLine(error.message) + "\n";

@@ -56,6 +56,8 @@ void stopGently();
 /// True once Ctrl-C was pressed, or the process asked to end: loops over frames stop and leave what is finished. Whoever
 /// is told so must leave what takes long.
 bool interrupted();
+/// Names the step at hand, for the line that tells of an interruption.
+void noteStep(const std::string& what);
 /// Says on standard error how far it came.
 /// @param done  "3 of 16 frames"
 /// @return the exit code for it, kInterrupted

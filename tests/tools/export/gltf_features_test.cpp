@@ -35,9 +35,8 @@ Json watchInBox(const Change& change, std::string& bytes) {
     for (int i = 0; i < 8; ++i)
         for (const int axis : {1, 2, 4}) corners.push_back(i & axis ? 1.0f : -1.0f);
     const uint32_t box = b.accessor<float>("VEC3", corners);
-    const uint32_t sides =
-        b.accessor<uint16_t>("SCALAR", {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                                        2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5});
+    const uint32_t sides = b.accessor<uint16_t>("SCALAR", {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                                           2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5});
     const uint32_t watch = b.accessor<float>("VEC3", {-0.1f, -0.1f, 0, 0.1f, -0.1f, 0, 0, 0.1f, 0});
     b.json["materials"] = Json::array({{{"name", "stone"}}, {{"name", "glass"}, {"alphaMode", "BLEND"}}});
     b.node({{"children", {kShell}}});
@@ -53,8 +52,8 @@ Json watchInBox(const Change& change, std::string& bytes) {
 
 /// What becomes of the box and of the watch in it.
 struct Outcome {
-    bool hides = false;      ///< the query culls the watch
-    bool is_left = false;    ///< `export --outside` leaves the watch where it is
+    bool hides = false;        ///< the query culls the watch
+    bool is_left = false;      ///< `export --outside` leaves the watch where it is
     int shell = 0, watch = 0;  ///< SceneObject::changes
     bool operator==(const Outcome&) const = default;
 };
@@ -76,8 +75,8 @@ Outcome outcomeOf(const Change& change) {
     LoadedWorld loaded = loadWorld(scene);
     Query query;
     const VisibleSet set = query.visible(loaded.world.commit(), viewAt({0, 0, 0}, {0, 0, -1}));
-    out.hides = std::none_of(set.objects.begin(), set.objects.end(),
-                             [](const auto& object) { return object.key == kWatch; });
+    out.hides =
+        std::none_of(set.objects.begin(), set.objects.end(), [](const auto& object) { return object.key == kWatch; });
     out.is_left = encasedTriangles(scene).triangles[1].empty();
     out.shell = scene.objects[0].changes;
     out.watch = scene.objects[1].changes;
@@ -194,10 +193,10 @@ TEST(GltfFeatures, ExtensionsThatAreNotKnownAreTold) {
         std::ofstream(file, std::ios::binary) << bytes;
         std::vector<std::string> notes;
         ASSERT_TRUE(loadGltf(file.string(), {}, [&](const std::string& note) { notes.push_back(note); }).ok());
-        const bool unknown = row.what.starts_with("unknown") ||
-                             (row.wanted == kClear && json["materials"][0].contains("extensions") &&
-                              gltf::featureOf(json["materials"][0]["extensions"].begin().key()).effect ==
-                                  gltf::Effect::kUnknown);
+        const bool unknown =
+            row.what.starts_with("unknown") ||
+            (row.wanted == kClear && json["materials"][0].contains("extensions") &&
+             gltf::featureOf(json["materials"][0]["extensions"].begin().key()).effect == gltf::Effect::kUnknown);
         ASSERT_EQ(notes.size(), unknown ? 1u : 0u);
         if (unknown) { EXPECT_NE(notes[0].find("not known"), std::string::npos) << notes[0]; }
     }

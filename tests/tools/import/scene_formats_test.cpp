@@ -197,13 +197,13 @@ TEST_F(SceneFormats, WhatAnAnimationMovesIsKnown) {
     const auto changesOf = [&](const std::string& keys, const std::string& of) {
         const std::string mesh = "Mesh { 3; 0;0;0;, 1;0;0;, 0;1;0;; 1; 3;0,1,2;; }\n";
         const auto frame = [&](const std::string& name, const std::string& below) {
-            return "Frame " + name + " { FrameTransformMatrix { 1,0,0,0, 0,1,0,0, 0,0,1,0, 2,0,0,1;; }\n" + mesh + below +
-                   "}\n";
+            return "Frame " + name + " { FrameTransformMatrix { 1,0,0,0, 0,1,0,0, 0,0,1,0, 2,0,0,1;; }\n" + mesh +
+                   below + "}\n";
         };
         const std::string animation =
             keys.empty() ? "" : "AnimationSet Open { Animation { {" + of + "} " + keys + " } }\n";
-        const Result<Scene> scene =
-            load(write("door.x", "xof 0303txt 0032\n" + frame("Wall", "") + frame("Door", frame("Knob", "")) + animation));
+        const Result<Scene> scene = load(
+            write("door.x", "xof 0303txt 0032\n" + frame("Wall", "") + frame("Door", frame("Knob", "")) + animation));
         EXPECT_TRUE(scene.ok()) << scene.error().message;
         std::string out;
         for (size_t i = 0; scene.ok() && i < scene->objects.size(); ++i)
