@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <assimp/material.h>
+#include <fmt/core.h>
 #include <stb/stb_image.h>
 
 namespace sightline::import {
@@ -106,7 +107,7 @@ bool TextureAlpha::mayBeTransparent(const std::string& name) {
     return place->second;
 }
 
-bool TextureAlpha::look(const std::string& name) const {
+bool TextureAlpha::look(const std::string& name) {
     Answer answer = Answer::kUnknown;
     if (const aiTexture* inside = scene_.GetEmbeddedTexture(name.c_str())) {
         answer = lookAt(*inside);
@@ -120,7 +121,10 @@ bool TextureAlpha::look(const std::string& name) const {
             if (answer != Answer::kUnknown) break;
         }
     }
-    return answer == Answer::kUnknown ? !hasNoAlphaByName(name) : answer == Answer::kTransparent;
+    if (answer != Answer::kUnknown) return answer == Answer::kTransparent;
+    if (hasNoAlphaByName(name)) return false;
+    unread_.push_back(name);
+    return true;
 }
 
 Materials::Materials(const aiScene& scene, std::string suffix, std::string folder, SceneStreamWriter& out)
@@ -167,6 +171,17 @@ uint32_t Materials::of(const aiMesh& mesh) {
     if (blends) material.alpha_mode = AlphaMode::kBlend;
     out_.material(material);
     return place->second;
+}
+
+void Materials::tellUnread() const {
+    constexpr size_t kMost = 3;
+    const std::vector<std::string>& names = textures_.unread();
+    if (names.empty()) return;
+    std::string list;
+    for (size_t i = 0; i < std::min(kMost, names.size()); ++i) list += (i > 0 ? ", " : "") + names[i];
+    if (names.size() > kMost) list += ", ...";
+    out_.note(fmt::format("{} texture{} could not be read, so that what shows {} hides nothing: {}", names.size(),
+                          names.size() == 1 ? "" : "s", names.size() == 1 ? "it" : "them", list));
 }
 
 }  // namespace sightline::import

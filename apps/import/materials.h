@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <assimp/scene.h>
 
@@ -25,12 +26,16 @@ public:
     /// picture that is missing or of a kind that is not known is judged by its name: JPEG and BMP have no alpha.
     bool mayBeTransparent(const std::string& name);
 
+    /// Pictures that could not be looked at, and so let nothing hide that shows them; each once, in order.
+    const std::vector<std::string>& unread() const { return unread_; }
+
 private:
-    bool look(const std::string& name) const;
+    bool look(const std::string& name);
 
     const aiScene& scene_;
     std::string folder_;
     std::map<std::string, bool> known_;
+    std::vector<std::string> unread_;
 };
 
 /// Sends each material when it is first used.
@@ -42,6 +47,9 @@ public:
 
     /// The index, in the stream, of a mesh's material. A mesh with vertex colours that are not opaque has a material of its own.
     uint32_t of(const aiMesh& mesh);
+
+    /// A note of the textures that could not be read, if that takes from what hides.
+    void tellUnread() const;
 
 private:
     Material convert(const aiMaterial& material);

@@ -219,6 +219,7 @@ public:
             for (unsigned c = node->mNumChildren; c-- > 0;) todo.push_back({node->mChildren[c], index, moves});
         }
         if (objects_ == 0) throw Fault{nothing()};
+        materials_.tellUnread();
         for (unsigned c = 0; c < scene_.mNumCameras; ++c) sendCamera(*scene_.mCameras[c]);
     }
 

@@ -72,6 +72,9 @@ inline std::string sceneFault(const Scene& scene) {
         for (int column = 0; column < 4; ++column)
             if (object.transform[column][3] != (column == 3 ? 1 : 0)) return "a transform is not affine";
     }
+    for (const SceneRoom& room : scene.rooms)
+        if (room.node >= scene.nodes.size() || (!room.bounds.empty() && !room.bounds.finite()))
+            return "a room is broken";
     for (size_t i = 0; i < scene.nodes.size(); ++i)
         if (scene.nodes[i].parent != SceneNode::kNone && scene.nodes[i].parent >= scene.nodes.size())
             return "a node's parent is out of range";

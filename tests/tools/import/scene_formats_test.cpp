@@ -153,8 +153,15 @@ TEST_F(SceneFormats, MaterialsOfAnObjSayWhatMayHide) {
     std::string text = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
     for (const char* name : {"wall", "glass", "leaf", "brick", "cut"})
         text += std::string("o ") + name + "\nusemtl " + name + "\nf 1 2 3\n";
+    std::string noted;
+    settings_.note = [&](const std::string& words) { noted += words + "\n"; };
     const Result<Scene> scene = load(write("m.obj", text));
     ASSERT_TRUE(scene.ok()) << scene.error().message;
+    // Only where it changes what hides: a JPEG has no alpha, and what is cut out by a picture hides nothing anyway.
+    EXPECT_NE(noted.find("1 texture could not be read, so that what shows it hides nothing: clear.png"),
+              std::string::npos)
+        << noted;
+    EXPECT_EQ(noted.find(".jpg"), std::string::npos) << noted;
     std::map<std::string, Material> materials;
     for (const Material& material : scene->materials) materials[material.name] = material;
     EXPECT_TRUE(materials["wall"].hides());
