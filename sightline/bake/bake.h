@@ -47,7 +47,7 @@ struct BakeSettings {
     Jobs* jobs = nullptr;  ///< threads to share the work out to
     /// Work limit: portals that are clipped for one portal and direction. What is left then stays visible. 0: none.
     uint64_t budget = 0;
-    uint64_t work = 0;  ///< CellVisibilitySettings
+    uint64_t work = 0;      ///< CellVisibilitySettings
     double farthest = 0;    ///< CellVisibilitySettings  [world units]
     double time_limit = 0;  ///< for the rows of cells; what is not settled by then stays visible; 0: none  [s]
     bool object_rows =

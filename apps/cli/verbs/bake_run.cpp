@@ -74,9 +74,10 @@ void addBakeOptions(Command& verb, BakeOptions& options, const std::string& outp
                   "tell also which objects each cell sees, of a .bsp its faces: takes longer than the cells do");
     verb.add_option("--threads", options.threads, "share the portals among so many threads (default: one a core)")
         ->check(Range{1u, 1024u});
-    verb.add_option("--budget", options.budget,
-                    "portals that may be clipped for each portal and direction, 0: no limit; what is not settled by then "
-                    "is visible, and counted (default: work of some minutes, shared out among all portals)")
+    verb.add_option(
+            "--budget", options.budget,
+            "portals that may be clipped for each portal and direction, 0: no limit; what is not settled by then "
+            "is visible, and counted (default: work of some minutes, shared out among all portals)")
         ->type_name("WORK");
     verb.add_option("--time-limit", options.time_limit,
                     "stop after so many seconds; what is not settled by then is visible")

@@ -14,7 +14,7 @@ namespace sightline::bake {
 /// Who shares the work of the first bound, and who follows it.
 struct BaseSettings {
     Jobs* jobs = nullptr;
-    StopAsker* stop = nullptr;                             ///< asked between portals; may be null
+    StopAsker* stop = nullptr;                                   ///< asked between portals; may be null
     std::function<void(uint32_t done, uint32_t all)> tell = {};  ///< portals; may be empty
 };
 

@@ -499,7 +499,9 @@ void PortalFlow::from(uint32_t portal, std::span<const uint64_t> asked, const Fl
     if (!answer.spent) return;
     const FlowPortals& directed = scratch_->places.directed;
     const std::span<const uint64_t> row = scratch_->may.row(portal);
-    const auto reach = [&](uint32_t cell) { answer.reached[cell / 64] |= asked[cell / 64] & uint64_t(1) << (cell % 64); };
+    const auto reach = [&](uint32_t cell) {
+        answer.reached[cell / 64] |= asked[cell / 64] & uint64_t(1) << (cell % 64);
+    };
     reach(directed.portals[portal].to);
     for (uint32_t w = 0; w < row.size(); ++w)
         for (uint64_t left = row[w]; left; left &= left - 1)
