@@ -179,6 +179,7 @@ Status checkBakeSize(const CellGraph& rows, const std::string& name) {
 Result<CellVisibility> bakeRows(const CellGraph& rows, const BakeSettings& settings) {
     const Clock::time_point begin = Clock::now();
     Clock::time_point saved = begin;
+    double writing = 0;  // the last checkpoint: of a large bake it takes long  [s]
     Status written = success();
     CellVisibilitySettings flows;
     flows.jobs = settings.jobs;
@@ -195,11 +196,14 @@ Result<CellVisibility> bakeRows(const CellGraph& rows, const BakeSettings& setti
     if (settings.checkpoint)
         flows.checkpoint = [&](const CellVisibilityState& state) {
             if (state.flowed == state.order.size()) return;  // the end is near
-            if (!asksToStop(settings) && secondsSince(saved) < settings.checkpoint_seconds) return;
+            if (!asksToStop(settings) && secondsSince(saved) < std::max(settings.checkpoint_seconds, 20 * writing))
+                return;
+            const Clock::time_point write_begin = Clock::now();
             written = settings.checkpoint(
                 (settings.journal ? settings.journal->bytes() : std::string()) +
                 bakeStateBytes(state, hashOf(rows, settings.farthest), settings.budget, settings.work));
             saved = Clock::now();
+            writing = secondsSince(write_begin);
         };
     CellVisibility visibility = bakeCellVisibility(rows, flows);
     if (!written) return written.error();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <iterator>
 
+#include "apps/cli/shell/progress.h"
 #include "tests/cli/process.h"
 #include "tests/support/random.h"
 
@@ -56,6 +57,18 @@ TEST_F(Comfort, LongWorkShowsABarOnATerminalAndLinesWhenPiped) {
     const std::string shown = Process::onTerminal(directory_, parted);
     EXPECT_NE(shown.find("\r\033[Kverifying "), std::string::npos) << shown;
     EXPECT_NE(shown.find(" left"), std::string::npos) << shown;
+}
+
+TEST_F(Comfort, TheTimeLeftIsThatOfWhatThisRunHasDone) {
+    using cli::progressText;
+    EXPECT_EQ(progressText(0, 0, 100, "parts", 9), "0 of 100 parts, just begun");
+    EXPECT_EQ(progressText(0, 25, 100, "parts", 10), "25 of 100 parts, 30 s left");
+    // An earlier run had done sixty.
+    EXPECT_EQ(progressText(60, 60, 100, "parts", 0.001), "60 of 100 parts, just begun");
+    EXPECT_EQ(progressText(60, 60, 100, "parts", 50), "60 of 100 parts, just begun");
+    EXPECT_EQ(progressText(60, 70, 100, "parts", 50), "70 of 100 parts, 2 min 30 s left");
+    EXPECT_EQ(progressText(60, 100, 100, "parts", 50), "100 of 100 parts, 0 s left");
+    EXPECT_EQ(progressText(100, 100, 100, "parts", 0), "100 of 100 parts, 0 s left");
 }
 
 TEST_F(Comfort, SlipsAreToldWhatIsNearest) {

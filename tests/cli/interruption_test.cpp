@@ -1,5 +1,7 @@
 // Ctrl-C leaves what is finished: real signals to the real tool.
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include "tests/cli/process.h"
 
 namespace sightline {
@@ -75,6 +77,58 @@ TEST_F(Interruption, FramesWithoutVerdictAreCounted) {
         EXPECT_NE(read(path(".out")).find("unverified   " + std::to_string(400 - judged) + " of 400 frames"),
                   std::string::npos);
     }
+}
+
+TEST_F(Interruption, AFramesProofEndsWithinItself) {
+    // Plates in one plane that lean a little: each is seen, and has to be held against most of the others.
+    std::string plates;
+    constexpr int kPlates = 6000;
+    for (int i = 0; i < kPlates; ++i) {
+        const double size = 1 + 1e-4 * i, lean = 1e-7 * (i % 97);
+        plates += fmt::format(
+            "o plate{}\nv {:.7f} {:.7f} {:.9f}\nv {:.7f} {:.7f} {:.9f}\nv {:.7f} {:.7f} {:.9f}\nf -3 -2 -1\n", i, -size,
+            -size, -lean, size, -size, lean, 0.0, size, 0.0);
+    }
+    write("plates.obj", plates);
+    for (const int signal : {SIGINT, SIGTERM}) {
+        Process tool(directory_, words("verify plates.obj --eye 0.3,0.2,4 --look 0,0,0 --size 64x64 --rays 100"));
+        ASSERT_TRUE(said("verifying: 0 of 1 frames"));  // although no frame is done
+        tool.send(signal);
+        EXPECT_EQ(tool.join(), 130);
+        const std::string said = read(path(".err"));
+        EXPECT_NE(said.find("interrupted after 1 of 1 frames, 0 of them verified"), std::string::npos) << said;
+    }
+}
+
+TEST_F(Interruption, ABakesFirstBoundEndsWithinItself) {
+    // Rooms side by side, open to one another: a line passes nearly all of their doors.
+    constexpr int kSide = 70;
+    std::string doors;
+    int count = 0;
+    const auto addDoor = [&](int a, int b, double x, double y, bool along) {
+        const auto at = [&](double u, double z) {
+            return along ? fmt::format("({} {} {}) ", x, y + u, z) : fmt::format("({} {} {}) ", x + u, y, z);
+        };
+        const std::string low = at(63, 0), high = at(1, 64);  // both ways round: normals lead from a to b
+        doors += fmt::format("4 {} {} {}{}{}{}\n", a, b, at(1, 0), along ? low : high, at(63, 64), along ? high : low);
+        ++count;
+    };
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) {
+            if (x + 1 < kSide) addDoor(y * kSide + x, y * kSide + x + 1, 64 * (x + 1), 64 * y, true);
+            if (y + 1 < kSide) addDoor(y * kSide + x, (y + 1) * kSide + x, 64 * x, 64 * (y + 1), false);
+        }
+    write("hall.prt", fmt::format("PRT1\n{}\n{}\n{}", kSide * kSide, count, doors));
+    Process tool(directory_, words("vis hall.prt --threads 1 -o hall.see"));
+    ASSERT_TRUE(said("visibility, base: "));
+    tool.send(SIGTERM);
+    EXPECT_EQ(tool.join(), 130);
+    EXPECT_FALSE(std::filesystem::exists(path("hall.see")));
+    EXPECT_NE(read(path(".err")).find("interrupted after a part of the bake"), std::string::npos) << read(path(".err"));
+    // The limit ends it as well, and then all is visible that is not known to be hidden.
+    const json figures = answer("vis hall.prt --threads 1 --time-limit 0.01");
+    EXPECT_EQ(figures["stopped"], true);
+    EXPECT_EQ(figures["visible_leaf_pairs"], uint64_t{kSide * kSide} * (kSide * kSide));
 }
 
 TEST_F(Interruption, BeforeTheFramesNothingIsWritten) {

@@ -62,7 +62,8 @@ std::string bakeStateBytes(const CellVisibilityState& state, uint64_t graph_hash
     return {bytes.begin(), bytes.end()};
 }
 
-bool isBakeState(std::span<const char> bytes) { return ByteCursor(bytes).take<uint64_t>() == kMagic; }
+/// One of an older form is one, too: it is passed over, and no stranger's file.
+bool isBakeState(std::span<const char> bytes) { return (ByteCursor(bytes).take<uint64_t>() ^ kMagic) << 8 == 0; }
 
 Result<CellVisibilityState> readBakeState(std::span<const char> bytes, const std::string& name, const CellGraph& graph,
                                           uint64_t budget, double farthest, uint64_t work) {

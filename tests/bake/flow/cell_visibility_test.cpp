@@ -251,6 +251,73 @@ TEST(CellVisibility, SightMayEndAtADistance) {
     EXPECT_GT(too_far, 100u);  // segments twice as long are seen to miss something
 }
 
+TEST(CellVisibility, KeepsWhatTheWorkOfAllLeavesUnsettled) {
+    for (uint64_t kind = 0; kind < 4; ++kind) {
+        const CellGraph graph = worldOf(kind, 6);
+        const CellVisibility whole = bakeCellVisibility(graph);
+        uint64_t before = uint64_t(graph.cells) * graph.cells + 1;
+        for (const uint64_t work : {uint64_t(1), uint64_t(3000), uint64_t(100000), kUsualWork}) {
+            CellVisibilitySettings settings;
+            settings.work = work;
+            std::vector<CellVisibilityState> states;
+            settings.checkpoint = [&](const CellVisibilityState& state) { states.push_back(state); };
+            const CellVisibility some = bakeCellVisibility(graph, settings);
+            settings.checkpoint = nullptr;
+            EXPECT_TRUE(isWithin(whole.visible, some.visible)) << "kind " << kind << " work " << work;
+            EXPECT_LE(some.visible.count(), before);
+            before = some.visible.count();
+            EXPECT_FALSE(some.stopped);
+            if (work == 1) {
+                EXPECT_GT(some.over_budget, 0u);
+                EXPECT_LT(some.steps, whole.steps);
+                expectLaws(graph, some, 20000, "hardly any work");
+            }
+            if (work == kUsualWork) {
+                EXPECT_EQ(some.over_budget, 0u);
+                expectSame(whole, some, nameOf("work that suffices", kind));
+            }
+            for (const uint32_t threads : {2u, 3u}) {
+                ThreadPool pool(threads);
+                settings.jobs = &pool;
+                expectSame(some, bakeCellVisibility(graph, settings), nameOf("threads", threads));
+            }
+            settings.jobs = nullptr;
+            for (size_t i = 0; i < states.size(); ++i) {
+                settings.resume = &states[i];
+                expectSame(some, bakeCellVisibility(graph, settings), nameOf("checkpoint", i));
+            }
+        }
+    }
+}
+
+/// Of a grid of rooms with doors on all sides: whoever stops it stops it within the first bound and within a flow.
+TEST(CellVisibility, HearsWithinEachStep) {
+    const CellGraph graph = gridOfRooms(4, {.rooms = {12, 12, 1}, .upright = true});
+    const CellVisibility whole = bakeCellVisibility(graph);
+    std::vector<std::string> heard_in;
+    for (int calls = 0;; ++calls) {
+        int left = calls;
+        std::string step;
+        CellVisibilitySettings settings;
+        settings.stop = [&] { return left-- <= 0; };
+        settings.progress = [&](const BakeProgress& progress) { step = progress.step; };
+        size_t checkpoints = 0;
+        uint64_t flowed = 0;
+        settings.checkpoint = [&](const CellVisibilityState& state) {
+            ++checkpoints;
+            flowed = state.flowed;
+        };
+        const CellVisibility some = bakeCellVisibility(graph, settings);
+        EXPECT_TRUE(isWithin(whole.visible, some.visible)) << calls;
+        if (!some.stopped) break;
+        EXPECT_GE(left, -2) << calls;  // once it has been told, it does not go on asking
+        if (heard_in.empty() || heard_in.back() != step) heard_in.push_back(step);
+        if (step == "base") { EXPECT_EQ(checkpoints, 0u) << calls; }
+        EXPECT_EQ(flowed % 64, 0u) << calls;  // a batch that was cut short is not in the state
+    }
+    EXPECT_EQ(heard_in, (std::vector<std::string>{"base", "rays", "flow"}));
+}
+
 TEST(CellVisibility, StopsWithAllThatMayBeSeen) {
     for (uint64_t kind = 0; kind < 4; ++kind) {
         const CellGraph graph = worldOf(kind, 3);
