@@ -131,8 +131,8 @@ public:
     /// A view was answered: compares the work of both ways, and decides how the next one is.
     void noteAnswered(const QueryStats& stats, size_t visible);
 
-    /// Of the last certificate that held or was found, if it names nobody: whether some of the object that it culls may
-    /// lie in the view, and looks away; else all of it lies outside. It decides nothing but what is told.
+    /// Of the last certificate that held or was found, if it names nobody: whether the middle of a face of the
+    /// object that it culls lies in the view, and looks away. It decides nothing but what is told.
     bool looksAway(const Frame& frame, const Pending& entry) const;
 
     /// The parts whose shadows hid a node or an object by the last certificate that held or was found; good until the

@@ -106,24 +106,29 @@ bool ProofMemory::looksAway(const Frame& frame, const Pending& entry) const {
     if (!shape || (!looks_away_ && shape->polygons.size() > kMostPolygons)) return false;
     const glm::dmat4& transform = frame.world->objectAt(entry.index).transform;
     const glm::dvec3 shift = glm::dvec3(transform[3]) - frame.frustum.eye;
-    const glm::dmat3 linear(transform);
+    const glm::dmat3 linear(transform), to_object = glm::transpose(linear);
     const double flips = glm::determinant(linear) < 0 ? -1 : 1;
+    // Of a point of the object's space: x and y in the image and w, and the height over the near plane.
+    const auto rowOf = [&](const glm::dvec3& row, double more) {
+        return glm::dvec4(to_object * row, glm::dot(row, shift) + more);
+    };
+    const glm::dvec4 x = rowOf(image_.x, 0), y = rowOf(image_.y, 0), w = rowOf(image_.w, 0),
+                     near = rowOf(glm::dvec3(view_.near), view_.near.w);
     for (const OccluderCluster& cluster : shape->clusters)
         for (uint32_t p = cluster.first_polygon; p < cluster.first_polygon + cluster.polygon_count; ++p) {
             const OccluderPolygon& polygon = shape->polygons[p];
             if (polygon.double_sided) continue;
-            glm::dvec3 corner[4];
-            uint32_t beside = 31;  // a bit for each side of the image and the near plane: all corners lie beyond it
-            for (int k = 0; k < polygon.corners(); ++k) {
+            const auto at = [&](int k) {
                 const uint32_t v = cluster.first_vertex + polygon.vertex[k];
-                const glm::dvec3 q = linear * glm::dvec3(shape->x[v], shape->y[v], shape->z[v]) + shift;
-                corner[k] = q;
-                const double x = glm::dot(image_.x, q), y = glm::dot(image_.y, q), w = glm::dot(image_.w, q);
-                const bool before = glm::dot(glm::dvec3(view_.near), q) + view_.near.w < 0;
-                beside &= uint32_t{x > w} | uint32_t{-x > w} << 1 | uint32_t{y > w} << 2 | uint32_t{-y > w} << 3 |
-                          uint32_t{before} << 4;
-            }
-            if (!beside && facesAway(polygon, corner, flips, 0)) return true;
+                return glm::dvec3(shape->x[v], shape->y[v], shape->z[v]);
+            };
+            glm::dvec4 middle(at(0), 1.0);
+            for (int k = 1; k < polygon.corners(); ++k) middle += glm::dvec4(at(k), 1.0);
+            const double wide = glm::dot(w, middle);
+            if (!(std::abs(glm::dot(x, middle)) < wide && std::abs(glm::dot(y, middle)) < wide)) continue;
+            if (glm::dot(near, middle) < 0) continue;
+            const glm::dvec3 from = linear * at(0) + shift;
+            if (flips * glm::dot(glm::cross(linear * (at(1) - at(0)), linear * (at(2) - at(0))), from) > 0) return true;
         }
     return false;
 }

@@ -101,8 +101,9 @@ struct Counts {
 };
 
 /// Holds reasons of an answer to the triangles.
+/// @param by_middles  certificates take a face for one in the view by its middle: it may be two triangles
 void expectTrue(const Sheets& made, const View& view, const std::vector<uint8_t>& reasons, const std::string& what,
-                Counts& counts) {
+                Counts& counts, bool by_middles = false) {
     for (size_t i = 0; i < reasons.size(); ++i) {
         const Sheets::InView in = made.inView(i, view);
         const std::string of = what + ", object " + std::to_string(i);
@@ -115,7 +116,7 @@ void expectTrue(const Sheets& made, const View& view, const std::vector<uint8_t>
             ++counts.frustum;
             EXPECT_EQ(in.fronts, 0) << of << " lies in the view";
         }
-        if (in.backs > 0 && reasons[i] != 0) {
+        if (in.backs > 0 && reasons[i] != 0 && !by_middles) {
             ++counts.must;
             EXPECT_EQ(int(reasons[i]), int(kLooksAway)) << of << " is in the middle of the image";
         }
@@ -153,7 +154,8 @@ TEST(FacingStage, CountsWhatLooksAwayAndNothingElse) {
                 View moved = view;
                 moved.view[3] -= 0.01 * step * moved.view[0];
                 const QueryStats by_walk = walks.visible(now, moved).stats;
-                if (by_walk.proved > 0) expectTrue(made, moved, reasonsOf(walks, now), what + " in a walk", proved);
+                if (by_walk.proved > 0)
+                    expectTrue(made, moved, reasonsOf(walks, now), what + " in a walk", proved, true);
             }
         }
     }
@@ -161,7 +163,7 @@ TEST(FacingStage, CountsWhatLooksAwayAndNothingElse) {
     EXPECT_GT(whole.must, 300u);
     EXPECT_GT(whole.frustum, 1000u);
     EXPECT_GT(strips.facing, 300u);
-    ::testing::Test::RecordProperty("proved", std::to_string(proved.facing));
+    EXPECT_GT(proved.facing, 50u);
 }
 
 /// Without a second look, or without the frustum, nobody asks which way a face looks.

@@ -72,7 +72,7 @@ void answerWay(const AskedScene& asked, const glm::dvec3& from, const glm::dvec3
     for (const uint32_t cell : way.cells) told["cells"].push_back(cell);
     const size_t bends = way.points.size() - 2;
     std::string text =
-        fmt::format("a way through the cells: {} long, {}", readable(way.distance, 6),
+        fmt::format("a way: {} long, {}", readable(way.distance, 6),
                     bends > 0 ? fmt::format("with {} bend{}", bends, bends == 1 ? "" : "s")
                     : blocked ? "straight through open cells and portals, for what stands in cells is no wall to it"
                               : "straight");
