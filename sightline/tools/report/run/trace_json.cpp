@@ -47,7 +47,7 @@ void addFrame(const CullRun& run, size_t index, double begin, double end, Json& 
     const double scale = sum > length ? length / sum : 1;
     double at = begin;
     for (const Stage stage : kStageOrder) {
-        if (!(countedStages(run.settings.stages) & stageBit(stage))) continue;
+        if (!(run.settings.stages & stageBit(stage))) continue;
         const StageRow& row = frame.stages[static_cast<int>(stage)];
         Json part = slice(kStageNames[static_cast<int>(stage)], "stage", frame.thread, at, row.microseconds * scale);
         part["args"] = {

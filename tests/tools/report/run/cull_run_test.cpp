@@ -78,7 +78,10 @@ TEST(CullRun, JsonHasTheFieldsOfTheSchema) {
         EXPECT_TRUE(frame["camera"].contains(name)) << name;
     EXPECT_TRUE(frame["camera"]["far"].is_null());
     EXPECT_EQ(frame["visible"], json::parse("[5, 7]"));
-    ASSERT_EQ(frame["stages"].size(), 2u);
+    ASSERT_EQ(frame["stages"].size(), 3u);
+    EXPECT_EQ(frame["stages"][2]["name"], "facing");
+    EXPECT_EQ(frame["stages"][1]["instances"], 1);
+    EXPECT_EQ(frame["instances"], frame["visible"].size());
     EXPECT_EQ(frame["stages"][0]["name"], "frustum");
     EXPECT_EQ(frame["stages"][1]["name"], "occlusion");
     EXPECT_EQ(frame["stages"][1]["tested"], 3);

@@ -87,10 +87,15 @@ TEST(ExplainText, SaysWhatOfAnObjectWasAsked) {
     EXPECT_EQ(explanationClause(why, nameOf), "behind 'B' (71 %) and 'C' (29 %), by its triangles");
     why.verdict = Verdict::kOutsideFrustum;
     why.frustum.by_triangles = true;
-    EXPECT_EQ(
-        explanationText(why, "it", nameOf),
-        "culled by frustum: it lies out of view: its box reaches into it, but none of its triangles that would be "
-        "drawn.");
+    EXPECT_EQ(explanationText(why, "it", nameOf),
+              "culled by frustum: it lies out of view: its box reaches into it, but none of its triangles does.");
+    Explanation away;
+    away.verdict = Verdict::kFacesAway;
+    EXPECT_TRUE(explanationText(away, "it", nameOf)
+                    .starts_with("culled by facing: it has faces in the view that all look away"));
+    EXPECT_EQ(explanationClause(away, nameOf), "faces in the view that all look away from the eye");
+    EXPECT_EQ(stageOf(away), "facing");
+    EXPECT_STREQ(verdictName(away.verdict), "faces away");
     why.frustum.by_triangles = false;
     why.frustum.by_faces = true;
     EXPECT_EQ(explanationClause(why, nameOf),
