@@ -38,15 +38,6 @@ void tellWatch(const std::string& what, size_t done, size_t total) {
         g_watch(what, total == 0 ? 0.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total)));
 }
 
-/// Whoever reads it in a signal's handler may find a half of two names: no harm.
-char g_step[128] = "";
-
-void noteStep(const std::string& what) {
-    const std::lock_guard lock(g_watch_mutex);
-    const size_t size = what.copy(g_step, sizeof g_step - 1);
-    g_step[size] = 0;
-}
-
 /// A reader of standard error who has left is no reason to stop.
 void print(const std::string& text) {
     tell(stderr, text);
@@ -68,8 +59,6 @@ std::string progressText(size_t before, size_t done, size_t total, const std::st
                        duration(seconds * static_cast<double>(total - done) / static_cast<double>(done - before)));
 }
 
-const char* stepAtHand() { return g_step; }
-
 Progress::Progress(const std::string& what, std::string unit, size_t total)
     : what_(oneLine(what)),
       unit_(std::move(unit)),
@@ -79,7 +68,7 @@ Progress::Progress(const std::string& what, std::string unit, size_t total)
       count_from_(start_),
       next_(start_ + kPatience) {
     tellWatch(what_, 0, total_);
-    noteStep(what_);
+    nameStep(what_);
     if (quiet()) return;
     try {
         watch_ = std::thread([this] { watch(); });
@@ -94,7 +83,7 @@ Progress::~Progress() {
     ended_.notify_all();
     if (watch_.joinable()) watch_.join();
     tellWatch({}, 0, 0);
-    noteStep({});
+    nameStep({});
     if (terminal_ && shown_) print("\r\033[K");
 }
 

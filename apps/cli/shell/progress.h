@@ -64,8 +64,4 @@ private:
 /// @param seconds  for the steps after these
 std::string progressText(size_t before, size_t done, size_t total, const std::string& unit, double seconds);
 
-/// What is being done, for whoever has to say where it was interrupted; empty: nothing that is told. Safe in a signal's
-/// handler.
-const char* stepAtHand();
-
 }  // namespace sightline::cli

@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <initializer_list>
 #include <malloc.h>
+#include <mutex>
 #include <poll.h>
 #include <string>
 #include <sys/resource.h>
@@ -19,7 +20,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
-#include "apps/cli/shell/progress.h"
 #include "sightline/tools/scene/one_line.h"
 
 namespace sightline::cli {
@@ -32,6 +32,9 @@ std::atomic<bool> g_gentle{false}, g_interrupted{false}, g_waits{false};
 constexpr unsigned kHearing = 1;  // for work that is to hear of it  [s]
 static_assert(std::atomic<bool>::is_always_lock_free);
 
+/// Whoever reads it in a signal's handler may find a half of two names: no harm.
+char g_step[128] = "";
+
 /// Ends the process with one line. Only what is safe in a signal's handler.
 [[noreturn]] void endAtOnce(std::initializer_list<std::string_view> line) {
     constexpr std::string_view kClear = "\r\033[K";
@@ -43,7 +46,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 /// Work that has not asked for a second whether to stop is not waited for.
 extern "C" void onAlarm(int) {
     if (!g_waits) return;
-    const std::string_view step = stepAtHand();
+    const std::string_view step = g_step;
     endAtOnce({"sightline: interrupted in the midst of ", step.empty() ? "a step" : step,
                ", which cannot stop half-way: what was not written is lost\n"});
 }
@@ -135,6 +138,12 @@ bool interrupted() {
     if (!g_interrupted) return false;
     if (g_waits.exchange(false)) ::alarm(0);
     return true;
+}
+
+void nameStep(std::string_view what) {
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    g_step[what.copy(g_step, sizeof g_step - 1)] = 0;
 }
 
 int reportInterruption(const std::string& done, bool written) {
