@@ -59,6 +59,22 @@ TEST_F(Comfort, LongWorkShowsABarOnATerminalAndLinesWhenPiped) {
     EXPECT_NE(shown.find(" left"), std::string::npos) << shown;
 }
 
+TEST_F(Comfort, WorkThatShowsNoProgressIsHeardOf) {
+    // Cameras that come late through a pipe: no step is counted meanwhile.
+    write("path.json", R"({"frames": [{"eye": [1, 2, 3], "target": [0, 0, 0]}]})");
+    const std::string late = "( sleep 6; cat path.json ) | '" SIGHTLINE_TOOL
+                             "' cull city:1:100 --size 64x64 --repeat 1 --cameras /dev/stdin ";
+    const auto heard = [&](const std::string& options) {
+        const std::string command = "cd '" + directory_.string() + "' && " + late + options + " >out.txt 2>err.txt";
+        EXPECT_EQ(std::system(command.c_str()), 0);
+        return read(path("err.txt"));
+    };
+    const std::string said = heard("");
+    EXPECT_NE(said.find("cull: "), std::string::npos) << said;
+    EXPECT_NE(said.find(" s so far\n"), std::string::npos) << said;
+    EXPECT_EQ(heard("--quiet"), "");
+}
+
 TEST_F(Comfort, TheTimeLeftIsThatOfWhatThisRunHasDone) {
     using cli::progressText;
     EXPECT_EQ(progressText(0, 0, 100, "parts", 9), "0 of 100 parts, just begun");

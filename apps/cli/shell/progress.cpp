@@ -3,6 +3,7 @@
 #include "apps/cli/shell/progress.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <system_error>
 #include <utility>
@@ -18,8 +19,9 @@ using namespace tools;
 namespace {
 
 using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
 
-constexpr milliseconds kPatience(500), kTerminalPause(100), kPipedPause(5000);
+constexpr milliseconds kSilence(2000), kPatience(500), kTerminalPause(100), kPipedPause(5000);
 
 std::string duration(double seconds) {
     const auto whole = static_cast<long>(seconds + 0.5);
@@ -38,10 +40,23 @@ void tellWatch(const std::string& what, size_t done, size_t total) {
         g_watch(what, total == 0 ? 0.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total)));
 }
 
+// When anything was said last, and how many show progress now.
+std::atomic<Clock::rep> g_said{0};
+std::atomic<int> g_shown_by{0};
+
 /// A reader of standard error who has left is no reason to stop.
 void print(const std::string& text) {
+    g_said = Clock::now().time_since_epoch().count();
     tell(stderr, text);
     (void)std::fflush(stderr);
+}
+
+/// Where the system gives no thread, there is a line with each step alone.
+void startWatch(std::thread& thread, const std::function<void()>& watch) {
+    if (quiet()) return;
+    try {
+        thread = std::thread(watch);
+    } catch (const std::system_error&) {}
 }
 
 }  // namespace
@@ -67,12 +82,10 @@ Progress::Progress(const std::string& what, std::string unit, size_t total)
       start_(Clock::now()),
       count_from_(start_),
       next_(start_ + kPatience) {
+    ++g_shown_by;
     tellWatch(what_, 0, total_);
-    noteStep(what_);
-    if (quiet()) return;
-    try {
-        watch_ = std::thread([this] { watch(); });
-    } catch (const std::system_error&) {}  // then there is a line with each step alone
+    nameStep(what_);
+    startWatch(watch_, [this] { watch(); });
 }
 
 Progress::~Progress() {
@@ -82,8 +95,9 @@ Progress::~Progress() {
     }
     ended_.notify_all();
     if (watch_.joinable()) watch_.join();
+    --g_shown_by;
     tellWatch({}, 0, 0);
-    noteStep({});
+    nameStep({});
     if (terminal_ && shown_) print("\r\033[K");
 }
 
@@ -132,6 +146,34 @@ void Progress::show() {
     const auto full = static_cast<size_t>(part * kWidth);
     print(fmt::format("\r\033[K{} {}{} {:3.0f} %  {}", what_, paint(stderr, Tone::kGood, std::string(full, '#')),
                       std::string(kWidth - full, '.'), 100 * part, counts));
+}
+
+SilenceWatch::SilenceWatch(std::string verb) : verb_(std::move(verb)) {
+    startWatch(watch_, [this] { watch(); });
+}
+
+SilenceWatch::~SilenceWatch() {
+    {
+        const std::lock_guard lock(mutex_);
+        has_ended_ = true;
+    }
+    ended_.notify_all();
+    if (watch_.joinable()) watch_.join();
+}
+
+void SilenceWatch::watch() {
+    const bool terminal = isatty(STDERR_FILENO) == 1;
+    const Clock::time_point start = Clock::now();
+    Clock::time_point next = start + kSilence;
+    std::unique_lock lock(mutex_);
+    while (!ended_.wait_until(lock, next, [this] { return has_ended_; })) {
+        const Clock::time_point now = Clock::now();
+        const Clock::time_point quiet_until = Clock::time_point(Clock::duration(g_said.load())) + kSilence;
+        next = std::max(quiet_until, now + kPatience);
+        if (now < quiet_until || g_shown_by > 0) continue;
+        print(fmt::format("{}: {} so far\n", verb_, duration(std::chrono::duration<double>(now - start).count())));
+        next = now + (terminal ? kSilence : kPipedPause);
+    }
 }
 
 }  // namespace sightline::cli

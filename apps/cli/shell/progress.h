@@ -59,6 +59,26 @@ private:
     std::thread watch_;
 };
 
+/// Of a verb as a whole: where nothing has shown progress for two seconds, it says that the work goes on, unless quiet. Work
+/// between two Progresses, and several short ones in turn, are so heard of, too.
+class SilenceWatch {
+public:
+    /// @param verb  "cull"
+    explicit SilenceWatch(std::string verb);
+    ~SilenceWatch();
+    SilenceWatch(const SilenceWatch&) = delete;
+    SilenceWatch& operator=(const SilenceWatch&) = delete;
+
+private:
+    void watch();
+
+    std::string verb_;
+    std::mutex mutex_;
+    std::condition_variable ended_;
+    bool has_ended_ = false;
+    std::thread watch_;
+};
+
 /// "12 of 100 frames, 3 s left", as Progress shows it.
 /// @param before   done by an earlier run, in no time of this one
 /// @param seconds  for the steps after these

@@ -29,10 +29,11 @@ namespace {
 bool g_quiet = false;
 // What a signal's handler may touch.
 std::atomic<bool> g_gentle{false}, g_interrupted{false}, g_waits{false};
-// A handler may find a half of two names: no harm.
-char g_step[128] = "";
 constexpr unsigned kHearing = 1;  // for work that is to hear of it  [s]
 static_assert(std::atomic<bool>::is_always_lock_free);
+
+/// Whoever reads it in a signal's handler may find a half of two names: no harm.
+char g_step[128] = "";
 
 /// Ends the process with one line. Only what is safe in a signal's handler.
 [[noreturn]] void endAtOnce(std::initializer_list<std::string_view> line) {
@@ -81,12 +82,6 @@ bool readerHasLeft() {
 }
 
 }  // namespace
-
-void noteStep(const std::string& what) {
-    static std::mutex mutex;
-    const std::lock_guard lock(mutex);
-    g_step[what.copy(g_step, sizeof g_step - 1)] = 0;
-}
 
 int report(const Error& error) {
     const std::string line = "sightline: " + oneLine(error.message) + "\n";
@@ -143,6 +138,12 @@ bool interrupted() {
     if (!g_interrupted) return false;
     if (g_waits.exchange(false)) ::alarm(0);
     return true;
+}
+
+void nameStep(std::string_view what) {
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    g_step[what.copy(g_step, sizeof g_step - 1)] = 0;
 }
 
 int reportInterruption(const std::string& done, bool written) {

@@ -56,8 +56,8 @@ void stopGently();
 /// True once Ctrl-C was pressed, or the process asked to end: loops over frames stop and leave what is finished. Whoever
 /// is told so must leave what takes long.
 bool interrupted();
-/// Names the step at hand, for the line that tells of an interruption.
-void noteStep(const std::string& what);
+/// What is being done, for the line of a process that has to end in the midst of it; empty: nothing that is told.
+void nameStep(std::string_view what);
 /// Says on standard error how far it came.
 /// @param done  "3 of 16 frames"
 /// @return the exit code for it, kInterrupted

@@ -20,6 +20,7 @@
 
 #include "apps/cli/shell/config.h"
 #include "apps/cli/shell/help.h"
+#include "apps/cli/shell/progress.h"
 #include "apps/cli/shell/session.h"
 #include "apps/cli/verbs/common.h"
 #include "apps/cli/verbs/verbs.h"
@@ -348,7 +349,12 @@ int runTool(std::vector<std::string> words, std::span<const HeldVerb> held) {
     int exit_code = kDone;
     SessionOptions session;
     addVerbs(tool, held, session, exit_code);
-    tool.parse_complete_callback([&] { beginVerb(tool, session); });
+    std::optional<SilenceWatch> watch;
+    tool.parse_complete_callback([&] {
+        beginVerb(tool, session);
+        const std::string verb = tool.get_subcommands().front()->get_name();
+        if (verb != "view") watch.emplace(verb);  // a window shows that it lives
+    });
 
     if (words.empty()) {
         std::fputs(tool.help().c_str(), stderr);

@@ -207,6 +207,7 @@ private:
         std::vector<FlowAnswer> answers(kBatch);
         std::vector<std::vector<uint64_t>> asked(kBatch);
         const size_t words = state_.witnessed.wordsPerRow();
+        if (!state_.order.empty()) tell("flow", shareOf(state_.flowed));  // where this run begins
         while (state_.flowed < state_.order.size()) {
             if (stop_.asks()) break;
             const auto batch = std::span<const uint32_t>(state_.order)
