@@ -24,10 +24,10 @@ void expectInTurn(MadeWorld& made, Query& query, const Snapshot& now, const View
                   const std::string& what) {
     const VisibleSet set = expectSound(made, query, now, view, settings, what);
     uint64_t left = set.stats.objects;
-    for (int stage = 0; stage < kStageCount; ++stage) {
-        EXPECT_EQ(set.stats.stages[stage].tested, (stagesInUse(view, settings) & ~kCellStages) >> stage & 1 ? left : 0)
-            << what;
-        left -= set.stats.stages[stage].culled;
+    const uint32_t counted = countedStages(stagesInUse(view, settings) & ~kCellStages);
+    for (const Stage stage : kStageOrder) {
+        EXPECT_EQ(set.stats.of(stage).tested, counted & stageBit(stage) ? left : 0) << what;
+        left -= set.stats.of(stage).culled;
     }
 }
 

@@ -278,9 +278,10 @@ private:
         const uint8_t reason = reasonOf(copy.world.commit(), view_, settings_, static_cast<uint32_t>(self));
         const Without without = why.occlusion.without;
         ASSERT_NE(int(without), int(Without::kNotAsked)) << at(item);
-        const uint8_t said = without == Without::kVisible    ? 0
-                             : without == Without::kOccluded ? kByOcclusion
-                                                             : kByFrustum;
+        const uint8_t said = without == Without::kVisible     ? 0
+                             : without == Without::kOccluded  ? kByOcclusion
+                             : without == Without::kFacesAway ? 1 + static_cast<uint8_t>(Stage::kFacing)
+                                                              : kByFrustum;
         EXPECT_EQ(int(reason), int(said)) << at(item) << " without its hiders";
         EXPECT_EQ(without == Without::kOccluded, !why.occlusion.others.empty()) << at(item);
         count.hidden_again += without == Without::kOccluded;
