@@ -24,6 +24,8 @@ constexpr uint32_t kRayTask = 64;  // portals
 /// This many flows read the same frozen state. The answer depends on the number, and so the number does not depend on
 /// the threads.
 constexpr uint32_t kBatch = 64;
+/// So many flows that need much share what is to spare. The answer depends on it as well.
+constexpr uint32_t kTogether = 4;
 
 template <class Visit>
 void forEachBit(std::span<const uint64_t> row, Visit&& visit) {
@@ -221,6 +223,7 @@ private:
                 if (directed_.cells() % 64 != 0) asked[i].back() &= ~(~uint64_t(0) << (directed_.cells() % 64));
                 pool.from(batch[i], asked[i], limits, answers[i]);
             });
+            if (!stop_.stopped()) flowAgain(batch, asked, limits, pool, answers);
             if (stop_.stopped()) break;  // some of the batch have not ended by themselves
             for (uint32_t i = 0; i < batch.size(); ++i) apply(batch[i], asked[i], answers[i]);
             state_.flowed += batch.size();
@@ -229,11 +232,39 @@ private:
         }
     }
 
-    /// What one of the next flows may cost; 0: no limit.
+    /// Flows that their share did not suffice for have more, a few together, as long as something is to spare.
+    void flowAgain(std::span<const uint32_t> batch, const std::vector<std::vector<uint64_t>>& asked, FlowLimits limits,
+                   FlowPool& pool, std::vector<FlowAnswer>& answers) {
+        const uint64_t at_first = limits.work;
+        std::vector<uint32_t> spent;
+        for (uint32_t i = 0; i < batch.size(); ++i)
+            if (limits.work > 0 && answers[i].spent && answers[i].work >= limits.work) spent.push_back(i);
+        uint64_t done = 0;
+        for (uint32_t i = 0; i < batch.size(); ++i) done += answers[i].work;
+        for (size_t begin = 0; begin < spent.size() && !stop_.stopped(); begin += kTogether) {
+            const auto group = std::span<const uint32_t>(spent).subspan(begin).first(
+                std::min<size_t>(kTogether, spent.size() - begin));
+            const uint64_t share = spareWork(state_.work + done) / kTogether;
+            if (share <= at_first) return;
+            limits.work = share;
+            for (const uint32_t i : group) state_.work += answers[i].work;  // in vain
+            runJobs(settings_.jobs, static_cast<uint32_t>(group.size()),
+                    [&](uint32_t i) { pool.from(batch[group[i]], asked[group[i]], limits, answers[group[i]]); });
+            done = 0;
+            for (uint32_t i = 0; i < batch.size(); ++i) done += answers[i].work;
+        }
+    }
+
+    /// What is left for flows that need more than others.
+    uint64_t spareWork(uint64_t done) const {
+        const uint64_t left = settings_.work - std::min(settings_.work, done);
+        return left - std::min(left, settings_.work / 2);
+    }
+
+    /// What one of the next flows may cost at first; 0: no limit.
     uint64_t shareOfWork() const {
         if (settings_.work == 0) return 0;
-        const uint64_t left = settings_.work - std::min(settings_.work, state_.work);
-        const uint64_t spare = left - std::min(left, settings_.work / 2);
+        const uint64_t left = settings_.work - std::min(settings_.work, state_.work), spare = spareWork(state_.work);
         const uint64_t alike = (left - spare) / (state_.order.size() - state_.flowed);
         return std::max<uint64_t>(1, alike + spare / kBatch);
     }
