@@ -202,10 +202,11 @@ TEST_F(SceneFormats, FacesOfAnObjNeedTheirPositionsAlone) {
 // What stands still at its key, as exporters write of every node, may hide.
 TEST_F(SceneFormats, WhatAnAnimationMovesIsKnown) {
     const auto changesOf = [&](const std::string& keys, const std::string& of) {
-        const std::string mesh = "Mesh { 3; 0;0;0;, 1;0;0;, 0;1;0;; 1; 3;0,1,2;; }\n";
+        const std::string mesh = "Mesh { 3; 0.0;0.0;0.0;, 1.0;0.0;0.0;, 0.0;1.0;0.0;; 1; 3;0,1,2;; }\n";
         const auto frame = [&](const std::string& name, const std::string& below) {
-            return "Frame " + name + " { FrameTransformMatrix { 1,0,0,0, 0,1,0,0, 0,0,1,0, 2,0,0,1;; }\n" + mesh +
-                   below + "}\n";
+            return "Frame " + name +
+                   " { FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,2.0,0.0,0.0,1.0;; }\n" +
+                   mesh + below + "}\n";
         };
         const std::string animation =
             keys.empty() ? "" : "AnimationSet Open { Animation { {" + of + "} " + keys + " } }\n";
