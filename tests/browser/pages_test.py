@@ -263,7 +263,7 @@ class Pages(unittest.TestCase):
             run = json.load(file)
         frame, words = run["frames"][3], self.text("#overview")
         for row, objects, triangles in (("everything", run["scene"]["objects"], run["scene"]["triangles"]),
-                                        ("frustum alone", frame["frustum_alone"]["objects"],
+                                        ("frustum alone, by boxes", frame["frustum_alone"]["objects"],
                                          frame["frustum_alone"]["triangles"]),
                                         ("all stages", len(frame["visible"]), frame["triangles"])):
             told = self.browser.evaluate("[...document.querySelectorAll('#overview tbody:last-child tr')].map((row) => "
@@ -374,7 +374,7 @@ class Pages(unittest.TestCase):
 
     def test_tells_the_verdict_and_the_facts_of_a_cull(self):
         self.open("a")
-        for words in ("city:1:400", "cut at the height of the eye", "culled objects were visible", "First witness", "Repeat it", "Who hides most",
+        for words in ("city:1:400", "cut at the height of the eye", "culls of 400 objects over 5 frames were visible", "First witness", "Repeat it", "Who hides most",
                       "Which occluders pay", "Never kept on this path",
                       "The slowest: frame", "the median", "Over-estimate",
                       "Without culling", "a pixel on average", "the same, sample by sample", "5 frames of 320 × 180"):
@@ -387,7 +387,7 @@ class Pages(unittest.TestCase):
 
     def test_tells_of_false_culls_interruption_and_odd_names(self):
         def wrong(data):
-            data["run"]["verification"]["false_culls"] = 3
+            data["run"]["verification"].update(false_culls=3, false_instances=3)
             data["run"]["frames"][3]["verification"]["false_culls"] = 3
             data["run"].update(interrupted=True, frames_wanted=64)
             data["run"]["scene"]["file"] = "dir/<img src=x onerror=alert(1)>.glb"
