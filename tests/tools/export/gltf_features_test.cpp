@@ -153,6 +153,9 @@ std::vector<Row> rows() {
          carriedBy("", "KHR_interactivity", {{"pointer", "/nodes/{node}/rotation"}}), kAllMoves},
         {"a graph without nodes", carriedBy("", "KHR_interactivity", {{"pointer", "/materials/0/x"}}), kHides},
     };
+    const auto scene = [](Json nodes) { return [=](Json& json) { json["scenes"][0]["nodes"] = nodes; }; };
+    out.push_back({"a scene that names a child", scene({1, 2}), {false, true, kUnknown, 0}});
+    out.push_back({"a scene that names a child and its parent", scene({0, 1, 2}), {false, true, kUnknown, 0}});
     for (const char* name : {"KHR_physics_rigid_bodies", "OMI_physics_body", "AGI_articulations"})
         out.push_back({name, carriedBy("/nodes/0", name), kShellMoves});
     for (const char* name : {"KHR_materials_transmission", "KHR_materials_diffuse_transmission",
@@ -193,6 +196,11 @@ TEST(GltfFeatures, ExtensionsThatAreNotKnownAreTold) {
         std::ofstream(file, std::ios::binary) << bytes;
         std::vector<std::string> notes;
         ASSERT_TRUE(loadGltf(file.string(), {}, [&](const std::string& note) { notes.push_back(note); }).ok());
+        if (row.what.starts_with("a scene that names")) {
+            ASSERT_EQ(notes.size(), 1u);
+            EXPECT_NE(notes[0].find("nodes that have a parent (1, nodes[1] first)"), std::string::npos) << notes[0];
+            continue;
+        }
         const bool unknown =
             row.what.starts_with("unknown") ||
             (row.wanted == kClear && json["materials"][0].contains("extensions") &&
@@ -201,6 +209,21 @@ TEST(GltfFeatures, ExtensionsThatAreNotKnownAreTold) {
         if (unknown) { EXPECT_NE(notes[0].find("not known"), std::string::npos) << notes[0]; }
     }
     std::filesystem::remove(file);
+}
+
+TEST(GltfFeatures, AnInterpolationThatIsNoTextIsLinear) {
+    const Change odd = [](Json& json) {
+        animated({{"node", 1}, {"path", "translation"}})(json);
+        json["animations"][0]["samplers"][0]["interpolation"] = 9729;
+    };
+    EXPECT_EQ(outcomeOf(odd), kShellMoves);
+    GltfBuilder b = GltfBuilder::triangle();
+    const uint32_t far = b.accessor<float>("VEC3", {0, 0, 9, 0, 0, 9, 0, 0, 9});
+    b.json["meshes"][0]["primitives"][0]["targets"] = Json::array({{{"POSITION", far}}});
+    b.accessor<float>("SCALAR", {0, 3});
+    animated({{"node", 0}, {"path", "weights"}})(b.json);
+    b.json["animations"][0]["samplers"][0]["interpolation"] = 9729;
+    EXPECT_NEAR(load(b.glb()).meshes[0].bounds.max.z, 27, 0.01);
 }
 
 // Weights of a mesh bound every pose, whichever pointer drives them; and a file that is written again keeps the pointer.

@@ -27,6 +27,8 @@ std::string unknownText(const std::map<std::string, size_t>& unknown) {
 Scene sceneOf(Document document, const std::string& name, const std::function<void(const std::string&)>& note) {
     Scene scene = makeScene(document);
     if (note && !document.unknown.empty()) note(unknownText(document.unknown));
+    for (const std::string& text : document.notes)
+        if (note) note(text);
     scene.name = name;
     document.progress.reach(Progress::kBuilt, Progress::kTotal, 1);
     return scene;

@@ -92,7 +92,10 @@ Keys readKeys(Document& document, const Json& samplers, const Json& channel, siz
     const uint32_t output = requiredIndex(json, "output", document.accessors.size(), sampler_place);
     std::vector<float> values = decodeFloats(document, output, components, "animation output");
     if (width == 0) return {};
-    if (text(json, "interpolation", sampler_place) == "CUBICSPLINE")
+    const Json* interpolation = find(json, "interpolation");
+    if (interpolation && !interpolation->is_string())
+        document.notes.push_back(sampler_place + ": interpolation is no text, and counts as LINEAR");
+    else if (interpolation && *interpolation == "CUBICSPLINE")
         return splitSpline(document, values, width, input, sampler_place);
     if (values.size() % width != 0) fail(sampler_place, "{} numbers are no keys of {}", values.size(), width);
     const size_t count = values.size();

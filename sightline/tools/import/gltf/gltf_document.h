@@ -165,6 +165,7 @@ struct Document {
     std::map<std::vector<uint64_t>, uint32_t> known_streams;
     bool draco_required = false;            ///< by extensionsRequired: there is no other data
     std::map<std::string, size_t> unknown;  ///< extensions that are not known, and how often each was met
+    std::vector<std::string> notes;         ///< what the format forbids and is read all the same
     Budget budget;
     Progress progress;
 };

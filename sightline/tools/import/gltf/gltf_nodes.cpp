@@ -163,9 +163,10 @@ void markRoots(const JsonText& json, NodeTree& tree) {
         const Json& roots = table(scene, "nodes", place);
         for (size_t k = 0; k < roots.size(); ++k) {
             const uint32_t node = indexAt(roots, k, "nodes", tree.nodes.size(), place);
-            if (tree.names[node].parent != kNoNode)
-                fail(place, "nodes[{}] is not a root: nodes[{}] is its parent", node, tree.names[node].parent);
             tree.nodes[node].placed = true;
+            if (tree.names[node].parent == kNoNode) continue;
+            tree.nodes[node].changes |= SceneObject::kUnknown;
+            tree.named.push_back(node);
         }
     }
 }
@@ -219,8 +220,9 @@ NodeTree readNodes(const JsonText& json, const NodeTargets& targets, const NodeC
         Node& node = tree.nodes[i];
         if (const uint32_t parent = tree.names[i].parent; parent != kNoNode) {
             node.world = tree.nodes[parent].world * node.world;
-            node.placed = tree.nodes[parent].placed;
-            node.drawn = tree.nodes[parent].drawn;
+            const Node& above = tree.nodes[parent];
+            node.drawn = above.drawn || (node.placed && !above.placed);
+            node.placed = node.placed || above.placed;
             node.changes |= tree.nodes[parent].changes;
         } else {
             node.drawn = node.placed;

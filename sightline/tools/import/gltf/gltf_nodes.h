@@ -58,6 +58,7 @@ struct NodeTree {
     std::vector<NodeMark> marks;   ///< in the order of nodes
     std::vector<uint32_t> order;   ///< all nodes, parents before children
     std::vector<uint32_t> rank;    ///< where each node stands in `order`
+    std::vector<uint32_t> named;   ///< nodes with a parent that the scene names itself
 };
 
 /// How many elements the tables that a node refers to have.
@@ -71,8 +72,9 @@ struct NodeChanges {
     std::vector<bool> shown;  ///< hidden at rest, it may be shown all the same            [size: nodes]
 };
 
-/// Reads nodes and scenes. What an animation may show is drawn. A Fault if a node has two parents or is its own ancestor, if a transform is not
-/// finite or not affine, or if a scene's root has a parent.
+/// Reads nodes and scenes. What an animation may show is drawn. A scene may name a node that has a parent, as some writers
+/// do: it stands where its parent has it, and hides nothing, for readers differ. A Fault if a node has two parents or is
+/// its own ancestor, or if a transform is not finite or not affine.
 /// @param unknown  counts extensions that are not known
 /// @param told     is called now and then with how many nodes have been read
 NodeTree readNodes(const JsonText& json, const NodeTargets& targets, const NodeChanges& changes,

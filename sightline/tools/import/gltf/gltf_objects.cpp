@@ -333,6 +333,11 @@ Scene makeScene(Document& document) {
     parts.tree = readNodes(document.json, targets, nodeChanges(document, nodes), document.unknown, [&](size_t read) {
         document.progress.reach(Progress::kChecked, Progress::kParsed, double(read) / double(nodes));
     });
+    if (const std::vector<uint32_t>& named = parts.tree.named; !named.empty())
+        document.notes.push_back(
+            fmt::format("the scene names nodes that have a parent ({}, nodes[{}] first): they stand "
+                        "where it has them, and hide nothing",
+                        named.size(), named.front()));
     gatherShapes(parts);
     scene.materials = std::move(materials.list);
     const std::vector<Built> built = buildShapes(document, parts, scene);
