@@ -92,6 +92,29 @@ TEST_F(Formats, WhatIsNotReadIsRefusedInWords) {
 
 #ifdef SIGHTLINE_HAS_ASSIMP
 
+TEST_F(Formats, OfManyFilesThreeAreNamed) {
+    std::string files;
+    for (int i = 0; i < 20; ++i) {
+        const std::string name = "part" + std::to_string(i) + ".obj";
+        write(name, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        files += " " + name;
+    }
+    const Outcome words = run("info" + files);
+    EXPECT_EQ(words.exit_code, 0) << words.err;
+    EXPECT_TRUE(words.out.starts_with("part0.obj + part1.obj + part2.obj + 17 more\n")) << words.out;
+    EXPECT_EQ(words.out.find("part19.obj"), std::string::npos) << words.out;
+    EXPECT_EQ(info(files)["files"].size(), 20u);
+}
+
+TEST_F(Formats, WhatAnImporterSaysStandsBesideWhatToDo) {
+    write("broken.fbx", std::string("Kaydara FBX Binary  \0\x1a\0\xe8\x1c\0\0", 27) + std::string(140, 'x'));
+    const Outcome broken = run("info broken.fbx");
+    EXPECT_EQ(broken.exit_code, 3);
+    for (const char* words : {"broken.fbx: ", "at offset 0x1", "the importer says \"", "save it anew"})
+        EXPECT_NE(broken.err.find(words), std::string::npos) << words << "\n" << broken.err;
+    EXPECT_EQ(broken.errorLines(), 1u) << broken.err;
+}
+
 TEST_F(Formats, ForeignFilesAreSeenAsGltfIs) {
     // Far enough from the boxes to see both; the small one is hidden by the large one in the second frame.
     write("path.json", R"({"fov_y_degrees": 60, "near": 0.1, "frames": [

@@ -122,6 +122,13 @@ TEST_F(SightVerb, TellsTheWayThatOneCanGo) {
     EXPECT_NE(text.out.find("\n  through '"), std::string::npos) << text.out;
     const Outcome none = run("sight " + question + " --narrowest 50");
     EXPECT_NE(none.out.find("\nno way: walls and narrower holes part them\n"), std::string::npos) << none.out;
+    // A door that is shut blocks sight, and is no wall of the cells.
+    const Outcome shut =
+        run("sight building:1:1 --from -12.47,0.5,-1.246 --to -14.353,0.5,-2.359 --visibility house.vis");
+    EXPECT_NE(shut.out.find("blocked: 'Floor 0/Office 0.03/Door 1 (shut)'"), std::string::npos) << shut.out;
+    EXPECT_NE(shut.out.find("straight through open cells and portals, for what stands in cells is no wall to it"),
+              std::string::npos)
+        << shut.out;
     const Outcome beyond = run("sight building:1:1 --from -15,1.5,4 --to 0,1.5,nan --visibility house.vis");
     EXPECT_EQ(beyond.exit_code, 2);
 }
