@@ -53,10 +53,10 @@ int endSession(int exit_code);
 /// names the step that was at work. Before stopGently() it ends at once, and a second signal ends it at once in any
 /// case, each with exit code 130.
 void stopGently();
-/// True once Ctrl-C was pressed, or the process asked to end: loops over frames stop and leave what is finished. Whoever
-/// is told so must leave what takes long.
+/// True once Ctrl-C was pressed, or the process was asked to end. A caller that gets true stops its loop and keeps what
+/// is finished.
 bool interrupted();
-/// What is being done, for the line of a process that has to end in the midst of it; empty: nothing that is told.
+/// Names the step at work, for the line that the process writes if it is ended during it. Empty: no step.
 void nameStep(std::string_view what);
 /// Says on standard error how far it came.
 /// @param done  "3 of 16 frames"

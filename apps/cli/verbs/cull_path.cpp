@@ -355,7 +355,7 @@ Status explainFalseCulls(const Scene& scene, const RunOptions& options, const Cu
     const auto is_wrong = [](const FrameResult& frame) {
         return frame.verification && !frame.verification->rows.empty();
     };
-    // Who remembers is asked all that came before; a limit that gives way, the frame before.
+    // A query that remembers is asked all frames before this one; with hysteresis alone, the frame before.
     const bool remembers = !run.settings.stateless, looks_back = run.settings.hysteresis > 0;
     CameraPath path;
     size_t taken = 0;  // of the run's frames

@@ -48,7 +48,7 @@ struct Exported {
     uint64_t shells = 0, encased = 0, unseen = 0;  ///< triangles that were left out
     size_t frames = 0, regions = 0;
     uint64_t region_unseen = 0;                              ///< triangles that no region sees
-    std::vector<std::string> unknown;                        ///< regions of which nothing is known
+    std::vector<std::string> unknown;                        ///< regions that the answer is not known for
     std::vector<std::pair<uint64_t, std::string>> left_out;  ///< objects of which nothing is left: keys and paths
     bool keeps_textures = false;
 };
