@@ -222,6 +222,15 @@ bool isOpenStill(DepthTiles& tiles, const OccludeePlace& place, const Occluder& 
     return cover == Cover::kOpen || (cover == Cover::kUndecided && !resolveHidden(tiles, occludee, &walk.box));
 }
 
+/// Whether no edge has the whole view on its outer side: together with the rectangle, whether a polygon meets the view.
+bool meetsView(const OccludeePolygon& polygon, const Screen& screen) {
+    for (int i = 0; i < polygon.edges; ++i) {
+        const double x = polygon.a[i] > 0 ? screen.width : 0.0, y = polygon.b[i] > 0 ? screen.height : 0.0;
+        if (polygon.a[i] * x + polygon.b[i] * y + polygon.c[i] < -polygon.slack) return false;
+    }
+    return true;
+}
+
 /// Whether a polygon lies in the view that is turned away, and so is not drawn. No polygon that would be drawn does.
 bool showsBack(const OccludeePlace& place, const Occluder& shape, std::span<const ClusterLook> clusters) {
     OccludeePolygon occludee;
@@ -232,7 +241,8 @@ bool showsBack(const OccludeePlace& place, const Occluder& shape, std::span<cons
             OccluderPolygon polygon = shape.polygons[walk.cluster.first_polygon + p];
             if (polygon.double_sided) continue;
             polygon.double_sided = true;
-            if (walk.polygon(polygon, occludee) != Sight::kOutside) return true;
+            const Sight made = walk.polygon(polygon, occludee);
+            if (made == Sight::kVisible || (made == Sight::kOccluded && meetsView(occludee, place.screen))) return true;
         }
     }
     return false;

@@ -60,7 +60,7 @@ const Mode kModes[] = {
      [](const Done& d) { return uint64_t{d.sum.proved + d.sum.unasked == 0}; }},
     {"distance", [](Asked& a) { a.settings.max_distance = 7; },
      [](const Done& d) { return d.culled(Stage::kDistance); }},
-    {"contribution", [](Asked& a) { a.settings.contribution = 12; },
+    {"contribution", [](Asked& a) { a.settings.contribution = 8; },
      [](const Done& d) { return d.culled(Stage::kContribution); }},
     {"hysteresis", [](Asked& a) { a.settings.hysteresis = 0.5; }, nullptr},
     {"volumes", [](Asked& a) { a.settings.stages |= stageBit(Stage::kVolumes); },
@@ -154,7 +154,7 @@ struct ModesWorld : Rooms {
         const LodsId lods = world.addLods(levels);
         Random random(7);
         for (int i = 0; i < 60; ++i) {
-            const glm::dvec3 p(random.uniform(1, 22), random.uniform(0.2, 1.5), random.uniform(1, 22));
+            const glm::dvec3 p{random.uniform(1, 22), random.uniform(0.2, 1.5), random.uniform(1, 22)};
             glm::dmat4 t(1.0);
             for (int axis = 0; axis < 3; ++axis) t[axis][axis] = random.uniform(0.2, 0.6);
             t[3] = glm::dvec4(p, 1);
@@ -169,7 +169,7 @@ struct ModesWorld : Rooms {
         for (int i = 0; i < 60; ++i) {
             glm::dmat4 t(1.0);
             for (int axis = 0; axis < 3; ++axis) t[axis][axis] = random.uniform(1, axis == 1 ? 1.5 : 5);
-            t[3] = glm::dvec4(random.uniform(0.3, 20), random.uniform(0.1, 1.5), random.uniform(0.3, 20), 1);
+            t[3] = glm::dvec4{random.uniform(0.3, 20), random.uniform(0.1, 1.5), random.uniform(0.3, 20), 1};
             addWith(t, mound, true, clusters, {});
         }
     }
@@ -242,8 +242,8 @@ Done walk(const ModesWorld& rooms, const Snapshot& now, const Walk& of, const As
         } else if (drawn) {
             EXPECT_EQ(stats.off & (offBit(Off::kGapsByCertificates) | offBit(Off::kClusterLookByCertificates)), 0u)
                 << what;
-            // Certificates did not do in the middle of an answer: it was drawn, by one thread.
-            EXPECT_TRUE(!(stats.off & offBit(Off::kBinsByCertificates)) || parts.last < 4) << what;
+            // Certificates did not do in the middle of an answer: it was drawn, by one thread. Of two eyes, one may be.
+            EXPECT_TRUE(!(stats.off & offBit(Off::kBinsByCertificates)) || parts.last < 4 || asked.two_eyes) << what;
         }
         const uint32_t eyes = asked.two_eyes ? 2 : 1;
         done.frames_in_parts += parts.last > eyes;

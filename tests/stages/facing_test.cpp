@@ -42,7 +42,8 @@ struct Sheets {
                          two = world.addShape(prepareOccluder(mesh.view(), {}, both));
         Random random(seed);
         for (int i = 0; i < count; ++i) {
-            glm::dmat4 t(lookAt({0, 0, 0}, randomUnit(random), randomUnit(random)));
+            const glm::dvec3 forward = randomUnit(random), up = randomUnit(random);
+            glm::dmat4 t(lookAt({0, 0, 0}, forward, up));
             for (int axis = 0; axis < 3; ++axis) t[axis] *= random.uniform(0.3, 2);
             if (random.below(3) == 0) t[0] = -t[0];
             t[3] = glm::dvec4(randomVector(random, {12, 4, 12}), 1);

@@ -54,26 +54,28 @@ struct Rooms : MadeWorld {
                     piece(door, door + 1, 2, 3);
                 }
         for (int i = 0; i < 400; ++i) {
-            const glm::dvec3 p(random.uniform(0.3, 6 * kSide - 1), random.uniform(0, 2),
-                               random.uniform(0.3, 6 * kSide - 1));
+            const glm::dvec3 p{random.uniform(0.3, 6 * kSide - 1), random.uniform(0, 2),
+                               random.uniform(0.3, 6 * kSide - 1)};
+            const glm::dvec3 size{random.uniform(0.1, 0.7), random.uniform(0.1, 0.9), random.uniform(0.1, 0.7)};
+            const bool hides = random.below(2) == 0;
             things.push_back(transforms.size());
-            add(p, p + glm::dvec3(random.uniform(0.1, 0.7), random.uniform(0.1, 0.9), random.uniform(0.1, 0.7)),
-                random.below(2) == 0, random.below(8) == 0 ? 2 : 1);
+            add(p, p + size, hides, random.below(8) == 0 ? 2 : 1);
         }
         for (int i = 0; i < 40; ++i) {  // of several clusters, some through walls, and some hang from above
             glm::dmat4 t(1.0);
             for (int axis = 0; axis < 3; ++axis) t[axis][axis] = random.uniform(0.3, axis == 1 ? 1.5 : 4);
             if (random.below(4) == 0) t[1] = -t[1];
-            t[3] = glm::dvec4(random.uniform(0.3, 6 * kSide - 3), random.uniform(0.1, 2),
-                              random.uniform(0.3, 6 * kSide - 3), 1);
+            t[3] = glm::dvec4{random.uniform(0.3, 6 * kSide - 3), random.uniform(0.1, 2),
+                              random.uniform(0.3, 6 * kSide - 3), 1};
             mounds.push_back(transforms.size());
             add(t, random.below(2) == 0, 1, mound);
         }
     }
     /// Moves a wall and a thing.
     void disturb(Random& random) {
-        moveTo(walls[random.below(walls.size())], {random.uniform(-1, 1), 0, random.uniform(-1, 1)});
-        moveTo(things[random.below(things.size())], {random.uniform(-2, 2), 0, random.uniform(-2, 2)});
+        const size_t wall = walls[random.below(walls.size())], thing = things[random.below(things.size())];
+        moveTo(wall, {random.uniform(-1, 1), 0, random.uniform(-1, 1)});
+        moveTo(thing, {random.uniform(-2, 2), 0, random.uniform(-2, 2)});
     }
     void moveTo(size_t object, const glm::dvec3& by) {
         transforms[object][3] += glm::dvec4(by, 0);
@@ -90,7 +92,7 @@ struct Steps {
     void jump(Random& random) {
         eye = {random.uniform(0.5, 6 * Rooms::kSide - 0.5), random.uniform(0.4, 2.4),
                random.uniform(0.5, 6 * Rooms::kSide - 0.5)};
-        step = glm::dvec3(random.uniform(-0.03, 0.03), 0, random.uniform(-0.03, 0.03));
+        step = glm::dvec3{random.uniform(-0.03, 0.03), 0, random.uniform(-0.03, 0.03)};
         turn = random.uniform(0, 6.28);
         speed = random.uniform(-0.02, 0.02);
     }
