@@ -9,8 +9,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
-#include <filesystem>
-#include <string_view>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -19,29 +17,11 @@
 
 #include <fmt/core.h>
 
+#include "sightline/tools/import/foreign/ifc_needs.h"
 #include "sightline/tools/import/foreign/scene_stream.h"
 
 namespace sightline::import {
 namespace {
-
-namespace fs = std::filesystem;
-
-/// A program of the search path. Empty: there is none of these names.
-std::string findProgram(std::initializer_list<const char*> names) {
-    const char* list = std::getenv("PATH");
-    std::string_view left = list ? list : "/usr/local/bin:/usr/bin:/bin";
-    while (!left.empty()) {
-        const size_t end = std::min(left.find(':'), left.size());
-        const fs::path folder(left.substr(0, end));
-        left.remove_prefix(std::min(end + 1, left.size()));
-        std::error_code error;
-        for (const char* name : names)
-            if (!folder.empty() && access((folder / name).c_str(), X_OK) == 0 &&
-                !fs::is_directory(folder / name, error))
-                return (folder / name).string();
-    }
-    return {};
-}
 
 /// Whole memory of a JavaScript engine is counted as what it may write: it reserves far more addresses than it uses.
 void limitData(uint64_t bytes) {
@@ -91,22 +71,14 @@ bool lacksMemory(int errors) {
 }  // namespace
 
 std::string readWithNode(const std::string& file, const std::string& suffix, uint64_t memory) {
-    const std::string node = findProgram({"node", "nodejs"});
-    if (node.empty()) return "IFC is read by Node.js, which is not installed: install it (apt install nodejs)";
-    std::error_code error;
-    const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path() / "ifc";
-    for (const char* needed : {"read_ifc.mjs", "web-ifc/web-ifc-api-node.js", "web-ifc/web-ifc-node.wasm"})
-        if (!fs::is_regular_file(folder / needed, error))
-            return fmt::format(
-                "IFC is read by web-ifc, which this build lacks ({}): install npm (apt install npm) and "
-                "build sightline-import again",
-                needed);
+    const tools::IfcNeeds needs = tools::findIfcNeeds("/proc/self/exe");
+    if (!needs.lacks.empty()) return needs.lacks;
     // With less the engine itself dies, each time in other words.
     constexpr uint64_t kLeast = uint64_t(256) << 20;
     if (memory != 0 && memory < kLeast) _exit(tools::kImportOutOfMemory);
-    std::vector<std::string> words{node};
+    std::vector<std::string> words{needs.node};
     if (memory != 0) words.push_back(fmt::format("--max-old-space-size={}", std::max<uint64_t>(64, memory >> 20)));
-    words.insert(words.end(), {(folder / "read_ifc.mjs").string(), file, suffix});
+    words.insert(words.end(), {needs.script, file, suffix});
 
     int errors[2];
     if (pipe2(errors, O_CLOEXEC) != 0) return fmt::format("Node.js cannot be started: {}", std::strerror(errno));

@@ -58,6 +58,8 @@ void Frame::noteOff() {
     note(settings.stateless && occlusion && remembers, Off::kMemoryByStateless);
     note(!settings.stateless && settings.proofs && occlusion && !frustum, Off::kCertificatesByStages);
     note(uses(Stage::kLod) && occlusion, Off::kOccludersByLods);
+    const bool parts = uses(Stage::kVolumes) || (settings.proofs && !settings.stateless && occlusion && frustum);
+    note(parts && !world->volumes && world->occluders.size() > 1, Off::kCertificatesByWorld);
 }
 
 Box3d Frame::boundsAt(uint32_t place) const {

@@ -21,6 +21,7 @@ enum class Off : uint32_t {
     kStagesByEyeRadius = 1u << 10,
     kWindowByStages = 1u << 11,
     kOccludersByLods = 1u << 12,
+    kCertificatesByWorld = 1u << 13,
 };
 inline constexpr uint32_t offBit(Off off) { return static_cast<uint32_t>(off); }
 
@@ -56,6 +57,8 @@ inline constexpr OffRow kOffRows[] = {
     {Off::kWindowByStages, "window_by_stages", "View::window: it needs the stage frustum"},
     {Off::kOccludersByLods, "occluders_by_lods",
      "hiding by objects that a coarser level may stand for: a coarser level may show what the finest hides"},
+    {Off::kCertificatesByWorld, "certificates_by_world",
+     "certificates, stage volumes: the world was made without WorldDef::volumes, the parts that they hide by"},
 };
 
 }  // namespace sightline

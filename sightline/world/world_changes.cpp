@@ -372,6 +372,7 @@ std::shared_ptr<const SnapshotState> WorldState::commit() {
     cells_.share(state->cell_state);
     state->count = size();
     state->common_layers = common_layers_;
+    state->volumes = volumes;
     validateWorld(*state);
     last_ = state;
     return last_;

@@ -67,6 +67,7 @@ Box3d worldBounds(const ObjectRecord& object) {
 
 std::shared_ptr<SnapshotState> stateOfSome(const SnapshotState& from, std::span<const uint32_t> items, Memory* memory) {
     auto state = makeShared<SnapshotState>(memory, memory);
+    state->volumes = from.volumes;
     ObjectTable objects(memory);
     Array<Box3d> boxes(memory);
     Array<uint32_t> rows(memory);

@@ -131,6 +131,7 @@ struct SnapshotState {
     CellState cell_state;                      ///< empty in a world of some of another one's objects
     uint32_t count = 0;                        ///< living objects
     uint32_t common_layers = ~0u;              ///< layers that every object is in
+    bool volumes = true;                       ///< WorldDef::volumes
 
     explicit SnapshotState(Memory* memory);
     SnapshotState(const SnapshotState&) = delete;

@@ -1,5 +1,6 @@
 // Files of all formats on the command line: several at once, units and axes, what info tells, limits.
 // SPDX-License-Identifier: MIT
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -79,6 +80,13 @@ TEST_F(Formats, ListsWhatCanBeRead) {
     EXPECT_EQ(list["formats"][0]["suffixes"], "glb gltf");
     EXPECT_EQ(list["formats"][0]["available"], true);
     expectError("info", 2, "SCENE");
+#ifdef SIGHTLINE_HAS_ASSIMP
+    const std::string search = std::getenv("PATH") ? std::getenv("PATH") : "";
+    ::setenv("PATH", path("").c_str(), 1);
+    const Outcome without = succeed("info --formats");
+    ::setenv("PATH", search.c_str(), 1);
+    EXPECT_NE(without.out.find("IFC is read by Node.js, which is not installed: install it"), std::string::npos);
+#endif
 }
 
 TEST_F(Formats, WhatIsNotReadIsRefusedInWords) {

@@ -342,6 +342,43 @@ TEST(Modes, EachFlagHasItsSentence) {
     EXPECT_EQ(one.off, 3u);
 }
 
+/// Neither certificates nor the stage of volumes work in a world without volumes, and the answer says so where one is on.
+TEST(Modes, AWorldWithoutVolumesSaysSo) {
+    for (const bool volumes : {true, false}) {
+        WorldDef def;
+        def.volumes = volumes;
+        World world = World::create(def);
+        const TestMesh wall = boxMesh({-20, -20, -6}, {20, 20, -5});
+        const auto add = [&](const glm::dvec3& at, OccluderId occluder) {
+            ObjectDef object;
+            object.bounds = {at - glm::dvec3(0.5), at + glm::dvec3(0.5)};
+            if (occluder != OccluderId()) object.bounds = {{-20, -20, -6}, {20, 20, -5}};
+            object.occluder = occluder;
+            world.add(object);
+        };
+        const Snapshot empty = world.commit();
+        add({}, world.addOccluder(prepareOccluder(wall.view())));
+        for (int i = 0; i < 50; ++i) add({0.2 * i - 5, 0, -20 - i}, {});
+        const Snapshot now = world.commit();
+        const auto asked = [&](const QuerySettings& settings, const Snapshot& of) {
+            Query query;
+            QueryStats sum;
+            for (int i = 0; i < 8; ++i)
+                sum.addWork(query.visible(of, viewFrom({0.01 * i, 0, 0}, {0, 0, -1}, {60, 320, 180}), settings).stats);
+            return sum;
+        };
+        const uint32_t bit = offBit(Off::kCertificatesByWorld);
+        const QueryStats walk = asked({}, now), without = asked({.stateless = true}, now);
+        EXPECT_EQ((walk.off & bit) != 0, !volumes);
+        if (!volumes) EXPECT_EQ(walk.proved, 0u);
+        EXPECT_EQ(without.off & bit, 0u);
+        EXPECT_EQ(asked({}, empty).off & bit, 0u);
+        QuerySettings of_volumes{.stateless = true};
+        of_volumes.stages |= stageBit(Stage::kVolumes);
+        EXPECT_EQ((asked(of_volumes, now).off & bit) != 0, !volumes);
+    }
+}
+
 /// One object with clusters leaves certificates to all others, and strips do.
 TEST(Modes, CertificatesGoOnBesideClustersAndBins) {
     ModesWorld rooms;

@@ -18,6 +18,7 @@
 #include "apps/cli/verbs/info_visibility.h"
 #include "apps/cli/verbs/verbs.h"
 #include "sightline/tools/import/foreign/foreign.h"
+#include "sightline/tools/import/foreign/ifc_needs.h"
 #include "sightline/tools/import/quake/map_source.h"
 #include "sightline/tools/import/scene_kind.h"
 #include "sightline/tools/report/readable.h"
@@ -287,13 +288,16 @@ void printObjects(std::FILE* out, const Scene& scene) {
 }
 
 Status printFormats(const std::string& json) {
-    const bool foreign = !findImportWorker({}).empty();
+    const std::string worker = findImportWorker({});
+    const std::string ifc_lacks = worker.empty() ? "" : findIfcNeeds(worker).lacks;
     Json list = Json::array();
     for (const SceneFormat& format : sceneFormats()) {
-        const bool can = format.ours() || foreign;
+        const bool by_node = format.reader == "web-ifc";
+        const bool can = format.ours() || (!worker.empty() && !(by_node && !ifc_lacks.empty()));
+        const std::string why = can ? "" : worker.empty() ? ", not in this build" : "; " + ifc_lacks;
         if (json != "-")
             fmt::print("{:<16}{:<54}{}{}{}\n", format.suffixes, format.name, format.reader,
-                       format.tested ? "" : ", untested", can ? "" : ", not in this build");
+                       format.tested ? "" : ", untested", why);
         list.push_back({{"suffixes", format.suffixes},
                         {"name", format.name},
                         {"reader", format.reader},

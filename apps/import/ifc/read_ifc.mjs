@@ -277,7 +277,7 @@ function checkProject(step) {
     if (!length) stream.note('tells no unit of length: metres are taken (--unit)');
 }
 
-/** Geometry whose indices lead out of its points, where web-ifc would take what lies behind them. */
+/** Geometry whose indices lead out of its points, where web-ifc would take what lies behind them, or count otherwise. */
 function checkIndices(step) {
     const pointsOf = new Map();
     const count = (list) => {
@@ -292,7 +292,9 @@ function checkIndices(step) {
         for (const id of step.ofType(type)) {
             const attributes = step.attributes(id), points = attributes[0];
             if (!(points instanceof Ref) || !step.has(points.id)) throw new Fault(`#${id} (${type}) refers to points that are not there`);
-            const most = count(points.id);
+            const most = count(points.id), renumbered = {IFCPOLYGONALFACESET: 3, IFCINDEXEDPOLYCURVE: 99}[type] ?? 4;
+            if (attributes[renumbered]?.some((point, i) => point !== i + 1))
+                throw new Fault(`#${id} (${type}) numbers its points anew (PnIndex), which web-ifc does not follow: export it without, or as glTF`);
             if (type === 'IFCINDEXEDPOLYCURVE') {
                 for (const segment of attributes[1] ?? []) check(id, points.id, segment.args ?? [], most);
             } else if (type === 'IFCPOLYGONALFACESET') {

@@ -135,13 +135,6 @@ private:
     Array<uint32_t> index_;  ///< per item: of the recorded object
 };
 
-/// Whether a world's occluders have parts for volumes and certificates: whether its first one with polygons has.
-bool hasVolumes(const detail::SnapshotState& state) {
-    for (uint32_t i = 1; i < state.occluders.size(); ++i)
-        if (!state.occluders[i]->parts.parts.empty()) return true;
-    return state.occluders.size() <= 1;
-}
-
 }  // namespace
 
 Result<FrameRecording> recordFrame(const Query& answered, Memory* memory) {
@@ -151,7 +144,7 @@ Result<FrameRecording> recordFrame(const Query& answered, Memory* memory) {
     out.view = view;
     out.settings = limited(settings);
     if (!now) return out;
-    out.volumes = hasVolumes(now.state());
+    out.volumes = now.state().volumes;
     Array<uint8_t> reasons(now.objectCount(), 0, memory);
     answered.reasons(reasons, kLeftEye);
     Recorder(now.state(), out, memory).run(reasons, answered);

@@ -1,4 +1,4 @@
-// IFC: what exporters really write is read as it is meant, what is lost is counted, and what is broken is one line.
+// IFC: what exporters really write is read as it is meant.
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
@@ -12,10 +12,7 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include "foreign_files.h"
-#include "foreign_reading.h"
-#include "ifc_files.h"
-#include "sightline/base/sanitized.h"
+#include "ifc_reading.h"
 
 namespace sightline {
 using namespace tools;
@@ -24,39 +21,6 @@ namespace {
 using namespace test;
 
 #ifdef SIGHTLINE_IMPORT_PROGRAM
-
-class Ifc : public SceneFiles {
-protected:
-    void SetUp() override {
-        SceneFiles::SetUp();
-        settings_.note = [this](const std::string& text) { notes_ += text + "\n"; };
-        IfcFile file;
-        file.solid("IFCWALL", "a", file.extruded({0, 0, 0}, {1, 1, 1}));
-        static const std::string lacking = [&] {
-            const Result<Scene> scene = load(write("probe.ifc", file.text()));
-            return scene.ok() || scene.error().message.find("IFC is read by") == std::string::npos
-                       ? ""
-                       : scene.error().message;
-        }();
-        if (!lacking.empty()) GTEST_SKIP() << lacking;
-        notes_.clear();
-    }
-
-    /// The scene of a file, which must be a sound one.
-    Scene read(const std::string& text, const std::string& name = "a.ifc") {
-        notes_.clear();
-        Result<Scene> scene = load(write(name, text));
-        EXPECT_TRUE(scene.ok()) << scene.error().message;
-        if (!scene.ok()) return {};
-        EXPECT_EQ(sceneFault(*scene), "");
-        return std::move(*scene);
-    }
-    Scene read(const IfcFile& file) { return read(file.text()); }
-
-    void expectNoted(const std::string& words) const { EXPECT_NE(notes_.find(words), std::string::npos) << notes_; }
-
-    std::string notes_;
-};
 
 Box3d boundsOf(const Scene& scene, size_t object) {
     Box3d out;
@@ -529,90 +493,6 @@ TEST_F(Ifc, BarsAreSweptAlongCurvesInPieces) {
         EXPECT_EQ(scene.materials[scene.meshes[scene.objects[i].mesh].primitives[0].material].hides(), i != 1) << i;
     }
     expectNoted("swept along their whole curves, and so hiding nothing: 1 solids");
-}
-
-TEST_F(Ifc, WhatIsLostIsCountedAndNamed) {
-    IfcFile file;
-    file.solid("IFCWALL", "good", file.brep({0, 0, 0}, {1, 1, 1}), ",$,$");
-    for (const char* name : {"a", "b", "c", "d"}) file.solid("IFCBEAM", name, file.add("IFCNOSUCHSOLID(1.)"), ",$,$");
-    file.solid("IFCNOSUCHPRODUCT", "e", file.brep({0, 0, 0}, {1, 1, 1}), ",$,$");
-    file.solid("IFCSLAB", "f", 99999999, ",$,$");
-    const Scene scene = read(file);
-    EXPECT_EQ(scene.objects.size(), 1u);
-    expectNoted("read 1 of 6 products with a shape");
-    expectNoted("without triangles: 5 (IfcBeam #");
-    expectNoted("of types that are not known: 4 IFCNOSUCHSOLID, 1 IFCNOSUCHPRODUCT");
-    expectNoted("references that lead nowhere: 1");
-    IfcFile none;
-    none.solid("IFCSPACE", "", none.brep({0, 0, 0}, {1, 1, 1}), ",$,$,$");
-    expectRefused(write("none.ifc", none.text()), "draws nothing: read 0 of 1 products with a shape; rooms");
-}
-
-TEST_F(Ifc, ArchivesAreUnpacked) {
-    IfcFile file;
-    file.solid("IFCWALL", "", file.brep({0, 0, 0}, {1, 1, 1}), ",$,$");
-    const std::string zip = zipBytes({{"notes.txt", "x"}, {"House.IFC", file.text()}});
-    EXPECT_EQ(read(zip, "a.ifczip").objects.size(), 1u);
-    for (size_t size = 0; size < zip.size(); size += zip.size() / 7 + 1)
-        expectRefused(write("cut.ifczip", "PK" + zip.substr(2, size)), "zip archive");
-    expectRefused(write("empty.ifczip", zipBytes({{"notes.txt", "x"}})), "holds no .ifc file");
-}
-
-TEST_F(Ifc, WhatIsBrokenIsOneLineWithItsPlace) {
-    IfcFile file;
-    file.solid("IFCWALL", "wall", file.triangulated({0, 0, 0}, {1, 1, 1}), ",$,$");
-    const std::string good = file.text();
-    const auto broken = [&](const std::string& was, const std::string& is, const std::string& words) {
-        std::string text = good;
-        text.replace(text.find(was), was.size(), is);
-        expectRefused(write("broken.ifc", text), words);
-    };
-    for (const double share : {0.3, 0.5, 0.7, 0.9, 0.99}) {
-        SCOPED_TRACE(share);
-        const Result<Scene> scene = load(write("cut.ifc", good.substr(0, size_t(share * double(good.size())))));
-        ASSERT_FALSE(scene.ok());
-        EXPECT_EQ(messageFault(scene.error(), path("cut.ifc")), "");
-    }
-    broken("END-ISO-10303-21;\n", "", "ends too early: END-ISO-10303-21 is missing behind line");
-    broken("(#5),#2);", "(#5),#2)", "line 8: a semicolon is missing behind: #1=IFCPROJECT");
-    broken("IFCUNITASSIGNMENT((#3))", "IFCUNITASSIGNMENT((#3)", "line 9: a bracket is not closed: #2=");
-    broken("IFCUNITASSIGNMENT((#3))", "IFCUNITASSIGNMENT((#3)))", "line 9: a bracket closes");
-    broken("'wall'", "'wall", "a text has no end");
-    broken("#6=IFC", "/* #6=IFC", "line 13: a comment has no end");
-    broken("#6=IFC", "#6 IFC", "line 13: this is no statement of STEP");
-    broken(".T.,((1", ".T,((1", "neither a number nor a word between dots");
-    broken("((1,3,4)", "((1,3,9)", "(IFCTRIANGULATEDFACESET) has no point 9");
-    broken("((1,3,4)", "((0,3,4)", "(IFCTRIANGULATEDFACESET) has no point 0");
-    broken("#2=IFCUNIT", "#2=IFCPROJECT('x',$,$,$,$,$,$,$,$);\n#8=IFCUNIT", "holds 2 IfcProject");
-    broken("FILE_SCHEMA(('IFC4'))", "FILE_SCHEMA(('IFC2X2_FINAL'))", "is of the schema IFC2X2_FINAL");
-    broken("#1=IFCPROJECT(", "#99999999999=IFCPROJECT(", "no number of a statement");
-}
-
-TEST_F(Ifc, LimitsHoldAndNameThePart) {
-    IfcFile file;
-    file.solid("IFCWALL", "", file.brep({0, 0, 0}, {1, 1, 1}), ",$,$");
-    const std::string name = write("a.ifc", file.text());
-    settings_.memory_limit = uint64_t(100) << 20;
-    expectRefused(name, "needs more memory than 100 MiB (--import-memory)");
-    settings_.memory_limit = uint64_t(2) << 30;
-    settings_.time_limit = 0.01;
-    expectRefused(name, "took longer than 0.01 s to read (--import-time)");
-}
-
-TEST_F(Ifc, WhatIsMissingIsSaid) {
-    IfcFile file;
-    file.solid("IFCWALL", "", file.brep({0, 0, 0}, {1, 1, 1}), ",$,$");
-    const std::string name = write("a.ifc", file.text());
-    const std::string search = std::getenv("PATH") ? std::getenv("PATH") : "";
-    ::setenv("PATH", path("nowhere").c_str(), 1);
-    expectRefused(name, "IFC is read by Node.js, which is not installed: install it (apt install nodejs)");
-    const std::string boxes = write("boxes.obj", objText(twoBoxes()));
-    EXPECT_TRUE(load(boxes).ok()) << "other formats need none of it";
-    ::setenv("PATH", search.c_str(), 1);
-    settings_.worker = path("sightline-import");
-    std::filesystem::copy_file(SIGHTLINE_IMPORT_PROGRAM, settings_.worker);
-    expectRefused(name, "IFC is read by web-ifc, which this build lacks");
-    EXPECT_TRUE(load(boxes).ok());
 }
 
 #endif
