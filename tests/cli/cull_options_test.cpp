@@ -66,6 +66,19 @@ TEST_F(PathOptions, OneCameraByItsEye) {
                     "--eye excludes --cameras, --path, --frames and --seed");
 }
 
+TEST_F(PathOptions, ARunsFileIsItsCameras) {
+    for (const char* path : {"--path scatter --frames 5", "--path walk --frames 8", "--eye 3,1.6,-2"}) {
+        const json run = cull(std::string("building:1:2 ") + path);
+        write("run.json", run.dump());
+        const json again = cull("building:1:2 --cameras run.json");
+        ASSERT_EQ(again["frames"].size(), run["frames"].size());
+        for (size_t i = 0; i < run["frames"].size(); ++i) {
+            EXPECT_EQ(again["frames"][i]["camera"], run["frames"][i]["camera"]) << path << ", frame " << i;
+            EXPECT_EQ(again["frames"][i]["visible"], run["frames"][i]["visible"]) << path << ", frame " << i;
+        }
+    }
+}
+
 TEST_F(SizeOptions, AreOffUnlessAsked) {
     const json run = cull("city:1:400 --frames 2 --seed 1");
     for (const json& row : run["frames"][0]["stages"]) {

@@ -17,12 +17,12 @@ using namespace tools;
 struct SceneCellSettings {
     /// How far a marked cell's face, and a portal, may be from the wall that is meant.  [world units] [>= 0]
     double wall_tolerance = 0.15;
-    /// Slits in a wall that are narrower than this are no holes. Negative: 2^-20 of the size of all cells, a hundredth
-    /// of a millimetre in a room of ten metres.  [world units]
+    /// Slits in a wall that are narrower than this are no holes. Negative: 2^-13 of `wall_tolerance`, two hundredths of a
+    /// millimetre of its default.  [world units]
     double slit = -1;
     /// Polygons within this of a plane lie in it, for walls are never quite flat; what is seen between two of them
-    /// through a gap that is no wider, as at the corners of a room, is no hole. Negative: 2^-17 of the size of all
-    /// cells. [world units]
+    /// through a gap that is no wider, as at the corners of a room, is no hole. Negative: 2^-11 of `wall_tolerance`.
+    /// [world units]
     double bend = -1;
     /// Takes cells and portals as they are marked, without a look at the walls. For procedural scenes.
     bool trusted = false;
@@ -63,7 +63,7 @@ struct SceneCellReport {
     uint64_t moved_faces = 0;     ///< to the wall that was meant
     uint64_t passages = 0;        ///< cells that were added where a portal goes through a wall's thickness
     uint64_t merged_faces = 0;    ///< whose holes became their hull
-    double slit = 0, bend = 0;    ///< as used  [world units]
+    double slit = 0, bend = 0;    ///< of the cell with the widest  [world units]
     bool outside = false;         ///< some hole leads there
     std::vector<uint32_t> walls;  ///< objects that the answer rests on: while they stand, are drawn and are opaque it
                                   ///< holds  [Scene::objects] rising

@@ -19,13 +19,6 @@ std::string number(double value) {
     return text;
 }
 
-Box3d boundsOf(const Scene& scene) {
-    Box3d bounds;
-    for (const SceneCell& cell : scene.cells)
-        if (!cell.planes.empty() && cell.bounds.finite()) bounds.grow(cell.bounds);
-    return bounds;
-}
-
 std::vector<uint32_t> unmoved(const Scene& scene, const SceneCellSettings& settings) {
     std::vector<uint32_t> movable = settings.movable;
     for (const ScenePortal& portal : scene.portals)
@@ -62,8 +55,9 @@ glm::dvec3 areaVector(const std::vector<glm::dvec3>& outline) {
 }
 
 CheckedCells::CheckedCells(const Scene& scene, const SceneCellSettings& settings)
-    : scene_(scene), settings_(settings), walls_(scene, unmoved(scene, settings)) {
-    const Box3d bounds = boundsOf(scene);
+    : scene_(scene), settings_(settings), walls_(scene, unmoved(scene, settings)) {}
+
+CellTolerance CheckedCells::toleranceIn(const Box3d& bounds) const {
     double size = 0, far = 0;
     if (bounds.finite()) {
         size = glm::length(bounds.size());
@@ -71,12 +65,16 @@ CheckedCells::CheckedCells(const Scene& scene, const SceneCellSettings& settings
         far = std::max({reach.x, reach.y, reach.z});
     }
     // The least distance that doubles can tell this far from the origin.
-    const double least = (size + far) * 0x1p-36;
-    slit_ = std::max(settings.slit >= 0 ? settings.slit : size * 0x1p-20, least);
-    bend_ = std::max(settings.bend >= 0 ? settings.bend : size * 0x1p-17, least);
-    thick_ = std::max(slit_, bend_);
-    report_.slit = slit_;
-    report_.bend = bend_;
+    const double least = (size + far) * 0x1p-36, wall = settings_.wall_tolerance;
+    return {std::max(settings_.slit >= 0 ? settings_.slit : wall * 0x1p-13, least),
+            std::max(settings_.bend >= 0 ? settings_.bend : wall * 0x1p-11, least)};
+}
+
+CellTolerance CheckedCells::toleranceOf(uint32_t a, uint32_t b) const {
+    CellTolerance out;
+    for (const uint32_t cell : {a, b})
+        if (cell < cells_.size()) out.grow(cells_[cell].tolerance);
+    return out;
 }
 
 void CheckedCells::report(CellFinding finding) {
@@ -139,7 +137,9 @@ void CheckedCells::takeCells() {
         cell.name = marked.name;
         cell.planes = marked.planes;
         cell.bounds = marked.bounds;
-        const double allowed = std::max(thick_, 1e-3 * glm::length(marked.bounds.size()));
+        if (!marked.planes.empty()) cell.tolerance = toleranceIn(marked.bounds);
+        widest_.grow(cell.tolerance);
+        const double allowed = std::max(cell.tolerance.thick(), 1e-3 * glm::length(marked.bounds.size()));
         bool finite = true;
         for (const glm::dvec4& plane : marked.planes) finite &= std::isfinite(glm::length(plane));
         if (!(marked.overhang <= allowed) || !finite) cell.planes.clear();
@@ -157,7 +157,7 @@ void CheckedCells::takeCells() {
 
 void CheckedCells::findOverlaps() {
     // Cells that are drawn by hand overlap a little by accident.
-    const double room = settings_.trusted ? thick_ : std::max(thick_, settings_.wall_tolerance);
+    const double room = settings_.trusted ? widest_.thick() : std::max(widest_.thick(), settings_.wall_tolerance);
     std::vector<uint32_t> order;
     for (uint32_t i = 0; i < cells_.size(); ++i)
         if (cells_[i].solid()) order.push_back(i);
@@ -226,7 +226,9 @@ SceneCells CheckedCells::finish() {
         space.graph.addPortal(portal.a, portal.b == kOutside ? space.outside : portal.b, portal.outline, door);
     }
     tellApart(space.doors);
-    space.tolerance = 2 * thick_;
+    space.tolerance = 2 * widest_.thick();
+    report_.slit = widest_.slit;
+    report_.bend = widest_.bend;
     report_.walls.assign(used_.begin(), used_.end());
     return {std::move(space), std::move(report_)};
 }

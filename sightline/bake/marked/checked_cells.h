@@ -26,8 +26,21 @@ struct CheckedFace {
     std::vector<FlatPiece> gates;
 };
 
+/// What of the settings holds for a cell: by its own size, whatever lies far off.  [world units]
+struct CellTolerance {
+    double slit = 0, bend = 0;
+
+    /// A point this close to a face may be on either side.
+    double thick() const { return std::max(slit, bend); }
+    void grow(const CellTolerance& other) {
+        slit = std::max(slit, other.slit);
+        bend = std::max(bend, other.bend);
+    }
+};
+
 struct CheckedCell {
     std::string name;
+    CellTolerance tolerance;
     std::vector<glm::dvec4> planes;  ///< empty: it is no cell
     Box3d bounds;
     std::vector<CheckedFace> faces;
@@ -70,6 +83,9 @@ private:
         int face[2];  ///< of its cells
     };
 
+    CellTolerance toleranceIn(const Box3d& bounds) const;
+    /// The wider one of two cells; kOutside, and what is no cell, has none.
+    CellTolerance toleranceOf(uint32_t a, uint32_t b) const;
     void layFaces(CheckedCell& cell) const;
     /// Lets a cell's faces, of these planes alone, follow the walls; kept only if it stays a cell.
     void moveFaces(CheckedCell& cell, size_t planes, double reach);
@@ -91,8 +107,7 @@ private:
     const Scene& scene_;
     const SceneCellSettings& settings_;
     OpaqueWalls walls_;
-    double slit_ = 0, bend_ = 0;
-    double thick_ = 0;  ///< the larger of these: a point this close to a face may be on either side
+    CellTolerance widest_;  ///< of all cells
     std::vector<CheckedCell> cells_;
     std::vector<FoundPortal> portals_;
     std::map<std::pair<uint32_t, uint32_t>, std::vector<uint32_t>> holes_between_;  ///< of portals_

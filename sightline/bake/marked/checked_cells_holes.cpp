@@ -59,7 +59,7 @@ FlatPiece widened(const FlatPiece& piece, double by) {
 bool CheckedCells::isKnown(uint32_t a, uint32_t b, const std::vector<glm::dvec3>& outline) const {
     const auto known = holes_between_.find({std::min(a, b), std::max(a, b)});
     if (known == holes_between_.end()) return false;
-    const double room = 2 * thick_;
+    const double room = 2 * toleranceOf(a, b).thick();
     for (const uint32_t index : known->second) {
         const std::vector<glm::dvec3>& other = portals_[index].outline;
         const glm::dvec3 normal = glm::normalize(areaVector(other));
@@ -80,7 +80,8 @@ bool CheckedCells::addHolePortal(uint32_t a, uint32_t b, const CheckedFace& face
     std::vector<glm::dvec3> outline = face.frame.from(piece);
     if (b != kOutside && isKnown(a, b, outline)) return false;
     holes_between_[{std::min(a, b), std::max(a, b)}].push_back(static_cast<uint32_t>(portals_.size()));
-    portals_.push_back({a, b, face.frame.from(widened(piece, thick_)), ScenePortal::kNone, ScenePortal::kNone});
+    portals_.push_back(
+        {a, b, face.frame.from(widened(piece, toleranceOf(a, b).thick())), ScenePortal::kNone, ScenePortal::kNone});
     return true;
 }
 
@@ -100,25 +101,28 @@ void CheckedCells::addHole(uint32_t cell, const CheckedFace& face, const FlatHol
     for (const FlatPiece& piece : hole.pieces) {
         FlatRest rest(piece);
         // It leads to the cells that begin right behind it, and to the outside where it only grazes a cell.
-        const std::vector<glm::dvec3> behind = face.frame.from(piece, -2 * thick_);
         Box3d box;
-        for (const glm::dvec3& point : behind) box.grow(point);
-        box.min -= glm::dvec3(2 * thick_);
-        box.max += glm::dvec3(2 * thick_);
+        for (const glm::dvec3& point : face.frame.from(piece)) box.grow(point);
         for (uint32_t other = 0; other < cells_.size(); ++other) {
             const CheckedCell& candidate = cells_[other];
             if (other == cell || !candidate.solid()) continue;
+            const double thick = toleranceOf(cell, other).thick();
             bool apart = false;
             for (int axis = 0; axis < 3; ++axis)
-                apart |= candidate.bounds.max[axis] < box.min[axis] || box.max[axis] < candidate.bounds.min[axis];
-            if (apart || clippedTo(candidate, behind, -thick_).empty()) continue;
-            const FlatPiece shared = hullOf(face.frame.to(clippedTo(candidate, behind, thick_)));
+                apart |= candidate.bounds.max[axis] < box.min[axis] - 4 * thick ||
+                         box.max[axis] + 4 * thick < candidate.bounds.min[axis];
+            if (apart) continue;
+            const std::vector<glm::dvec3> behind = face.frame.from(piece, -2 * thick);
+            if (clippedTo(candidate, behind, -thick).empty()) continue;
+            const FlatPiece shared = hullOf(face.frame.to(clippedTo(candidate, behind, thick)));
             if (shared.empty()) continue;
             lead(other, shared, areaOf(shared));
-            rest.take(grownBy(shared, thick_ / 3));
+            // What is left begins a little before the cell ends: whichever portal leads into that, no seam is between.
+            const FlatPiece within = hullOf(face.frame.to(clippedTo(candidate, behind, 0)));
+            if (!within.empty()) rest.take(grownBy(within, thick / 3));
         }
         if (rest.empty()) continue;
-        for (const FlatHole& left : holesOf(rest.pieces(), slit_, settings_.most_holes))
+        for (const FlatHole& left : holesOf(rest.pieces(), cells_[cell].tolerance.slit, settings_.most_holes))
             for (const FlatPiece& part : left.pieces) lead(kOutside, part, areaOf(part));
     }
     double all = 0;  // area of the pieces; a hull makes it larger
@@ -135,7 +139,8 @@ void CheckedCells::addHole(uint32_t cell, const CheckedFace& face, const FlatHol
 }
 
 void CheckedCells::findHoles(uint32_t cell, CheckedFace& face, const std::vector<WallTriangle>& triangles) {
-    const double grow = slit_ / 3;
+    const auto [slit, bend] = cells_[cell].tolerance;
+    const double grow = slit / 3;
     struct Cover {
         FlatPiece piece;
         double at;
@@ -144,7 +149,7 @@ void CheckedCells::findHoles(uint32_t cell, CheckedFace& face, const std::vector
     std::vector<Cover> covers;
     for (const WallTriangle& triangle : triangles) {
         bool within = true;
-        for (const glm::dvec3& corner : triangle.corners) within &= std::abs(face.frame.heightOf(corner)) <= bend_;
+        for (const glm::dvec3& corner : triangle.corners) within &= std::abs(face.frame.heightOf(corner)) <= bend;
         if (!within) continue;
         const FlatPiece front = frontOf(face.frame, triangle);
         if (front.empty() || sharedBy(front, face.outline).empty()) continue;
@@ -160,7 +165,7 @@ void CheckedCells::findHoles(uint32_t cell, CheckedFace& face, const std::vector
         const double length = glm::length(along);
         if (!(length > 0)) continue;
         const glm::dvec2 normal(-along.y / length, along.x / length);
-        if (!inner.empty()) inner = clipPiece(inner, {normal, -glm::dot(normal, face.outline[i]) - bend_});
+        if (!inner.empty()) inner = clipPiece(inner, {normal, -glm::dot(normal, face.outline[i]) - bend});
     }
     if (inner.empty()) return;
     FlatRest rest(inner);
@@ -171,7 +176,7 @@ void CheckedCells::findHoles(uint32_t cell, CheckedFace& face, const std::vector
         used_.insert(cover.object);
     }
     if (rest.empty()) return;
-    for (const FlatHole& hole : holesOf(rest.pieces(), slit_, settings_.most_holes)) {
+    for (const FlatHole& hole : holesOf(rest.pieces(), slit, settings_.most_holes)) {
         report_.merged_faces += hole.merged;
         addHole(cell, face, hole);
     }
@@ -182,8 +187,8 @@ void CheckedCells::findHoles() {
     for (uint32_t i = 0; i < cells_.size(); ++i) {
         if (!cells_[i].solid()) continue;
         Box3d near_by = cells_[i].bounds;
-        near_by.min -= glm::dvec3(2 * thick_);
-        near_by.max += glm::dvec3(2 * thick_);
+        near_by.min -= glm::dvec3(2 * cells_[i].tolerance.thick());
+        near_by.max += glm::dvec3(2 * cells_[i].tolerance.thick());
         triangles.clear();
         walls_.gather(near_by, triangles);
         report_.faces += cells_[i].faces.size();

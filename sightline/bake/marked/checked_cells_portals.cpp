@@ -57,8 +57,8 @@ void CheckedCells::moveFaces() {
 void CheckedCells::moveFaces(CheckedCell& cell, size_t planes, double reach) {
     if (!(reach > 0)) return;
     Box3d near_by = cell.bounds;
-    near_by.min -= glm::dvec3(reach + thick_);
-    near_by.max += glm::dvec3(reach + thick_);
+    near_by.min -= glm::dvec3(reach + cell.tolerance.thick());
+    near_by.max += glm::dvec3(reach + cell.tolerance.thick());
     std::vector<WallTriangle> triangles;
     walls_.gather(near_by, triangles);
     CheckedCell moved = cell;
@@ -66,12 +66,13 @@ void CheckedCells::moveFaces(CheckedCell& cell, size_t planes, double reach) {
     for (CheckedFace& face : cell.faces) {
         if (face.plane >= planes) continue;
         const std::vector<glm::dvec3> outline = face.frame.from(face.outline);
-        const auto sheet = sheetNear(outline, cell.planes[face.plane], face.frame, face.gates, triangles, reach, bend_);
+        const auto sheet =
+            sheetNear(outline, cell.planes[face.plane], face.frame, face.gates, triangles, reach, cell.tolerance.bend);
         face.gates.clear();
         if (!sheet) continue;
         double off = 0;
         for (const glm::dvec3& corner : outline) off = std::max(off, std::abs(heightOf(*sheet, corner)));
-        if (off <= bend_ / 2) continue;
+        if (off <= cell.tolerance.bend / 2) continue;
         moved.planes[face.plane] = *sheet;
         ++count;
     }
@@ -85,7 +86,7 @@ void CheckedCells::moveFaces(CheckedCell& cell, size_t planes, double reach) {
 
 int CheckedCells::faceNear(const CheckedCell& cell, const Lying& lying, double side) const {
     int best = -1;
-    double least = 2 * settings_.wall_tolerance + thick_;
+    double least = 2 * settings_.wall_tolerance + cell.tolerance.thick();
     for (size_t i = 0; i < cell.faces.size(); ++i) {
         const CheckedFace& face = cell.faces[i];
         const glm::dvec4& plane = cell.planes[face.plane];
@@ -128,7 +129,7 @@ bool CheckedCells::lies(uint32_t index, Lying& lying) {
         bend = std::max(bend, std::abs(off));
         point -= off * lying.normal;
     }
-    if (bend > std::max(thick_, 1e-3 * std::sqrt(glm::length(area)))) {
+    if (bend > std::max(toleranceOf(portal.cells[0], portal.cells[1]).thick(), 1e-3 * std::sqrt(glm::length(area)))) {
         CellFinding bent = finding;
         bent.kind = CellFindingKind::kBentPortal;
         bent.size = bend;
@@ -153,7 +154,7 @@ uint32_t CheckedCells::doorOf(uint32_t index, const Lying& lying) {
         const Box3d box = transformBox(scene_.meshes[leaf.mesh].bounds, leaf.transform);
         Box3d around;
         for (const glm::dvec3& point : lying.outline) around.grow(point);
-        const double reach = std::max(settings_.wall_tolerance, thick_);
+        const double reach = std::max(settings_.wall_tolerance, toleranceOf(portal.cells[0], portal.cells[1]).thick());
         bool near_by = box.finite();
         for (int axis = 0; axis < 3; ++axis)
             near_by &= box.min[axis] <= around.max[axis] + reach && box.max[axis] >= around.min[axis] - reach;
@@ -173,7 +174,7 @@ FlatPiece CheckedCells::addGate(uint32_t a, int face, uint32_t b, const FlatPiec
     CheckedFace& from = cells_[a].faces[static_cast<size_t>(face)];
     const FlatPiece shared = sharedBy(piece, from.outline);
     if (shared.empty()) return {};
-    FlatPiece gate = pieceOf(from.frame, clippedTo(cells_[b], from.frame.from(shared), thick_));
+    FlatPiece gate = pieceOf(from.frame, clippedTo(cells_[b], from.frame.from(shared), toleranceOf(a, b).thick()));
     if (gate.size() < 3) return {};
     from.gates.push_back(gate);
     return gate;
@@ -183,6 +184,7 @@ void CheckedCells::join(uint32_t portal, const Lying& lying, uint32_t a, int fac
                         uint32_t door) {
     const uint32_t cell[2] = {a, b};
     const int face[2] = {face_a, face_b};
+    const double thick = toleranceOf(a, b).thick();
     FlatPiece gate[2];
     const auto faceOf = [&](int side) -> const CheckedFace& {
         return cells_[cell[side]].faces[static_cast<size_t>(face[side])];
@@ -197,7 +199,7 @@ void CheckedCells::join(uint32_t portal, const Lying& lying, uint32_t a, int fac
         const std::vector<glm::dvec3> other = faceOf(1).frame.from(gate[1]);
         double off = 0;
         for (const glm::dvec3& point : other) off = std::max(off, std::abs(faceOf(0).frame.heightOf(point)));
-        if (off <= thick_) {
+        if (off <= thick) {
             const FlatPiece more = pieceOf(faceOf(0).frame, other);
             gate[0].insert(gate[0].end(), more.begin(), more.end());
             gate[0] = hullOf(std::move(gate[0]));
@@ -207,18 +209,19 @@ void CheckedCells::join(uint32_t portal, const Lying& lying, uint32_t a, int fac
     for (int side = 0; side < 2; ++side)
         if (!gate[side].empty())
             portals_.push_back(
-                {cell[side], cell[1 - side], faceOf(side).frame.from(widened(gate[side], thick_)), portal, door});
+                {cell[side], cell[1 - side], faceOf(side).frame.from(widened(gate[side], thick)), portal, door});
 }
 
 uint32_t CheckedCells::addPassage(uint32_t portal, const Lying& lying, const glm::dvec4& plane_a,
                                   const glm::dvec4& plane_b) {
     CheckedCell passage;
     passage.name = "passage " + scene_.portals[portal].name;
+    passage.tolerance = toleranceOf(scene_.portals[portal].cells[0], scene_.portals[portal].cells[1]);
     const std::vector<glm::dvec3>& outline = lying.outline;
     double width = std::numeric_limits<double>::infinity();
     for (size_t i = 0; i < outline.size(); ++i) {
         const glm::dvec3 edge = outline[(i + 1) % outline.size()] - outline[i];
-        if (!(glm::length(edge) > thick_)) continue;
+        if (!(glm::length(edge) > passage.tolerance.thick())) continue;
         const glm::dvec3 normal = glm::normalize(glm::cross(lying.normal, edge));
         passage.planes.emplace_back(normal, -glm::dot(normal, outline[i]));
         double across = 0;
@@ -256,7 +259,8 @@ bool CheckedCells::placePortal(uint32_t index, const Lying& lying) {
         gap = std::max(gap, from_a + from_b);
     }
     const uint32_t door = doorOf(index, lying);
-    if (gap <= thick_) {
+    const double thick = toleranceOf(a, b).thick();
+    if (gap <= thick) {
         join(index, lying, a, lying.face[0], b, lying.face[1], door);
         return true;
     }
@@ -274,7 +278,7 @@ bool CheckedCells::placePortal(uint32_t index, const Lying& lying) {
         whole.outline = own.frame.from(own.outline);
         join(index, whole, cell, face, passage, end, shut_by);
     };
-    if (door != kNoDoor && least_a > thick_ && least_b > thick_) {
+    if (door != kNoDoor && least_a > thick && least_b > thick) {
         // The leaf stands within the wall: it is seen from both sides when it is shut.
         const glm::dvec4 middle(lying.normal, -glm::dot(lying.normal, lying.middle));
         const uint32_t first = addPassage(index, lying, plane_a, -middle);

@@ -154,11 +154,18 @@ void settleFrame(CameraFrame& frame, const Given& given) {
     if (!isUsable(makeView(frame, 1, 1))) throw Complaint{"its matrices are singular or overflow"};
 }
 
+/// What cull --json wrote: each frame has its camera.
+bool isRun(const json& head) {
+    const auto schema = head.is_object() ? head.find("schema") : head.end();
+    return schema != head.end() && schema->is_string() && schema->get<std::string>().starts_with("sightline.cull/");
+}
+
 CameraPath readFrames(const json& head) {
     CameraFrame defaults;
     Given given_by_head;
+    const bool is_run = isRun(head);
     try {
-        overlay(head, defaults, given_by_head, true);
+        if (!is_run) overlay(head, defaults, given_by_head, true);
     } catch (const Complaint& complaint) { throw Complaint{"head: " + complaint.what}; }
     const auto list = head.find("frames");
     if (list == head.end() || !list->is_array() || list->empty())
@@ -169,7 +176,9 @@ CameraPath readFrames(const json& head) {
         CameraFrame frame = defaults;
         Given given = given_by_head;
         try {
-            overlay(entry, frame, given);
+            const auto camera = is_run && entry.is_object() ? entry.find("camera") : entry.end();
+            if (is_run && camera == entry.end()) throw Complaint{"there is no \"camera\""};
+            overlay(is_run ? *camera : entry, frame, given);
             settleFrame(frame, given);
         } catch (const Complaint& complaint) {
             throw Complaint{fmt::format("frame {}: {}", path.frames.size(), complaint.what)};

@@ -16,6 +16,7 @@
 #include "sightline/tools/scene/procedural.h"
 #include "sightline/tools/truth/rays.h"
 #include "tests/bake/aimed_points.h"
+#include "tests/bake/far_things.h"
 #include "tests/bake/marked/random_rooms.h"
 #include "tests/bake/opaque_triangles.h"
 
@@ -147,6 +148,44 @@ TEST(SceneCellRays, LeaveByPortalsOrMeetWalls) {
     EXPECT_GT(passages, 10u);
     EXPECT_GT(outside, 10u);
     EXPECT_GT(moved, 60u);
+}
+
+// Triangles far off, a cell far off, or a large one beside the rooms, from 10^3 to 10^7 units: no hole is taken for a seam.
+TEST(SceneCellRays, LeaveByPortalsOrMeetWallsWhateverLiesFarOff) {
+    Random random(9);
+    Counts counts;
+    for (int round = 0; round < 45; ++round) {
+        const double far = std::pow(10, 3 + round % 5);
+        const FarThing what = kFarThings[round / 5 % 3];
+        const bool beside = round >= 30;
+        SCOPED_TRACE("round " + std::to_string(round) + ", " + std::to_string(int(what)) + " at " +
+                     std::to_string(far));
+        MarkedRooms made = randomRooms(random, 3 * (round % 10));
+        const SceneCells plain = cellsOfScene(made.scene);
+        addFarThing(made, what, far, random);
+        const double x = beside ? made.scene.cells.back().bounds.max.x : 0.5 * far;
+        made.cell("far", {{x, -far, -far}, {x + far, far, far}});
+        const SceneCells cells = cellsOfScene(made.scene);
+        EXPECT_LT(cells.report.slit, 1e-3);
+        EXPECT_LT(cells.report.bend, 1e-3);
+        if (!beside) {
+            const auto ofRooms = [](const SceneCells& of) {
+                return std::count_if(of.space.graph.portals.begin(), of.space.graph.portals.end(), [&](const auto& p) {
+                    return of.space.names[p.cells[0]] != "far" && of.space.names[p.cells[1]] != "far";
+                });
+            };
+            EXPECT_EQ(ofRooms(cells), ofRooms(plain));
+        }
+        const OpaqueTriangles truth(made.scene);
+        const auto meets = [&](const glm::dvec3& from, const glm::dvec3& along, double first, double last) {
+            return truth.meets(from, along, first, last, cells.report.slit);
+        };
+        shoot(cells, meets, {}, 1000, random, counts);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(counts.rays, 50000u);
+    EXPECT_GT(counts.walls, 15000u);
+    EXPECT_GT(counts.ways, 2500u);
 }
 
 /// Whole scenes, held against rays by Embree; where these meet no wall, against each triangle in double. No slit is

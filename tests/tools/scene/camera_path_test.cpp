@@ -172,6 +172,7 @@ TEST(CameraPath, NamesEveryMistakeWithFileAndFrame) {
         {"[]", "not a JSON object"},
         {"3", "not a JSON object"},
         {"{}", "no frames"},
+        {R"({"schema": "sightline.cull/1", "frames": [{"visible": []}]})", "frame 0: there is no \"camera\""},
         {"{\"frames\": []}", "no frames"},
         {"{\"frames\": {}}", "no frames"},
         {"{\"fov_y_degrees\": \"wide\", \"frames\": [1]}", "head: \"fov_y_degrees\" is not a number"},
