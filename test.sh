@@ -8,7 +8,7 @@
 #     clang       each source by clang, warnings are errors
 #     fuzz        each fuzzer for half a minute
 #     release     every test of build/release; writes down which of them start threads
-#     asan        every test with the address and undefined-behaviour sanitizers and debug assertions
+#     asan        tests with the address and undefined-behaviour sanitizers and debug assertions
 #     tsan        tests that start threads, with the thread sanitizer
 #     foreign     the library for 64-bit ARM and for Windows, by emulators
 #     packages    the Debian packages, in a bare Debian 12
@@ -31,13 +31,13 @@ build() {
     cmake --build --preset "$1" --target "${2:-all}"
 }
 
+# Tests that take long and find what others find, too: for part release of --full alone. A pattern.
+slow() { grep -v '^#' tests/full_only.txt | paste -sd '|'; }
+
 core() {
     tools/setup --tests
     build release sightline_core_tests
-    # Tests that take long and find what others find, too, are for --full.
-    local slow
-    slow=$(grep -v '^#' tests/full_only.txt | paste -sd '|')
-    ctest --preset release --output-log build/release/test.log -LE full -E "^(.*_NOT_BUILT|$slow)( |\$)"
+    ctest --preset release --output-log build/release/test.log -LE full -E "^(.*_NOT_BUILT|$(slow))( |\$)"
 }
 
 # Exit code 77: this machine lacks what the part needs. It is told, and not written down as passed.
@@ -52,14 +52,18 @@ part_release() {
     LD_PRELOAD=$PWD/build/release/tests/libsightline_thread_log.so SIGHTLINE_THREAD_LOG=$PWD/build/release/threads.txt \
         ctest --preset release --output-log build/release/test.log
 }
-part_asan() { build asan; ctest --preset asan --output-log build/asan/test.log; }
+part_asan() {
+    build asan
+    # Walls of large scenes and maps cost a hundred times as much, and are made by the same lines as those of small ones.
+    ctest --preset asan --output-log build/asan/test.log -E "^(Real/.*|(Scenes/)?SoupScenes.*|$(slow))( |\$)"
+}
 part_tsan() {
     [ -s build/release/threads.txt ] || part_release
     build tsan
     # On large scenes and maps the same threads run as on small ones, a hundred times as slowly.
     local small
-    small=$(sort -u build/release/threads.txt | grep -vE '^(Real|Scenes)/|^SoupScenes\.(ACity|WhatMoves)' | paste -sd '|')
-    ctest --preset tsan --output-log build/tsan/test.log -R "^($small)( |\$)"
+    small=$(sort -u build/release/threads.txt | grep -vE '^(Real|Scenes)/|^SoupScenes\.' | paste -sd '|')
+    ctest --preset tsan --output-log build/tsan/test.log -R "^($small)( |\$)" -E "^($(slow))( |\$)"
 }
 part_foreign() { tools/try_foreign || is_skipped $?; }
 part_packages() { build release; tools/try_packages || is_skipped $?; }

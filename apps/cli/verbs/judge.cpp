@@ -156,22 +156,11 @@ Result<std::vector<uint8_t>> readDrawn(const Scene& scene, const NamedObjects& k
 /// The run that the answers tell of, without verdicts.
 Result<Judged> readRunOf(const Scene& scene, const CameraPath& path, const Answers& answers,
                          const JudgeOptions& options) {
-    Judged out;
-    CullRun& run = out.run;
     const std::vector<uint32_t> key_order = orderByKey(scene);
-    run.scene = options.scene.title();
-    run.objects = countKeys(scene, key_order);
-    run.instances = scene.objects.size();
-    run.triangles = drawnTriangles(scene);
-    run.width = options.width;
-    run.height = options.height;
-    run.jitter = options.jitter;
-    run.sections = options.sections;
-    run.stereo = options.stereo;
+    Judged out{newRun(scene, key_order, path, options), {}, {}, {}};
+    CullRun& run = out.run;
     run.settings.stages = 0;  // nothing is said of the way to these answers
-    run.frames.resize(path.frames.size());
     out.frames.resize(path.frames.size());
-    for (size_t i = 0; i < path.frames.size(); ++i) run.frames[i].camera = path.frames[i];
     bool names = false;
     for (const AnsweredFrame& frame : answers.frames)
         names = names || std::any_of(frame.drawn.begin(), frame.drawn.end(),
