@@ -37,6 +37,7 @@ constexpr Case kCases[] = {
     {"lod", benchLod},
     {"occlusion", benchOcclusion},
     {"order", benchOrder},
+    {"peers", benchPeers},
     {"portals", benchPortals},
     {"queries", benchQueries},
     {"rows", benchRows},

@@ -72,6 +72,10 @@ Table benchOcclusion(const Options& options);
 /// hierarchy beside Embree's.
 Table benchOrder(const Options& options);
 
+/// Scattered cameras and a walk, answered by the query in several settings and, if CMake was given SIGHTLINE_PEER, by
+/// MaskedOcclusionCulling: times of a frame and objects kept, beside those of the first contestant.
+Table benchPeers(const Options& options);
+
 /// Views in real maps, where ../shared/maps is there: what portals as windows cost, and the leaves that they keep beside those that
 /// are truly seen, and those of the maps' own rows.
 Table benchPortals(const Options& options);

@@ -11,7 +11,7 @@ namespace sightline::bench {
 using namespace tools;
 namespace {
 
-constexpr uint32_t kWidth = 1280, kHeight = 720;
+constexpr uint32_t kAskedWidth = 1280, kAskedHeight = 720;
 
 struct Cost {
     double whole = 0;         ///< one bin  [microseconds, and all that follow]
@@ -28,7 +28,7 @@ void measureQueryThreads(const Scene& scene, const CameraPath& path, const std::
     Query whole, one, two(defaultMemory(), &pool);
     Cost sum;
     for (const CameraFrame& frame : path.frames) {
-        const View view = makeView(frame, kWidth, kHeight);
+        const View view = makeView(frame, kAskedWidth, kAskedHeight);
         QuerySettings halves{.bins = 2};
         const std::vector<double> times =
             timeInterleaved({[&] { whole.visible(now, view); }, [&] { one.visible(now, view, halves); },

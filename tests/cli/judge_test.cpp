@@ -9,6 +9,7 @@
 #include "apps/cli/verbs/scene_choice.h"
 #include "sightline/base/random.h"
 #include "sightline/geom/view.h"
+#include "sightline/tools/scene/camera_path.h"
 #include "tests/cli/tool.h"
 
 namespace sightline {

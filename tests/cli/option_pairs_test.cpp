@@ -157,7 +157,8 @@ TEST_F(OptionPairs, AreSoundOrRefused) {
             size_t best = kCount, most = 0;
             for (size_t i = 0; i < kCount; ++i) {
                 size_t fresh = 0;
-                const bool fits = std::all_of(taken.begin(), taken.end(), [&](size_t k) { return k != i && goTogether(i, k); });
+                const bool fits =
+                    std::all_of(taken.begin(), taken.end(), [&](size_t k) { return k != i && goTogether(i, k); });
                 for (const size_t k : taken) fresh += open.contains(std::minmax(i, k));
                 if (fits && fresh > most) best = i, most = fresh;
             }
