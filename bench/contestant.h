@@ -21,6 +21,10 @@ public:
     virtual size_t answer(const View& view) = 0;
 };
 
+/// The rasterizer that is to take the place of the library's (bench/onepass), in a buffer of 384 pixels. Perspective views alone.
+/// @param scene  must outlive it
+std::unique_ptr<Contestant> makeOnePassContestant(const tools::Scene& scene);
+
 #ifdef SIGHTLINE_PEER
 /// MaskedOcclusionCulling, of the folder that CMake was told by SIGHTLINE_PEER, in a buffer of 640 x 360: objects in the frustum
 /// by a flat list, the nearest first; each is asked by its box, drawn whole if it is not hidden, and asked again at the end.

@@ -113,8 +113,8 @@ private:
                                      MaskedOcclusionCulling::CLIP_PLANE_ALL,
                                      MaskedOcclusionCulling::VertexLayout(sizeof(glm::vec3), 4, 8));
         };
-        render(triangles_[of.mesh].one_sided, mirrored_[object] ? MaskedOcclusionCulling::BACKFACE_CCW
-                                                                : MaskedOcclusionCulling::BACKFACE_CW);
+        render(triangles_[of.mesh].one_sided,
+               mirrored_[object] ? MaskedOcclusionCulling::BACKFACE_CCW : MaskedOcclusionCulling::BACKFACE_CW);
         render(triangles_[of.mesh].two_sided, MaskedOcclusionCulling::BACKFACE_NONE);
     }
 
@@ -123,7 +123,7 @@ private:
     FlatBoxes flat_;
     MaskedOcclusionCulling* buffer_;
     std::vector<HidingTriangles> triangles_;  ///< by mesh
-    std::vector<uint8_t> mirrored_;     ///< by object
+    std::vector<uint8_t> mirrored_;           ///< by object
     std::vector<ImageRect> rects_;
     std::vector<std::pair<float, uint32_t>> order_;
     std::vector<uint32_t> drawn_;

@@ -58,7 +58,7 @@ struct Score {
 
 /// Each contestant answers all cameras in order, and then the next one does; in each round.
 std::vector<Score> compete(const std::vector<std::unique_ptr<Contestant>>& contestants,
-                            const std::vector<CameraFrame>& cameras, int rounds) {
+                           const std::vector<CameraFrame>& cameras, int rounds) {
     std::vector<Score> out(contestants.size());
     std::vector<std::vector<std::vector<double>>> times(contestants.size(),
                                                         std::vector<std::vector<double>>(cameras.size()));
@@ -87,6 +87,7 @@ void measurePeers(const Scene& scene, int repeat, Table& table) {
 #ifdef SIGHTLINE_PEER
     all.push_back(makeMaskedContestant(scene));
 #endif
+    all.push_back(makeOnePassContestant(scene));
     all.push_back(std::make_unique<Asking>("frustum alone", now, QuerySettings{.stages = stageBit(Stage::kFrustum)}));
     all.push_back(std::make_unique<Asking>("stateless, boxes alone", now, boxes));
     all.push_back(std::make_unique<Asking>("stateless", now, QuerySettings{.stateless = true}));

@@ -221,7 +221,7 @@ std::string helpOf(const CLI::Option& option) {
     const std::string text = option.get_description();
     const std::vector<std::string> choices = choicesOf(option);
     if (choices.empty() || valueName(option) != "TEXT") return text;
-    return fmt::format("{}{}{}", text, text.empty() ? "" : ": ", joined(choices, ", "));
+    return fmt::format("{}{}{}", text, text.empty() ? "" : ": ", tools::joined(choices, ", "));
 }
 
 bool isList(const CLI::Option& option) { return valueName(option) == "LIST"; }

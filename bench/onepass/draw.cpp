@@ -1,0 +1,608 @@
+// Draws clusters of plane groups: open edges, winding numbers in bit planes, depth from planes; asks rectangles.
+// SPDX-License-Identifier: MIT
+#include "bench/onepass/draw.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#define HWY_COMPILE_ALL_ATTAINABLE  // the scalar target is tested like the others
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bench/onepass/draw.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "bench/onepass/edges.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::bench {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F = hn::CappedTag<float, 16>;
+using I = hn::RebindToSigned<F>;
+using U = hn::RebindToUnsigned<F>;
+using VF = hn::Vec<F>;
+using VI = hn::Vec<I>;
+using VU = hn::Vec<U>;
+
+/// Row over vertices relative to the cluster's centre: m holds it, in floats, and its value at the centre.
+struct Row {
+    float x, y, z, at_centre;
+};
+
+Row rowOf(const glm::dvec4& row, const glm::dvec3& centre) {
+    return {static_cast<float>(row.x), static_cast<float>(row.y), static_cast<float>(row.z),
+            static_cast<float>(glm::dot(glm::dvec3(row), centre) + row.w)};
+}
+
+HWY_INLINE VF apply(const Row& row, VF x, VF y, VF z) {
+    const F f;
+    return hn::Add(hn::Add(hn::Mul(hn::Set(f, row.x), x), hn::Mul(hn::Set(f, row.y), y)),
+                   hn::Add(hn::Mul(hn::Set(f, row.z), z), hn::Set(f, row.at_centre)));
+}
+
+/// Which groups surely show their front (1) or, drawn from both sides, their back (-1) to the eye; 0: all others. A group
+/// that is not 0 has no polygon that faces otherwise, so that no winding number is less than 0.
+/// @returns how many are not 0
+int faceGroups(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const glm::vec3& eye, float away, int8_t* turn) {
+    const F f;
+    int count = 0;
+    const float reach = away + c.radius;
+    for (uint32_t g = 0; g < c.groups; g += static_cast<uint32_t>(hn::Lanes(f))) {
+        const size_t at = size_t{c.first_group} + g;
+        const VF h = hn::Sub(hn::Add(hn::Add(hn::Mul(hn::LoadU(f, &mesh.nx[at]), hn::Set(f, eye.x)),
+                                             hn::Mul(hn::LoadU(f, &mesh.ny[at]), hn::Set(f, eye.y))),
+                                     hn::Mul(hn::LoadU(f, &mesh.nz[at]), hn::Set(f, eye.z))),
+                             hn::LoadU(f, &mesh.nd[at]));
+        // What floats may be off by, what vertices lie off the plane, and what a triangle may lean.
+        const VF room = hn::Add(hn::LoadU(f, &mesh.thick[at]),
+                                hn::Mul(hn::Add(hn::LoadU(f, &mesh.tilt[at]), hn::Set(f, 0x1p-20f)), hn::Set(f, reach)));
+        const auto front = hn::Gt(h, room), back = hn::Lt(h, hn::Neg(room));
+        float signs[16];
+        hn::StoreU(hn::IfThenElse(front, hn::Set(f, 1.0f), hn::IfThenElse(back, hn::Set(f, -1.0f), hn::Zero(f))), f, signs);
+        for (size_t k = 0; k < hn::Lanes(f) && g + k < c.groups; ++k) {
+            const int t = signs[k] > 0 ? 1 : signs[k] < 0 && mesh.both[at + k] ? -1 : 0;
+            turn[g + k] = static_cast<int8_t>(t);
+            count += t != 0;
+        }
+    }
+    return count;
+}
+
+/// The image of a cluster's vertices.
+struct Image {
+    alignas(64) float x[256], y[256];
+    float x0, y0, x1, y1;  ///< of all of them
+    float w_min, w_max;
+};
+
+void projectVertices(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& c, Image& out) {
+    const F f;
+    const glm::dvec3 centre(c.centre);
+    const Row rx = rowOf(frame.x, centre), ry = rowOf(frame.y, centre), rw = rowOf(frame.w, centre);
+    VF x0 = hn::Set(f, 3e38f), y0 = x0, w0 = x0, x1 = hn::Set(f, -3e38f), y1 = x1, w1 = x1;
+    for (uint32_t i = 0; i < c.vertices; i += static_cast<uint32_t>(hn::Lanes(f))) {
+        const size_t at = size_t{c.first_vertex} + i;
+        const VF x = hn::LoadU(f, &mesh.x[at]), y = hn::LoadU(f, &mesh.y[at]), z = hn::LoadU(f, &mesh.z[at]);
+        const VF w = apply(rw, x, y, z);
+        const VF px = hn::Div(apply(rx, x, y, z), w), py = hn::Div(apply(ry, x, y, z), w);
+        hn::Store(px, f, out.x + i);
+        hn::Store(py, f, out.y + i);
+        x0 = hn::Min(x0, px);
+        x1 = hn::Max(x1, px);
+        y0 = hn::Min(y0, py);
+        y1 = hn::Max(y1, py);
+        w0 = hn::Min(w0, w);
+        w1 = hn::Max(w1, w);
+    }
+    const auto least = [&](VF v) HWY_ATTR { return hn::GetLane(hn::MinOfLanes(f, v)); };
+    const auto most = [&](VF v) HWY_ATTR { return hn::GetLane(hn::MaxOfLanes(f, v)); };
+    out.x0 = least(x0);
+    out.y0 = least(y0);
+    out.w_min = least(w0);
+    out.x1 = most(x1);
+    out.y1 = most(y1);
+    out.w_max = most(w1);
+}
+
+/// Brings edges into the form that rows read.
+/// @param r       no corner's image is farther from where it is drawn  [pixels]
+/// @param bounds  grows by what the edges touch: x0 y0 x1 y1
+void setUpEdges(EdgeList& e, float r, float height, float (&bounds)[4]) {
+    const F f;
+    const I i32;
+    const VF vr = hn::Set(f, r), rows = hn::Set(f, height + 1);
+    VF bx0 = hn::Set(f, bounds[0]), by0 = hn::Set(f, bounds[1]), bx1 = hn::Set(f, bounds[2]), by1 = hn::Set(f, bounds[3]);
+    e.pad();
+    for (int k = 0; k < e.count; k += static_cast<int>(hn::Lanes(f))) {
+        const VF ax = hn::Load(f, e.ax + k), ay = hn::Load(f, e.ay + k), bx = hn::Load(f, e.bx + k),
+                 by = hn::Load(f, e.by + k);
+        const auto up = hn::Gt(by, ay);
+        const VF yl = hn::Min(ay, by), yh = hn::Max(ay, by), xl = hn::IfThenElse(up, ax, bx),
+                 xh = hn::IfThenElse(up, bx, ax);
+        const VF run = hn::Sub(xh, xl), rise = hn::Sub(yh, yl);
+        const auto level = hn::Lt(rise, hn::Set(f, 1e-6f));
+        const VF slope = hn::IfThenElse(level, hn::Zero(f), hn::Div(run, rise));
+        const VF steep = hn::Abs(slope);
+        const VF error = hn::Mul(
+            hn::Set(f, 0x1p-20f),
+            hn::Add(hn::Mul(steep, hn::Add(hn::Abs(yl), hn::Set(f, height + 16))), hn::Add(hn::Abs(xl), hn::Abs(xh))));
+        const VF grow = hn::Add(vr, error);
+        const VF half = hn::Add(hn::Mul(steep, hn::Add(hn::Set(f, 0.5f), vr)), grow);
+        const VF left = hn::Sub(hn::Min(ax, bx), grow), right = hn::Add(hn::Max(ax, bx), grow);
+        hn::Store(xl, f, e.x + k);
+        hn::Store(yl, f, e.y + k);
+        hn::Store(slope, f, e.slope + k);
+        hn::Store(hn::IfThenElse(level, hn::Add(hn::Abs(run), grow), half), f, e.half + k);
+        hn::Store(left, f, e.left + k);
+        hn::Store(right, f, e.right + k);
+        const auto toRow = [&](VF v) HWY_ATTR {
+            return hn::ConvertTo(i32, hn::Min(hn::Max(hn::Floor(v), hn::Set(f, -1.0f)), rows));
+        };
+        hn::Store(toRow(hn::Sub(yl, grow)), i32, e.first + k);
+        hn::Store(toRow(hn::Add(yh, grow)), i32, e.last + k);
+        // A row's middle is crossed if it lies in [yl, yh): the ceiling of y - 0.5.
+        const auto crossed = [&](VF v) HWY_ATTR { return toRow(hn::Neg(hn::Floor(hn::Sub(hn::Set(f, 0.5f), v)))); };
+        hn::Store(crossed(yl), i32, e.begin + k);
+        hn::Store(crossed(yh), i32, e.end + k);
+        hn::Store(hn::IfThenElse(hn::RebindMask(i32, up), hn::Set(i32, 1), hn::Zero(i32)), i32, e.up + k);
+        bx0 = hn::Min(bx0, left);
+        bx1 = hn::Max(bx1, right);
+        by0 = hn::Min(by0, hn::Sub(yl, grow));
+        by1 = hn::Max(by1, hn::Add(yh, grow));
+    }
+    bounds[0] = hn::GetLane(hn::MinOfLanes(f, bx0));
+    bounds[1] = hn::GetLane(hn::MinOfLanes(f, by0));
+    bounds[2] = hn::GetLane(hn::MaxOfLanes(f, bx1));
+    bounds[3] = hn::GetLane(hn::MaxOfLanes(f, by1));
+}
+
+/// An edge in one row of blocks.
+struct RowEdge {
+    alignas(64) int32_t crossed[kBlockHeight], first[kBlockHeight], end[kBlockHeight];  ///< columns
+    alignas(64) uint32_t counts[kBlockHeight], touches[kBlockHeight];                   ///< all bits, or none
+    uint32_t rows = 0;                                                                  ///< that it crosses, as bits
+    bool plus = true;  ///< right of it the winding number is larger
+};
+
+/// Winding numbers modulo four in two bit planes; each bit is a row.
+struct RowWinding {
+    uint32_t low = 0, high = 0;
+
+    void count(uint32_t rows, bool plus) {
+        const uint32_t carry = (plus ? low : ~low) & rows;
+        low ^= rows;
+        high ^= carry;
+    }
+};
+
+struct RowLists {
+    int count[kMostColumns], left_count[kMostColumns];
+    uint16_t at[kMostColumns][EdgeList::kMost], left[kMostColumns][EdgeList::kMost];  ///< that meet a block; that ended before
+};
+
+void setUpRow(const EdgeList& e, int i, int row0, int first, int last, int begin, int end, float width, RowEdge& out) {
+    const F f;
+    const I i32;
+    const U u32;
+    const VF slope = hn::Set(f, e.slope[i]), x0 = hn::Set(f, e.x[i]), y0 = hn::Set(f, e.y[i]);
+    const VF half = hn::Set(f, e.half[i]), left = hn::Set(f, e.left[i]), right = hn::Set(f, e.right[i]);
+    const auto toColumn = [&](VF v) HWY_ATTR {
+        return hn::ConvertTo(i32, hn::Floor(hn::Min(hn::Max(v, hn::Set(f, -1.0f)), hn::Set(f, width + 64))));
+    };
+    for (size_t k = 0; k < kBlockHeight; k += hn::Lanes(f)) {
+        const VI row = hn::Iota(i32, static_cast<int32_t>(k));
+        const VF y = hn::Add(hn::ConvertTo(f, row), hn::Set(f, static_cast<float>(row0) + 0.5f));
+        const VF x = hn::Add(hn::Mul(hn::Sub(y, y0), slope), x0);
+        hn::Store(toColumn(hn::Min(hn::Max(x, left), right)), i32, out.crossed + k);
+        hn::Store(toColumn(hn::Max(hn::Sub(x, half), left)), i32, out.first + k);
+        hn::Store(hn::Add(toColumn(hn::Min(hn::Add(x, half), right)), hn::Set(i32, 1)), i32, out.end + k);
+        const auto within = [&](int from, int to) HWY_ATTR {  // [from, to)
+            return hn::VecFromMask(
+                u32, hn::RebindMask(u32, hn::AndNot(hn::Lt(row, hn::Set(i32, from)), hn::Lt(row, hn::Set(i32, to)))));
+        };
+        hn::Store(within(begin, end), u32, out.counts + k);
+        hn::Store(within(first, last + 1), u32, out.touches + k);
+    }
+}
+
+/// Ones from a column of the block on.
+HWY_INLINE VU onesFrom(VI column, VI block) {
+    const I i32;
+    const U u32;
+    const VI at = hn::Max(hn::Sub(column, block), hn::Zero(i32));
+    const auto inside = hn::RebindMask(u32, hn::Lt(at, hn::Set(i32, kBlockWidth)));
+    return hn::IfThenElseZero(inside, hn::Shl(hn::Set(u32, ~0u), hn::BitCast(u32, hn::Min(at, hn::Set(i32, 31)))));
+}
+
+/// The pixels of a block that are covered: no edge touches them, and their winding number is not 0.
+/// @returns whether there are any
+bool coverBlock(const RowEdge* edges, const uint16_t* list, int count, const RowWinding& before, int column, uint32_t* covered) {
+    const I i32;
+    const U u32;
+    const VI block = hn::Set(i32, column);
+    VU any = hn::Zero(u32);
+    for (size_t k = 0; k < kBlockHeight; k += hn::Lanes(u32)) {
+        const VU bit = hn::Shl(hn::Set(u32, 1u), hn::Iota(u32, static_cast<uint32_t>(k)));
+        const auto spread = [&](uint32_t rows) HWY_ATTR {
+            return hn::VecFromMask(u32, hn::Ne(hn::And(hn::Set(u32, rows), bit), hn::Zero(u32)));
+        };
+        VU low = spread(before.low), high = spread(before.high), touched = hn::Zero(u32);
+        for (int n = 0; n < count; ++n) {
+            const RowEdge& e = edges[list[n]];
+            const VU more = hn::And(hn::Load(u32, e.counts + k), onesFrom(hn::Load(i32, e.crossed + k), block));
+            const VU carry = e.plus ? hn::And(low, more) : hn::AndNot(low, more);
+            low = hn::Xor(low, more);
+            high = hn::Xor(high, carry);
+            const VU band = hn::AndNot(onesFrom(hn::Load(i32, e.end + k), block), onesFrom(hn::Load(i32, e.first + k), block));
+            touched = hn::Or(touched, hn::And(hn::Load(u32, e.touches + k), band));
+        }
+        const VU cover = hn::AndNot(touched, hn::Or(low, high));
+        hn::Store(cover, u32, covered + k);
+        any = hn::Or(any, cover);
+    }
+    return !hn::AllTrue(u32, hn::Eq(any, hn::Zero(u32)));
+}
+
+/// From rows of 32 pixels to masks of tiles, bit 8 * row + column.
+#if HWY_TARGET == HWY_SCALAR
+void tilesOf(const uint32_t* rows, uint64_t* tiles) {
+    for (int t = 0; t < kBlockTiles; ++t) {
+        tiles[t] = 0;
+        for (int y = 0; y < 8; ++y) tiles[t] |= uint64_t{rows[8 * (t / 4) + y] >> (8 * (t % 4)) & 255} << (8 * y);
+    }
+}
+#else
+void tilesOf(const uint32_t* rows, uint64_t* tiles) {
+    const hn::FixedTag<uint8_t, 16> u8;
+    const hn::FixedTag<uint32_t, 4> u32;
+    const hn::FixedTag<uint64_t, 2> u64;
+    alignas(16) static constexpr uint8_t kByTile[16] = {0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15};
+    const auto order = hn::Load(u8, kByTile);
+    const auto four = [&](int first) HWY_ATTR {  // of four rows: bytes of the first tile, of the second, ...
+        return hn::BitCast(u32, hn::TableLookupBytes(hn::BitCast(u8, hn::Load(u32, rows + first)), order));
+    };
+    for (int half = 0; half < 2; ++half) {
+        const auto low = four(8 * half), high = four(8 * half + 4);
+        hn::Store(hn::BitCast(u64, hn::InterleaveLower(u32, low, high)), u64, tiles + 4 * half);
+        hn::Store(hn::BitCast(u64, hn::InterleaveUpper(u32, low, high)), u64, tiles + 4 * half + 2);
+    }
+}
+#endif
+
+/// A group that is drawn: its depth, and where it may be.
+struct GroupDepth {
+    ImagePlane plane;
+    float least = 0;  ///< of the plane, 4 pixels around a tile's middle: what its c is there
+    ImageRect rect;
+    uint32_t index = DepthBlock::kNoPlane;  ///< in DepthBlocks::planes, once a tile has asked for it
+};
+
+/// The depth of a group whose plane is `height` below the eye: a x + b y + c is no nearer than any of its points.
+ImagePlane depthOf(const ObjectFrame& frame, const glm::dvec3& normal, double height, double room, float width, float image_height) {
+    const glm::dvec3 abc = frame.to_image * normal * ((height > 0 ? -1.0 : 1.0) / (std::abs(height) + room));
+    ImagePlane out{static_cast<float>(abc.x), static_cast<float>(abc.y), 0};
+    // Rounding of the three, and of what is computed with them.
+    const double error = 0x1p-20 * (std::abs(abc.x) * width + std::abs(abc.y) * image_height + std::abs(abc.z));
+    out.c = std::nextafter(static_cast<float>(abc.z - error), -std::numeric_limits<float>::infinity());
+    return out;
+}
+
+/// Raises codes of pixels.
+void raiseCodes(DepthBlock& block, const uint32_t* rows, const uint16_t (&codes)[kBlockTiles]) {
+    const hn::CappedTag<uint16_t, 32> d;
+    if (block.fresh) {
+        std::memset(block.codes, 0, sizeof block.codes);
+        block.fresh = false;
+    }
+    alignas(64) uint16_t of_half[2][kBlockWidth];
+    for (int x = 0; x < kBlockWidth; ++x)
+        for (int half = 0; half < 2; ++half) of_half[half][x] = codes[4 * half + x / 8];
+    for (int y = 0; y < kBlockHeight; ++y) {
+        if (rows[y] == 0) continue;
+        for (size_t x = 0; x < kBlockWidth; x += hn::Lanes(d)) {
+            uint8_t bits[8] = {};
+            const uint32_t left = rows[y] >> x;
+            std::memcpy(bits, &left, sizeof left);
+            const auto was = hn::Load(d, block.codes[y] + x);
+            const auto is = hn::Max(was, hn::Load(d, of_half[y / 8] + x));
+            hn::Store(hn::IfThenElse(hn::LoadMaskBits(d, bits), is, was), d, block.codes[y] + x);
+        }
+    }
+}
+
+uint16_t leastCode(const DepthBlock& block, int tile) {
+    const hn::CappedTag<uint16_t, 8> d;
+    const uint16_t* at = &block.codes[8 * (tile / 4)][8 * (tile % 4)];
+    uint16_t all[8];
+    for (size_t x = 0; x < 8; x += hn::Lanes(d)) {
+        auto least = hn::Load(d, at + x);
+        for (int y = 1; y < 8; ++y) least = hn::Min(least, hn::Load(d, at + kBlockWidth * y + x));
+        hn::StoreU(least, d, all + x);
+    }
+    return *std::min_element(all, all + 8);
+}
+
+/// For each tile of a block the least depth of the groups that may be in it, how many those are, and the last of them.
+struct TileDepths {
+    alignas(32) float z[kBlockTiles], meets[kBlockTiles], last[kBlockTiles];
+};
+
+void depthOfTiles(int column, int row, const GroupDepth* groups, int count, TileDepths& out) {
+    const hn::CappedTag<float, 8> f;
+    alignas(32) static constexpr float kX[kBlockTiles] = {4, 12, 20, 28, 4, 12, 20, 28}, kY[kBlockTiles] = {4, 4, 4, 4, 12, 12, 12, 12};
+    const float x0 = static_cast<float>(kBlockWidth * column), y0 = static_cast<float>(kBlockHeight * row);
+    for (size_t t = 0; t < kBlockTiles; t += hn::Lanes(f)) {
+        const auto x = hn::Add(hn::Load(f, kX + t), hn::Set(f, x0)), y = hn::Add(hn::Load(f, kY + t), hn::Set(f, y0));
+        auto z = hn::Set(f, std::numeric_limits<float>::infinity()), meets = hn::Zero(f), last = hn::Zero(f);
+        for (int g = 0; g < count; ++g) {
+            const GroupDepth& of = groups[g];
+            const auto near_by =
+                hn::And(hn::And(hn::Ge(x, hn::Set(f, of.rect.x0 - 5)), hn::Le(x, hn::Set(f, of.rect.x1 + 5))),
+                        hn::And(hn::Ge(y, hn::Set(f, of.rect.y0 - 5)), hn::Le(y, hn::Set(f, of.rect.y1 + 5))));
+            const auto depth = hn::Add(hn::Add(hn::Mul(hn::Set(f, of.plane.a), x), hn::Mul(hn::Set(f, of.plane.b), y)),
+                                       hn::Set(f, of.least));
+            z = hn::IfThenElse(near_by, hn::Min(z, depth), z);
+            meets = hn::Add(meets, hn::IfThenElseZero(near_by, hn::Set(f, 1.0f)));
+            last = hn::IfThenElse(near_by, hn::Set(f, static_cast<float>(g)), last);
+        }
+        hn::Store(z, f, out.z + t);
+        hn::Store(meets, f, out.meets + t);
+        hn::Store(last, f, out.last + t);
+    }
+}
+
+/// Takes what a cluster covers of a block into it.
+void updateBlock(DepthBlocks& image, DepthBlock& block, int column, int row, const uint32_t* covered, GroupDepth* groups,
+                 int count) {
+    alignas(32) uint64_t masks[kBlockTiles];
+    TileDepths depths;
+    tilesOf(covered, masks);
+    depthOfTiles(column, row, groups, count, depths);
+    uint16_t codes[kBlockTiles] = {};
+    uint32_t part[2] = {0, 0};  // bits of tiles that are raised by pixel
+    for (int t = 0; t < kBlockTiles; ++t) {
+        const float z = depths.z[t];
+        if (masks[t] == 0 || depths.meets[t] == 0 || !(z > block.base[t])) continue;
+        if (masks[t] == ~uint64_t{0}) {
+            block.base[t] = z;
+            block.plane[t] = DepthBlock::kNoPlane;
+            if (depths.meets[t] > 1) continue;
+            GroupDepth& group = groups[static_cast<int>(depths.last[t])];
+            if (group.index == DepthBlock::kNoPlane) {
+                group.index = static_cast<uint32_t>(image.planes.size());
+                image.planes.push_back(group.plane);
+            }
+            block.plane[t] = group.index;
+            continue;
+        }
+        codes[t] = image.depths.code(z);
+        if (codes[t] == 0) continue;
+        part[t / 4] |= 255u << (8 * (t % 4));
+        block.seen[t] |= masks[t];
+    }
+    if ((part[0] | part[1]) == 0) return;
+    uint32_t rows[kBlockHeight];
+    for (int y = 0; y < kBlockHeight; ++y) rows[y] = covered[y] & part[y / 8];
+    raiseCodes(block, rows, codes);
+    for (int t = 0; t < kBlockTiles; ++t) {
+        if (codes[t] == 0 || block.seen[t] != ~uint64_t{0}) continue;
+        const float z = image.depths.nearness(leastCode(block, t));
+        if (!(z > block.base[t])) continue;
+        block.base[t] = z;
+        block.plane[t] = DepthBlock::kNoPlane;
+    }
+}
+
+bool isBlockOpen(const DepthBlock& block, float nearest) {
+    const hn::CappedTag<float, 8> f;
+    bool open = false;
+    for (size_t t = 0; t < kBlockTiles; t += hn::Lanes(f))
+        open |= !hn::AllFalse(f, hn::Lt(hn::Load(f, block.base + t), hn::Set(f, nearest)));
+    return open;
+}
+
+/// Draws what the edges bound.
+void rasterize(DepthBlocks& image, EdgeList& e, float r, float nearest, GroupDepth* groups, int count) {
+    static thread_local RowEdge row_edges[EdgeList::kMost];
+    static thread_local RowLists lists;
+    const float width = static_cast<float>(image.width), height = static_cast<float>(image.height);
+    float bounds[4] = {3e38f, 3e38f, -3e38f, -3e38f};
+    setUpEdges(e, r, height, bounds);
+    if (!(bounds[2] > 0 && bounds[3] > 0 && bounds[0] < width && bounds[1] < height)) return;
+    const int column0 = static_cast<int>(std::max(bounds[0], 0.0f)) / kBlockWidth,
+              column1 = static_cast<int>(std::min(bounds[2], width - 1)) / kBlockWidth,
+              block_row0 = static_cast<int>(std::max(bounds[1], 0.0f)) / kBlockHeight,
+              block_row1 = static_cast<int>(std::min(bounds[3], height - 1)) / kBlockHeight;
+    for (int by = block_row0; by <= block_row1; ++by) {
+        int from = column1 + 1, to = -1;  // blocks that may become nearer
+        for (int bx = column0; bx <= column1; ++bx)
+            if (isBlockOpen(image.at(bx, by), nearest)) {
+                from = std::min(from, bx);
+                to = bx;
+            }
+        if (to < 0) continue;
+        const int row0 = kBlockHeight * by;
+        RowWinding before;  // left of the block at hand
+        int used = 0;
+        for (int b = from; b <= to; ++b) lists.count[b] = lists.left_count[b] = 0;
+        for (int i = 0; i < e.count; ++i) {
+            const int first = std::max(e.first[i] - row0, 0), last = std::min(e.last[i] - row0, kBlockHeight - 1);
+            if (first > last) continue;
+            const int begin = std::clamp(e.begin[i] - row0, 0, kBlockHeight), end = std::clamp(e.end[i] - row0, 0, kBlockHeight);
+            const uint32_t rows = ((1u << end) - 1) & ~((1u << begin) - 1);
+            const float middle = static_cast<float>(row0) + 0.5f - e.y[i];
+            const float xa = (static_cast<float>(first) + middle) * e.slope[i] + e.x[i],
+                        xb = (static_cast<float>(last) + middle) * e.slope[i] + e.x[i];
+            const float room = e.half[i] + 0x1p-20f * std::max(std::abs(xa), std::abs(xb)) + 0.01f;
+            const float low = std::max(std::min(xa, xb) - room, e.left[i] - 0.01f),
+                        high = std::min(std::max(xa, xb) + room, e.right[i] + 0.01f);
+            if (!(low < static_cast<float>(kBlockWidth * (to + 1)))) continue;
+            const bool plus = (e.change[i] > 0) != (e.up[i] == 1);
+            if (high < static_cast<float>(kBlockWidth * from)) {
+                before.count(rows, plus);
+                continue;
+            }
+            RowEdge& edge = row_edges[used];
+            setUpRow(e, i, row0, first, last, begin, end, width, edge);
+            edge.rows = rows;
+            edge.plus = plus;
+            const int b0 = std::max(static_cast<int>(std::max(low, 0.0f)) / kBlockWidth, from),
+                      b1 = static_cast<int>(std::min(std::max(high, 0.0f), width + 64)) / kBlockWidth;
+            for (int b = b0; b <= std::min(b1, to); ++b) lists.at[b][lists.count[b]++] = static_cast<uint16_t>(used);
+            if (b1 < to) lists.left[b1 + 1][lists.left_count[b1 + 1]++] = static_cast<uint16_t>(used);
+            ++used;
+        }
+        for (int bx = from; bx <= to; ++bx) {
+            for (int k = 0; k < lists.left_count[bx]; ++k) {
+                const RowEdge& edge = row_edges[lists.left[bx][k]];
+                before.count(edge.rows, edge.plus);
+            }
+            if (lists.count[bx] == 0 && ((before.low | before.high) & 0xffffu) == 0) continue;
+            DepthBlock& block = image.at(bx, by);
+            if (!isBlockOpen(block, nearest)) continue;
+            alignas(64) uint32_t covered[kBlockHeight];
+            if (coverBlock(row_edges, lists.at[bx], lists.count[bx], before, kBlockWidth * bx, covered))
+                updateBlock(image, block, bx, by, covered, groups, count);
+        }
+    }
+}
+
+bool drawClusterKernel(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t index) {
+    SIGHTLINE_DEBUG_ASSERT(index < mesh.clusters.size());
+    static thread_local Image projected;
+    static thread_local EdgeList edges;
+    static thread_local GroupDepth groups[PlaneMesh::kMostGroups];
+    static thread_local ImageRect rects[PlaneMesh::kMostGroups];
+    const PlaneMesh::Cluster& c = mesh.clusters[index];
+    const glm::dvec3 eye = frame.eye - glm::dvec3(c.centre);
+    const double away = glm::length(eye);
+    int8_t turn[PlaneMesh::kNoGroup + 1] = {};
+    const int facing = faceGroups(mesh, c, glm::vec3(eye), static_cast<float>(away), turn);
+    if (facing == 0) return true;
+    projectVertices(frame, mesh, c, projected);
+    const float width = static_cast<float>(image.width), height = static_cast<float>(image.height);
+    const float near_w = static_cast<float>(frame.near_w * (1 + 1e-6)), reach = static_cast<float>(away) + c.radius;
+    const float w_error = 0x1p-20f * frame.length_w * reach;
+    if (!(projected.w_max + w_error > near_w)) return true;
+    // The images of vertices: numerators and w are off by 2^-20 of what they are made of at most.
+    float r = std::numeric_limits<float>::infinity(), nearest = 1 / near_w * (1 + 1e-5f);
+    if (projected.w_min > near_w + w_error) {
+        const float farthest = std::max({-projected.x0, projected.x1, -projected.y0, projected.y1, width, height});
+        r = 0x1p-20f * (std::max(frame.length_x, frame.length_y) + farthest * frame.length_w) * reach / projected.w_min + 1e-5f;
+        if (!(projected.x1 + 1 > 0 && projected.y1 + 1 > 0 && projected.x0 - 1 < width && projected.y0 - 1 < height))
+            return true;
+    }
+    edges.count = 0;
+    const bool by_floats = r < 0.25f;
+    if (by_floats) {
+        nearest = (1 + 1e-5f) / (projected.w_min - w_error);
+        for (uint32_t i = c.first_edge; i < c.first_edge + c.edges; ++i)
+            edges.add(projected.x[mesh.from[i]], projected.y[mesh.from[i]], projected.x[mesh.to[i]],
+                      projected.y[mesh.to[i]], turn[mesh.left[i]] - turn[mesh.right[i]]);
+    } else if (!cutEdges(frame, mesh, c, turn, width, height, edges, rects, r, nearest)) {
+        return false;
+    }
+    if (edges.count == 0) return true;
+    if (edges.full) return false;
+    for (int i = 0; frame.sign < 0 && i < edges.count; ++i) edges.change[i] = -edges.change[i];
+    int count = 0;
+    for (uint32_t g = 0; g < c.groups; ++g) {
+        if (turn[g] == 0) continue;
+        const size_t at = size_t{c.first_group} + g;
+        const glm::dvec3 normal(mesh.nx[at], mesh.ny[at], mesh.nz[at]);
+        GroupDepth& of = groups[count++];
+        of.plane = depthOf(frame, normal, glm::dot(normal, eye) - mesh.nd[at], mesh.thick[at], width, height);
+        of.least = of.plane.c - 4.0f * (std::abs(of.plane.a) + std::abs(of.plane.b));
+        of.index = DepthBlock::kNoPlane;
+        of.rect = by_floats ? ImageRect() : rects[g];
+        for (uint32_t k = 0; by_floats && k < mesh.corner_count[at]; ++k) {
+            const uint8_t v = mesh.corners[mesh.first_corner[at] + k];
+            of.rect.grow(projected.x[v], projected.y[v]);
+        }
+    }
+    rasterize(image, edges, r, nearest, groups, count);
+    return true;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sightline::bench
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace sightline::bench {
+
+HWY_EXPORT(drawClusterKernel);
+
+ObjectFrame objectFrame(const Screen& object, bool flips) {
+    ObjectFrame out;
+    out.x = object.x;
+    out.y = object.y;
+    out.w = object.w;
+    const glm::dmat3 rows = glm::transpose(glm::dmat3(glm::dvec3(out.x), glm::dvec3(out.y), glm::dvec3(out.w)));
+    const double size = glm::determinant(rows);
+    if (!object.perspective || !(object.near_w > 0) || !(std::abs(size) > 0) || !std::isfinite(1 / size)) return out;
+    out.eye = -(glm::inverse(rows) * glm::dvec3(out.x.w, out.y.w, out.w.w));
+    out.to_image = glm::inverse(glm::transpose(rows));
+    out.near_w = object.near_w;
+    const auto length = [](const glm::dvec4& row) { return static_cast<float>(glm::length(glm::dvec3(row)) * (1 + 1e-6)); };
+    out.length_x = length(out.x);
+    out.length_y = length(out.y);
+    out.length_w = length(out.w);
+    out.sign = object.mirrored != flips ? -1 : 1;
+    out.usable = true;
+    return out;
+}
+
+bool drawCluster(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t cluster) {
+    return frame.usable && HWY_DYNAMIC_DISPATCH(drawClusterKernel)(image, frame, mesh, cluster);
+}
+
+namespace {
+
+bool isBehind(const ImagePlane& plane, const AskedBox& box) {
+    float v = plane.a * box.x[3] + plane.b * box.y[3] + plane.c * box.w[3] - 1.0f;
+    float size = std::abs(plane.a * box.x[3]) + std::abs(plane.b * box.y[3]) + std::abs(plane.c * box.w[3]) + 1.0f;
+    for (int k = 0; k < 3; ++k) {
+        const float a = plane.a * box.x[k], b = plane.b * box.y[k], c = plane.c * box.w[k];
+        v -= box.half[k] * std::abs(a + b + c);
+        size += box.half[k] * (std::abs(a) + std::abs(b) + std::abs(c));
+    }
+    return v > 0x1p-20f * size;
+}
+
+}  // namespace
+
+bool isOpen(DepthBlocks& image, int x0, int y0, int x1, int y1, float nearness, const AskedBox* box) {
+    const uint16_t asked = image.depths.code(nearness);
+    uint32_t last = DepthBlock::kNoPlane;
+    bool last_hides = false;
+    for (int by = y0 / kBlockHeight; by <= y1 / kBlockHeight; ++by)
+        for (int bx = x0 / kBlockWidth; bx <= x1 / kBlockWidth; ++bx) {
+            const DepthBlock& block = image.at(bx, by);
+            const int left = std::max(x0 - kBlockWidth * bx, 0), right = std::min(x1 - kBlockWidth * bx, kBlockWidth - 1),
+                      low = std::max(y0 - kBlockHeight * by, 0), high = std::min(y1 - kBlockHeight * by, kBlockHeight - 1);
+            for (int t = 4 * (low / 8) + 0; t < 4 * (high / 8) + 4; ++t) {
+                const int tx = 8 * (t % 4), ty = 8 * (t / 4);
+                if (tx + 7 < left || tx > right || block.base[t] > nearness) continue;
+                if (box && block.plane[t] != DepthBlock::kNoPlane) {
+                    if (block.plane[t] != last) last_hides = isBehind(image.planes[last = block.plane[t]], *box);
+                    if (last_hides) continue;
+                }
+                if (block.seen[t] == 0) return true;
+                for (int y = std::max(low, ty); y <= std::min(high, ty + 7); ++y)
+                    for (int x = std::max(left, tx); x <= std::min(right, tx + 7); ++x) {
+                        const bool seen = block.seen[t] >> (8 * (y - ty) + x - tx) & 1;
+                        if (!seen || block.codes[y][x] <= asked) return true;
+                    }
+            }
+        }
+    return false;
+}
+
+}  // namespace sightline::bench
+
+#endif  // HWY_ONCE

@@ -1,0 +1,70 @@
+// The edges that bound what is drawn of a cluster, and how they are cut at the near plane.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "bench/onepass/draw.h"
+
+namespace sightline::bench {
+
+constexpr int kMostColumns = 256;  ///< blocks in a row: images are no wider than 8192 pixels
+
+/// Edges with the change of the winding number from their right to their left, side by side.
+struct EdgeList {
+    static constexpr int kMost = 960, kRoom = kMost + 16;
+
+    alignas(64) float ax[kRoom], ay[kRoom], bx[kRoom], by[kRoom];  ///< corners  [pixels]
+    int change[kRoom];                                             ///< 1 or -1
+    // What rows read: the lower corner, columns a row, what the edge touches beside it, and its ends.
+    alignas(64) float x[kRoom], y[kRoom], slope[kRoom], half[kRoom], left[kRoom], right[kRoom];
+    alignas(64) int32_t first[kRoom], last[kRoom], begin[kRoom], end[kRoom], up[kRoom];
+    int count = 0;
+    bool full = false;  ///< one had no room
+
+    void add(float x0, float y0, float x1, float y1, int by_many) {
+        for (; by_many != 0; by_many += by_many > 0 ? -1 : 1) {
+            if (count == kMost) {
+                full = true;
+                return;
+            }
+            ax[count] = x0;
+            ay[count] = y0;
+            bx[count] = x1;
+            by[count] = y1;
+            change[count++] = by_many > 0 ? 1 : -1;
+        }
+    }
+    /// Fills what is loaded with the last ones.
+    void pad() {
+        for (int i = count; i < count + 16; ++i) {
+            ax[i] = ax[count - 1];
+            ay[i] = ay[count - 1];
+            bx[i] = bx[count - 1];
+            by[i] = by[count - 1];
+        }
+    }
+};
+
+/// Where a group may be in the image.
+struct ImageRect {
+    float x0 = 3e38f, y0 = 3e38f, x1 = -3e38f, y1 = -3e38f;
+
+    void grow(float x, float y) {
+        x0 = x < x0 ? x : x0;
+        x1 = x > x1 ? x : x1;
+        y0 = y < y0 ? y : y0;
+        y1 = y > y1 ? y : y1;
+    }
+};
+
+/// Gathers the edges of a cluster that the near plane cuts, in doubles, with those that close its groups there.
+/// @param turn     per group: 1, -1, or 0: it is not drawn
+/// @param rects    per group, of those that are drawn
+/// @param r        becomes a bound on where their corners may lie otherwise  [pixels]
+/// @param nearest  becomes the nearness of what is nearest
+/// @returns false if they are not known well enough
+bool cutEdges(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& cluster, const int8_t* turn, float width,
+              float height, EdgeList& edges, ImageRect* rects, float& r, float& nearest);
+
+}  // namespace sightline::bench
