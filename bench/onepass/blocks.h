@@ -3,6 +3,7 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -83,7 +84,8 @@ struct DepthBlocks {
         const DepthBlock& block = at(x / kBlockWidth, y / kBlockHeight);
         const int column = x % kBlockWidth, row = y % kBlockHeight, tile = 4 * (row / 8) + column / 8;
         const bool seen = block.seen[tile] >> (8 * (row % 8) + column % 8) & 1;
-        const float by_pixel = seen ? depths.nearness(block.codes[row][column]) : -std::numeric_limits<float>::infinity();
+        const float by_pixel =
+            seen ? depths.nearness(block.codes[row][column]) : -std::numeric_limits<float>::infinity();
         return by_pixel > block.base[tile] ? by_pixel : block.base[tile];
     }
 };

@@ -69,15 +69,21 @@ public:
 
 private:
     /// Of a box whose centre is given with what the rows are over: relative to the eye in the world.
-    BoxImage imageOf(const Screen& screen, const glm::dvec3& origin, const glm::dvec3& centre, const glm::dvec3& half) const {
+    BoxImage imageOf(const Screen& screen, const glm::dvec3& origin, const glm::dvec3& centre,
+                     const glm::dvec3& half) const {
         double x0 = 1e300, y0 = 1e300, x1 = -1e300, y1 = -1e300, least = 1e300;
         for (int corner = 0; corner < 8; ++corner) {
             glm::dvec3 at = centre - origin;
             for (int axis = 0; axis < 3; ++axis) at[axis] += corner >> axis & 1 ? half[axis] : -half[axis];
             const glm::dvec4 p(at, 1);
             const double w = glm::dot(screen.w, p);
-            if (!(w > screen.near_w)) return {0, 0, static_cast<int>(screen.width) - 1, static_cast<int>(screen.height) - 1,
-                                              std::numeric_limits<float>::infinity(), false};
+            if (!(w > screen.near_w))
+                return {0,
+                        0,
+                        static_cast<int>(screen.width) - 1,
+                        static_cast<int>(screen.height) - 1,
+                        std::numeric_limits<float>::infinity(),
+                        false};
             const double x = glm::dot(screen.x, p) / w, y = glm::dot(screen.y, p) / w;
             x0 = std::min(x0, x);
             y0 = std::min(y0, y);
@@ -85,9 +91,15 @@ private:
             y1 = std::max(y1, y);
             least = std::min(least, w);
         }
-        const auto pixel = [](double v, uint32_t size) { return static_cast<int>(std::clamp(std::floor(v), 0.0, size - 1.0)); };
-        return {pixel(x0 - 1e-3, screen.width), pixel(y0 - 1e-3, screen.height), pixel(x1 + 1e-3, screen.width),
-                pixel(y1 + 1e-3, screen.height), static_cast<float>(1 / least * (1 + 1e-6)), true};
+        const auto pixel = [](double v, uint32_t size) {
+            return static_cast<int>(std::clamp(std::floor(v), 0.0, size - 1.0));
+        };
+        return {pixel(x0 - 1e-3, screen.width),
+                pixel(y0 - 1e-3, screen.height),
+                pixel(x1 + 1e-3, screen.width),
+                pixel(y1 + 1e-3, screen.height),
+                static_cast<float>(1 / least * (1 + 1e-6)),
+                true};
     }
 
     bool isObjectOpen(const Screen& screen, uint32_t object) {

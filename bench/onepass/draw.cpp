@@ -57,11 +57,13 @@ int faceGroups(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const glm::ve
                                      hn::Mul(hn::LoadU(f, &mesh.nz[at]), hn::Set(f, eye.z))),
                              hn::LoadU(f, &mesh.nd[at]));
         // What floats may be off by, what vertices lie off the plane, and what a triangle may lean.
-        const VF room = hn::Add(hn::LoadU(f, &mesh.thick[at]),
-                                hn::Mul(hn::Add(hn::LoadU(f, &mesh.tilt[at]), hn::Set(f, 0x1p-20f)), hn::Set(f, reach)));
+        const VF room =
+            hn::Add(hn::LoadU(f, &mesh.thick[at]),
+                    hn::Mul(hn::Add(hn::LoadU(f, &mesh.tilt[at]), hn::Set(f, 0x1p-20f)), hn::Set(f, reach)));
         const auto front = hn::Gt(h, room), back = hn::Lt(h, hn::Neg(room));
         float signs[16];
-        hn::StoreU(hn::IfThenElse(front, hn::Set(f, 1.0f), hn::IfThenElse(back, hn::Set(f, -1.0f), hn::Zero(f))), f, signs);
+        hn::StoreU(hn::IfThenElse(front, hn::Set(f, 1.0f), hn::IfThenElse(back, hn::Set(f, -1.0f), hn::Zero(f))), f,
+                   signs);
         for (size_t k = 0; k < hn::Lanes(f) && g + k < c.groups; ++k) {
             const int t = signs[k] > 0 ? 1 : signs[k] < 0 && mesh.both[at + k] ? -1 : 0;
             turn[g + k] = static_cast<int8_t>(t);
@@ -114,7 +116,8 @@ void setUpEdges(EdgeList& e, float r, float height, float (&bounds)[4]) {
     const F f;
     const I i32;
     const VF vr = hn::Set(f, r), rows = hn::Set(f, height + 1);
-    VF bx0 = hn::Set(f, bounds[0]), by0 = hn::Set(f, bounds[1]), bx1 = hn::Set(f, bounds[2]), by1 = hn::Set(f, bounds[3]);
+    VF bx0 = hn::Set(f, bounds[0]), by0 = hn::Set(f, bounds[1]), bx1 = hn::Set(f, bounds[2]),
+       by1 = hn::Set(f, bounds[3]);
     e.pad();
     for (int k = 0; k < e.count; k += static_cast<int>(hn::Lanes(f))) {
         const VF ax = hn::Load(f, e.ax + k), ay = hn::Load(f, e.ay + k), bx = hn::Load(f, e.bx + k),
@@ -180,7 +183,8 @@ struct RowWinding {
 
 struct RowLists {
     int count[kMostColumns], left_count[kMostColumns];
-    uint16_t at[kMostColumns][EdgeList::kMost], left[kMostColumns][EdgeList::kMost];  ///< that meet a block; that ended before
+    uint16_t at[kMostColumns][EdgeList::kMost],
+        left[kMostColumns][EdgeList::kMost];  ///< that meet a block; that ended before
 };
 
 void setUpRow(const EdgeList& e, int i, int row0, int first, int last, int begin, int end, float width, RowEdge& out) {
@@ -219,7 +223,8 @@ HWY_INLINE VU onesFrom(VI column, VI block) {
 
 /// The pixels of a block that are covered: no edge touches them, and their winding number is not 0.
 /// @returns whether there are any
-bool coverBlock(const RowEdge* edges, const uint16_t* list, int count, const RowWinding& before, int column, uint32_t* covered) {
+bool coverBlock(const RowEdge* edges, const uint16_t* list, int count, const RowWinding& before, int column,
+                uint32_t* covered) {
     const I i32;
     const U u32;
     const VI block = hn::Set(i32, column);
@@ -236,7 +241,8 @@ bool coverBlock(const RowEdge* edges, const uint16_t* list, int count, const Row
             const VU carry = e.plus ? hn::And(low, more) : hn::AndNot(low, more);
             low = hn::Xor(low, more);
             high = hn::Xor(high, carry);
-            const VU band = hn::AndNot(onesFrom(hn::Load(i32, e.end + k), block), onesFrom(hn::Load(i32, e.first + k), block));
+            const VU band =
+                hn::AndNot(onesFrom(hn::Load(i32, e.end + k), block), onesFrom(hn::Load(i32, e.first + k), block));
             touched = hn::Or(touched, hn::And(hn::Load(u32, e.touches + k), band));
         }
         const VU cover = hn::AndNot(touched, hn::Or(low, high));
@@ -281,7 +287,8 @@ struct GroupDepth {
 };
 
 /// The depth of a group whose plane is `height` below the eye: a x + b y + c is no nearer than any of its points.
-ImagePlane depthOf(const ObjectFrame& frame, const glm::dvec3& normal, double height, double room, float width, float image_height) {
+ImagePlane depthOf(const ObjectFrame& frame, const glm::dvec3& normal, double height, double room, float width,
+                   float image_height) {
     const glm::dvec3 abc = frame.to_image * normal * ((height > 0 ? -1.0 : 1.0) / (std::abs(height) + room));
     ImagePlane out{static_cast<float>(abc.x), static_cast<float>(abc.y), 0};
     // Rounding of the three, and of what is computed with them.
@@ -332,7 +339,8 @@ struct TileDepths {
 
 void depthOfTiles(int column, int row, const GroupDepth* groups, int count, TileDepths& out) {
     const hn::CappedTag<float, 8> f;
-    alignas(32) static constexpr float kX[kBlockTiles] = {4, 12, 20, 28, 4, 12, 20, 28}, kY[kBlockTiles] = {4, 4, 4, 4, 12, 12, 12, 12};
+    alignas(32) static constexpr float kX[kBlockTiles] = {4, 12, 20, 28, 4, 12, 20, 28},
+                                       kY[kBlockTiles] = {4, 4, 4, 4, 12, 12, 12, 12};
     const float x0 = static_cast<float>(kBlockWidth * column), y0 = static_cast<float>(kBlockHeight * row);
     for (size_t t = 0; t < kBlockTiles; t += hn::Lanes(f)) {
         const auto x = hn::Add(hn::Load(f, kX + t), hn::Set(f, x0)), y = hn::Add(hn::Load(f, kY + t), hn::Set(f, y0));
@@ -355,8 +363,8 @@ void depthOfTiles(int column, int row, const GroupDepth* groups, int count, Tile
 }
 
 /// Takes what a cluster covers of a block into it.
-void updateBlock(DepthBlocks& image, DepthBlock& block, int column, int row, const uint32_t* covered, GroupDepth* groups,
-                 int count) {
+void updateBlock(DepthBlocks& image, DepthBlock& block, int column, int row, const uint32_t* covered,
+                 GroupDepth* groups, int count) {
     alignas(32) uint64_t masks[kBlockTiles];
     TileDepths depths;
     tilesOf(covered, masks);
@@ -431,7 +439,8 @@ void rasterize(DepthBlocks& image, EdgeList& e, float r, float nearest, GroupDep
         for (int i = 0; i < e.count; ++i) {
             const int first = std::max(e.first[i] - row0, 0), last = std::min(e.last[i] - row0, kBlockHeight - 1);
             if (first > last) continue;
-            const int begin = std::clamp(e.begin[i] - row0, 0, kBlockHeight), end = std::clamp(e.end[i] - row0, 0, kBlockHeight);
+            const int begin = std::clamp(e.begin[i] - row0, 0, kBlockHeight),
+                      end = std::clamp(e.end[i] - row0, 0, kBlockHeight);
             const uint32_t rows = ((1u << end) - 1) & ~((1u << begin) - 1);
             const float middle = static_cast<float>(row0) + 0.5f - e.y[i];
             const float xa = (static_cast<float>(first) + middle) * e.slope[i] + e.x[i],
@@ -491,7 +500,9 @@ bool drawClusterKernel(DepthBlocks& image, const ObjectFrame& frame, const Plane
     float r = std::numeric_limits<float>::infinity(), nearest = 1 / near_w * (1 + 1e-5f);
     if (projected.w_min > near_w + w_error) {
         const float farthest = std::max({-projected.x0, projected.x1, -projected.y0, projected.y1, width, height});
-        r = 0x1p-20f * (std::max(frame.length_x, frame.length_y) + farthest * frame.length_w) * reach / projected.w_min + 1e-5f;
+        r = 0x1p-20f * (std::max(frame.length_x, frame.length_y) + farthest * frame.length_w) * reach /
+                projected.w_min +
+            1e-5f;
         if (!(projected.x1 + 1 > 0 && projected.y1 + 1 > 0 && projected.x0 - 1 < width && projected.y0 - 1 < height))
             return true;
     }
@@ -537,26 +548,6 @@ namespace sightline::bench {
 
 HWY_EXPORT(drawClusterKernel);
 
-ObjectFrame objectFrame(const Screen& object, bool flips) {
-    ObjectFrame out;
-    out.x = object.x;
-    out.y = object.y;
-    out.w = object.w;
-    const glm::dmat3 rows = glm::transpose(glm::dmat3(glm::dvec3(out.x), glm::dvec3(out.y), glm::dvec3(out.w)));
-    const double size = glm::determinant(rows);
-    if (!object.perspective || !(object.near_w > 0) || !(std::abs(size) > 0) || !std::isfinite(1 / size)) return out;
-    out.eye = -(glm::inverse(rows) * glm::dvec3(out.x.w, out.y.w, out.w.w));
-    out.to_image = glm::inverse(glm::transpose(rows));
-    out.near_w = object.near_w;
-    const auto length = [](const glm::dvec4& row) { return static_cast<float>(glm::length(glm::dvec3(row)) * (1 + 1e-6)); };
-    out.length_x = length(out.x);
-    out.length_y = length(out.y);
-    out.length_w = length(out.w);
-    out.sign = object.mirrored != flips ? -1 : 1;
-    out.usable = true;
-    return out;
-}
-
 bool drawCluster(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t cluster) {
     return frame.usable && HWY_DYNAMIC_DISPATCH(drawClusterKernel)(image, frame, mesh, cluster);
 }
@@ -583,8 +574,10 @@ bool isOpen(DepthBlocks& image, int x0, int y0, int x1, int y1, float nearness, 
     for (int by = y0 / kBlockHeight; by <= y1 / kBlockHeight; ++by)
         for (int bx = x0 / kBlockWidth; bx <= x1 / kBlockWidth; ++bx) {
             const DepthBlock& block = image.at(bx, by);
-            const int left = std::max(x0 - kBlockWidth * bx, 0), right = std::min(x1 - kBlockWidth * bx, kBlockWidth - 1),
-                      low = std::max(y0 - kBlockHeight * by, 0), high = std::min(y1 - kBlockHeight * by, kBlockHeight - 1);
+            const int left = std::max(x0 - kBlockWidth * bx, 0),
+                      right = std::min(x1 - kBlockWidth * bx, kBlockWidth - 1),
+                      low = std::max(y0 - kBlockHeight * by, 0),
+                      high = std::min(y1 - kBlockHeight * by, kBlockHeight - 1);
             for (int t = 4 * (low / 8) + 0; t < 4 * (high / 8) + 4; ++t) {
                 const int tx = 8 * (t % 4), ty = 8 * (t / 4);
                 if (tx + 7 < left || tx > right || block.base[t] > nearness) continue;

@@ -38,7 +38,8 @@ void addClipped(EdgeList& edges, double x0, double y0, double x1, double y1, int
         const double ya = y0 + s * (y1 - y0), yb = t == 1 ? y1 : y0 + t * (y1 - y0), middle = 0.5 * (xa + xb);
         if (middle < left) xa = xb = left;
         if (middle > right) xa = xb = right;
-        edges.add(static_cast<float>(xa), static_cast<float>(ya), static_cast<float>(xb), static_cast<float>(yb), change);
+        edges.add(static_cast<float>(xa), static_cast<float>(ya), static_cast<float>(xb), static_cast<float>(yb),
+                  change);
     }
 }
 
@@ -51,8 +52,8 @@ struct CutPoint {
 
 }  // namespace
 
-bool cutEdges(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& cluster, const int8_t* turn, float width,
-              float height, EdgeList& edges, ImageRect* rects, float& r, float& nearest) {
+bool cutEdges(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& cluster, const int8_t* turn,
+              float width, float height, EdgeList& edges, ImageRect* rects, float& r, float& nearest) {
     static thread_local std::vector<CutPoint> cuts;
     double x[256], y[256], w[256], least = 1e300;
     const double near_w = frame.near_w * (1 + 1e-6);
@@ -69,7 +70,8 @@ bool cutEdges(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::
     nearest = static_cast<float>((1 + 1e-5) / nearest_w);
     // Vertices are rounded to floats around the centre, and may lie off their planes, along which groups are closed.
     const double off = 0x1p-23 * cluster.radius + 2.0 * cluster.thick;
-    const double image = std::max(frame.length_x, frame.length_y) + static_cast<double>(std::max(width, height)) * frame.length_w;
+    const double image =
+        std::max(frame.length_x, frame.length_y) + static_cast<double>(std::max(width, height)) * frame.length_w;
     r = static_cast<float>(off * image / nearest_w + 1e-3);
     if (!(r < 0.5f)) return false;
     cuts.clear();

@@ -4,7 +4,8 @@
 
 #include <cstdint>
 
-#include "bench/onepass/draw.h"
+#include "bench/onepass/frame.h"
+#include "bench/onepass/mesh.h"
 
 namespace sightline::bench {
 
@@ -64,7 +65,7 @@ struct ImageRect {
 /// @param r        becomes a bound on where their corners may lie otherwise  [pixels]
 /// @param nearest  becomes the nearness of what is nearest
 /// @returns false if they are not known well enough
-bool cutEdges(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& cluster, const int8_t* turn, float width,
-              float height, EdgeList& edges, ImageRect* rects, float& r, float& nearest);
+bool cutEdges(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& cluster, const int8_t* turn,
+              float width, float height, EdgeList& edges, ImageRect* rects, float& r, float& nearest);
 
 }  // namespace sightline::bench

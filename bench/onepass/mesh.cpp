@@ -10,7 +10,7 @@
 namespace sightline::bench {
 namespace {
 
-constexpr double kFlat = 2e-6;   // how far a vertex may lie from its group's plane  [radii of the cluster]
+constexpr double kFlat = 2e-6;    // how far a vertex may lie from its group's plane  [radii of the cluster]
 constexpr double kTilted = 2e-3;  // how much a triangle's normal may differ from its group's
 
 struct Group {

@@ -26,15 +26,15 @@ struct PlaneMesh {
     };
 
     std::vector<Cluster> clusters;
-    std::vector<float> x, y, z;               ///< vertices, relative to the cluster's centre
-    std::vector<float> nx, ny, nz, nd;        ///< planes: n.v = nd; n of length 1, towards the front
-    std::vector<float> thick;                 ///< no vertex of the group is farther from its plane
-    std::vector<float> tilt;                  ///< no normal of its triangles differs by more
-    std::vector<uint8_t> both;                ///< it is drawn from both sides
-    std::vector<uint8_t> corners;             ///< vertices of groups
+    std::vector<float> x, y, z;                        ///< vertices, relative to the cluster's centre
+    std::vector<float> nx, ny, nz, nd;                 ///< planes: n.v = nd; n of length 1, towards the front
+    std::vector<float> thick;                          ///< no vertex of the group is farther from its plane
+    std::vector<float> tilt;                           ///< no normal of its triangles differs by more
+    std::vector<uint8_t> both;                         ///< it is drawn from both sides
+    std::vector<uint8_t> corners;                      ///< vertices of groups
     std::vector<uint32_t> first_corner, corner_count;  ///< per group
-    std::vector<uint8_t> from, to;            ///< edges: vertices
-    std::vector<uint8_t> left, right;         ///< the groups beside it, as seen from the front; never the same
+    std::vector<uint8_t> from, to;                     ///< edges: vertices
+    std::vector<uint8_t> left, right;                  ///< the groups beside it, as seen from the front; never the same
 };
 
 /// Rings are left out. Loose polygons are clusters of their own.

@@ -57,7 +57,8 @@ Made randomMesh(Random& random) {
         case 3:  // loose triangles
             for (int i = 0; i < 30; ++i) {
                 const glm::dvec3 at = randomVector(random, 2.0);
-                const glm::dvec3 a = randomVector(random, 1.5), b = randomVector(random, 1.5), c = randomVector(random, 1.5);
+                const glm::dvec3 a = randomVector(random, 1.5), b = randomVector(random, 1.5),
+                                 c = randomVector(random, 1.5);
                 mesh.add(glm::vec3(at + a), glm::vec3(at + b), glm::vec3(at + c));
             }
             break;
@@ -66,7 +67,8 @@ Made randomMesh(Random& random) {
             for (uint32_t y = 0; y <= n; ++y)
                 for (uint32_t x = 0; x < n; ++x) {
                     const double a = 6.283185307179586 * x / n, b = 3.141592653589793 * (0.02 + 0.96 * y / n);
-                    mesh.positions.push_back(glm::vec3(2 * std::sin(b) * std::cos(a), 2 * std::cos(b), 2 * std::sin(b) * std::sin(a)));
+                    mesh.positions.push_back(
+                        glm::vec3(2 * std::sin(b) * std::cos(a), 2 * std::cos(b), 2 * std::sin(b) * std::sin(a)));
                 }
             for (uint32_t y = 0; y < n; ++y)
                 for (uint32_t x = 0; x < n; ++x) {
@@ -78,7 +80,8 @@ Made randomMesh(Random& random) {
         default:  // slivers and folds: a fan of triangles around one edge
             for (int i = 0; i < 20; ++i) {
                 const double a = random.uniform(0, 6.28), width = std::pow(10, random.uniform(-5, 0.3));
-                mesh.add(glm::vec3(0, -2, 0), glm::vec3(0, 2, 0), glm::vec3(width * std::cos(a), random.uniform(-2, 2), width * std::sin(a)));
+                mesh.add(glm::vec3(0, -2, 0), glm::vec3(0, 2, 0),
+                         glm::vec3(width * std::cos(a), random.uniform(-2, 2), width * std::sin(a)));
             }
     }
     for (size_t t = 0; t < mesh.indices.size() / 3; ++t) out.both.push_back(random.below(3) == 0);
@@ -158,7 +161,8 @@ TEST(OnePass, CoversNothingThatIsOpen) {
         DepthBlocks image;
         undrawn += draw(of, 128, image, clusters);
         const Screen screen = makeScreen(of.view, 128), object = objectScreen(screen, of.transform);
-        const glm::dmat3 rows = glm::transpose(glm::dmat3(glm::dvec3(object.x), glm::dvec3(object.y), glm::dvec3(object.w)));
+        const glm::dmat3 rows =
+            glm::transpose(glm::dmat3(glm::dvec3(object.x), glm::dvec3(object.y), glm::dvec3(object.w)));
         const glm::dmat3 from_image = glm::inverse(rows);
         const glm::dvec3 eye = -(from_image * glm::dvec3(object.x.w, object.y.w, object.w.w));
         for (int y = 0; y < int(image.height); ++y)
@@ -197,8 +201,8 @@ TEST(OnePass, IsTheSameOnEveryInstructionSet) {
             size_t differ = 0, where = 0;
             for (size_t i = 0; i < claims.size(); ++i)
                 if (claims[i] != first[i] && ++differ == 1) where = i;
-            EXPECT_EQ(differ, 0u) << target << ": pixel " << where % image.width << " " << where / image.width << ": " << claims[where]
-                                  << ", not " << first[where];
+            EXPECT_EQ(differ, 0u) << target << ": pixel " << where % image.width << " " << where / image.width << ": "
+                                  << claims[where] << ", not " << first[where];
         });
         EXPECT_GT(targets, 0);
     }
