@@ -60,7 +60,9 @@ public:
             const Screen rows = objectScreen(screen, scene_.objects[object].transform);
             const ObjectFrame frame = objectFrame(rows, mirrored_[object]);
             const PlaneMesh& mesh = meshes_[scene_.objects[object].mesh];
-            for (uint32_t c = 0; c < mesh.clusters.size(); ++c) drawCluster(image_, frame, mesh, c);
+            for (uint32_t c = 0; c < mesh.clusters.size(); ++c)
+                if (mesh.clusters.size() == 1 || isClusterOpen(rows, mesh.clusters[c]))
+                    drawCluster(image_, frame, mesh, c);
             kept_.push_back(object);
         }
         return static_cast<size_t>(
@@ -117,6 +119,12 @@ private:
         asked.y[3] = static_cast<float>(glm::dot(screen.y, glm::dvec4(centre, 1)));
         asked.w[3] = static_cast<float>(glm::dot(screen.w, glm::dvec4(centre, 1)));
         return isOpen(image_, box.x0, box.y0, box.x1, box.y1, box.nearness, &asked);
+    }
+
+    /// Whether a cluster may show something, by its box.
+    bool isClusterOpen(const Screen& rows, const PlaneMesh::Cluster& cluster) {
+        const BoxImage box = imageOf(rows, glm::dvec3(0.0), glm::dvec3(cluster.centre), glm::dvec3(cluster.half));
+        return !box.bounded || isOpen(image_, box.x0, box.y0, box.x1, box.y1, box.nearness, nullptr);
     }
 
     const Scene& scene_;

@@ -3,6 +3,7 @@
 #include "bench/onepass/draw.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -60,15 +61,11 @@ int faceGroups(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const glm::ve
         const VF room =
             hn::Add(hn::LoadU(f, &mesh.thick[at]),
                     hn::Mul(hn::Add(hn::LoadU(f, &mesh.tilt[at]), hn::Set(f, 0x1p-20f)), hn::Set(f, reach)));
-        const auto front = hn::Gt(h, room), back = hn::Lt(h, hn::Neg(room));
-        float signs[16];
-        hn::StoreU(hn::IfThenElse(front, hn::Set(f, 1.0f), hn::IfThenElse(back, hn::Set(f, -1.0f), hn::Zero(f))), f,
-                   signs);
-        for (size_t k = 0; k < hn::Lanes(f) && g + k < c.groups; ++k) {
-            const int t = signs[k] > 0 ? 1 : signs[k] < 0 && mesh.both[at + k] ? -1 : 0;
-            turn[g + k] = static_cast<int8_t>(t);
-            count += t != 0;
-        }
+        const auto front = hn::Gt(h, room);
+        const VF back = hn::IfThenElseZero(hn::Lt(h, hn::Neg(room)), hn::LoadU(f, &mesh.both[at]));
+        const VF turns = hn::IfThenElse(front, hn::Set(f, 1.0f), hn::Neg(back));
+        hn::StoreU(hn::DemoteTo(hn::Rebind<int8_t, F>(), hn::ConvertTo(I(), turns)), hn::Rebind<int8_t, F>(), turn + g);
+        count += static_cast<int>(hn::CountTrue(f, hn::Ne(turns, hn::Zero(f))));
     }
     return count;
 }
@@ -151,6 +148,8 @@ void setUpEdges(EdgeList& e, float r, float height, float (&bounds)[4]) {
         hn::Store(crossed(yl), i32, e.begin + k);
         hn::Store(crossed(yh), i32, e.end + k);
         hn::Store(hn::IfThenElse(hn::RebindMask(i32, up), hn::Set(i32, 1), hn::Zero(i32)), i32, e.up + k);
+        hn::Store(hn::IfThenElse(hn::RebindMask(i32, level), hn::Set(i32, 1), hn::Zero(i32)), i32, e.level + k);
+        hn::Store(hn::Add(hn::Add(hn::Mul(steep, vr), grow), hn::Set(f, 0.01f)), f, e.beside + k);
         bx0 = hn::Min(bx0, left);
         bx1 = hn::Max(bx1, right);
         by0 = hn::Min(by0, hn::Sub(yl, grow));
@@ -164,10 +163,12 @@ void setUpEdges(EdgeList& e, float r, float height, float (&bounds)[4]) {
 
 /// An edge in one row of blocks.
 struct RowEdge {
-    alignas(64) int32_t crossed[kBlockHeight], first[kBlockHeight], end[kBlockHeight];  ///< columns
-    alignas(64) uint32_t counts[kBlockHeight], touches[kBlockHeight];                   ///< all bits, or none
-    uint32_t rows = 0;                                                                  ///< that it crosses, as bits
-    bool plus = true;  ///< right of it the winding number is larger
+    // Columns: from where pixels have their middles right of it; that it touches; from where middles may be on its inner side,
+    // or, where that is on the left, from where they are not.
+    alignas(64) int32_t crossed[kBlockHeight], first[kBlockHeight], end[kBlockHeight], inner[kBlockHeight];
+    alignas(64) uint32_t counts[kBlockHeight], touches[kBlockHeight];  ///< all bits, or none
+    uint32_t rows = 0;                                                 ///< that it crosses, as bits
+    bool plus = true;                                                  ///< right of it the winding number is larger
 };
 
 /// Winding numbers modulo four in two bit planes; each bit is a row.
@@ -193,14 +194,21 @@ void setUpRow(const EdgeList& e, int i, int row0, int first, int last, int begin
     const U u32;
     const VF slope = hn::Set(f, e.slope[i]), x0 = hn::Set(f, e.x[i]), y0 = hn::Set(f, e.y[i]);
     const VF half = hn::Set(f, e.half[i]), left = hn::Set(f, e.left[i]), right = hn::Set(f, e.right[i]);
+    const VF beside = hn::Set(f, e.beside[i]), middle = hn::Set(f, 0.5f), one = hn::Set(f, 1.0f);
     const auto toColumn = [&](VF v) HWY_ATTR {
         return hn::ConvertTo(i32, hn::Floor(hn::Min(hn::Max(v, hn::Set(f, -1.0f)), hn::Set(f, width + 64))));
     };
+    // The first pixel whose middle is not left of a place: the ceiling of x - 0.5.
+    const auto toMiddle = [&](VF v) HWY_ATTR { return toColumn(hn::Neg(hn::Floor(hn::Sub(middle, v)))); };
+    const bool level = e.level[i] != 0, plus = out.plus;
     for (size_t k = 0; k < kBlockHeight; k += hn::Lanes(f)) {
         const VI row = hn::Iota(i32, static_cast<int32_t>(k));
         const VF y = hn::Add(hn::ConvertTo(f, row), hn::Set(f, static_cast<float>(row0) + 0.5f));
         const VF x = hn::Add(hn::Mul(hn::Sub(y, y0), slope), x0);
-        hn::Store(toColumn(hn::Min(hn::Max(x, left), right)), i32, out.crossed + k);
+        hn::Store(toMiddle(hn::Min(hn::Max(x, left), right)), i32, out.crossed + k);
+        const VI inner = plus ? toMiddle(hn::Sub(x, beside))
+                              : toColumn(hn::Add(hn::Floor(hn::Add(x, hn::Sub(beside, middle))), one));
+        hn::Store(level ? hn::Set(i32, plus ? -1 : 1 << 20) : inner, i32, out.inner + k);
         hn::Store(toColumn(hn::Max(hn::Sub(x, half), left)), i32, out.first + k);
         hn::Store(hn::Add(toColumn(hn::Min(hn::Add(x, half), right)), hn::Set(i32, 1)), i32, out.end + k);
         const auto within = [&](int from, int to) HWY_ATTR {  // [from, to)
@@ -221,7 +229,10 @@ HWY_INLINE VU onesFrom(VI column, VI block) {
     return hn::IfThenElseZero(inside, hn::Shl(hn::Set(u32, ~0u), hn::BitCast(u32, hn::Min(at, hn::Set(i32, 31)))));
 }
 
-/// The pixels of a block that are covered: no edge touches them, and their winding number is not 0.
+/// The pixels of a block that are covered. From the middle of a pixel a straight way to any point of it crosses only edges that
+/// touch the pixel, each once at most, and only one that has the middle on its inner side lowers the winding number there, by
+/// one. So a pixel is covered if the winding number of its middle is larger than the number of such edges. Rounding moves edges
+/// by no more than what they touch beside them: a middle that close counts as inside, whichever way it was counted before.
 /// @returns whether there are any
 bool coverBlock(const RowEdge* edges, const uint16_t* list, int count, const RowWinding& before, int column,
                 uint32_t* covered) {
@@ -234,7 +245,9 @@ bool coverBlock(const RowEdge* edges, const uint16_t* list, int count, const Row
         const auto spread = [&](uint32_t rows) HWY_ATTR {
             return hn::VecFromMask(u32, hn::Ne(hn::And(hn::Set(u32, rows), bit), hn::Zero(u32)));
         };
-        VU low = spread(before.low), high = spread(before.high), touched = hn::Zero(u32);
+        VU low = spread(before.low), high = spread(before.high);
+        VU once = hn::Zero(u32), twice = once,
+           thrice = once;  // so often an edge touches from its inner side, or more often
         for (int n = 0; n < count; ++n) {
             const RowEdge& e = edges[list[n]];
             const VU more = hn::And(hn::Load(u32, e.counts + k), onesFrom(hn::Load(i32, e.crossed + k), block));
@@ -243,9 +256,16 @@ bool coverBlock(const RowEdge* edges, const uint16_t* list, int count, const Row
             high = hn::Xor(high, carry);
             const VU band =
                 hn::AndNot(onesFrom(hn::Load(i32, e.end + k), block), onesFrom(hn::Load(i32, e.first + k), block));
-            touched = hn::Or(touched, hn::And(hn::Load(u32, e.touches + k), band));
+            const VU side = onesFrom(hn::Load(i32, e.inner + k), block);
+            const VU touched =
+                hn::And(hn::Load(u32, e.touches + k), e.plus ? hn::And(side, band) : hn::AndNot(side, band));
+            thrice = hn::Or(thrice, hn::And(twice, touched));
+            twice = hn::Or(twice, hn::And(once, touched));
+            once = hn::Or(once, touched);
         }
-        const VU cover = hn::AndNot(touched, hn::Or(low, high));
+        // The winding number is 1 to 3, or looks as if it were: what is four times covered counts as open.
+        const VU cover = hn::Or(hn::AndNot(once, hn::Or(low, high)),
+                                hn::Or(hn::AndNot(twice, high), hn::AndNot(thrice, hn::And(high, low))));
         hn::Store(cover, u32, covered + k);
         any = hn::Or(any, cover);
     }
@@ -293,7 +313,7 @@ ImagePlane depthOf(const ObjectFrame& frame, const glm::dvec3& normal, double he
     ImagePlane out{static_cast<float>(abc.x), static_cast<float>(abc.y), 0};
     // Rounding of the three, and of what is computed with them.
     const double error = 0x1p-20 * (std::abs(abc.x) * width + std::abs(abc.y) * image_height + std::abs(abc.z));
-    out.c = std::nextafter(static_cast<float>(abc.z - error), -std::numeric_limits<float>::infinity());
+    out.c = static_cast<float>(abc.z - error);
     return out;
 }
 
@@ -412,6 +432,59 @@ bool isBlockOpen(const DepthBlock& block, float nearest) {
     return open;
 }
 
+/// Whether a block that a rectangle of the image meets is open to a nearness.
+bool isRectOpen(DepthBlocks& image, float x0, float y0, float x1, float y1, float nearest) {
+    const int column0 = static_cast<int>(std::max(x0, 0.0f)) / kBlockWidth,
+              column1 = static_cast<int>(std::min(x1, static_cast<float>(image.width - 1))) / kBlockWidth,
+              row0 = static_cast<int>(std::max(y0, 0.0f)) / kBlockHeight,
+              row1 = static_cast<int>(std::min(y1, static_cast<float>(image.height - 1))) / kBlockHeight;
+    for (int row = row0; row <= row1; ++row)
+        for (int column = column0; column <= column1; ++column)
+            if (isBlockOpen(image.at(column, row), nearest)) return true;
+    return false;
+}
+
+/// Sixteen edges in one row of blocks: which meet it, and where.
+struct RowPlaces {
+    alignas(64) int32_t first[16], last[16], begin[16], end[16];
+    alignas(64) float low[16], high[16];
+    uint32_t meets = 0;
+};
+
+/// @param beyond  what begins here or farther right does not matter
+void placeEdges(const EdgeList& e, int at, int row0, float beyond, RowPlaces& out) {
+    const F f;
+    const I i32;
+    out.meets = 0;
+    for (size_t k = 0; k < 16; k += hn::Lanes(f)) {
+        const size_t i = static_cast<size_t>(at) + k;
+        const VI zero = hn::Zero(i32), top = hn::Set(i32, kBlockHeight), row = hn::Set(i32, row0);
+        const auto inRow = [&](const int32_t* v, VI most)
+                               HWY_ATTR { return hn::Min(hn::Max(hn::Sub(hn::Load(i32, v + i), row), zero), most); };
+        const VI first = hn::Max(hn::Sub(hn::Load(i32, e.first + i), row), zero),
+                 last = hn::Min(hn::Sub(hn::Load(i32, e.last + i), row), hn::Set(i32, kBlockHeight - 1));
+        hn::Store(first, i32, out.first + k);
+        hn::Store(last, i32, out.last + k);
+        hn::Store(inRow(e.begin, top), i32, out.begin + k);
+        hn::Store(inRow(e.end, top), i32, out.end + k);
+        const VF middle = hn::Sub(hn::Set(f, static_cast<float>(row0) + 0.5f), hn::Load(f, e.y + i));
+        const auto place = [&](VI of) HWY_ATTR {
+            return hn::Add(hn::Mul(hn::Add(hn::ConvertTo(f, of), middle), hn::Load(f, e.slope + i)),
+                           hn::Load(f, e.x + i));
+        };
+        const VF xa = place(first), xb = place(last), more = hn::Set(f, 0.01f);
+        const VF room = hn::Add(hn::Add(hn::Load(f, e.half + i), more),
+                                hn::Mul(hn::Set(f, 0x1p-20f), hn::Max(hn::Abs(xa), hn::Abs(xb))));
+        const VF low = hn::Max(hn::Sub(hn::Min(xa, xb), room), hn::Sub(hn::Load(f, e.left + i), more));
+        hn::Store(low, f, out.low + k);
+        hn::Store(hn::Min(hn::Add(hn::Max(xa, xb), room), hn::Add(hn::Load(f, e.right + i), more)), f, out.high + k);
+        const auto meets = hn::And(hn::Not(hn::RebindMask(f, hn::Gt(first, last))), hn::Lt(low, hn::Set(f, beyond)));
+        uint8_t bits[8] = {};
+        hn::StoreMaskBits(f, meets, bits);
+        out.meets |= static_cast<uint32_t>(bits[0] | bits[1] << 8) << k;
+    }
+}
+
 /// Draws what the edges bound.
 void rasterize(DepthBlocks& image, EdgeList& e, float r, float nearest, GroupDepth* groups, int count) {
     static thread_local RowEdge row_edges[EdgeList::kMost];
@@ -436,33 +509,31 @@ void rasterize(DepthBlocks& image, EdgeList& e, float r, float nearest, GroupDep
         RowWinding before;  // left of the block at hand
         int used = 0;
         for (int b = from; b <= to; ++b) lists.count[b] = lists.left_count[b] = 0;
-        for (int i = 0; i < e.count; ++i) {
-            const int first = std::max(e.first[i] - row0, 0), last = std::min(e.last[i] - row0, kBlockHeight - 1);
-            if (first > last) continue;
-            const int begin = std::clamp(e.begin[i] - row0, 0, kBlockHeight),
-                      end = std::clamp(e.end[i] - row0, 0, kBlockHeight);
-            const uint32_t rows = ((1u << end) - 1) & ~((1u << begin) - 1);
-            const float middle = static_cast<float>(row0) + 0.5f - e.y[i];
-            const float xa = (static_cast<float>(first) + middle) * e.slope[i] + e.x[i],
-                        xb = (static_cast<float>(last) + middle) * e.slope[i] + e.x[i];
-            const float room = e.half[i] + 0x1p-20f * std::max(std::abs(xa), std::abs(xb)) + 0.01f;
-            const float low = std::max(std::min(xa, xb) - room, e.left[i] - 0.01f),
-                        high = std::min(std::max(xa, xb) + room, e.right[i] + 0.01f);
-            if (!(low < static_cast<float>(kBlockWidth * (to + 1)))) continue;
-            const bool plus = (e.change[i] > 0) != (e.up[i] == 1);
-            if (high < static_cast<float>(kBlockWidth * from)) {
-                before.count(rows, plus);
-                continue;
+        RowPlaces places;
+        for (int at = 0; at < e.count; at += 16) {
+            placeEdges(e, at, row0, static_cast<float>(kBlockWidth * (to + 1)), places);
+            if (e.count - at < 16) places.meets &= (1u << (e.count - at)) - 1;
+            for (uint32_t left = places.meets; left != 0; left &= left - 1) {
+                const int k = std::countr_zero(left), i = at + k, first = places.first[k], last = places.last[k],
+                          begin = places.begin[k], end = places.end[k];
+                const float low = places.low[k], high = places.high[k];
+                const uint32_t rows = ((1u << end) - 1) & ~((1u << begin) - 1);
+                const bool plus = (e.change[i] > 0) != (e.up[i] == 1);
+                if (high < static_cast<float>(kBlockWidth * from)) {
+                    before.count(rows, plus);
+                    continue;
+                }
+                RowEdge& edge = row_edges[used];
+                edge.rows = rows;
+                edge.plus = plus;
+                setUpRow(e, i, row0, first, last, begin, end, width, edge);
+                const int b0 = std::max(static_cast<int>(std::max(low, 0.0f)) / kBlockWidth, from),
+                          b1 = static_cast<int>(std::min(std::max(high, 0.0f), width + 64)) / kBlockWidth;
+                for (int b = b0; b <= std::min(b1, to); ++b)
+                    lists.at[b][lists.count[b]++] = static_cast<uint16_t>(used);
+                if (b1 < to) lists.left[b1 + 1][lists.left_count[b1 + 1]++] = static_cast<uint16_t>(used);
+                ++used;
             }
-            RowEdge& edge = row_edges[used];
-            setUpRow(e, i, row0, first, last, begin, end, width, edge);
-            edge.rows = rows;
-            edge.plus = plus;
-            const int b0 = std::max(static_cast<int>(std::max(low, 0.0f)) / kBlockWidth, from),
-                      b1 = static_cast<int>(std::min(std::max(high, 0.0f), width + 64)) / kBlockWidth;
-            for (int b = b0; b <= std::min(b1, to); ++b) lists.at[b][lists.count[b]++] = static_cast<uint16_t>(used);
-            if (b1 < to) lists.left[b1 + 1][lists.left_count[b1 + 1]++] = static_cast<uint16_t>(used);
-            ++used;
         }
         for (int bx = from; bx <= to; ++bx) {
             for (int k = 0; k < lists.left_count[bx]; ++k) {
@@ -488,7 +559,7 @@ bool drawClusterKernel(DepthBlocks& image, const ObjectFrame& frame, const Plane
     const PlaneMesh::Cluster& c = mesh.clusters[index];
     const glm::dvec3 eye = frame.eye - glm::dvec3(c.centre);
     const double away = glm::length(eye);
-    int8_t turn[PlaneMesh::kNoGroup + 1] = {};
+    alignas(64) int8_t turn[PlaneMesh::kNoGroup + 1] = {};
     const int facing = faceGroups(mesh, c, glm::vec3(eye), static_cast<float>(away), turn);
     if (facing == 0) return true;
     projectVertices(frame, mesh, c, projected);
@@ -510,6 +581,8 @@ bool drawClusterKernel(DepthBlocks& image, const ObjectFrame& frame, const Plane
     const bool by_floats = r < 0.25f;
     if (by_floats) {
         nearest = (1 + 1e-5f) / (projected.w_min - w_error);
+        if (!isRectOpen(image, projected.x0 - 1, projected.y0 - 1, projected.x1 + 1, projected.y1 + 1, nearest))
+            return true;
         for (uint32_t i = c.first_edge; i < c.first_edge + c.edges; ++i)
             edges.add(projected.x[mesh.from[i]], projected.y[mesh.from[i]], projected.x[mesh.to[i]],
                       projected.y[mesh.to[i]], turn[mesh.left[i]] - turn[mesh.right[i]]);

@@ -17,9 +17,10 @@ struct EdgeList {
 
     alignas(64) float ax[kRoom], ay[kRoom], bx[kRoom], by[kRoom];  ///< corners  [pixels]
     int change[kRoom];                                             ///< 1 or -1
-    // What rows read: the lower corner, columns a row, what the edge touches beside it, and its ends.
-    alignas(64) float x[kRoom], y[kRoom], slope[kRoom], half[kRoom], left[kRoom], right[kRoom];
-    alignas(64) int32_t first[kRoom], last[kRoom], begin[kRoom], end[kRoom], up[kRoom];
+    // What rows read: the lower corner, columns a row, what the edge touches beside it, its ends, and within how many columns a
+    // middle may be on either side.
+    alignas(64) float x[kRoom], y[kRoom], slope[kRoom], half[kRoom], left[kRoom], right[kRoom], beside[kRoom];
+    alignas(64) int32_t first[kRoom], last[kRoom], begin[kRoom], end[kRoom], up[kRoom], level[kRoom];
     int count = 0;
     bool full = false;  ///< one had no room
 

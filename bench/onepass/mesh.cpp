@@ -151,7 +151,7 @@ private:
             out_.nd.push_back(static_cast<float>(group.offset));
             out_.thick.push_back(static_cast<float>(group.thick * 1.001 + 0x1p-22 * radius_));
             out_.tilt.push_back(static_cast<float>(group.tilt * 1.001));
-            out_.both.push_back(group.both);
+            out_.both.push_back(group.both ? 1.0f : 0.0f);
             cluster.thick = std::max(cluster.thick, out_.thick.back());
             std::sort(group.corners.begin(), group.corners.end());
             group.corners.erase(std::unique(group.corners.begin(), group.corners.end()), group.corners.end());
@@ -159,9 +159,8 @@ private:
             out_.corner_count.push_back(static_cast<uint32_t>(group.corners.size()));
             out_.corners.insert(out_.corners.end(), group.corners.begin(), group.corners.end());
         }
-        for (std::vector<float>* list : {&out_.nx, &out_.ny, &out_.nz, &out_.nd, &out_.thick, &out_.tilt})
+        for (std::vector<float>* list : {&out_.nx, &out_.ny, &out_.nz, &out_.nd, &out_.thick, &out_.tilt, &out_.both})
             pad(*list, 0.0f);
-        pad(out_.both, uint8_t{0});
         pad(out_.first_corner, uint32_t{0});
         pad(out_.corner_count, uint32_t{0});
         writeEdges(polygons, loose, cluster);

@@ -30,7 +30,7 @@ struct PlaneMesh {
     std::vector<float> nx, ny, nz, nd;                 ///< planes: n.v = nd; n of length 1, towards the front
     std::vector<float> thick;                          ///< no vertex of the group is farther from its plane
     std::vector<float> tilt;                           ///< no normal of its triangles differs by more
-    std::vector<uint8_t> both;                         ///< it is drawn from both sides
+    std::vector<float> both;                           ///< 1: it is drawn from both sides; else 0
     std::vector<uint8_t> corners;                      ///< vertices of groups
     std::vector<uint32_t> first_corner, corner_count;  ///< per group
     std::vector<uint8_t> from, to;                     ///< edges: vertices
