@@ -17,11 +17,11 @@ namespace {
 
 constexpr uint32_t kSize = 384;
 
-/// A box in the image.
-struct BoxImage {
-    int x0, y0, x1, y1;
-    float nearness;
-    bool bounded;  ///< false: it reaches before the near plane
+/// What is asked of an object in a frame.
+struct Asked {
+    AskedBox box;
+    BoxImage image;
+    bool bounded = false;  ///< else it reaches before the near plane
 };
 
 class OnePass final : public Contestant {
@@ -36,7 +36,7 @@ public:
                 }
             meshes_.push_back(makePlaneMesh(prepareOccluder({mesh.positions, mesh.indices}, hides, both)));
         }
-        images_.resize(boxes_.size());
+        asked_.resize(boxes_.size());
         for (const SceneObject& object : scene.objects)
             mirrored_.push_back(glm::determinant(glm::dmat3(object.transform)) < 0);
     }
@@ -50,13 +50,15 @@ public:
         order_.clear();
         for (size_t i = 0; i < in_view; ++i) {
             const uint32_t object = flat_.kept[i];
-            images_[object] = imageOf(screen, screen.eye, boxes_[object].center(), 0.5 * boxes_[object].size());
-            order_.push_back({-images_[object].nearness, object});
+            Asked& asked = asked_[object];
+            asked.box = askedBox(screen, boxes_[object].center() - screen.eye, 0.5 * boxes_[object].size());
+            asked.bounded = imageOf(asked.box, screen.near_w, asked.image);
+            order_.push_back({asked.bounded ? -asked.image.nearness : -3e38f, object});
         }
         std::sort(order_.begin(), order_.end());
         kept_.clear();
         for (const auto& [nearness, object] : order_) {
-            if (!isObjectOpen(screen, object)) continue;
+            if (!isOpenTo(asked_[object])) continue;
             const Screen rows = objectScreen(screen, scene_.objects[object].transform);
             const ObjectFrame frame = objectFrame(rows, mirrored_[object]);
             const PlaneMesh& mesh = meshes_[scene_.objects[object].mesh];
@@ -66,65 +68,30 @@ public:
             kept_.push_back(object);
         }
         return static_cast<size_t>(
-            std::count_if(kept_.begin(), kept_.end(), [&](uint32_t object) { return isObjectOpen(screen, object); }));
+            std::count_if(kept_.begin(), kept_.end(), [&](uint32_t object) { return isOpenTo(asked_[object]); }));
     }
 
 private:
-    /// Of a box whose centre is given with what the rows are over: relative to the eye in the world.
-    BoxImage imageOf(const Screen& screen, const glm::dvec3& origin, const glm::dvec3& centre,
-                     const glm::dvec3& half) const {
-        double x0 = 1e300, y0 = 1e300, x1 = -1e300, y1 = -1e300, least = 1e300;
-        for (int corner = 0; corner < 8; ++corner) {
-            glm::dvec3 at = centre - origin;
-            for (int axis = 0; axis < 3; ++axis) at[axis] += corner >> axis & 1 ? half[axis] : -half[axis];
-            const glm::dvec4 p(at, 1);
-            const double w = glm::dot(screen.w, p);
-            if (!(w > screen.near_w))
-                return {0,
-                        0,
-                        static_cast<int>(screen.width) - 1,
-                        static_cast<int>(screen.height) - 1,
-                        std::numeric_limits<float>::infinity(),
-                        false};
-            const double x = glm::dot(screen.x, p) / w, y = glm::dot(screen.y, p) / w;
-            x0 = std::min(x0, x);
-            y0 = std::min(y0, y);
-            x1 = std::max(x1, x);
-            y1 = std::max(y1, y);
-            least = std::min(least, w);
-        }
-        const auto pixel = [](double v, uint32_t size) {
-            return static_cast<int>(std::clamp(std::floor(v), 0.0, size - 1.0));
+    bool isOpenTo(const Asked& asked) {
+        if (!asked.bounded) return true;
+        const auto pixel = [](float v, uint32_t size) {
+            return static_cast<int>(std::clamp(v, 0.0f, static_cast<float>(size - 1)));
         };
-        return {pixel(x0 - 1e-3, screen.width),
-                pixel(y0 - 1e-3, screen.height),
-                pixel(x1 + 1e-3, screen.width),
-                pixel(y1 + 1e-3, screen.height),
-                static_cast<float>(1 / least * (1 + 1e-6)),
-                true};
-    }
-
-    bool isObjectOpen(const Screen& screen, uint32_t object) {
-        const BoxImage& box = images_[object];
-        if (!box.bounded) return true;
-        const glm::dvec3 centre = boxes_[object].center() - screen.eye, half = 0.5 * boxes_[object].size();
-        AskedBox asked;
-        for (int axis = 0; axis < 3; ++axis) {
-            asked.x[axis] = static_cast<float>(screen.x[axis]);
-            asked.y[axis] = static_cast<float>(screen.y[axis]);
-            asked.w[axis] = static_cast<float>(screen.w[axis]);
-            asked.half[axis] = static_cast<float>(half[axis] * (1 + 1e-6));
-        }
-        asked.x[3] = static_cast<float>(glm::dot(screen.x, glm::dvec4(centre, 1)));
-        asked.y[3] = static_cast<float>(glm::dot(screen.y, glm::dvec4(centre, 1)));
-        asked.w[3] = static_cast<float>(glm::dot(screen.w, glm::dvec4(centre, 1)));
-        return isOpen(image_, box.x0, box.y0, box.x1, box.y1, box.nearness, &asked);
+        const BoxImage& at = asked.image;
+        return isOpen(image_, pixel(at.x0, image_.width), pixel(at.y0, image_.height), pixel(at.x1, image_.width),
+                      pixel(at.y1, image_.height), at.nearness, &asked.box);
     }
 
     /// Whether a cluster may show something, by its box.
     bool isClusterOpen(const Screen& rows, const PlaneMesh::Cluster& cluster) {
-        const BoxImage box = imageOf(rows, glm::dvec3(0.0), glm::dvec3(cluster.centre), glm::dvec3(cluster.half));
-        return !box.bounded || isOpen(image_, box.x0, box.y0, box.x1, box.y1, box.nearness, nullptr);
+        Asked asked;
+        asked.box = askedBox(rows, glm::dvec3(cluster.centre), glm::dvec3(cluster.half));
+        asked.bounded = imageOf(asked.box, rows.near_w, asked.image);
+        const BoxImage& at = asked.image;
+        if (asked.bounded && (at.x1 < 0 || at.y1 < 0 || at.x0 > static_cast<float>(image_.width) ||
+                              at.y0 > static_cast<float>(image_.height)))
+            return false;
+        return isOpenTo(asked);
     }
 
     const Scene& scene_;
@@ -132,7 +99,7 @@ private:
     FlatBoxes flat_;
     std::vector<PlaneMesh> meshes_;
     std::vector<uint8_t> mirrored_;
-    std::vector<BoxImage> images_;
+    std::vector<Asked> asked_;
     std::vector<std::pair<float, uint32_t>> order_;
     std::vector<uint32_t> kept_;
     DepthBlocks image_;

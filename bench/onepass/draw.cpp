@@ -166,9 +166,8 @@ struct RowEdge {
     // Columns: from where pixels have their middles right of it; that it touches; from where middles may be on its inner side,
     // or, where that is on the left, from where they are not.
     alignas(64) int32_t crossed[kBlockHeight], first[kBlockHeight], end[kBlockHeight], inner[kBlockHeight];
-    alignas(64) uint32_t counts[kBlockHeight], touches[kBlockHeight];  ///< all bits, or none
-    uint32_t rows = 0;                                                 ///< that it crosses, as bits
-    bool plus = true;                                                  ///< right of it the winding number is larger
+    uint32_t rows = 0, touched_rows = 0;  ///< whose middles it crosses, and that it touches, as bits
+    bool plus = true;                     ///< right of it the winding number is larger
 };
 
 /// Winding numbers modulo four in two bit planes; each bit is a row.
@@ -188,10 +187,9 @@ struct RowLists {
         left[kMostColumns][EdgeList::kMost];  ///< that meet a block; that ended before
 };
 
-void setUpRow(const EdgeList& e, int i, int row0, int first, int last, int begin, int end, float width, RowEdge& out) {
+void setUpRow(const EdgeList& e, int i, int row0, float width, RowEdge& out) {
     const F f;
     const I i32;
-    const U u32;
     const VF slope = hn::Set(f, e.slope[i]), x0 = hn::Set(f, e.x[i]), y0 = hn::Set(f, e.y[i]);
     const VF half = hn::Set(f, e.half[i]), left = hn::Set(f, e.left[i]), right = hn::Set(f, e.right[i]);
     const VF beside = hn::Set(f, e.beside[i]), middle = hn::Set(f, 0.5f), one = hn::Set(f, 1.0f);
@@ -211,12 +209,6 @@ void setUpRow(const EdgeList& e, int i, int row0, int first, int last, int begin
         hn::Store(level ? hn::Set(i32, plus ? -1 : 1 << 20) : inner, i32, out.inner + k);
         hn::Store(toColumn(hn::Max(hn::Sub(x, half), left)), i32, out.first + k);
         hn::Store(hn::Add(toColumn(hn::Min(hn::Add(x, half), right)), hn::Set(i32, 1)), i32, out.end + k);
-        const auto within = [&](int from, int to) HWY_ATTR {  // [from, to)
-            return hn::VecFromMask(
-                u32, hn::RebindMask(u32, hn::AndNot(hn::Lt(row, hn::Set(i32, from)), hn::Lt(row, hn::Set(i32, to)))));
-        };
-        hn::Store(within(begin, end), u32, out.counts + k);
-        hn::Store(within(first, last + 1), u32, out.touches + k);
     }
 }
 
@@ -242,15 +234,13 @@ bool coverBlock(const RowEdge* edges, const uint16_t* list, int count, const Row
     VU any = hn::Zero(u32);
     for (size_t k = 0; k < kBlockHeight; k += hn::Lanes(u32)) {
         const VU bit = hn::Shl(hn::Set(u32, 1u), hn::Iota(u32, static_cast<uint32_t>(k)));
-        const auto spread = [&](uint32_t rows) HWY_ATTR {
-            return hn::VecFromMask(u32, hn::Ne(hn::And(hn::Set(u32, rows), bit), hn::Zero(u32)));
-        };
-        VU low = spread(before.low), high = spread(before.high);
+        const auto in = [&](uint32_t rows) HWY_ATTR { return hn::TestBit(hn::Set(u32, rows), bit); };
+        VU low = hn::VecFromMask(u32, in(before.low)), high = hn::VecFromMask(u32, in(before.high));
         VU once = hn::Zero(u32), twice = once,
            thrice = once;  // so often an edge touches from its inner side, or more often
         for (int n = 0; n < count; ++n) {
             const RowEdge& e = edges[list[n]];
-            const VU more = hn::And(hn::Load(u32, e.counts + k), onesFrom(hn::Load(i32, e.crossed + k), block));
+            const VU more = hn::IfThenElseZero(in(e.rows), onesFrom(hn::Load(i32, e.crossed + k), block));
             const VU carry = e.plus ? hn::And(low, more) : hn::AndNot(low, more);
             low = hn::Xor(low, more);
             high = hn::Xor(high, carry);
@@ -258,7 +248,7 @@ bool coverBlock(const RowEdge* edges, const uint16_t* list, int count, const Row
                 hn::AndNot(onesFrom(hn::Load(i32, e.end + k), block), onesFrom(hn::Load(i32, e.first + k), block));
             const VU side = onesFrom(hn::Load(i32, e.inner + k), block);
             const VU touched =
-                hn::And(hn::Load(u32, e.touches + k), e.plus ? hn::And(side, band) : hn::AndNot(side, band));
+                hn::IfThenElseZero(in(e.touched_rows), e.plus ? hn::And(side, band) : hn::AndNot(side, band));
             thrice = hn::Or(thrice, hn::And(twice, touched));
             twice = hn::Or(twice, hn::And(once, touched));
             once = hn::Or(once, touched);
@@ -306,15 +296,40 @@ struct GroupDepth {
     uint32_t index = DepthBlock::kNoPlane;  ///< in DepthBlocks::planes, once a tile has asked for it
 };
 
-/// The depth of a group whose plane is `height` below the eye: a x + b y + c is no nearer than any of its points.
-ImagePlane depthOf(const ObjectFrame& frame, const glm::dvec3& normal, double height, double room, float width,
-                   float image_height) {
-    const glm::dvec3 abc = frame.to_image * normal * ((height > 0 ? -1.0 : 1.0) / (std::abs(height) + room));
-    ImagePlane out{static_cast<float>(abc.x), static_cast<float>(abc.y), 0};
-    // Rounding of the three, and of what is computed with them.
-    const double error = 0x1p-20 * (std::abs(abc.x) * width + std::abs(abc.y) * image_height + std::abs(abc.z));
-    out.c = static_cast<float>(abc.z - error);
-    return out;
+/// The planes of a cluster's groups in the image, side by side: a x + b y + c is no nearer than any of their points.
+struct GroupPlanes {
+    alignas(64) float a[PlaneMesh::kMostGroups + 8], b[PlaneMesh::kMostGroups + 8], c[PlaneMesh::kMostGroups + 8];
+};
+
+/// A plane that is h below the eye has nearness -(to_image * normal) / h; of points that may lie off it, no less than that of
+/// the plane that is farther from the eye by as much.
+void planesOf(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const glm::dvec3& eye,
+              float width, float height, GroupPlanes& out) {
+    const hn::CappedTag<double, 8> d;
+    const hn::Rebind<float, decltype(d)> f;
+    const auto set = [&](double v) HWY_ATTR { return hn::Set(d, v); };
+    for (uint32_t g = 0; g < c.groups; g += static_cast<uint32_t>(hn::Lanes(d))) {
+        const size_t at = size_t{c.first_group} + g;
+        const auto load = [&](const std::vector<float>& from)
+                              HWY_ATTR { return hn::PromoteTo(d, hn::LoadU(f, &from[at])); };
+        const auto nx = load(mesh.nx), ny = load(mesh.ny), nz = load(mesh.nz);
+        const auto dot = [&](double x, double y, double z) HWY_ATTR {
+            return hn::Add(hn::Add(hn::Mul(nx, set(x)), hn::Mul(ny, set(y))), hn::Mul(nz, set(z)));
+        };
+        const auto h = hn::Sub(dot(eye.x, eye.y, eye.z), load(mesh.nd));
+        const auto away = hn::Add(hn::Abs(h), load(mesh.thick));
+        const auto scale = hn::Div(hn::IfThenElse(hn::Gt(h, hn::Zero(d)), set(-1), set(1)), away);
+        const glm::dmat3& m = frame.to_image;
+        const auto a = hn::Mul(dot(m[0][0], m[1][0], m[2][0]), scale),
+                   b = hn::Mul(dot(m[0][1], m[1][1], m[2][1]), scale),
+                   e = hn::Mul(dot(m[0][2], m[1][2], m[2][2]), scale);
+        // Rounding of the three to floats, and of what is computed with them.
+        const auto size =
+            hn::Add(hn::Add(hn::Mul(hn::Abs(a), set(width)), hn::Mul(hn::Abs(b), set(height))), hn::Abs(e));
+        hn::StoreU(hn::DemoteTo(f, a), f, out.a + g);
+        hn::StoreU(hn::DemoteTo(f, b), f, out.b + g);
+        hn::StoreU(hn::DemoteTo(f, hn::Sub(e, hn::Mul(size, set(0x1p-20)))), f, out.c + g);
+    }
 }
 
 /// Raises codes of pixels.
@@ -525,8 +540,9 @@ void rasterize(DepthBlocks& image, EdgeList& e, float r, float nearest, GroupDep
                 }
                 RowEdge& edge = row_edges[used];
                 edge.rows = rows;
+                edge.touched_rows = ((2u << last) - 1) & ~((1u << first) - 1);
                 edge.plus = plus;
-                setUpRow(e, i, row0, first, last, begin, end, width, edge);
+                setUpRow(e, i, row0, width, edge);
                 const int b0 = std::max(static_cast<int>(std::max(low, 0.0f)) / kBlockWidth, from),
                           b1 = static_cast<int>(std::min(std::max(high, 0.0f), width + 64)) / kBlockWidth;
                 for (int b = b0; b <= std::min(b1, to); ++b)
@@ -548,6 +564,78 @@ void rasterize(DepthBlocks& image, EdgeList& e, float r, float nearest, GroupDep
                 updateBlock(image, block, bx, by, covered, groups, count);
         }
     }
+}
+
+/// The edges on whose sides groups are drawn otherwise, with their corners' images.
+void gatherEdges(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const int8_t* turn, const Image& image,
+                 EdgeList& out) {
+    const F f;
+    const I i32;
+    const hn::Rebind<uint8_t, F> u8;
+    alignas(64) uint8_t from[PlaneMesh::kMostEdges + 64], to[PlaneMesh::kMostEdges + 64];
+    const uint8_t *left = &mesh.left[c.first_edge], *right = &mesh.right[c.first_edge];
+    int count = 0;
+    for (uint32_t i = 0; i < c.edges; ++i) {
+        const int change = turn[left[i]] - turn[right[i]];
+        from[count] = mesh.from[c.first_edge + i];
+        to[count] = mesh.to[c.first_edge + i];
+        out.change[count] = change;
+        count += change != 0;
+    }
+    const int plain = count;
+    for (int i = 0; i < plain; ++i) {
+        if (std::abs(out.change[i]) < 2) continue;
+        if (count == PlaneMesh::kMostEdges) {
+            out.full = true;
+            return;
+        }
+        from[count] = from[i];
+        to[count] = to[i];
+        out.change[count++] = out.change[i] /= 2;
+    }
+    std::memset(from + count, 0, 16);
+    std::memset(to + count, 0, 16);
+    for (int k = 0; k < count; k += static_cast<int>(hn::Lanes(f))) {
+        const VI a = hn::PromoteTo(i32, hn::LoadU(u8, from + k)), b = hn::PromoteTo(i32, hn::LoadU(u8, to + k));
+        hn::Store(hn::GatherIndex(f, image.x, a), f, out.ax + k);
+        hn::Store(hn::GatherIndex(f, image.y, a), f, out.ay + k);
+        hn::Store(hn::GatherIndex(f, image.x, b), f, out.bx + k);
+        hn::Store(hn::GatherIndex(f, image.y, b), f, out.by + k);
+    }
+    out.count = count;
+}
+
+/// The image of a box by its corners, with all that floats may be off by.
+bool imageOfKernel(const AskedBox& box, float near_w, BoxImage& out) {
+    const hn::CappedTag<float, 8> f;
+    alignas(32) static constexpr float kX[8] = {-1, 1, -1, 1, -1, 1, -1, 1}, kY[8] = {-1, -1, 1, 1, -1, -1, 1, 1},
+                                       kZ[8] = {-1, -1, -1, -1, 1, 1, 1, 1};
+    float x0 = 3e38f, y0 = 3e38f, x1 = -3e38f, y1 = -3e38f, w0 = 3e38f;
+    for (size_t k = 0; k < 8; k += hn::Lanes(f)) {
+        const auto row = [&](const float(&r)[4]) HWY_ATTR {
+            return hn::Add(hn::Add(hn::Mul(hn::Load(f, kX + k), hn::Set(f, r[0] * box.half[0])),
+                                   hn::Mul(hn::Load(f, kY + k), hn::Set(f, r[1] * box.half[1]))),
+                           hn::Add(hn::Mul(hn::Load(f, kZ + k), hn::Set(f, r[2] * box.half[2])), hn::Set(f, r[3])));
+        };
+        const auto w = row(box.w), x = hn::Div(row(box.x), w), y = hn::Div(row(box.y), w);
+        x0 = std::min(x0, hn::GetLane(hn::MinOfLanes(f, x)));
+        x1 = std::max(x1, hn::GetLane(hn::MaxOfLanes(f, x)));
+        y0 = std::min(y0, hn::GetLane(hn::MinOfLanes(f, y)));
+        y1 = std::max(y1, hn::GetLane(hn::MaxOfLanes(f, y)));
+        w0 = std::min(w0, hn::GetLane(hn::MinOfLanes(f, w)));
+    }
+    const auto size = [&](const float(&r)[4]) {
+        return std::abs(r[0]) * box.half[0] + std::abs(r[1]) * box.half[1] + std::abs(r[2]) * box.half[2] +
+               std::abs(r[3]);
+    };
+    const float w_error = 0x1p-20f * size(box.w), least = w0 - w_error;
+    if (!(least > near_w)) return false;
+    const float inverse = 1 / least, reach_x = std::max(std::abs(x0), std::abs(x1)),
+                reach_y = std::max(std::abs(y0), std::abs(y1));
+    const float more_x = (0x1p-20f * size(box.x) + reach_x * w_error) * inverse,
+                more_y = (0x1p-20f * size(box.y) + reach_y * w_error) * inverse;
+    out = {x0 - more_x, y0 - more_y, x1 + more_x, y1 + more_y, inverse * (1 + 1e-6f)};
+    return true;
 }
 
 bool drawClusterKernel(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t index) {
@@ -583,9 +671,7 @@ bool drawClusterKernel(DepthBlocks& image, const ObjectFrame& frame, const Plane
         nearest = (1 + 1e-5f) / (projected.w_min - w_error);
         if (!isRectOpen(image, projected.x0 - 1, projected.y0 - 1, projected.x1 + 1, projected.y1 + 1, nearest))
             return true;
-        for (uint32_t i = c.first_edge; i < c.first_edge + c.edges; ++i)
-            edges.add(projected.x[mesh.from[i]], projected.y[mesh.from[i]], projected.x[mesh.to[i]],
-                      projected.y[mesh.to[i]], turn[mesh.left[i]] - turn[mesh.right[i]]);
+        gatherEdges(mesh, c, turn, projected, edges);
     } else if (!cutEdges(frame, mesh, c, turn, width, height, edges, rects, r, nearest)) {
         return false;
     }
@@ -593,12 +679,13 @@ bool drawClusterKernel(DepthBlocks& image, const ObjectFrame& frame, const Plane
     if (edges.full) return false;
     for (int i = 0; frame.sign < 0 && i < edges.count; ++i) edges.change[i] = -edges.change[i];
     int count = 0;
+    static thread_local GroupPlanes planes;
+    planesOf(frame, mesh, c, eye, width, height, planes);
     for (uint32_t g = 0; g < c.groups; ++g) {
         if (turn[g] == 0) continue;
         const size_t at = size_t{c.first_group} + g;
-        const glm::dvec3 normal(mesh.nx[at], mesh.ny[at], mesh.nz[at]);
         GroupDepth& of = groups[count++];
-        of.plane = depthOf(frame, normal, glm::dot(normal, eye) - mesh.nd[at], mesh.thick[at], width, height);
+        of.plane = {planes.a[g], planes.b[g], planes.c[g]};
         of.least = of.plane.c - 4.0f * (std::abs(of.plane.a) + std::abs(of.plane.b));
         of.index = DepthBlock::kNoPlane;
         of.rect = by_floats ? ImageRect() : rects[g];
@@ -620,6 +707,25 @@ HWY_AFTER_NAMESPACE();
 namespace sightline::bench {
 
 HWY_EXPORT(drawClusterKernel);
+HWY_EXPORT(imageOfKernel);
+
+AskedBox askedBox(const Screen& screen, const glm::dvec3& centre, const glm::dvec3& half) {
+    AskedBox out;
+    const glm::dvec4 at(centre, 1);
+    const auto take = [&](const glm::dvec4& row, float(&to)[4]) {
+        for (int axis = 0; axis < 3; ++axis) to[axis] = static_cast<float>(row[axis]);
+        to[3] = static_cast<float>(glm::dot(row, at));
+    };
+    take(screen.x, out.x);
+    take(screen.y, out.y);
+    take(screen.w, out.w);
+    for (int axis = 0; axis < 3; ++axis) out.half[axis] = static_cast<float>(half[axis] * (1 + 1e-6));
+    return out;
+}
+
+bool imageOf(const AskedBox& box, double near_w, BoxImage& out) {
+    return HWY_DYNAMIC_DISPATCH(imageOfKernel)(box, static_cast<float>(near_w * (1 + 1e-6)), out);
+}
 
 bool drawCluster(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t cluster) {
     return frame.usable && HWY_DYNAMIC_DISPATCH(drawClusterKernel)(image, frame, mesh, cluster);

@@ -18,6 +18,17 @@ struct AskedBox {
     float half[3];
 };
 
+/// @param centre,half  of the box, in the space that the rows are over
+AskedBox askedBox(const Screen& screen, const glm::dvec3& centre, const glm::dvec3& half);
+
+/// A box in the image.
+struct BoxImage {
+    float x0, y0, x1, y1, nearness;
+};
+
+/// @returns false if it may reach before the near plane
+bool imageOf(const AskedBox& box, double near_w, BoxImage& out);
+
 /// Whether a pixel of a rectangle may show something that is as near.
 /// @param x0,y0,x1,y1  inclusive, inside the image
 /// @param box          or null
