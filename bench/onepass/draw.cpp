@@ -666,6 +666,7 @@ bool drawClusterKernel(DepthBlocks& image, const ObjectFrame& frame, const Plane
             return true;
     }
     edges.count = 0;
+    edges.full = false;
     const bool by_floats = r < 0.25f;
     if (by_floats) {
         nearest = (1 + 1e-5f) / (projected.w_min - w_error);
@@ -675,8 +676,8 @@ bool drawClusterKernel(DepthBlocks& image, const ObjectFrame& frame, const Plane
     } else if (!cutEdges(frame, mesh, c, turn, width, height, edges, rects, r, nearest)) {
         return false;
     }
-    if (edges.count == 0) return true;
     if (edges.full) return false;
+    if (edges.count == 0) return true;
     for (int i = 0; frame.sign < 0 && i < edges.count; ++i) edges.change[i] = -edges.change[i];
     int count = 0;
     static thread_local GroupPlanes planes;
