@@ -63,7 +63,7 @@ struct SceneCellReport {
     uint64_t moved_faces = 0;     ///< to the wall that was meant
     uint64_t passages = 0;        ///< cells that were added where a portal goes through a wall's thickness
     uint64_t merged_faces = 0;    ///< whose holes became their hull
-    double slit = 0, bend = 0;    ///< of the cell with the widest  [world units]
+    double slit = 0, bend = 0;    ///< as used in the cell with the widest  [world units]
     bool outside = false;         ///< some hole leads there
     std::vector<uint32_t> walls;  ///< objects that the answer rests on: while they stand, are drawn and are opaque it
                                   ///< holds  [Scene::objects] rising

@@ -26,7 +26,7 @@ struct CheckedFace {
     std::vector<FlatPiece> gates;
 };
 
-/// What of the settings holds for a cell: by its own size, whatever lies far off.  [world units]
+/// What of the settings holds for a cell: by its own place, whatever lies far off.  [world units]
 struct CellTolerance {
     double slit = 0, bend = 0;
 
@@ -83,6 +83,7 @@ private:
         int face[2];  ///< of its cells
     };
 
+    /// @param bounds  of a cell; not finite: it has no place
     CellTolerance toleranceIn(const Box3d& bounds) const;
     /// The wider one of two cells; kOutside, and what is no cell, has none.
     CellTolerance toleranceOf(uint32_t a, uint32_t b) const;
