@@ -163,9 +163,9 @@ void setUpEdges(EdgeList& e, float r, float height, float (&bounds)[4]) {
 
 /// An edge in one row of blocks.
 struct RowEdge {
-    // Columns: from where pixels have their middles right of it; that it touches; from where middles may be on its inner side,
-    // or, where that is on the left, from where they are not.
-    alignas(64) int32_t crossed[kBlockHeight], first[kBlockHeight], end[kBlockHeight], inner[kBlockHeight];
+    // Columns: from where pixels have their middles right of it; those that it touches, of which the middle may be on its inner
+    // side.
+    alignas(64) int32_t crossed[kBlockHeight], first[kBlockHeight], end[kBlockHeight];
     uint32_t rows = 0, touched_rows = 0;  ///< whose middles it crosses, and that it touches, as bits
     bool plus = true;                     ///< right of it the winding number is larger
 };
@@ -193,22 +193,21 @@ void setUpRow(const EdgeList& e, int i, int row0, float width, RowEdge& out) {
     const VF slope = hn::Set(f, e.slope[i]), x0 = hn::Set(f, e.x[i]), y0 = hn::Set(f, e.y[i]);
     const VF half = hn::Set(f, e.half[i]), left = hn::Set(f, e.left[i]), right = hn::Set(f, e.right[i]);
     const VF beside = hn::Set(f, e.beside[i]), middle = hn::Set(f, 0.5f), one = hn::Set(f, 1.0f);
-    const auto toColumn = [&](VF v) HWY_ATTR {
-        return hn::ConvertTo(i32, hn::Floor(hn::Min(hn::Max(v, hn::Set(f, -1.0f)), hn::Set(f, width + 64))));
-    };
+    const auto clamp = [&](VF v) HWY_ATTR { return hn::Min(hn::Max(v, hn::Set(f, -1.0f)), hn::Set(f, width + 64)); };
     // The first pixel whose middle is not left of a place: the ceiling of x - 0.5.
-    const auto toMiddle = [&](VF v) HWY_ATTR { return toColumn(hn::Neg(hn::Floor(hn::Sub(middle, v)))); };
+    const auto atMiddle = [&](VF v) HWY_ATTR { return hn::Neg(hn::Floor(hn::Sub(middle, v))); };
     const bool level = e.level[i] != 0, plus = out.plus;
     for (size_t k = 0; k < kBlockHeight; k += hn::Lanes(f)) {
         const VI row = hn::Iota(i32, static_cast<int32_t>(k));
         const VF y = hn::Add(hn::ConvertTo(f, row), hn::Set(f, static_cast<float>(row0) + 0.5f));
         const VF x = hn::Add(hn::Mul(hn::Sub(y, y0), slope), x0);
-        hn::Store(toMiddle(hn::Min(hn::Max(x, left), right)), i32, out.crossed + k);
-        const VI inner = plus ? toMiddle(hn::Sub(x, beside))
-                              : toColumn(hn::Add(hn::Floor(hn::Add(x, hn::Sub(beside, middle))), one));
-        hn::Store(level ? hn::Set(i32, plus ? -1 : 1 << 20) : inner, i32, out.inner + k);
-        hn::Store(toColumn(hn::Max(hn::Sub(x, half), left)), i32, out.first + k);
-        hn::Store(hn::Add(toColumn(hn::Min(hn::Add(x, half), right)), hn::Set(i32, 1)), i32, out.end + k);
+        hn::Store(hn::ConvertTo(i32, clamp(atMiddle(hn::Min(hn::Max(x, left), right)))), i32, out.crossed + k);
+        VF first = hn::Floor(hn::Max(hn::Sub(x, half), left)),
+           end = hn::Add(hn::Floor(hn::Min(hn::Add(x, half), right)), one);
+        if (!level && plus) first = hn::Max(first, atMiddle(hn::Sub(x, beside)));
+        if (!level && !plus) end = hn::Min(end, hn::Add(hn::Floor(hn::Add(x, hn::Sub(beside, middle))), one));
+        hn::Store(hn::ConvertTo(i32, clamp(first)), i32, out.first + k);
+        hn::Store(hn::ConvertTo(i32, clamp(end)), i32, out.end + k);
     }
 }
 
@@ -217,8 +216,12 @@ HWY_INLINE VU onesFrom(VI column, VI block) {
     const I i32;
     const U u32;
     const VI at = hn::Max(hn::Sub(column, block), hn::Zero(i32));
+#if HWY_TARGET <= HWY_AVX2  // there what is shifted by more than there are bits is 0
+    return hn::Shl(hn::Set(u32, ~0u), hn::BitCast(u32, at));
+#else
     const auto inside = hn::RebindMask(u32, hn::Lt(at, hn::Set(i32, kBlockWidth)));
     return hn::IfThenElseZero(inside, hn::Shl(hn::Set(u32, ~0u), hn::BitCast(u32, hn::Min(at, hn::Set(i32, 31)))));
+#endif
 }
 
 /// The pixels of a block that are covered. From the middle of a pixel a straight way to any point of it crosses only edges that
@@ -246,9 +249,7 @@ bool coverBlock(const RowEdge* edges, const uint16_t* list, int count, const Row
             high = hn::Xor(high, carry);
             const VU band =
                 hn::AndNot(onesFrom(hn::Load(i32, e.end + k), block), onesFrom(hn::Load(i32, e.first + k), block));
-            const VU side = onesFrom(hn::Load(i32, e.inner + k), block);
-            const VU touched =
-                hn::IfThenElseZero(in(e.touched_rows), e.plus ? hn::And(side, band) : hn::AndNot(side, band));
+            const VU touched = hn::IfThenElseZero(in(e.touched_rows), band);
             thrice = hn::Or(thrice, hn::And(twice, touched));
             twice = hn::Or(twice, hn::And(once, touched));
             once = hn::Or(once, touched);
@@ -605,6 +606,71 @@ void gatherEdges(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const int8_
     out.count = count;
 }
 
+bool isBehind(const ImagePlane& plane, const AskedBox& box) {
+    float v = plane.a * box.x[3] + plane.b * box.y[3] + plane.c * box.w[3] - 1.0f;
+    float size = std::abs(plane.a * box.x[3]) + std::abs(plane.b * box.y[3]) + std::abs(plane.c * box.w[3]) + 1.0f;
+    for (int k = 0; k < 3; ++k) {
+        const float a = plane.a * box.x[k], b = plane.b * box.y[k], c = plane.c * box.w[k];
+        v -= box.half[k] * std::abs(a + b + c);
+        size += box.half[k] * (std::abs(a) + std::abs(b) + std::abs(c));
+    }
+    return v > 0x1p-20f * size;
+}
+
+/// Whether a tile's codes are open to one, at pixels of a window that all have codes.
+bool isTileOpen(const DepthBlock& block, int tile, uint64_t window, uint16_t asked) {
+    const hn::CappedTag<uint16_t, 8> d;
+    const uint16_t* at = &block.codes[8 * (tile / 4)][8 * (tile % 4)];
+    for (int y = 0; y < 8; ++y, at += kBlockWidth) {
+        const uint32_t row = window >> (8 * y) & 255;
+        if (row == 0) continue;
+        uint32_t open = 0;
+        for (size_t x = 0; x < 8; x += hn::Lanes(d)) {
+            uint8_t bits[8] = {};
+            hn::StoreMaskBits(d, hn::Eq(hn::Min(hn::Load(d, at + x), hn::Set(d, asked)), hn::Load(d, at + x)), bits);
+            open |= static_cast<uint32_t>(bits[0]) << x;
+        }
+        if (open & row) return true;
+    }
+    return false;
+}
+
+bool isOpenKernel(DepthBlocks& image, int x0, int y0, int x1, int y1, float nearness, const AskedBox* box) {
+    const hn::CappedTag<float, 8> f;
+    const uint16_t asked = image.depths.code(nearness);
+    uint32_t last = DepthBlock::kNoPlane;
+    bool last_hides = false;
+    for (int by = y0 / kBlockHeight; by <= y1 / kBlockHeight; ++by)
+        for (int bx = x0 / kBlockWidth; bx <= x1 / kBlockWidth; ++bx) {
+            const DepthBlock& block = image.at(bx, by);
+            uint32_t open = 0;
+            for (size_t t = 0; t < kBlockTiles; t += hn::Lanes(f)) {
+                uint8_t bits[8] = {};
+                hn::StoreMaskBits(f, hn::Le(hn::Load(f, block.base + t), hn::Set(f, nearness)), bits);
+                open |= static_cast<uint32_t>(bits[0]) << t;
+            }
+            if (open == 0) continue;
+            const int left = std::max(x0 - kBlockWidth * bx, 0),
+                      right = std::min(x1 - kBlockWidth * bx, kBlockWidth - 1),
+                      low = std::max(y0 - kBlockHeight * by, 0),
+                      high = std::min(y1 - kBlockHeight * by, kBlockHeight - 1);
+            const uint32_t columns = ~0u << left & ~0u >> (31 - right), rows = (2u << high) - (1u << low);
+            for (; open != 0; open &= open - 1) {
+                const int t = std::countr_zero(open);
+                const uint64_t across = columns >> (8 * (t % 4)) & 255, down = rows >> (8 * (t / 4)) & 255;
+                if (across == 0 || down == 0) continue;
+                uint64_t window = 0;
+                for (int y = 0; y < 8; ++y) window |= (down >> y & 1 ? across : 0) << (8 * y);
+                if (box && block.plane[t] != DepthBlock::kNoPlane) {
+                    if (block.plane[t] != last) last_hides = isBehind(image.planes[last = block.plane[t]], *box);
+                    if (last_hides) continue;
+                }
+                if ((window & ~block.seen[t]) != 0 || isTileOpen(block, t, window, asked)) return true;
+            }
+        }
+    return false;
+}
+
 /// The image of a box by its corners, with all that floats may be off by.
 bool imageOfKernel(const AskedBox& box, float near_w, BoxImage& out) {
     const hn::CappedTag<float, 8> f;
@@ -709,6 +775,7 @@ namespace sightline::bench {
 
 HWY_EXPORT(drawClusterKernel);
 HWY_EXPORT(imageOfKernel);
+HWY_EXPORT(isOpenKernel);
 
 AskedBox askedBox(const Screen& screen, const glm::dvec3& centre, const glm::dvec3& half) {
     AskedBox out;
@@ -732,48 +799,8 @@ bool drawCluster(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& 
     return frame.usable && HWY_DYNAMIC_DISPATCH(drawClusterKernel)(image, frame, mesh, cluster);
 }
 
-namespace {
-
-bool isBehind(const ImagePlane& plane, const AskedBox& box) {
-    float v = plane.a * box.x[3] + plane.b * box.y[3] + plane.c * box.w[3] - 1.0f;
-    float size = std::abs(plane.a * box.x[3]) + std::abs(plane.b * box.y[3]) + std::abs(plane.c * box.w[3]) + 1.0f;
-    for (int k = 0; k < 3; ++k) {
-        const float a = plane.a * box.x[k], b = plane.b * box.y[k], c = plane.c * box.w[k];
-        v -= box.half[k] * std::abs(a + b + c);
-        size += box.half[k] * (std::abs(a) + std::abs(b) + std::abs(c));
-    }
-    return v > 0x1p-20f * size;
-}
-
-}  // namespace
-
 bool isOpen(DepthBlocks& image, int x0, int y0, int x1, int y1, float nearness, const AskedBox* box) {
-    const uint16_t asked = image.depths.code(nearness);
-    uint32_t last = DepthBlock::kNoPlane;
-    bool last_hides = false;
-    for (int by = y0 / kBlockHeight; by <= y1 / kBlockHeight; ++by)
-        for (int bx = x0 / kBlockWidth; bx <= x1 / kBlockWidth; ++bx) {
-            const DepthBlock& block = image.at(bx, by);
-            const int left = std::max(x0 - kBlockWidth * bx, 0),
-                      right = std::min(x1 - kBlockWidth * bx, kBlockWidth - 1),
-                      low = std::max(y0 - kBlockHeight * by, 0),
-                      high = std::min(y1 - kBlockHeight * by, kBlockHeight - 1);
-            for (int t = 4 * (low / 8) + 0; t < 4 * (high / 8) + 4; ++t) {
-                const int tx = 8 * (t % 4), ty = 8 * (t / 4);
-                if (tx + 7 < left || tx > right || block.base[t] > nearness) continue;
-                if (box && block.plane[t] != DepthBlock::kNoPlane) {
-                    if (block.plane[t] != last) last_hides = isBehind(image.planes[last = block.plane[t]], *box);
-                    if (last_hides) continue;
-                }
-                if (block.seen[t] == 0) return true;
-                for (int y = std::max(low, ty); y <= std::min(high, ty + 7); ++y)
-                    for (int x = std::max(left, tx); x <= std::min(right, tx + 7); ++x) {
-                        const bool seen = block.seen[t] >> (8 * (y - ty) + x - tx) & 1;
-                        if (!seen || block.codes[y][x] <= asked) return true;
-                    }
-            }
-        }
-    return false;
+    return HWY_DYNAMIC_DISPATCH(isOpenKernel)(image, x0, y0, x1, y1, nearness, box);
 }
 
 }  // namespace sightline::bench
