@@ -42,8 +42,7 @@ struct alignas(64) DepthBlock {
 
     float base[kBlockTiles];      ///< no pixel of the tile is farther; the upper four tiles first
     uint32_t plane[kBlockTiles];  ///< that covers the tile, or kNoPlane
-    uint64_t seen[kBlockTiles];   ///< pixels with a code, bit 8 * row + column
-    bool fresh = true;            ///< its codes are not set yet
+    uint64_t seen[kBlockTiles];   ///< pixels with a code, bit 8 * row + column; codes of a tile without are not set
     alignas(64) uint16_t codes[kBlockHeight][kBlockWidth];
 
     void clear() {
@@ -52,7 +51,6 @@ struct alignas(64) DepthBlock {
             plane[t] = kNoPlane;
             seen[t] = 0;
         }
-        fresh = true;
     }
 };
 

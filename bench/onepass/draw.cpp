@@ -187,6 +187,14 @@ struct RowLists {
         left[kMostColumns][EdgeList::kMost];  ///< that meet a block; that ended before
 };
 
+/// Of whole numbers from -2^22 to 2^22: where they are added to this, the last bits of the float are the number.
+HWY_INLINE VI wholeOf(VF v) {
+    const I i32;
+    const F f;
+    constexpr float kLast = 0x1.8p23f;
+    return hn::Sub(hn::BitCast(i32, hn::Add(v, hn::Set(f, kLast))), hn::Set(i32, std::bit_cast<int32_t>(kLast)));
+}
+
 void setUpRow(const EdgeList& e, int i, int row0, float width, RowEdge& out) {
     const F f;
     const I i32;
@@ -198,16 +206,15 @@ void setUpRow(const EdgeList& e, int i, int row0, float width, RowEdge& out) {
     const auto atMiddle = [&](VF v) HWY_ATTR { return hn::Neg(hn::Floor(hn::Sub(middle, v))); };
     const bool level = e.level[i] != 0, plus = out.plus;
     for (size_t k = 0; k < kBlockHeight; k += hn::Lanes(f)) {
-        const VI row = hn::Iota(i32, static_cast<int32_t>(k));
-        const VF y = hn::Add(hn::ConvertTo(f, row), hn::Set(f, static_cast<float>(row0) + 0.5f));
+        const VF y = hn::Iota(f, static_cast<float>(row0) + 0.5f + static_cast<float>(k));
         const VF x = hn::Add(hn::Mul(hn::Sub(y, y0), slope), x0);
-        hn::Store(hn::ConvertTo(i32, clamp(atMiddle(hn::Min(hn::Max(x, left), right)))), i32, out.crossed + k);
+        hn::Store(wholeOf(clamp(atMiddle(hn::Min(hn::Max(x, left), right)))), i32, out.crossed + k);
         VF first = hn::Floor(hn::Max(hn::Sub(x, half), left)),
            end = hn::Add(hn::Floor(hn::Min(hn::Add(x, half), right)), one);
         if (!level && plus) first = hn::Max(first, atMiddle(hn::Sub(x, beside)));
         if (!level && !plus) end = hn::Min(end, hn::Add(hn::Floor(hn::Add(x, hn::Sub(beside, middle))), one));
-        hn::Store(hn::ConvertTo(i32, clamp(first)), i32, out.first + k);
-        hn::Store(hn::ConvertTo(i32, clamp(end)), i32, out.end + k);
+        hn::Store(wholeOf(clamp(first)), i32, out.first + k);
+        hn::Store(wholeOf(clamp(end)), i32, out.end + k);
     }
 }
 
@@ -336,10 +343,6 @@ void planesOf(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::
 /// Raises codes of pixels.
 void raiseCodes(DepthBlock& block, const uint32_t* rows, const uint16_t (&codes)[kBlockTiles]) {
     const hn::CappedTag<uint16_t, 32> d;
-    if (block.fresh) {
-        std::memset(block.codes, 0, sizeof block.codes);
-        block.fresh = false;
-    }
     alignas(64) uint16_t of_half[2][kBlockWidth];
     for (int x = 0; x < kBlockWidth; ++x)
         for (int half = 0; half < 2; ++half) of_half[half][x] = codes[4 * half + x / 8];
@@ -354,6 +357,10 @@ void raiseCodes(DepthBlock& block, const uint32_t* rows, const uint16_t (&codes)
             hn::Store(hn::IfThenElse(hn::LoadMaskBits(d, bits), is, was), d, block.codes[y] + x);
         }
     }
+}
+
+void clearCodes(DepthBlock& block, int tile) {
+    for (int y = 0; y < 8; ++y) std::memset(&block.codes[8 * (tile / 4) + y][8 * (tile % 4)], 0, 8 * sizeof(uint16_t));
 }
 
 uint16_t leastCode(const DepthBlock& block, int tile) {
@@ -425,6 +432,7 @@ void updateBlock(DepthBlocks& image, DepthBlock& block, int column, int row, con
         codes[t] = image.depths.code(z);
         if (codes[t] == 0) continue;
         part[t / 4] |= 255u << (8 * (t % 4));
+        if (block.seen[t] == 0) clearCodes(block, t);
         block.seen[t] |= masks[t];
     }
     if ((part[0] | part[1]) == 0) return;
