@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <memory>
 #include <vector>
 
 #include "bench/contestant.h"
@@ -64,7 +64,7 @@ public:
             const PlaneMesh& mesh = meshes_[scene_.objects[object].mesh];
             for (uint32_t c = 0; c < mesh.clusters.size(); ++c)
                 if (mesh.clusters.size() == 1 || isClusterOpen(rows, mesh.clusters[c]))
-                    drawCluster(image_, frame, mesh, c);
+                    drawCluster(image_, frame, mesh, c, *scratch_);
             kept_.push_back(object);
         }
         return static_cast<size_t>(
@@ -103,6 +103,7 @@ private:
     std::vector<std::pair<float, uint32_t>> order_;
     std::vector<uint32_t> kept_;
     DepthBlocks image_;
+    std::unique_ptr<DrawScratch> scratch_ = std::make_unique<DrawScratch>();
 };
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "bench/onepass/edges.h"
+#include "bench/onepass/scratch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline::bench {
@@ -70,14 +70,7 @@ int faceGroups(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const glm::ve
     return count;
 }
 
-/// The image of a cluster's vertices.
-struct Image {
-    alignas(64) float x[256], y[256];
-    float x0, y0, x1, y1;  ///< of all of them
-    float w_min, w_max;
-};
-
-void projectVertices(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& c, Image& out) {
+void projectVertices(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& c, ClusterImage& out) {
     const F f;
     const glm::dvec3 centre(c.centre);
     const Row rx = rowOf(frame.x, centre), ry = rowOf(frame.y, centre), rw = rowOf(frame.w, centre);
@@ -160,32 +153,6 @@ void setUpEdges(EdgeList& e, float r, float height, float (&bounds)[4]) {
     bounds[2] = hn::GetLane(hn::MaxOfLanes(f, bx1));
     bounds[3] = hn::GetLane(hn::MaxOfLanes(f, by1));
 }
-
-/// An edge in one row of blocks.
-struct RowEdge {
-    // Columns: from where pixels have their middles right of it; those that it touches, of which the middle may be on its inner
-    // side.
-    alignas(64) int32_t crossed[kBlockHeight], first[kBlockHeight], end[kBlockHeight];
-    uint32_t rows = 0, touched_rows = 0;  ///< whose middles it crosses, and that it touches, as bits
-    bool plus = true;                     ///< right of it the winding number is larger
-};
-
-/// Winding numbers modulo four in two bit planes; each bit is a row.
-struct RowWinding {
-    uint32_t low = 0, high = 0;
-
-    void count(uint32_t rows, bool plus) {
-        const uint32_t carry = (plus ? low : ~low) & rows;
-        low ^= rows;
-        high ^= carry;
-    }
-};
-
-struct RowLists {
-    int count[kMostColumns], left_count[kMostColumns];
-    uint16_t at[kMostColumns][EdgeList::kMost],
-        left[kMostColumns][EdgeList::kMost];  ///< that meet a block; that ended before
-};
 
 /// Of whole numbers from -2^22 to 2^22: where they are added to this, the last bits of the float are the number.
 HWY_INLINE VI wholeOf(VF v) {
@@ -295,19 +262,6 @@ void tilesOf(const uint32_t* rows, uint64_t* tiles) {
     }
 }
 #endif
-
-/// A group that is drawn: its depth, and where it may be.
-struct GroupDepth {
-    ImagePlane plane;
-    float least = 0;  ///< of the plane, 4 pixels around a tile's middle: what its c is there
-    ImageRect rect;
-    uint32_t index = DepthBlock::kNoPlane;  ///< in DepthBlocks::planes, once a tile has asked for it
-};
-
-/// The planes of a cluster's groups in the image, side by side: a x + b y + c is no nearer than any of their points.
-struct GroupPlanes {
-    alignas(64) float a[PlaneMesh::kMostGroups + 8], b[PlaneMesh::kMostGroups + 8], c[PlaneMesh::kMostGroups + 8];
-};
 
 /// A plane that is h below the eye has nearness -(to_image * normal) / h; of points that may lie off it, no less than that of
 /// the plane that is farther from the eye by as much.
@@ -510,9 +464,11 @@ void placeEdges(const EdgeList& e, int at, int row0, float beyond, RowPlaces& ou
 }
 
 /// Draws what the edges bound.
-void rasterize(DepthBlocks& image, EdgeList& e, float r, float nearest, GroupDepth* groups, int count) {
-    static thread_local RowEdge row_edges[EdgeList::kMost];
-    static thread_local RowLists lists;
+void rasterize(DepthBlocks& image, DrawScratch& scratch, float r, float nearest, int count) {
+    RowEdge* const row_edges = scratch.row_edges;
+    RowLists& lists = scratch.lists;
+    EdgeList& e = scratch.edges;
+    GroupDepth* const groups = scratch.groups;
     const float width = static_cast<float>(image.width), height = static_cast<float>(image.height);
     float bounds[4] = {3e38f, 3e38f, -3e38f, -3e38f};
     setUpEdges(e, r, height, bounds);
@@ -576,7 +532,7 @@ void rasterize(DepthBlocks& image, EdgeList& e, float r, float nearest, GroupDep
 }
 
 /// The edges on whose sides groups are drawn otherwise, with their corners' images.
-void gatherEdges(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const int8_t* turn, const Image& image,
+void gatherEdges(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const int8_t* turn, const ClusterImage& image,
                  EdgeList& out) {
     const F f;
     const I i32;
@@ -712,12 +668,13 @@ bool imageOfKernel(const AskedBox& box, float near_w, BoxImage& out) {
     return true;
 }
 
-bool drawClusterKernel(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t index) {
+bool drawClusterKernel(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t index,
+                       DrawScratch& scratch) {
     SIGHTLINE_DEBUG_ASSERT(index < mesh.clusters.size());
-    static thread_local Image projected;
-    static thread_local EdgeList edges;
-    static thread_local GroupDepth groups[PlaneMesh::kMostGroups];
-    static thread_local ImageRect rects[PlaneMesh::kMostGroups];
+    ClusterImage& projected = scratch.image;
+    EdgeList& edges = scratch.edges;
+    GroupDepth* const groups = scratch.groups;
+    ImageRect* const rects = scratch.rects;
     const PlaneMesh::Cluster& c = mesh.clusters[index];
     const glm::dvec3 eye = frame.eye - glm::dvec3(c.centre);
     const double away = glm::length(eye);
@@ -754,7 +711,7 @@ bool drawClusterKernel(DepthBlocks& image, const ObjectFrame& frame, const Plane
     if (edges.count == 0) return true;
     for (int i = 0; frame.sign < 0 && i < edges.count; ++i) edges.change[i] = -edges.change[i];
     int count = 0;
-    static thread_local GroupPlanes planes;
+    GroupPlanes& planes = scratch.planes;
     planesOf(frame, mesh, c, eye, width, height, planes);
     for (uint32_t g = 0; g < c.groups; ++g) {
         if (turn[g] == 0) continue;
@@ -769,7 +726,7 @@ bool drawClusterKernel(DepthBlocks& image, const ObjectFrame& frame, const Plane
             of.rect.grow(projected.x[v], projected.y[v]);
         }
     }
-    rasterize(image, edges, r, nearest, groups, count);
+    rasterize(image, scratch, r, nearest, count);
     return true;
 }
 
@@ -803,8 +760,9 @@ bool imageOf(const AskedBox& box, double near_w, BoxImage& out) {
     return HWY_DYNAMIC_DISPATCH(imageOfKernel)(box, static_cast<float>(near_w * (1 + 1e-6)), out);
 }
 
-bool drawCluster(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t cluster) {
-    return frame.usable && HWY_DYNAMIC_DISPATCH(drawClusterKernel)(image, frame, mesh, cluster);
+bool drawCluster(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t cluster,
+                 DrawScratch& scratch) {
+    return frame.usable && HWY_DYNAMIC_DISPATCH(drawClusterKernel)(image, frame, mesh, cluster, scratch);
 }
 
 bool isOpen(DepthBlocks& image, int x0, int y0, int x1, int y1, float nearness, const AskedBox* box) {

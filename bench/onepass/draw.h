@@ -5,12 +5,14 @@
 #include "bench/onepass/blocks.h"
 #include "bench/onepass/frame.h"
 #include "bench/onepass/mesh.h"
+#include "bench/onepass/scratch.h"
 
 namespace sightline::bench {
 
 /// Covers pixels that the cluster's groups cover together.
 /// @returns whether it could be drawn; false: something is not known well enough, and nothing was drawn
-bool drawCluster(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t cluster);
+bool drawCluster(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t cluster,
+                 DrawScratch& scratch);
 
 /// A box as an image plane sees it: the largest a x + b y + c w of its corners is one of each summand.
 struct AskedBox {

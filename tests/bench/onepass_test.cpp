@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -145,7 +146,8 @@ uint64_t draw(const Case& of, uint32_t size, DepthBlocks& image, uint64_t& clust
     const PlaneMesh mesh = makePlaneMesh(prepareOccluder(of.made.mesh.view(), {}, of.made.both));
     image.clear(screen.width, screen.height, 1e-6f / float(screen.near_w));
     uint64_t undrawn = 0;
-    for (uint32_t c = 0; c < mesh.clusters.size(); ++c) undrawn += !drawCluster(image, frame, mesh, c);
+    const auto scratch = std::make_unique<DrawScratch>();
+    for (uint32_t c = 0; c < mesh.clusters.size(); ++c) undrawn += !drawCluster(image, frame, mesh, c, *scratch);
     clusters += mesh.clusters.size();
     return undrawn;
 }
