@@ -26,8 +26,9 @@ public:
 std::unique_ptr<Contestant> makeOnePassContestant(const tools::Scene& scene);
 
 #ifdef SIGHTLINE_PEER
-/// MaskedOcclusionCulling, of the folder that CMake was told by SIGHTLINE_PEER, in a buffer of 640 x 360: objects in the frustum
-/// by a flat list, the nearest first; each is asked by its box, drawn whole if it is not hidden, and asked again at the end.
+/// MaskedOcclusionCulling, of the folder that CMake was told by SIGHTLINE_PEER, in a buffer of 640 x 360. A flat
+/// list gives the objects in the frustum. They are taken the nearest first. An object whose box is not hidden is drawn
+/// whole. All drawn ones are asked again at the end.
 /// @param scene  must outlive it
 std::unique_ptr<Contestant> makeMaskedContestant(const tools::Scene& scene);
 #endif

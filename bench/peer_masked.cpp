@@ -24,7 +24,7 @@ struct HidingTriangles {
 };
 
 /// An object's box in the image.
-struct ImageRect {
+struct NdcRect {
     float x0, y0, x1, y1, w;  ///< in normalized device coordinates; the least w
     bool bounded;             ///< false: it reaches behind the near plane
 };
@@ -78,9 +78,9 @@ public:
     }
 
 private:
-    ImageRect rectOf(const glm::dmat4& to_clip, const Box3d& box) const {
+    NdcRect rectOf(const glm::dmat4& to_clip, const Box3d& box) const {
         constexpr float kInfinity = std::numeric_limits<float>::infinity();
-        ImageRect out{kInfinity, kInfinity, -kInfinity, -kInfinity, kInfinity, true};
+        NdcRect out{kInfinity, kInfinity, -kInfinity, -kInfinity, kInfinity, true};
         for (int corner = 0; corner < 8; ++corner) {
             glm::dvec3 at;
             for (int axis = 0; axis < 3; ++axis) at[axis] = corner >> axis & 1 ? box.max[axis] : box.min[axis];
@@ -97,7 +97,7 @@ private:
     }
 
     bool isHidden(uint32_t object) const {
-        const ImageRect& rect = rects_[object];
+        const NdcRect& rect = rects_[object];
         return rect.bounded &&
                buffer_->TestRect(rect.x0, rect.y0, rect.x1, rect.y1, rect.w) != MaskedOcclusionCulling::VISIBLE;
     }
@@ -124,7 +124,7 @@ private:
     MaskedOcclusionCulling* buffer_;
     std::vector<HidingTriangles> triangles_;  ///< by mesh
     std::vector<uint8_t> mirrored_;           ///< by object
-    std::vector<ImageRect> rects_;
+    std::vector<NdcRect> rects_;
     std::vector<std::pair<float, uint32_t>> order_;
     std::vector<uint32_t> drawn_;
     double near_ = 0;  ///< the view's near plane  [w]

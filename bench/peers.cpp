@@ -43,17 +43,6 @@ private:
 struct Score {
     std::vector<double> times;  ///< [microseconds]
     double kept = 0;            ///< mean of the cameras
-
-    double mean() const {
-        double sum = 0;
-        for (const double time : times) sum += time;
-        return sum / static_cast<double>(times.size());
-    }
-    double percentile(double share) const {
-        std::vector<double> sorted = times;
-        std::sort(sorted.begin(), sorted.end());
-        return sorted[static_cast<size_t>(share * static_cast<double>(sorted.size() - 1))];
-    }
 };
 
 /// Each contestant answers all cameras in order, and then the next one does; in each round.
@@ -106,8 +95,9 @@ void measurePeers(const Scene& scene, int repeat, Table& table) {
         const Score& base = results[0];
         for (size_t who = 0; who < all.size(); ++who) {
             const std::string name = all[who]->name(), of = all[0]->name();
-            row(name + ", mean of a frame", results[who].mean(), "us", of, base.mean());
-            row(name + ", 99 of 100 frames", results[who].percentile(0.99), "us", of, base.percentile(0.99));
+            row(name + ", mean of a frame", meanOf(results[who].times), "us", of, meanOf(base.times));
+            row(name + ", 99 of 100 frames", percentileOf(results[who].times, 0.99), "us", of,
+                percentileOf(base.times, 0.99));
             row(name + ", kept", results[who].kept, "objects", of, base.kept);
         }
     }

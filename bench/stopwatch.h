@@ -30,6 +30,18 @@ inline double medianOf(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
+inline double meanOf(const std::vector<double>& values) {
+    double sum = 0;
+    for (const double value : values) sum += value;
+    return sum / static_cast<double>(values.size());
+}
+
+/// @param share  0: the least, 1: the greatest
+inline double percentileOf(std::vector<double> values, double share) {
+    std::sort(values.begin(), values.end());
+    return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
 /// Runs each job once to warm up and then all of them `repeat` times, one after the other each time.
 /// @param now  reads a clock [microseconds]
 /// @returns each job's median time [microseconds]

@@ -31,16 +31,8 @@ struct Costs {
         kept += static_cast<double>(seen.objects.size());
         undrawn += seen.stats.occluder_triangles == 0;
     }
-    double mean() const {
-        double sum = 0;
-        for (const double time : times) sum += time;
-        return sum / static_cast<double>(times.size());
-    }
-    double percentile(double share) const {
-        std::vector<double> sorted = times;
-        std::sort(sorted.begin(), sorted.end());
-        return sorted[static_cast<size_t>(share * static_cast<double>(sorted.size() - 1))];
-    }
+    double mean() const { return meanOf(times); }
+    double percentile(double share) const { return percentileOf(times, share); }
     double keptAFrame() const { return kept / static_cast<double>(times.size()); }
 };
 

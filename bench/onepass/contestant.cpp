@@ -17,7 +17,7 @@ namespace {
 
 constexpr uint32_t kSize = 384;
 
-/// What is asked of an object in a frame.
+/// The box of an object or a cluster in one frame.
 struct Asked {
     AskedBox box;
     BoxImage image;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bench/onepass/blocks.h"
+#include "bench/onepass/boxes.h"
 #include "bench/onepass/frame.h"
 #include "bench/onepass/mesh.h"
 #include "bench/onepass/scratch.h"
@@ -14,19 +15,8 @@ namespace sightline::bench {
 bool drawCluster(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t cluster,
                  DrawScratch& scratch);
 
-/// A box as an image plane sees it: the largest a x + b y + c w of its corners is one of each summand.
-struct AskedBox {
-    float x[4], y[4], w[4];  ///< rows over its three half axes and its centre
-    float half[3];
-};
-
 /// @param centre,half  of the box, in the space that the rows are over
 AskedBox askedBox(const Screen& screen, const glm::dvec3& centre, const glm::dvec3& half);
-
-/// A box in the image.
-struct BoxImage {
-    float x0, y0, x1, y1, nearness;
-};
 
 /// @returns false if it may reach before the near plane
 bool imageOf(const AskedBox& box, double near_w, BoxImage& out);

@@ -53,7 +53,7 @@ struct CutPoint {
 }  // namespace
 
 bool cutEdges(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& cluster, const int8_t* turn,
-              float width, float height, EdgeList& edges, ImageRect* rects, float& r, float& nearest) {
+              float width, float height, EdgeList& edges, GroupRect* rects, float& r, float& nearest) {
     static thread_local std::vector<CutPoint> cuts;
     double x[256], y[256], w[256], least = 1e300;
     const double near_w = frame.near_w * (1 + 1e-6);
@@ -75,7 +75,7 @@ bool cutEdges(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::
     r = static_cast<float>(off * image / nearest_w + 1e-3);
     if (!(r < 0.5f)) return false;
     cuts.clear();
-    std::fill(rects, rects + cluster.groups, ImageRect());
+    std::fill(rects, rects + cluster.groups, GroupRect());
     for (uint32_t e = cluster.first_edge; e < cluster.first_edge + cluster.edges; ++e) {
         const int a = mesh.from[e], b = mesh.to[e], left = mesh.left[e], right = mesh.right[e];
         const int change = turn[left] - turn[right];

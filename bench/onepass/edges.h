@@ -49,7 +49,7 @@ struct EdgeList {
 };
 
 /// Where a group may be in the image.
-struct ImageRect {
+struct GroupRect {
     float x0 = 3e38f, y0 = 3e38f, x1 = -3e38f, y1 = -3e38f;
 
     void grow(float x, float y) {
@@ -67,6 +67,6 @@ struct ImageRect {
 /// @param nearest  becomes the nearness of what is nearest
 /// @returns false if they are not known well enough
 bool cutEdges(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& cluster, const int8_t* turn,
-              float width, float height, EdgeList& edges, ImageRect* rects, float& r, float& nearest);
+              float width, float height, EdgeList& edges, GroupRect* rects, float& r, float& nearest);
 
 }  // namespace sightline::bench

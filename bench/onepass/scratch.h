@@ -19,8 +19,8 @@ struct ClusterImage {
 
 /// An edge in one row of blocks.
 struct RowEdge {
-    // Columns: from where pixels have their middles right of it; those that it touches, of which the middle may be on its inner
-    // side.
+    // Columns. Pixels from `crossed` on have their middles right of the edge. The edge touches those from `first` to `end`,
+    // of which the middles may be on its inner side.
     alignas(64) int32_t crossed[kBlockHeight], first[kBlockHeight], end[kBlockHeight];
     uint32_t rows = 0, touched_rows = 0;  ///< whose middles it crosses, and that it touches, as bits
     bool plus = true;                     ///< right of it the winding number is larger
@@ -47,7 +47,7 @@ struct RowLists {
 struct GroupDepth {
     ImagePlane plane;
     float least = 0;  ///< of the plane, 4 pixels around a tile's middle: what its c is there
-    ImageRect rect;
+    GroupRect rect;
     uint32_t index = DepthBlock::kNoPlane;  ///< in DepthBlocks::planes, once a tile has asked for it
 };
 
@@ -61,7 +61,7 @@ struct DrawScratch {
     EdgeList edges;
     GroupPlanes planes;
     GroupDepth groups[PlaneMesh::kMostGroups];
-    ImageRect rects[PlaneMesh::kMostGroups];
+    GroupRect rects[PlaneMesh::kMostGroups];
     RowEdge row_edges[EdgeList::kMost];
     RowLists lists;
 };

@@ -20,7 +20,7 @@ void prepareLods(Scene& scene, const RunOptions& options);
 /// Called on the thread that has answered a frame, while its query still knows the answer.
 using FrameHook = std::function<void(size_t frame, const Query& query)>;
 
-/// A run along a path of which nothing has been asked yet.
+/// A run with the cameras of a path, and no answers yet.
 /// @param key_order  orderByKey() of the scene
 CullRun newRun(const Scene& scene, const std::vector<uint32_t>& key_order, const CameraPath& path,
                const RunOptions& options);
