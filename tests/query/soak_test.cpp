@@ -24,7 +24,7 @@ struct Size {
 };
 
 Size sizeOfTest() {
-    const bool all = casesToMake(0, 1) == 1;
+    const bool all = testsAreLong();
     return all ? Size{1000000, 16, 64, 600} : Size{4000, 4, 8, 4};
 }
 

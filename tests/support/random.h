@@ -23,10 +23,15 @@ inline uint64_t scaledRounds(uint64_t count) {
     return static_cast<uint64_t>(std::max(1.0, std::round(static_cast<double>(count) * std::strtod(share, nullptr))));
 }
 
-/// What takes a few seconds, or with SIGHTLINE_LONG_TESTS=1 as many as the promise says.
-inline size_t casesToMake(size_t shorter, size_t longer = 10000000) {
+/// SIGHTLINE_LONG_TESTS=1: tests are as long as the promise says.
+inline bool testsAreLong() {
     const char* wish = std::getenv("SIGHTLINE_LONG_TESTS");
-    return wish && *wish && *wish != '0' ? longer : scaledRounds(shorter);
+    return wish && *wish && *wish != '0';
+}
+
+/// What takes a few seconds, or in long tests as many as the promise says.
+inline size_t casesToMake(size_t shorter, size_t longer = 10000000) {
+    return testsAreLong() ? longer : scaledRounds(shorter);
 }
 
 /// How often a test repeats. What sanitizers look for shows in few rounds, and they cost five to a hundred times as much.

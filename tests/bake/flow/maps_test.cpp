@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
@@ -18,18 +17,15 @@
 #include "sightline/tools/scene/text_file.h"
 #include "sightline/tools/truth/tree_rays.h"
 #include "tests/bake/flow/visibility_laws.h"
+#include "tests/support/random.h"
 
 namespace sightline::test {
 using namespace bake;
 using namespace tools;
 namespace {
 
-/// SIGHTLINE_LONG_TESTS=1 holds each map against as many rays as the promise says: a hundred million.
-bool isLong() {
-    const char* wish = std::getenv("SIGHTLINE_LONG_TESTS");
-    return wish && *wish && *wish != '0';
-}
-uint64_t raysToCast() { return isLong() ? 100000000 : 200000; }
+/// Long tests hold each map against as many rays as the promise says.
+uint64_t raysToCast() { return testsAreLong() ? 100000000 : 200000; }
 
 ThreadPool& pool() {
     static ThreadPool threads(std::max(1u, std::thread::hardware_concurrency()));
@@ -47,7 +43,7 @@ protected:
         if (!std::filesystem::exists(file)) GTEST_SKIP() << "there is no such map: " << file;
         const Result<CellGraph> graph = readPrt(file);
         ASSERT_TRUE(graph.ok()) << graph.error().message;
-        if (graph->cells > 2000 && !isLong()) GTEST_SKIP() << "it takes long: SIGHTLINE_LONG_TESTS=1 bakes it";
+        if (graph->cells > 2000 && !testsAreLong()) GTEST_SKIP() << "it takes long: SIGHTLINE_LONG_TESTS=1 bakes it";
         graph_ = *graph;
     }
 
