@@ -233,8 +233,10 @@ private:
     void movePointers() {
         constexpr std::string_view kMeshes = "/meshes/";
         if (!out_.json.contains("animations")) return;
-        for (Json& animation : out_.json["animations"])
-            for (Json& channel : animation["channels"]) {
+        Json& animations = out_.json["animations"];
+        for (size_t i = 0; i < animations.size(); ++i) {
+            if (table(animations[i], "channels", at("animations", i)).empty()) continue;
+            for (Json& channel : animations[i]["channels"]) {
                 const Json* target = find(channel, "target");
                 const Json* aim = target ? extension(*target, "KHR_animation_pointer", "") : nullptr;
                 const std::string pointer = aim ? text(*aim, "pointer", "") : "";
@@ -245,6 +247,7 @@ private:
                 channel["target"]["extensions"]["KHR_animation_pointer"]["pointer"] =
                     fmt::format("{}{}{}", kMeshes, wholeMesh(static_cast<uint32_t>(number)), pointer.substr(rest));
             }
+        }
     }
 
     void writeMetadata() {

@@ -346,6 +346,14 @@ TEST(GltfCut, KeepsPointsAndLines) {
     EXPECT_EQ(after.json["meshes"][after.json["nodes"][3]["mesh"].get<size_t>()]["primitives"][0]["mode"], 1);
 }
 
+TEST(GltfCut, AnAnimationWithoutChannelsStaysOne) {
+    GltfBuilder b = texturedQuads();
+    b.json["animations"] = Json::array({{{"name", "idle"}}});
+    const std::string bytes = b.glb();
+    const WrittenGltf out = written(cutBytes(bytes, cutAlong(load(bytes), "parts")));
+    EXPECT_EQ(GlbParts(out.bytes).json["animations"], b.json["animations"]);
+}
+
 TEST(GltfCut, RefusesAFileThatChanged) {
     const Scene scene = load(texturedQuads().glb());
     const CutScene cut = cutAlong(scene, "parts");
