@@ -323,7 +323,7 @@ int runBeside(const OtherVerb& verb, const std::vector<std::string>& words) {
         const Status told = writeText(
             "-", fmt::format(
                      "{0}: {1}\n\nThe program {2} has this verb, and is not built. `./run.sh help {0}` builds it and "
-                     "tells its options;\n`./run.sh {0} ...` runs it. docs/command-line.md has them, too.\n",
+                     "tells its options;\n`./run.sh {0} ...` runs it. docs/command-line.md leads to them, too.\n",
                      verb.name, verb.about, verb.program));
         return told ? kDone : report(told.error());
     }

@@ -34,7 +34,7 @@ struct CameraPath {
 /// The view of a frame for a viewport of the given size.
 View makeView(const CameraFrame& frame, uint32_t width, uint32_t height);
 
-/// Reads the JSON of docs/command-line.md, "Which cameras": values of the head that each frame may override.
+/// Reads the JSON of docs/command-line/cameras.md, "Camera path files": values of the head that each frame may override.
 /// Errors name the file and the frame: not JSON, no frames, wrong types, values that are not finite,
 /// near <= 0 (perspective), far <= near, an angle outside (0, 180), eye equal to target, keys that there are not, views
 /// that are not rigid. Matrices of other clip spaces are declared ("clip", a name of kClipSpaces), or told where they
