@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 
 #include "sightline/geom/view.h"
@@ -21,9 +22,16 @@ public:
     virtual size_t answer(const View& view) = 0;
 };
 
-/// The rasterizer that is to take the place of the library's (bench/onepass), in a buffer of 384 pixels. Perspective views alone.
+struct OnePassSettings {
+    const char* name;
+    uint32_t size;          ///< the longer side of the buffer  [pixels]
+    bool looks;             ///< objects whose boxes are open are asked by the outlines of their clusters
+    float pixels_per_edge;  ///< clusters whose boxes have fewer are not drawn
+};
+
+/// The rasterizer that is to take the place of the library's (bench/onepass). Perspective views alone.
 /// @param scene  must outlive it
-std::unique_ptr<Contestant> makeOnePassContestant(const tools::Scene& scene);
+std::unique_ptr<Contestant> makeOnePassContestant(const tools::Scene& scene, const OnePassSettings& settings);
 
 #ifdef SIGHTLINE_PEER
 /// MaskedOcclusionCulling, of the folder that CMake was told by SIGHTLINE_PEER, in a buffer of 640 x 360. A flat

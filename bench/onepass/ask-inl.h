@@ -28,6 +28,22 @@ bool isBehind(const ImagePlane& plane, const AskedBox& box) {
     return v > 0x1p-20f * size;
 }
 
+/// Whether a box is behind planes of tiles, of which many have the same.
+class BoxBehindPlanes {
+public:
+    explicit BoxBehindPlanes(const AskedBox* box) : box_(box) {}
+    bool operator()(const DepthBlocks& image, uint32_t plane) {
+        if (!box_ || plane == DepthBlock::kNoPlane) return false;
+        if (plane != last_) is_behind_ = isBehind(image.planes[last_ = plane], *box_);
+        return is_behind_;
+    }
+
+private:
+    const AskedBox* box_;
+    uint32_t last_ = DepthBlock::kNoPlane;
+    bool is_behind_ = false;
+};
+
 /// Whether a tile's codes are open to one, at pixels of a window that all have codes.
 bool isTileOpen(const DepthBlock& block, int tile, uint64_t window, uint16_t asked) {
     const hn::CappedTag<uint16_t, 8> d;
@@ -49,10 +65,10 @@ bool isTileOpen(const DepthBlock& block, int tile, uint64_t window, uint16_t ask
 bool isOpenKernel(DepthBlocks& image, int x0, int y0, int x1, int y1, float nearness, const AskedBox* box) {
     const hn::CappedTag<float, 8> f;
     const uint16_t asked = image.depths.code(nearness);
-    uint32_t last = DepthBlock::kNoPlane;
-    bool last_hides = false;
+    BoxBehindPlanes behind(box);
     for (int by = y0 / kBlockHeight; by <= y1 / kBlockHeight; ++by)
         for (int bx = x0 / kBlockWidth; bx <= x1 / kBlockWidth; ++bx) {
+            if (image.leastBase(bx, by) > nearness) continue;
             const DepthBlock& block = image.at(bx, by);
             uint32_t open = 0;
             for (size_t t = 0; t < kBlockTiles; t += hn::Lanes(f)) {
@@ -72,10 +88,7 @@ bool isOpenKernel(DepthBlocks& image, int x0, int y0, int x1, int y1, float near
                 if (across == 0 || down == 0) continue;
                 uint64_t window = 0;
                 for (int y = 0; y < 8; ++y) window |= (down >> y & 1 ? across : 0) << (8 * y);
-                if (box && block.plane[t] != DepthBlock::kNoPlane) {
-                    if (block.plane[t] != last) last_hides = isBehind(image.planes[last = block.plane[t]], *box);
-                    if (last_hides) continue;
-                }
+                if (behind(image, block.plane[t])) continue;
                 if ((window & ~block.seen[t]) != 0 || isTileOpen(block, t, window, asked)) return true;
             }
         }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -60,6 +61,9 @@ struct DepthBlocks {
     int columns = 0, rows = 0;       ///< [blocks]
     PixelDepths depths;
     std::vector<DepthBlock> blocks;
+    std::vector<float>
+        least_base;  ///< per block the least of its tiles' bases; rows of `stride`, infinite behind the last column
+    int stride = 0;
     std::vector<ImagePlane> planes;
 
     void clear(uint32_t w, uint32_t h, float farthest) {
@@ -70,11 +74,20 @@ struct DepthBlocks {
         depths = PixelDepths(farthest);
         blocks.resize(static_cast<size_t>(columns) * static_cast<size_t>(rows));
         for (DepthBlock& block : blocks) block.clear();
+        stride = (columns + kBlockWidth - 1) / kBlockWidth * kBlockWidth;
+        least_base.assign(static_cast<size_t>(stride) * static_cast<size_t>(rows),
+                          std::numeric_limits<float>::infinity());
+        for (int row = 0; row < rows; ++row)
+            std::fill_n(&leastBase(0, row), columns, -std::numeric_limits<float>::infinity());
         planes.clear();
     }
     DepthBlock& at(int column, int row) {
         SIGHTLINE_DEBUG_ASSERT(column >= 0 && column < columns && row >= 0 && row < rows);
         return blocks[static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column)];
+    }
+
+    float& leastBase(int column, int row) {
+        return least_base[static_cast<size_t>(row) * static_cast<size_t>(stride) + static_cast<size_t>(column)];
     }
 
     /// What a pixel claims; infinitely far where it is open.

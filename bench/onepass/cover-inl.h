@@ -18,18 +18,17 @@ HWY_BEFORE_NAMESPACE();
 namespace sightline::bench {
 namespace HWY_NAMESPACE {
 /// Brings edges into the form that rows read.
-/// @param r       no corner's image is farther from where it is drawn  [pixels]
 /// @param bounds  grows by what the edges touch: x0 y0 x1 y1
-void setUpEdges(EdgeList& e, float r, float height, float (&bounds)[4]) {
+void setUpEdges(EdgeList& e, float height, float (&bounds)[4]) {
     const F f;
     const I i32;
-    const VF vr = hn::Set(f, r), rows = hn::Set(f, height + 1);
+    const VF rows = hn::Set(f, height + 1);
     VF bx0 = hn::Set(f, bounds[0]), by0 = hn::Set(f, bounds[1]), bx1 = hn::Set(f, bounds[2]),
        by1 = hn::Set(f, bounds[3]);
     e.pad();
     for (int k = 0; k < e.count; k += static_cast<int>(hn::Lanes(f))) {
         const VF ax = hn::Load(f, e.ax + k), ay = hn::Load(f, e.ay + k), bx = hn::Load(f, e.bx + k),
-                 by = hn::Load(f, e.by + k);
+                 by = hn::Load(f, e.by + k), vr = hn::Load(f, e.r + k);
         const auto up = hn::Gt(by, ay);
         const VF yl = hn::Min(ay, by), yh = hn::Max(ay, by), xl = hn::IfThenElse(up, ax, bx),
                  xh = hn::IfThenElse(up, bx, ax);
@@ -80,6 +79,8 @@ HWY_INLINE VI wholeOf(VF v) {
     return hn::Sub(hn::BitCast(i32, hn::Add(v, hn::Set(f, kLast))), hn::Set(i32, std::bit_cast<int32_t>(kLast)));
 }
 
+/// @tparam kInner  the edge touches pixels alone of which the middles may be on its inner side
+template <bool kInner>
 void setUpRow(const EdgeList& e, int i, int row0, float width, RowEdge& out) {
     const F f;
     const I i32;
@@ -96,8 +97,8 @@ void setUpRow(const EdgeList& e, int i, int row0, float width, RowEdge& out) {
         hn::Store(wholeOf(clamp(atMiddle(hn::Min(hn::Max(x, left), right)))), i32, out.crossed + k);
         VF first = hn::Floor(hn::Max(hn::Sub(x, half), left)),
            end = hn::Add(hn::Floor(hn::Min(hn::Add(x, half), right)), one);
-        if (!level && plus) first = hn::Max(first, atMiddle(hn::Sub(x, beside)));
-        if (!level && !plus) end = hn::Min(end, hn::Add(hn::Floor(hn::Add(x, hn::Sub(beside, middle))), one));
+        if (kInner && !level && plus) first = hn::Max(first, atMiddle(hn::Sub(x, beside)));
+        if (kInner && !level && !plus) end = hn::Min(end, hn::Add(hn::Floor(hn::Add(x, hn::Sub(beside, middle))), one));
         hn::Store(wholeOf(clamp(first)), i32, out.first + k);
         hn::Store(wholeOf(clamp(end)), i32, out.end + k);
     }
@@ -157,43 +158,89 @@ HWY_INLINE VU onesFrom(VI column, VI block) {
 #endif
 }
 
+/// Adds an edge to winding numbers right of it.
+template <size_t kPlanes>
+HWY_INLINE void countEdge(VU (&plane)[kPlanes], VU more, bool plus) {
+    for (VU& of : plane) {
+        const VU carry = plus ? hn::And(of, more) : hn::AndNot(of, more);
+        of = hn::Xor(of, more);
+        more = carry;
+    }
+}
+
+/// Some rows of a block, and an edge there.
+struct BlockRows {
+    VU bit;    ///< of each row, among rows as bits
+    VI block;  ///< its first column
+    size_t at;
+
+    HWY_INLINE VU all(uint32_t rows) const { return hn::VecFromMask(U(), hn::TestBit(hn::Set(U(), rows), bit)); }
+    HWY_INLINE VU right(const RowEdge& e) const {
+        return hn::And(all(e.rows), onesFrom(hn::Load(I(), e.crossed + at), block));
+    }
+    HWY_INLINE VU touched(const RowEdge& e) const {
+        return hn::And(all(e.touched_rows), hn::AndNot(onesFrom(hn::Load(I(), e.end + at), block),
+                                                       onesFrom(hn::Load(I(), e.first + at), block)));
+    }
+};
+
 /// The pixels of a block that are covered. From the middle of a pixel a straight way to any point of it crosses only edges that
 /// touch the pixel, each once at most, and only one that has the middle on its inner side lowers the winding number there, by
 /// one. So a pixel is covered if the winding number of its middle is larger than the number of such edges. Rounding moves edges
 /// by no more than what they touch beside them: a middle that close counts as inside, whichever way it was counted before.
 /// @returns whether there are any
-bool coverBlock(const RowEdge* edges, const uint16_t* list, int count, const RowWinding& before, int column,
-                uint32_t* covered) {
-    const I i32;
+bool coverBlock(const BlockEdges& edges, const RowWinding<2>& before, int column, uint32_t* covered) {
     const U u32;
-    const VI block = hn::Set(i32, column);
     VU any = hn::Zero(u32);
     for (size_t k = 0; k < kBlockHeight; k += hn::Lanes(u32)) {
-        const VU bit = hn::Shl(hn::Set(u32, 1u), hn::Iota(u32, static_cast<uint32_t>(k)));
-        const auto in = [&](uint32_t rows) HWY_ATTR { return hn::TestBit(hn::Set(u32, rows), bit); };
-        VU low = hn::VecFromMask(u32, in(before.low)), high = hn::VecFromMask(u32, in(before.high));
+        const BlockRows rows{hn::Shl(hn::Set(u32, 1u), hn::Iota(u32, static_cast<uint32_t>(k))), hn::Set(I(), column),
+                             k};
+        VU winding[2] = {rows.all(before.plane[0]), rows.all(before.plane[1])};
         VU once = hn::Zero(u32), twice = once,
            thrice = once;  // so often an edge touches from its inner side, or more often
-        for (int n = 0; n < count; ++n) {
-            const RowEdge& e = edges[list[n]];
-            const VU more = hn::IfThenElseZero(in(e.rows), onesFrom(hn::Load(i32, e.crossed + k), block));
-            const VU carry = e.plus ? hn::And(low, more) : hn::AndNot(low, more);
-            low = hn::Xor(low, more);
-            high = hn::Xor(high, carry);
-            const VU band =
-                hn::AndNot(onesFrom(hn::Load(i32, e.end + k), block), onesFrom(hn::Load(i32, e.first + k), block));
-            const VU touched = hn::IfThenElseZero(in(e.touched_rows), band);
+        for (int n = 0; n < edges.count; ++n) {
+            const RowEdge& e = edges.row[edges.list[n]];
+            countEdge(winding, rows.right(e), e.plus);
+            const VU touched = rows.touched(e);
             thrice = hn::Or(thrice, hn::And(twice, touched));
             twice = hn::Or(twice, hn::And(once, touched));
             once = hn::Or(once, touched);
         }
         // The winding number is 1 to 3, or looks as if it were: what is four times covered counts as open.
+        const VU low = winding[0], high = winding[1];
         const VU cover = hn::Or(hn::AndNot(once, hn::Or(low, high)),
                                 hn::Or(hn::AndNot(twice, high), hn::AndNot(thrice, hn::And(high, low))));
         hn::Store(cover, u32, covered + k);
         any = hn::Or(any, cover);
     }
     return !hn::AllTrue(u32, hn::Eq(any, hn::Zero(u32)));
+}
+
+/// The pixels of a block that the edges touch or go around: all of them where the planes do not hold the winding numbers.
+/// @returns whether there are any
+template <int kPlanes>
+bool touchBlock(const BlockEdges& edges, const RowWinding<kPlanes>& before, int column, uint32_t* pixels) {
+    const U u32;
+    if (edges.most >= 1 << kPlanes) {
+        std::fill_n(pixels, kBlockHeight, ~0u);
+        return true;
+    }
+    VU all = hn::Zero(u32);
+    for (size_t k = 0; k < kBlockHeight; k += hn::Lanes(u32)) {
+        const BlockRows rows{hn::Shl(hn::Set(u32, 1u), hn::Iota(u32, static_cast<uint32_t>(k))), hn::Set(I(), column),
+                             k};
+        VU winding[kPlanes], any = hn::Zero(u32);
+        for (int p = 0; p < kPlanes; ++p) winding[p] = rows.all(before.plane[p]);
+        for (int n = 0; n < edges.count; ++n) {
+            const RowEdge& e = edges.row[edges.list[n]];
+            countEdge(winding, rows.right(e), e.plus);
+            any = hn::Or(any, rows.touched(e));
+        }
+        for (const VU& of : winding) any = hn::Or(any, of);
+        hn::Store(any, u32, pixels + k);
+        all = hn::Or(all, any);
+    }
+    return !hn::AllTrue(u32, hn::Eq(all, hn::Zero(u32)));
 }
 
 /// From rows of 32 pixels to masks of tiles, bit 8 * row + column.

@@ -17,6 +17,8 @@
 #include "bench/onepass/ask-inl.h"
 #include "bench/onepass/cover-inl.h"
 #include "bench/onepass/depth-inl.h"
+#include "bench/onepass/look-inl.h"
+#include "bench/onepass/rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline::bench {
@@ -40,8 +42,10 @@ HWY_INLINE VF apply(const Row& row, VF x, VF y, VF z) {
 
 /// Which groups surely show their front (1) or, drawn from both sides, their back (-1) to the eye; 0: all others. A group
 /// that is not 0 has no polygon that faces otherwise, so that no winding number is less than 0.
+/// @param doubt  becomes 1 for each group that may show its front and has 0; or null
 /// @returns how many are not 0
-int faceGroups(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const glm::vec3& eye, float away, int8_t* turn) {
+int faceGroups(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const glm::vec3& eye, float away, int8_t* turn,
+               int8_t* doubt) {
     const F f;
     int count = 0;
     const float reach = away + c.radius;
@@ -56,32 +60,47 @@ int faceGroups(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const glm::ve
             hn::Add(hn::LoadU(f, &mesh.thick[at]),
                     hn::Mul(hn::Add(hn::LoadU(f, &mesh.tilt[at]), hn::Set(f, 0x1p-20f)), hn::Set(f, reach)));
         const auto front = hn::Gt(h, room);
-        const VF back = hn::IfThenElseZero(hn::Lt(h, hn::Neg(room)), hn::LoadU(f, &mesh.both[at]));
+        const auto away_from = hn::Lt(h, hn::Neg(room));
+        const VF back = hn::IfThenElseZero(away_from, hn::LoadU(f, &mesh.both[at]));
         const VF turns = hn::IfThenElse(front, hn::Set(f, 1.0f), hn::Neg(back));
-        hn::StoreU(hn::DemoteTo(hn::Rebind<int8_t, F>(), hn::ConvertTo(I(), turns)), hn::Rebind<int8_t, F>(), turn + g);
+        const auto store = [&](VF v, int8_t* to) HWY_ATTR {
+            const hn::Rebind<int8_t, F> i8;
+            hn::StoreU(hn::DemoteTo(i8, hn::ConvertTo(I(), v)), i8, to);
+        };
+        store(turns, turn + g);
+        if (doubt) store(hn::IfThenElse(hn::Or(front, away_from), hn::Zero(f), hn::Set(f, 1.0f)), doubt + g);
         count += static_cast<int>(hn::CountTrue(f, hn::Ne(turns, hn::Zero(f))));
     }
     return count;
 }
 
-void projectVertices(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& c, ClusterImage& out) {
+/// Numerators and w are off by 2^-20 of what they are made of at most.
+/// @param reach    no vertex is farther from the eye
+/// @param w_error  what w may be off by
+void projectVertices(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& c, float reach,
+                     float w_error, ClusterImage& out) {
     const F f;
     const glm::dvec3 centre(c.centre);
     const Row rx = rowOf(frame.x, centre), ry = rowOf(frame.y, centre), rw = rowOf(frame.w, centre);
-    VF x0 = hn::Set(f, 3e38f), y0 = x0, w0 = x0, x1 = hn::Set(f, -3e38f), y1 = x1, w1 = x1;
+    const VF error = hn::Set(f, w_error), own = hn::Set(f, 0x1p-20f * std::max(frame.length_x, frame.length_y) * reach);
+    VF x0 = hn::Set(f, 3e38f), y0 = x0, w0 = x0, x1 = hn::Set(f, -3e38f), y1 = x1, w1 = x1, r1 = hn::Zero(f);
     for (uint32_t i = 0; i < c.vertices; i += static_cast<uint32_t>(hn::Lanes(f))) {
         const size_t at = size_t{c.first_vertex} + i;
         const VF x = hn::LoadU(f, &mesh.x[at]), y = hn::LoadU(f, &mesh.y[at]), z = hn::LoadU(f, &mesh.z[at]);
         const VF w = apply(rw, x, y, z);
         const VF px = hn::Div(apply(rx, x, y, z), w), py = hn::Div(apply(ry, x, y, z), w);
+        const VF far = hn::Max(hn::Abs(px), hn::Abs(py));
+        const VF r = hn::Add(hn::Div(hn::Add(own, hn::Mul(far, error)), hn::Sub(w, error)), hn::Set(f, 1e-5f));
         hn::Store(px, f, out.x + i);
         hn::Store(py, f, out.y + i);
+        hn::Store(r, f, out.r + i);
         x0 = hn::Min(x0, px);
         x1 = hn::Max(x1, px);
         y0 = hn::Min(y0, py);
         y1 = hn::Max(y1, py);
         w0 = hn::Min(w0, w);
         w1 = hn::Max(w1, w);
+        r1 = hn::Max(r1, r);
     }
     const auto least = [&](VF v) HWY_ATTR { return hn::GetLane(hn::MinOfLanes(f, v)); };
     const auto most = [&](VF v) HWY_ATTR { return hn::GetLane(hn::MaxOfLanes(f, v)); };
@@ -91,74 +110,37 @@ void projectVertices(const ObjectFrame& frame, const PlaneMesh& mesh, const Plan
     out.x1 = most(x1);
     out.y1 = most(y1);
     out.w_max = most(w1);
+    out.r_max = most(r1);
 }
 
-/// Draws what the edges bound.
-void rasterize(DepthBlocks& image, DrawScratch& scratch, float r, float nearest, int count) {
-    RowEdge* const row_edges = scratch.row_edges;
-    RowLists& lists = scratch.lists;
-    EdgeList& e = scratch.edges;
-    GroupDepth* const groups = scratch.groups;
-    const float width = static_cast<float>(image.width), height = static_cast<float>(image.height);
-    float bounds[4] = {3e38f, 3e38f, -3e38f, -3e38f};
-    setUpEdges(e, r, height, bounds);
-    if (!(bounds[2] > 0 && bounds[3] > 0 && bounds[0] < width && bounds[1] < height)) return;
-    const int column0 = static_cast<int>(std::max(bounds[0], 0.0f)) / kBlockWidth,
-              column1 = static_cast<int>(std::min(bounds[2], width - 1)) / kBlockWidth,
-              block_row0 = static_cast<int>(std::max(bounds[1], 0.0f)) / kBlockHeight,
-              block_row1 = static_cast<int>(std::min(bounds[3], height - 1)) / kBlockHeight;
-    for (int by = block_row0; by <= block_row1; ++by) {
-        int from = column1 + 1, to = -1;  // blocks that may become nearer
-        for (int bx = column0; bx <= column1; ++bx)
-            if (isBlockOpen(image.at(bx, by), nearest)) {
-                from = std::min(from, bx);
-                to = bx;
-            }
-        if (to < 0) continue;
-        const int row0 = kBlockHeight * by;
-        RowWinding before;  // left of the block at hand
-        int used = 0;
-        for (int b = from; b <= to; ++b) lists.count[b] = lists.left_count[b] = 0;
-        RowPlaces places;
-        for (int at = 0; at < e.count; at += 16) {
-            placeEdges(e, at, row0, static_cast<float>(kBlockWidth * (to + 1)), places);
-            if (e.count - at < 16) places.meets &= (1u << (e.count - at)) - 1;
-            for (uint32_t left = places.meets; left != 0; left &= left - 1) {
-                const int k = std::countr_zero(left), i = at + k, first = places.first[k], last = places.last[k],
-                          begin = places.begin[k], end = places.end[k];
-                const float low = places.low[k], high = places.high[k];
-                const uint32_t rows = ((1u << end) - 1) & ~((1u << begin) - 1);
-                const bool plus = (e.change[i] > 0) != (e.up[i] == 1);
-                if (high < static_cast<float>(kBlockWidth * from)) {
-                    before.count(rows, plus);
-                    continue;
-                }
-                RowEdge& edge = row_edges[used];
-                edge.rows = rows;
-                edge.touched_rows = ((2u << last) - 1) & ~((1u << first) - 1);
-                edge.plus = plus;
-                setUpRow(e, i, row0, width, edge);
-                const int b0 = std::max(static_cast<int>(std::max(low, 0.0f)) / kBlockWidth, from),
-                          b1 = static_cast<int>(std::min(std::max(high, 0.0f), width + 64)) / kBlockWidth;
-                for (int b = b0; b <= std::min(b1, to); ++b)
-                    lists.at[b][lists.count[b]++] = static_cast<uint16_t>(used);
-                if (b1 < to) lists.left[b1 + 1][lists.left_count[b1 + 1]++] = static_cast<uint16_t>(used);
-                ++used;
-            }
+uint32_t clustersInViewKernel(float width, float height, const ObjectFrame& frame, const PlaneMesh& mesh,
+                              uint32_t* out) {
+    const F f;
+    // What is in the image is on the positive side of all of these.
+    const glm::dvec4 nearer(0, 0, 0, -frame.near_w);
+    const glm::vec4 sides[5] = {glm::vec4(frame.x), glm::vec4(frame.w * static_cast<double>(width) - frame.x),
+                                glm::vec4(frame.y), glm::vec4(frame.w * static_cast<double>(height) - frame.y),
+                                glm::vec4(frame.w + nearer)};
+    uint32_t count = 0;
+    for (size_t i = 0; i < mesh.clusters.size(); i += hn::Lanes(f)) {
+        VF box[6];
+        for (int k = 0; k < 6; ++k) box[k] = hn::LoadU(f, &mesh.box[k][i]);
+        VF least = hn::Set(f, 3e38f);
+        for (const glm::vec4& side : sides) {
+            VF most = hn::Set(f, side.w);
+            for (int k = 0; k < 3; ++k)
+                most = hn::Add(most, hn::Add(hn::Mul(hn::Set(f, side[k]), box[k]),
+                                             hn::Mul(hn::Set(f, std::abs(side[k])), box[3 + k])));
+            least = hn::Min(least, most);
         }
-        for (int bx = from; bx <= to; ++bx) {
-            for (int k = 0; k < lists.left_count[bx]; ++k) {
-                const RowEdge& edge = row_edges[lists.left[bx][k]];
-                before.count(edge.rows, edge.plus);
-            }
-            if (lists.count[bx] == 0 && ((before.low | before.high) & 0xffffu) == 0) continue;
-            DepthBlock& block = image.at(bx, by);
-            if (!isBlockOpen(block, nearest)) continue;
-            alignas(64) uint32_t covered[kBlockHeight];
-            if (coverBlock(row_edges, lists.at[bx], lists.count[bx], before, kBlockWidth * bx, covered))
-                updateBlock(image, block, bx, by, covered, groups, count);
-        }
+        uint8_t bytes[8] = {};
+        hn::StoreMaskBits(f, hn::Ge(least, hn::Zero(f)), bytes);
+        uint32_t bits = bytes[0] | static_cast<uint32_t>(bytes[1]) << 8;
+        if (mesh.clusters.size() - i < 16) bits &= (1u << (mesh.clusters.size() - i)) - 1;
+        for (; bits != 0; bits &= bits - 1)
+            out[count++] = static_cast<uint32_t>(i) + static_cast<uint32_t>(std::countr_zero(bits));
     }
+    return count;
 }
 
 /// The edges on whose sides groups are drawn otherwise, with their corners' images.
@@ -196,70 +178,135 @@ void gatherEdges(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const int8_
         hn::Store(hn::GatherIndex(f, image.y, a), f, out.ay + k);
         hn::Store(hn::GatherIndex(f, image.x, b), f, out.bx + k);
         hn::Store(hn::GatherIndex(f, image.y, b), f, out.by + k);
+        hn::Store(hn::Max(hn::GatherIndex(f, image.r, a), hn::GatherIndex(f, image.r, b)), f, out.r + k);
     }
     out.count = count;
+}
+
+/// What a view makes of a cluster: its edges, and where its groups are.
+struct ClusterEdges {
+    float nearest;   ///< nothing of it is nearer  [nearness]
+    bool by_floats;  ///< vertices are in DrawScratch::image; else groups are in DrawScratch::rects
+    /// kOutside: nothing of it is before the near plane, in the image and open; kNone: there are no edges; kUnknown: there is no room
+    enum { kOutside, kNone, kUnknown, kSome } found;
+};
+
+/// Gathers the edges on whose sides groups are drawn otherwise.
+/// @param near_w  what is nearer is cut off
+/// @param near_by nothing is known of what is nearer in floats
+ClusterEdges findEdges(DepthBlocks& image, const ObjectFrame& frame, double near_w, const PlaneMesh& mesh,
+                       const PlaneMesh::Cluster& c, double away, const int8_t* turn, DrawScratch& scratch) {
+    ClusterImage& projected = scratch.image;
+    EdgeList& edges = scratch.edges;
+    const float width = static_cast<float>(image.width), height = static_cast<float>(image.height);
+    const float reach = static_cast<float>(away) + c.radius, w_error = 0x1p-20f * frame.length_w * reach;
+    projectVertices(frame, mesh, c, reach, w_error, projected);
+    ClusterEdges out{0, projected.w_min > static_cast<float>(near_w) + w_error && projected.r_max < 0.25f,
+                     ClusterEdges::kOutside};
+    if (!(projected.w_max + w_error > static_cast<float>(near_w))) return out;
+    edges.count = 0;
+    edges.full = false;
+    if (out.by_floats) {
+        if (!(projected.x1 + 1 > 0 && projected.y1 + 1 > 0 && projected.x0 - 1 < width && projected.y0 - 1 < height))
+            return out;
+        out.nearest = (1 + 1e-5f) / (projected.w_min - w_error);
+        if (!isRectOpen(image, projected.x0 - 1, projected.y0 - 1, projected.x1 + 1, projected.y1 + 1,
+                        out.nearest * (1 + 1e-6f)))
+            return out;
+        gatherEdges(mesh, c, turn, projected, edges);
+    } else if (!cutEdges(frame, near_w, mesh, c, turn, width, height, edges, scratch.rects, out.nearest)) {
+        out.found = ClusterEdges::kUnknown;
+        return out;
+    }
+    for (int i = 0; frame.sign < 0 && i < edges.count; ++i) edges.change[i] = -edges.change[i];
+    out.found = edges.full ? ClusterEdges::kUnknown : edges.count == 0 ? ClusterEdges::kNone : ClusterEdges::kSome;
+    return out;
+}
+
+/// Where a group may be in the image.
+GroupRect rectOf(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, uint32_t group, bool by_floats,
+                 const DrawScratch& scratch) {
+    if (!by_floats) return scratch.rects[group];
+    GroupRect out;
+    const size_t at = size_t{c.first_group} + group;
+    for (uint32_t k = 0; k < mesh.corner_count[at]; ++k) {
+        const uint8_t v = mesh.corners[mesh.first_corner[at] + k];
+        out.grow(scratch.image.x[v], scratch.image.y[v], scratch.image.r[v]);
+    }
+    return out;
+}
+
+/// The depth of the groups that are drawn, for the middles of tiles that they may meet.
+/// @returns how many
+template <bool kNearest>
+int groupDepths(const DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& c,
+                const glm::dvec3& eye, const int8_t* turn, bool by_floats, DrawScratch& scratch) {
+    GroupPlanes& planes = scratch.planes;
+    planesOf<kNearest>(frame, mesh, c, eye, static_cast<float>(image.width), static_cast<float>(image.height), planes);
+    int count = 0;
+    for (uint32_t g = 0; g < c.groups; ++g) {
+        if (turn[g] == 0) continue;
+        GroupDepth& of = scratch.groups[count++];
+        of.plane = {planes.a[g], planes.b[g], planes.c[g]};
+        // Seen nearly edge-on its nearness has no bound but the cluster's.
+        if (kNearest && !(std::abs(of.plane.a) + std::abs(of.plane.b) + std::abs(of.plane.c) < 1e30f))
+            of.plane = {0, 0, std::numeric_limits<float>::infinity()};
+        const float lean = 4.0f * (std::abs(of.plane.a) + std::abs(of.plane.b));
+        of.bound = kNearest ? of.plane.c + lean : of.plane.c - lean;
+        of.index = DepthBlock::kNoPlane;
+        of.rect = rectOf(mesh, c, g, by_floats, scratch).wider(5);
+    }
+    return count;
 }
 
 bool drawClusterKernel(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t index,
                        DrawScratch& scratch) {
     SIGHTLINE_DEBUG_ASSERT(index < mesh.clusters.size());
-    ClusterImage& projected = scratch.image;
-    EdgeList& edges = scratch.edges;
-    GroupDepth* const groups = scratch.groups;
-    GroupRect* const rects = scratch.rects;
     const PlaneMesh::Cluster& c = mesh.clusters[index];
     const glm::dvec3 eye = frame.eye - glm::dvec3(c.centre);
     const double away = glm::length(eye);
     alignas(64) int8_t turn[PlaneMesh::kNoGroup + 1] = {};
-    const int facing = faceGroups(mesh, c, glm::vec3(eye), static_cast<float>(away), turn);
-    if (facing == 0) return true;
-    projectVertices(frame, mesh, c, projected);
-    const float width = static_cast<float>(image.width), height = static_cast<float>(image.height);
-    const float near_w = static_cast<float>(frame.near_w * (1 + 1e-6)), reach = static_cast<float>(away) + c.radius;
-    const float w_error = 0x1p-20f * frame.length_w * reach;
-    if (!(projected.w_max + w_error > near_w)) return true;
-    // The images of vertices: numerators and w are off by 2^-20 of what they are made of at most.
-    float r = std::numeric_limits<float>::infinity(), nearest = 1 / near_w * (1 + 1e-5f);
-    if (projected.w_min > near_w + w_error) {
-        const float farthest = std::max({-projected.x0, projected.x1, -projected.y0, projected.y1, width, height});
-        r = 0x1p-20f * (std::max(frame.length_x, frame.length_y) + farthest * frame.length_w) * reach /
-                projected.w_min +
-            1e-5f;
-        if (!(projected.x1 + 1 > 0 && projected.y1 + 1 > 0 && projected.x0 - 1 < width && projected.y0 - 1 < height))
-            return true;
-    }
-    edges.count = 0;
-    edges.full = false;
-    const bool by_floats = r < 0.25f;
-    if (by_floats) {
-        nearest = (1 + 1e-5f) / (projected.w_min - w_error);
-        if (!isRectOpen(image, projected.x0 - 1, projected.y0 - 1, projected.x1 + 1, projected.y1 + 1, nearest))
-            return true;
-        gatherEdges(mesh, c, turn, projected, edges);
-    } else if (!cutEdges(frame, mesh, c, turn, width, height, edges, rects, r, nearest)) {
+    if (faceGroups(mesh, c, glm::vec3(eye), static_cast<float>(away), turn, nullptr) == 0) return true;
+    const ClusterEdges found = findEdges(image, frame, frame.near_w * (1 + 1e-6), mesh, c, away, turn, scratch);
+    if (found.found != ClusterEdges::kSome) return found.found != ClusterEdges::kUnknown;
+    const int count = groupDepths<false>(image, frame, mesh, c, eye, turn, found.by_floats, scratch);
+    const auto draw = [&](int column, int row, const BlockEdges& edges, const RowWinding<2>& before) HWY_ATTR {
+        alignas(64) uint32_t covered[kBlockHeight];
+        if (coverBlock(edges, before, kBlockWidth * column, covered))
+            updateBlock(image, image.at(column, row), column, row, covered, scratch.groups, count);
         return false;
-    }
-    if (edges.full) return false;
-    if (edges.count == 0) return true;
-    for (int i = 0; frame.sign < 0 && i < edges.count; ++i) edges.change[i] = -edges.change[i];
-    int count = 0;
-    GroupPlanes& planes = scratch.planes;
-    planesOf(frame, mesh, c, eye, width, height, planes);
-    for (uint32_t g = 0; g < c.groups; ++g) {
-        if (turn[g] == 0) continue;
-        const size_t at = size_t{c.first_group} + g;
-        GroupDepth& of = groups[count++];
-        of.plane = {planes.a[g], planes.b[g], planes.c[g]};
-        of.least = of.plane.c - 4.0f * (std::abs(of.plane.a) + std::abs(of.plane.b));
-        of.index = DepthBlock::kNoPlane;
-        of.rect = by_floats ? GroupRect() : rects[g];
-        for (uint32_t k = 0; by_floats && k < mesh.corner_count[at]; ++k) {
-            const uint8_t v = mesh.corners[mesh.first_corner[at] + k];
-            of.rect.grow(projected.x[v], projected.y[v]);
-        }
-    }
-    rasterize(image, scratch, r, nearest, count);
+    };
+    walkRows<2, true>(image, scratch, found.nearest, draw);
     return true;
+}
+
+/// Whether a rectangle of the image, which may reach beside it, is open to a nearness.
+bool isRectangleOpen(DepthBlocks& image, const GroupRect& rect, float nearness) {
+    const float right = static_cast<float>(image.width - 1), bottom = static_cast<float>(image.height - 1);
+    if (!(rect.x1 >= 0 && rect.y1 >= 0 && rect.x0 <= right + 1 && rect.y0 <= bottom + 1)) return false;
+    const auto pixel = [](float v, float most) { return static_cast<int>(std::clamp(v, 0.0f, most)); };
+    return isOpenKernel(image, pixel(rect.x0, right), pixel(rect.y0, bottom), pixel(rect.x1, right),
+                        pixel(rect.y1, bottom), nearness, nullptr);
+}
+
+bool lookKernel(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t index,
+                const AskedBox& box, DrawScratch& scratch) {
+    SIGHTLINE_DEBUG_ASSERT(index < mesh.clusters.size());
+    const PlaneMesh::Cluster& c = mesh.clusters[index];
+    const glm::dvec3 eye = frame.eye - glm::dvec3(c.centre);
+    const double away = glm::length(eye);
+    alignas(64) int8_t turn[PlaneMesh::kNoGroup + 1] = {}, doubt[PlaneMesh::kNoGroup + 1] = {};
+    const int facing = faceGroups(mesh, c, glm::vec3(eye), static_cast<float>(away), turn, doubt);
+    const bool is_doubtful = std::find(doubt, doubt + c.groups, 1) != doubt + c.groups;
+    if (facing == 0 && !is_doubtful) return false;
+    const ClusterEdges found = findEdges(image, frame, frame.near_w * (1 - 1e-6), mesh, c, away, turn, scratch);
+    if (found.found == ClusterEdges::kOutside) return false;
+    if (found.found == ClusterEdges::kUnknown || (is_doubtful && !found.by_floats)) return true;
+    for (uint32_t g = 0; is_doubtful && g < c.groups; ++g)
+        if (doubt[g] != 0 && isRectangleOpen(image, rectOf(mesh, c, g, true, scratch), found.nearest)) return true;
+    if (found.found == ClusterEdges::kNone) return false;
+    const int count = groupDepths<true>(image, frame, mesh, c, eye, turn, found.by_floats, scratch);
+    return isOutlineOpen(image, scratch, found.nearest, count, box);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -270,9 +317,11 @@ HWY_AFTER_NAMESPACE();
 
 namespace sightline::bench {
 
+HWY_EXPORT(clustersInViewKernel);
 HWY_EXPORT(drawClusterKernel);
 HWY_EXPORT(imageOfKernel);
 HWY_EXPORT(isOpenKernel);
+HWY_EXPORT(lookKernel);
 
 AskedBox askedBox(const Screen& screen, const glm::dvec3& centre, const glm::dvec3& half) {
     AskedBox out;
@@ -295,6 +344,16 @@ bool imageOf(const AskedBox& box, double near_w, BoxImage& out) {
 bool drawCluster(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t cluster,
                  DrawScratch& scratch) {
     return frame.usable && HWY_DYNAMIC_DISPATCH(drawClusterKernel)(image, frame, mesh, cluster, scratch);
+}
+
+uint32_t clustersInView(const DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t* out) {
+    return HWY_DYNAMIC_DISPATCH(clustersInViewKernel)(static_cast<float>(image.width), static_cast<float>(image.height),
+                                                      frame, mesh, out);
+}
+
+bool isClusterOpen(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t cluster,
+                   const AskedBox& box, DrawScratch& scratch) {
+    return !frame.usable || HWY_DYNAMIC_DISPATCH(lookKernel)(image, frame, mesh, cluster, box, scratch);
 }
 
 bool isOpen(DepthBlocks& image, int x0, int y0, int x1, int y1, float nearness, const AskedBox* box) {

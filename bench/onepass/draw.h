@@ -15,6 +15,15 @@ namespace sightline::bench {
 bool drawCluster(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t cluster,
                  DrawScratch& scratch);
 
+/// Whether a cluster may show something beside what is drawn. Its groups hold all that it shows.
+/// @param box  around the cluster, by the rows of the frame
+bool isClusterOpen(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t cluster,
+                   const AskedBox& box, DrawScratch& scratch);
+
+/// Clusters that may be in the image, by their boxes, without the bounds that a promise would need.
+/// @param out  room for all of them; @returns how many
+uint32_t clustersInView(const DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t* out);
+
 /// @param centre,half  of the box, in the space that the rows are over
 AskedBox askedBox(const Screen& screen, const glm::dvec3& centre, const glm::dvec3& half);
 

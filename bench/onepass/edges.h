@@ -16,7 +16,8 @@ struct EdgeList {
     static constexpr int kMost = 960, kRoom = kMost + 16;
 
     alignas(64) float ax[kRoom], ay[kRoom], bx[kRoom], by[kRoom];  ///< corners  [pixels]
-    int change[kRoom];                                             ///< 1 or -1
+    alignas(64) float r[kRoom];  ///< no corner's image is farther from there  [pixels]
+    int change[kRoom];           ///< 1 or -1
     // What rows read: the lower corner, columns a row, what the edge touches beside it, its ends, and within how many columns a
     // middle may be on either side.
     alignas(64) float x[kRoom], y[kRoom], slope[kRoom], half[kRoom], left[kRoom], right[kRoom], beside[kRoom];
@@ -24,7 +25,7 @@ struct EdgeList {
     int count = 0;
     bool full = false;  ///< one had no room
 
-    void add(float x0, float y0, float x1, float y1, int by_many) {
+    void add(float x0, float y0, float x1, float y1, float off, int by_many) {
         for (; by_many != 0; by_many += by_many > 0 ? -1 : 1) {
             if (count == kMost) {
                 full = true;
@@ -34,6 +35,7 @@ struct EdgeList {
             ay[count] = y0;
             bx[count] = x1;
             by[count] = y1;
+            r[count] = off;
             change[count++] = by_many > 0 ? 1 : -1;
         }
     }
@@ -44,6 +46,7 @@ struct EdgeList {
             ay[i] = ay[count - 1];
             bx[i] = bx[count - 1];
             by[i] = by[count - 1];
+            r[i] = r[count - 1];
         }
     }
 };
@@ -52,21 +55,22 @@ struct EdgeList {
 struct GroupRect {
     float x0 = 3e38f, y0 = 3e38f, x1 = -3e38f, y1 = -3e38f;
 
-    void grow(float x, float y) {
-        x0 = x < x0 ? x : x0;
-        x1 = x > x1 ? x : x1;
-        y0 = y < y0 ? y : y0;
-        y1 = y > y1 ? y : y1;
+    void grow(float x, float y, float r) {
+        x0 = x - r < x0 ? x - r : x0;
+        x1 = x + r > x1 ? x + r : x1;
+        y0 = y - r < y0 ? y - r : y0;
+        y1 = y + r > y1 ? y + r : y1;
     }
+    GroupRect wider(float by) const { return {x0 - by, y0 - by, x1 + by, y1 + by}; }
 };
 
 /// Gathers the edges of a cluster that the near plane cuts, in doubles, with those that close its groups there.
+/// @param near_w   where they are cut
 /// @param turn     per group: 1, -1, or 0: it is not drawn
 /// @param rects    per group, of those that are drawn
-/// @param r        becomes a bound on where their corners may lie otherwise  [pixels]
 /// @param nearest  becomes the nearness of what is nearest
-/// @returns false if they are not known well enough
-bool cutEdges(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& cluster, const int8_t* turn,
-              float width, float height, EdgeList& edges, GroupRect* rects, float& r, float& nearest);
+/// @returns false if they are not known
+bool cutEdges(const ObjectFrame& frame, double near_w, const PlaneMesh& mesh, const PlaneMesh::Cluster& cluster,
+              const int8_t* turn, float width, float height, EdgeList& edges, GroupRect* rects, float& nearest);
 
 }  // namespace sightline::bench

@@ -94,7 +94,10 @@ private:
             const int corners = polygon(p).corners();
             for (int k = 0; k < corners; ++k) q[k] = at(polygon(p).vertex[k]) - glm::dvec3(centre_);
             const std::vector<glm::dvec3> normals = normalsOf(q, corners);
-            if (static_cast<int>(normals.size()) != corners - 2) continue;
+            if (static_cast<int>(normals.size()) != corners - 2) {
+                out_.is_whole = false;
+                continue;
+            }
             const auto fit = [&](const Group& group, double& thick, double& tilt) {
                 thick = tilt = 0;
                 for (int k = 0; k < corners; ++k)
@@ -217,6 +220,12 @@ PlaneMesh makePlaneMesh(const Occluder& occluder) {
         else
             for (const uint32_t p : all) gather.add({p}, true);
     }
+    for (const PlaneMesh::Cluster& cluster : out.clusters)
+        for (int axis = 0; axis < 3; ++axis) {
+            out.box[axis].push_back(cluster.centre[axis]);
+            out.box[3 + axis].push_back(cluster.half[axis]);
+        }
+    for (std::vector<float>& side : out.box) side.resize((side.size() + 15) / 16 * 16);
     return out;
 }
 

@@ -26,6 +26,8 @@ struct PlaneMesh {
     };
 
     std::vector<Cluster> clusters;
+    bool is_whole = true;                              ///< every polygon is in a group
+    std::vector<float> box[6];                         ///< of clusters: centre and half, padded with boxes of no size
     std::vector<float> x, y, z;                        ///< vertices, relative to the cluster's centre
     std::vector<float> nx, ny, nz, nd;                 ///< planes: n.v = nd; n of length 1, towards the front
     std::vector<float> thick;                          ///< no vertex of the group is farther from its plane

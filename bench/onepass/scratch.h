@@ -12,28 +12,44 @@ namespace sightline::bench {
 
 /// The image of a cluster's vertices.
 struct ClusterImage {
-    alignas(64) float x[256], y[256];
-    float x0, y0, x1, y1;  ///< of all of them
-    float w_min, w_max;
+    alignas(64) float x[256], y[256], r[256];  ///< no image is farther from there than r  [pixels]
+    float x0, y0, x1, y1;                      ///< of all of them
+    float w_min, w_max, r_max;
 };
 
 /// An edge in one row of blocks.
 struct RowEdge {
-    // Columns. Pixels from `crossed` on have their middles right of the edge. The edge touches those from `first` to `end`,
-    // of which the middles may be on its inner side.
+    // Columns. Pixels from `crossed` on have their middles right of the edge. The edge touches those from `first` to `end`; for
+    // drawing, those alone of which the middles may be on its inner side.
     alignas(64) int32_t crossed[kBlockHeight], first[kBlockHeight], end[kBlockHeight];
     uint32_t rows = 0, touched_rows = 0;  ///< whose middles it crosses, and that it touches, as bits
     bool plus = true;                     ///< right of it the winding number is larger
 };
 
-/// Winding numbers modulo four in two bit planes; each bit is a row.
+/// The edges that meet a block, out of those of its row.
+struct BlockEdges {
+    const RowEdge* row;
+    const uint16_t* list;
+    int count;
+    int most;  ///< no winding number in the row is larger
+};
+
+/// Winding numbers modulo 2^kPlanes in bit planes; each bit is a row.
+template <int kPlanes>
 struct RowWinding {
-    uint32_t low = 0, high = 0;
+    uint32_t plane[kPlanes] = {};
 
     void count(uint32_t rows, bool plus) {
-        const uint32_t carry = (plus ? low : ~low) & rows;
-        low ^= rows;
-        high ^= carry;
+        for (uint32_t& of : plane) {
+            const uint32_t carry = (plus ? of : ~of) & rows;
+            of ^= rows;
+            rows = carry;
+        }
+    }
+    bool isZero() const {
+        uint32_t any = 0;
+        for (const uint32_t of : plane) any |= of;
+        return (any & 0xffffu) == 0;
     }
 };
 
@@ -46,7 +62,7 @@ struct RowLists {
 /// A group that is drawn: its depth, and where it may be.
 struct GroupDepth {
     ImagePlane plane;
-    float least = 0;  ///< of the plane, 4 pixels around a tile's middle: what its c is there
+    float bound = 0;  ///< its c, for the least 4 pixels around a tile's middle; for a look, for the most
     GroupRect rect;
     uint32_t index = DepthBlock::kNoPlane;  ///< in DepthBlocks::planes, once a tile has asked for it
 };

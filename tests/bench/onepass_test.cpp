@@ -186,6 +186,101 @@ TEST(OnePass, CoversNothingThatIsOpen) {
     EXPECT_LT(undrawn, clusters / 20);
 }
 
+/// An object's space, seen from a view.
+struct Seen {
+    Screen screen;
+    glm::dmat3 from_image{1.0};
+    glm::dvec3 eye{0.0};
+
+    Seen(const View& view, uint32_t size, const glm::dmat4& transform)
+        : screen(objectScreen(makeScreen(view, size), transform)) {
+        const glm::dmat3 rows =
+            glm::transpose(glm::dmat3(glm::dvec3(screen.x), glm::dvec3(screen.y), glm::dvec3(screen.w)));
+        from_image = glm::inverse(rows);
+        eye = -(from_image * glm::dvec3(screen.x.w, screen.y.w, screen.w.w));
+    }
+    Ray ray(double x, double y) const { return {eye, from_image * glm::dvec3(x, y, 1)}; }
+};
+
+/// Whether a look finds something of an object open.
+bool isShown(DepthBlocks& image, const Seen& seen, const glm::dmat4& transform, const PlaneMesh& mesh) {
+    const ObjectFrame frame = objectFrame(seen.screen, glm::determinant(glm::dmat3(transform)) < 0);
+    const auto scratch = std::make_unique<DrawScratch>();
+    for (uint32_t c = 0; c < mesh.clusters.size(); ++c) {
+        const PlaneMesh::Cluster& cluster = mesh.clusters[c];
+        const AskedBox box = askedBox(seen.screen, glm::dvec3(cluster.centre), glm::dvec3(cluster.half));
+        if (isClusterOpen(image, frame, mesh, c, box, *scratch)) return true;
+    }
+    return false;
+}
+
+TEST(OnePass, WhatALookFindsHiddenIsHidden) {
+    uint64_t hidden = 0, shown = 0, rays = 0, clusters = 0;
+    const char* const begin = std::getenv("SIGHTLINE_FIRST_SEED");
+    const uint64_t first = begin ? std::strtoull(begin, nullptr, 10) : 1;
+    for (uint64_t seed = first; seed < first + rounds(4000, 200); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        const Case of(random);
+        DepthBlocks image;
+        draw(of, 128, image, clusters);
+        const Made other = randomMesh(random);
+        const PlaneMesh mesh = makePlaneMesh(prepareOccluder(other.mesh.view(), {}, other.both));
+        if (!mesh.is_whole) continue;
+        glm::dmat4 transform = lookAt({0, 0, 0}, randomUnit(random), {0.1, 1, 0.2});
+        const double size = std::pow(10, random.uniform(-2.5, -0.3));
+        for (int axis = 0; axis < 3; ++axis) transform[axis] *= size * (random.below(6) == 0 ? -1 : 1);
+        const Seen front(of.view, 128, of.transform);
+        // At the border of what is covered where there is one, and a little behind it, or farther.
+        const auto isCovered = [&](double px, double py) {
+            return px >= 0 && py >= 0 && px < image.width && py < image.height && image.claim(int(px), int(py)) > 0;
+        };
+        double x = 0, y = 0;
+        for (int tries = 0; tries < 200; ++tries) {
+            x = random.uniform(0, image.width);
+            y = random.uniform(0, image.height);
+            if (isCovered(x, y) &&
+                !(isCovered(x - 2, y) && isCovered(x + 2, y) && isCovered(x, y - 2) && isCovered(x, y + 2)))
+                break;
+        }
+        const float claim = image.claim(int(x), int(y));
+        const double behind = random.below(2) ? random.uniform(0.99, 1.1) : random.uniform(1, 4);
+        const double w = (claim > 0 ? 1 / double(claim) : 5) * behind;
+        const Ray to = front.ray(x, y);
+        transform[3] = of.transform * glm::dvec4(to.eye + w * to.along, 1);
+        const Seen back(of.view, 128, transform);
+        if (isShown(image, back, transform, mesh)) {
+            ++shown;
+            continue;
+        }
+        ++hidden;
+        for (int i = 0; i < 200; ++i) {
+            const size_t t = random.below(other.both.size());
+            double a = random.uniform(), b = random.uniform();
+            if (a + b > 1) a = 1 - a, b = 1 - b;
+            if (random.below(2)) {  // beside a corner
+                a = random.below(2) ? 1e-4 + 1e-4 * a : 1 - 3e-4 + 1e-4 * a;
+                b = a > 0.5 ? 1e-4 : random.below(2) ? 1e-4 : 1 - 3e-4;
+            }
+            const auto corner = [&](size_t k) {
+                return glm::dvec3(other.mesh.positions[other.mesh.indices[3 * t + k]]);
+            };
+            const glm::dvec4 p(corner(0) + a * (corner(1) - corner(0)) + b * (corner(2) - corner(0)), 1);
+            const double pw = glm::dot(back.screen.w, p), px = glm::dot(back.screen.x, p) / pw,
+                         py = glm::dot(back.screen.y, p) / pw;
+            if (!(pw > back.screen.near_w && px > 0 && py > 0 && px < image.width && py < image.height)) continue;
+            const double nearness = nearnessOf(other, back.ray(px, py), back.screen.near_w);
+            if (nearness == 0) continue;
+            ++rays;
+            ASSERT_GE(nearnessOf(of.made, front.ray(px, py), front.screen.near_w), nearness * (1 - 1e-7))
+                << "pixel " << px << " " << py;
+        }
+    }
+    EXPECT_GT(hidden, rounds(200, 20));
+    EXPECT_GT(shown, rounds(200, 20));
+    EXPECT_GT(rays, rounds(10000, 1000));
+}
+
 TEST(OnePass, IsTheSameOnEveryInstructionSet) {
     for (uint64_t seed = 1; seed <= rounds(60, 10); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
