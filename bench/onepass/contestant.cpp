@@ -46,6 +46,8 @@ public:
             if (!looks_.back().is_whole) looks_.back() = PlaneMesh();
         }
         asked_.resize(boxes_.size());
+        frames_.resize(boxes_.size());
+        framed_.resize(boxes_.size(), 0);
         for (const SceneObject& object : scene.objects)
             mirrored_.push_back(glm::determinant(glm::dmat3(object.transform)) < 0);
     }
@@ -57,10 +59,12 @@ public:
         image_.clear(screen.width, screen.height, 1e-6f / static_cast<float>(screen.near_w));
         const size_t in_view = cullFrustum(makeFrustum(view), flat_.arrays, flat_.kept);
         order_.clear();
+        ++frames_asked_;
         for (size_t i = 0; i < in_view; ++i) {
             const uint32_t object = flat_.kept[i];
             Asked& asked = asked_[object];
-            asked.box = askedBox(screen, boxes_[object].center() - screen.eye, 0.5 * boxes_[object].size());
+            asked.box = askedBox(screen.x, screen.y, screen.w, boxes_[object].center() - screen.eye,
+                                 0.5 * boxes_[object].size());
             asked.bounded = imageOf(asked.box, screen.near_w, asked.image);
             order_.push_back({asked.bounded ? -asked.image.nearness : -3e38f, object});
         }
@@ -70,8 +74,7 @@ public:
             if (!isOpenTo(asked_[object])) continue;
             kept_.push_back(object);
             if (!isWorth(asked_[object], 12)) continue;
-            const Screen rows = objectScreen(screen, scene_.objects[object].transform);
-            const ObjectFrame frame = objectFrame(rows, mirrored_[object]);
+            const ObjectFrame& frame = frameOf(screen, object);
             const PlaneMesh& mesh = meshes_[scene_.objects[object].mesh];
             if (mesh.clusters.size() == 1) {
                 if (isWorth(asked_[object], mesh.clusters[0].edges)) drawCluster(image_, frame, mesh, 0, *scratch_);
@@ -80,7 +83,7 @@ public:
             clusters_.resize(mesh.clusters.size());
             const uint32_t count = clustersInView(image_, frame, mesh, clusters_.data());
             for (uint32_t i = 0; i < count; ++i)
-                if (isClusterOpen(rows, mesh.clusters[clusters_[i]]))
+                if (isClusterOpen(frame, mesh.clusters[clusters_[i]]))
                     drawCluster(image_, frame, mesh, clusters_[i], *scratch_);
         }
         return static_cast<size_t>(std::count_if(kept_.begin(), kept_.end(), [&](uint32_t object) {
@@ -99,6 +102,14 @@ private:
     bool isWorth(const Asked& asked, uint32_t edges) const {
         return areaOf(asked) >= settings_.pixels_per_edge * static_cast<float>(edges);
     }
+    /// Made once a frame.
+    const ObjectFrame& frameOf(const Screen& screen, uint32_t object) {
+        if (framed_[object] != frames_asked_) {
+            framed_[object] = frames_asked_;
+            frames_[object] = objectFrame(objectScreen(screen, scene_.objects[object].transform), mirrored_[object]);
+        }
+        return frames_[object];
+    }
     bool isOpenTo(const Asked& asked) {
         if (!asked.bounded) return true;
         const auto pixel = [](float v, uint32_t size) {
@@ -113,14 +124,16 @@ private:
     bool isShown(const Screen& screen, uint32_t object) {
         const PlaneMesh& mesh = looks_[scene_.objects[object].mesh];
         if (mesh.clusters.empty()) return true;
-        const Screen rows = objectScreen(screen, scene_.objects[object].transform);
-        const ObjectFrame frame = objectFrame(rows, mirrored_[object]);
-        for (uint32_t c = 0; c < mesh.clusters.size(); ++c) {
+        const ObjectFrame& frame = frameOf(screen, object);
+        clusters_.resize(mesh.clusters.size());
+        const uint32_t count = clustersInView(image_, frame, mesh, clusters_.data());
+        for (uint32_t i = 0; i < count; ++i) {
+            const uint32_t c = clusters_[i];
             const PlaneMesh::Cluster& cluster = mesh.clusters[c];
             Asked asked;
-            asked.box = askedBox(rows, glm::dvec3(cluster.centre), glm::dvec3(cluster.half));
+            asked.box = askedBox(frame.x, frame.y, frame.w, glm::dvec3(cluster.centre), glm::dvec3(cluster.half));
             if (mesh.clusters.size() > 1) {
-                asked.bounded = imageOf(asked.box, rows.near_w, asked.image);
+                asked.bounded = imageOf(asked.box, frame.near_w, asked.image);
                 const BoxImage& at = asked.image;
                 if (asked.bounded && (at.x1 < 0 || at.y1 < 0 || at.x0 > static_cast<float>(image_.width) ||
                                       at.y0 > static_cast<float>(image_.height)))
@@ -133,10 +146,10 @@ private:
     }
 
     /// Whether a cluster may show something, by its box.
-    bool isClusterOpen(const Screen& rows, const PlaneMesh::Cluster& cluster) {
+    bool isClusterOpen(const ObjectFrame& frame, const PlaneMesh::Cluster& cluster) {
         Asked asked;
-        asked.box = askedBox(rows, glm::dvec3(cluster.centre), glm::dvec3(cluster.half));
-        asked.bounded = imageOf(asked.box, rows.near_w, asked.image);
+        asked.box = askedBox(frame.x, frame.y, frame.w, glm::dvec3(cluster.centre), glm::dvec3(cluster.half));
+        asked.bounded = imageOf(asked.box, frame.near_w, asked.image);
         const BoxImage& at = asked.image;
         if (asked.bounded && (at.x1 < 0 || at.y1 < 0 || at.x0 > static_cast<float>(image_.width) ||
                               at.y0 > static_cast<float>(image_.height)))
@@ -151,6 +164,9 @@ private:
     std::vector<PlaneMesh> meshes_, looks_;  ///< what hides; all that is drawn, none where it is not known so well
     std::vector<uint8_t> mirrored_;
     std::vector<Asked> asked_;
+    std::vector<ObjectFrame> frames_;
+    std::vector<uint64_t> framed_;  ///< in which frame it was made
+    uint64_t frames_asked_ = 0;
     std::vector<std::pair<float, uint32_t>> order_;
     std::vector<uint32_t> kept_, clusters_;
     DepthBlocks image_;

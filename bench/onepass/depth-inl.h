@@ -120,11 +120,13 @@ struct TileMiddles {
     }
 };
 
-/// Which middles of tiles are in a rectangle.
+/// Which middles of tiles are where a group may be.
 template <class D, class V>
 HWY_INLINE hn::Mask<D> areIn(D f, const GroupRect& rect, V x, V y) {
-    return hn::And(hn::And(hn::Ge(x, hn::Set(f, rect.x0)), hn::Le(x, hn::Set(f, rect.x1))),
-                   hn::And(hn::Ge(y, hn::Set(f, rect.y0)), hn::Le(y, hn::Set(f, rect.y1))));
+    const auto within = [&](V v, float low, float high)
+                            HWY_ATTR { return hn::And(hn::Ge(v, hn::Set(f, low)), hn::Le(v, hn::Set(f, high))); };
+    return hn::And(hn::And(within(x, rect.x0, rect.x1), within(y, rect.y0, rect.y1)),
+                   hn::And(within(hn::Add(x, y), rect.s0, rect.s1), within(hn::Sub(x, y), rect.t0, rect.t1)));
 }
 
 /// The depth of a group in tiles: the least there, or for a look the nearest.

@@ -93,6 +93,7 @@ void projectVertices(const ObjectFrame& frame, const PlaneMesh& mesh, const Plan
         const VF r = hn::Add(hn::Div(hn::Add(own, hn::Mul(far, error)), hn::Sub(w, error)), hn::Set(f, 1e-5f));
         hn::Store(px, f, out.x + i);
         hn::Store(py, f, out.y + i);
+        hn::Store(w, f, out.w + i);
         hn::Store(r, f, out.r + i);
         x0 = hn::Min(x0, px);
         x1 = hn::Max(x1, px);
@@ -117,7 +118,7 @@ uint32_t clustersInViewKernel(float width, float height, const ObjectFrame& fram
                               uint32_t* out) {
     const F f;
     // What is in the image is on the positive side of all of these.
-    const glm::dvec4 nearer(0, 0, 0, -frame.near_w);
+    const glm::dvec4 nearer(0, 0, 0, -frame.near_w * (1 - 1e-6));
     const glm::vec4 sides[5] = {glm::vec4(frame.x), glm::vec4(frame.w * static_cast<double>(width) - frame.x),
                                 glm::vec4(frame.y), glm::vec4(frame.w * static_cast<double>(height) - frame.y),
                                 glm::vec4(frame.w + nearer)};
@@ -127,7 +128,9 @@ uint32_t clustersInViewKernel(float width, float height, const ObjectFrame& fram
         for (int k = 0; k < 6; ++k) box[k] = hn::LoadU(f, &mesh.box[k][i]);
         VF least = hn::Set(f, 3e38f);
         for (const glm::vec4& side : sides) {
-            VF most = hn::Set(f, side.w);
+            // With what rounding of its summands may be off by.
+            const float sum = std::abs(side.x) + std::abs(side.y) + std::abs(side.z);
+            VF most = hn::Set(f, side.w + 0x1p-20f * (2 * sum * mesh.reach + std::abs(side.w)));
             for (int k = 0; k < 3; ++k)
                 most = hn::Add(most, hn::Add(hn::Mul(hn::Set(f, side[k]), box[k]),
                                              hn::Mul(hn::Set(f, std::abs(side[k])), box[3 + k])));
@@ -183,44 +186,57 @@ void gatherEdges(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const int8_
     out.count = count;
 }
 
-/// What a view makes of a cluster: its edges, and where its groups are.
-struct ClusterEdges {
-    float nearest;   ///< nothing of it is nearer  [nearness]
-    bool by_floats;  ///< vertices are in DrawScratch::image; else groups are in DrawScratch::rects
-    /// kOutside: nothing of it is before the near plane, in the image and open; kNone: there are no edges; kUnknown: there is no room
-    enum { kOutside, kNone, kUnknown, kSome } found;
+/// What a view makes of a cluster.
+struct ClusterView {
+    glm::dvec3 eye;  ///< from the cluster's centre
+    float away;      ///< the eye from the centre
+    float w_error;   ///< what w may be off by
+    float near_w;    ///< what is nearer is cut off
+    bool by_floats;  ///< images of vertices are known well enough in floats
+    float nearest;   ///< nothing of it is nearer, once edges are found  [nearness]
 };
 
+ClusterView viewOf(const ObjectFrame& frame, double near_w, const PlaneMesh::Cluster& c) {
+    ClusterView out{};
+    out.eye = frame.eye - glm::dvec3(c.centre);
+    out.away = static_cast<float>(glm::length(out.eye));
+    out.w_error = 0x1p-20f * frame.length_w * (out.away + c.radius);
+    out.near_w = static_cast<float>(near_w);
+    return out;
+}
+
+/// @returns whether some of it is beyond the near plane
+bool project(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& c, ClusterView& view,
+             ClusterImage& out) {
+    projectVertices(frame, mesh, c, view.away + c.radius, view.w_error, out);
+    view.by_floats = out.w_min > view.near_w + view.w_error && out.r_max < 0.25f;
+    return out.w_max + view.w_error > view.near_w;
+}
+
+/// kOutside: it is not in the image, or not open there. kNone: no edges. kUnknown: there is no room for them.
+enum class Edges { kOutside, kNone, kUnknown, kSome };
+
 /// Gathers the edges on whose sides groups are drawn otherwise.
-/// @param near_w  what is nearer is cut off
-/// @param near_by nothing is known of what is nearer in floats
-ClusterEdges findEdges(DepthBlocks& image, const ObjectFrame& frame, double near_w, const PlaneMesh& mesh,
-                       const PlaneMesh::Cluster& c, double away, const int8_t* turn, DrawScratch& scratch) {
-    ClusterImage& projected = scratch.image;
+Edges findEdges(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& c,
+                ClusterView& view, const int8_t* turn, DrawScratch& scratch) {
+    const ClusterImage& projected = scratch.image;
     EdgeList& edges = scratch.edges;
     const float width = static_cast<float>(image.width), height = static_cast<float>(image.height);
-    const float reach = static_cast<float>(away) + c.radius, w_error = 0x1p-20f * frame.length_w * reach;
-    projectVertices(frame, mesh, c, reach, w_error, projected);
-    ClusterEdges out{0, projected.w_min > static_cast<float>(near_w) + w_error && projected.r_max < 0.25f,
-                     ClusterEdges::kOutside};
-    if (!(projected.w_max + w_error > static_cast<float>(near_w))) return out;
     edges.count = 0;
     edges.full = false;
-    if (out.by_floats) {
-        if (!(projected.x1 + 1 > 0 && projected.y1 + 1 > 0 && projected.x0 - 1 < width && projected.y0 - 1 < height))
-            return out;
-        out.nearest = (1 + 1e-5f) / (projected.w_min - w_error);
-        if (!isRectOpen(image, projected.x0 - 1, projected.y0 - 1, projected.x1 + 1, projected.y1 + 1,
-                        out.nearest * (1 + 1e-6f)))
-            return out;
+    if (view.by_floats) {
+        const float x0 = projected.x0 - 1, y0 = projected.y0 - 1, x1 = projected.x1 + 1, y1 = projected.y1 + 1;
+        view.nearest = (1 + 1e-5f) / (projected.w_min - view.w_error);
+        if (!(x1 > 0 && y1 > 0 && x0 < width && y0 < height) ||
+            !isRectOpen(image, x0, y0, x1, y1, view.nearest * (1 + 1e-6f)))
+            return Edges::kOutside;
         gatherEdges(mesh, c, turn, projected, edges);
-    } else if (!cutEdges(frame, near_w, mesh, c, turn, width, height, edges, scratch.rects, out.nearest)) {
-        out.found = ClusterEdges::kUnknown;
-        return out;
+    } else if (!cutEdges(frame, view.near_w, mesh, c, turn, width, height, edges, scratch.rects, view.nearest)) {
+        return Edges::kUnknown;
     }
+    if (edges.full) return Edges::kUnknown;
     for (int i = 0; frame.sign < 0 && i < edges.count; ++i) edges.change[i] = -edges.change[i];
-    out.found = edges.full ? ClusterEdges::kUnknown : edges.count == 0 ? ClusterEdges::kNone : ClusterEdges::kSome;
-    return out;
+    return edges.count == 0 ? Edges::kNone : Edges::kSome;
 }
 
 /// Where a group may be in the image.
@@ -263,20 +279,21 @@ bool drawClusterKernel(DepthBlocks& image, const ObjectFrame& frame, const Plane
                        DrawScratch& scratch) {
     SIGHTLINE_DEBUG_ASSERT(index < mesh.clusters.size());
     const PlaneMesh::Cluster& c = mesh.clusters[index];
-    const glm::dvec3 eye = frame.eye - glm::dvec3(c.centre);
-    const double away = glm::length(eye);
+    ClusterView view = viewOf(frame, frame.near_w * (1 + 1e-6), c);
     alignas(64) int8_t turn[PlaneMesh::kNoGroup + 1] = {};
-    if (faceGroups(mesh, c, glm::vec3(eye), static_cast<float>(away), turn, nullptr) == 0) return true;
-    const ClusterEdges found = findEdges(image, frame, frame.near_w * (1 + 1e-6), mesh, c, away, turn, scratch);
-    if (found.found != ClusterEdges::kSome) return found.found != ClusterEdges::kUnknown;
-    const int count = groupDepths<false>(image, frame, mesh, c, eye, turn, found.by_floats, scratch);
+    if (faceGroups(mesh, c, glm::vec3(view.eye), view.away, turn, nullptr) == 0 ||
+        !project(frame, mesh, c, view, scratch.image))
+        return true;
+    const Edges found = findEdges(image, frame, mesh, c, view, turn, scratch);
+    if (found != Edges::kSome) return found != Edges::kUnknown;
+    const int count = groupDepths<false>(image, frame, mesh, c, view.eye, turn, view.by_floats, scratch);
     const auto draw = [&](int column, int row, const BlockEdges& edges, const RowWinding<2>& before) HWY_ATTR {
         alignas(64) uint32_t covered[kBlockHeight];
         if (coverBlock(edges, before, kBlockWidth * column, covered))
             updateBlock(image, image.at(column, row), column, row, covered, scratch.groups, count);
         return false;
     };
-    walkRows<2, true>(image, scratch, found.nearest, draw);
+    walkRows<2, true>(image, scratch, view.nearest, draw);
     return true;
 }
 
@@ -289,24 +306,42 @@ bool isRectangleOpen(DepthBlocks& image, const GroupRect& rect, float nearness) 
                         pixel(rect.y1, bottom), nearness, nullptr);
 }
 
+/// Whether a corner of a group that faces the eye is open. That an object is seen shows soonest there.
+bool isCornerOpen(DepthBlocks& image, const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const int8_t* turn,
+                  float near_w, const ClusterImage& projected) {
+    const float width = static_cast<float>(image.width), height = static_cast<float>(image.height);
+    for (uint32_t g = 0; g < c.groups; ++g) {
+        if (turn[g] == 0) continue;
+        const size_t at = size_t{c.first_group} + g;
+        for (uint32_t k = 0; k < std::min(mesh.corner_count[at], 4u); ++k) {
+            const uint8_t v = mesh.corners[mesh.first_corner[at] + k];
+            const float x = projected.x[v], y = projected.y[v], w = projected.w[v];
+            if (w > near_w && x > 0 && y > 0 && x < width && y < height &&
+                image.claim(static_cast<int>(x), static_cast<int>(y)) * w < 1)
+                return true;
+        }
+    }
+    return false;
+}
+
 bool lookKernel(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t index,
                 const AskedBox& box, DrawScratch& scratch) {
     SIGHTLINE_DEBUG_ASSERT(index < mesh.clusters.size());
     const PlaneMesh::Cluster& c = mesh.clusters[index];
-    const glm::dvec3 eye = frame.eye - glm::dvec3(c.centre);
-    const double away = glm::length(eye);
+    ClusterView view = viewOf(frame, frame.near_w * (1 - 1e-6), c);
     alignas(64) int8_t turn[PlaneMesh::kNoGroup + 1] = {}, doubt[PlaneMesh::kNoGroup + 1] = {};
-    const int facing = faceGroups(mesh, c, glm::vec3(eye), static_cast<float>(away), turn, doubt);
+    const int facing = faceGroups(mesh, c, glm::vec3(view.eye), view.away, turn, doubt);
     const bool is_doubtful = std::find(doubt, doubt + c.groups, 1) != doubt + c.groups;
-    if (facing == 0 && !is_doubtful) return false;
-    const ClusterEdges found = findEdges(image, frame, frame.near_w * (1 - 1e-6), mesh, c, away, turn, scratch);
-    if (found.found == ClusterEdges::kOutside) return false;
-    if (found.found == ClusterEdges::kUnknown || (is_doubtful && !found.by_floats)) return true;
+    if ((facing == 0 && !is_doubtful) || !project(frame, mesh, c, view, scratch.image)) return false;
+    if (isCornerOpen(image, mesh, c, turn, view.near_w, scratch.image)) return true;
+    const Edges found = findEdges(image, frame, mesh, c, view, turn, scratch);
+    if (found == Edges::kOutside) return false;
+    if (found == Edges::kUnknown || (is_doubtful && !view.by_floats)) return true;
     for (uint32_t g = 0; is_doubtful && g < c.groups; ++g)
-        if (doubt[g] != 0 && isRectangleOpen(image, rectOf(mesh, c, g, true, scratch), found.nearest)) return true;
-    if (found.found == ClusterEdges::kNone) return false;
-    const int count = groupDepths<true>(image, frame, mesh, c, eye, turn, found.by_floats, scratch);
-    return isOutlineOpen(image, scratch, found.nearest, count, box);
+        if (doubt[g] != 0 && isRectangleOpen(image, rectOf(mesh, c, g, true, scratch), view.nearest)) return true;
+    if (found == Edges::kNone) return false;
+    const int count = groupDepths<true>(image, frame, mesh, c, view.eye, turn, view.by_floats, scratch);
+    return isOutlineOpen(image, scratch, view.nearest, count, box);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -323,16 +358,17 @@ HWY_EXPORT(imageOfKernel);
 HWY_EXPORT(isOpenKernel);
 HWY_EXPORT(lookKernel);
 
-AskedBox askedBox(const Screen& screen, const glm::dvec3& centre, const glm::dvec3& half) {
+AskedBox askedBox(const glm::dvec4& x, const glm::dvec4& y, const glm::dvec4& w, const glm::dvec3& centre,
+                  const glm::dvec3& half) {
     AskedBox out;
     const glm::dvec4 at(centre, 1);
     const auto take = [&](const glm::dvec4& row, float(&to)[4]) {
         for (int axis = 0; axis < 3; ++axis) to[axis] = static_cast<float>(row[axis]);
         to[3] = static_cast<float>(glm::dot(row, at));
     };
-    take(screen.x, out.x);
-    take(screen.y, out.y);
-    take(screen.w, out.w);
+    take(x, out.x);
+    take(y, out.y);
+    take(w, out.w);
     for (int axis = 0; axis < 3; ++axis) out.half[axis] = static_cast<float>(half[axis] * (1 + 1e-6));
     return out;
 }

@@ -20,12 +20,14 @@ bool drawCluster(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& 
 bool isClusterOpen(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t cluster,
                    const AskedBox& box, DrawScratch& scratch);
 
-/// Clusters that may be in the image, by their boxes, without the bounds that a promise would need.
+/// Clusters that may be in the image, by their boxes.
 /// @param out  room for all of them; @returns how many
 uint32_t clustersInView(const DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t* out);
 
+/// @param x,y,w        rows of a screen
 /// @param centre,half  of the box, in the space that the rows are over
-AskedBox askedBox(const Screen& screen, const glm::dvec3& centre, const glm::dvec3& half);
+AskedBox askedBox(const glm::dvec4& x, const glm::dvec4& y, const glm::dvec4& w, const glm::dvec3& centre,
+                  const glm::dvec3& half);
 
 /// @returns false if it may reach before the near plane
 bool imageOf(const AskedBox& box, double near_w, BoxImage& out);

@@ -51,17 +51,24 @@ struct EdgeList {
     }
 };
 
-/// Where a group may be in the image.
+/// Where a group may be in the image: a rectangle, and one that stands on its corner.
 struct GroupRect {
     float x0 = 3e38f, y0 = 3e38f, x1 = -3e38f, y1 = -3e38f;
+    float s0 = 3e38f, t0 = 3e38f, s1 = -3e38f, t1 = -3e38f;  ///< of x + y and x - y
 
     void grow(float x, float y, float r) {
-        x0 = x - r < x0 ? x - r : x0;
-        x1 = x + r > x1 ? x + r : x1;
-        y0 = y - r < y0 ? y - r : y0;
-        y1 = y + r > y1 ? y + r : y1;
+        const auto take = [](float v, float off, float& low, float& high) {
+            low = v - off < low ? v - off : low;
+            high = v + off > high ? v + off : high;
+        };
+        take(x, r, x0, x1);
+        take(y, r, y0, y1);
+        take(x + y, 2 * r, s0, s1);
+        take(x - y, 2 * r, t0, t1);
     }
-    GroupRect wider(float by) const { return {x0 - by, y0 - by, x1 + by, y1 + by}; }
+    GroupRect wider(float by) const {
+        return {x0 - by, y0 - by, x1 + by, y1 + by, s0 - 2 * by, t0 - 2 * by, s1 + 2 * by, t1 + 2 * by};
+    }
 };
 
 /// Gathers the edges of a cluster that the near plane cuts, in doubles, with those that close its groups there.

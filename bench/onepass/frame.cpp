@@ -14,8 +14,9 @@ ObjectFrame objectFrame(const Screen& object, bool flips) {
     const glm::dmat3 rows = glm::transpose(glm::dmat3(glm::dvec3(out.x), glm::dvec3(out.y), glm::dvec3(out.w)));
     const double size = glm::determinant(rows);
     if (!object.perspective || !(object.near_w > 0) || !(std::abs(size) > 0) || !std::isfinite(1 / size)) return out;
-    out.eye = -(glm::inverse(rows) * glm::dvec3(out.x.w, out.y.w, out.w.w));
-    out.to_image = glm::inverse(glm::transpose(rows));
+    const glm::dmat3 inverse = glm::inverse(rows);
+    out.eye = -(inverse * glm::dvec3(out.x.w, out.y.w, out.w.w));
+    out.to_image = glm::transpose(inverse);
     out.near_w = object.near_w;
     const auto length = [](const glm::dvec4& row) {
         return static_cast<float>(glm::length(glm::dvec3(row)) * (1 + 1e-6));

@@ -224,6 +224,7 @@ PlaneMesh makePlaneMesh(const Occluder& occluder) {
         for (int axis = 0; axis < 3; ++axis) {
             out.box[axis].push_back(cluster.centre[axis]);
             out.box[3 + axis].push_back(cluster.half[axis]);
+            out.reach = std::max(out.reach, std::abs(cluster.centre[axis]) + cluster.half[axis]);
         }
     for (std::vector<float>& side : out.box) side.resize((side.size() + 15) / 16 * 16);
     return out;

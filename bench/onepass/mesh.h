@@ -27,6 +27,7 @@ struct PlaneMesh {
 
     std::vector<Cluster> clusters;
     bool is_whole = true;                              ///< every polygon is in a group
+    float reach = 0;                                   ///< no coordinate of a box is larger
     std::vector<float> box[6];                         ///< of clusters: centre and half, padded with boxes of no size
     std::vector<float> x, y, z;                        ///< vertices, relative to the cluster's centre
     std::vector<float> nx, ny, nz, nd;                 ///< planes: n.v = nd; n of length 1, towards the front

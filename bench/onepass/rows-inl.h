@@ -38,7 +38,7 @@ bool walkRows(DepthBlocks& image, DrawScratch& scratch, float nearest, Take take
         if (to < from) continue;
         const int row0 = kBlockHeight * by;
         RowWinding<kPlanes> before;  // left of the block at hand
-        int used = 0, most = 0;  // no winding number in the row is larger than `most`
+        int used = 0, most = 0;      // no winding number in the row is larger than `most`
         for (int b = from; b <= to; ++b) lists.count[b] = lists.left_count[b] = 0;
         RowPlaces places;
         for (int at = 0; at < e.count; at += 16) {

@@ -12,8 +12,9 @@ namespace sightline::bench {
 
 /// The image of a cluster's vertices.
 struct ClusterImage {
-    alignas(64) float x[256], y[256], r[256];  ///< no image is farther from there than r  [pixels]
-    float x0, y0, x1, y1;                      ///< of all of them
+    alignas(64) float x[256], y[256], w[256];
+    alignas(64) float r[256];  ///< no image is farther from there  [pixels]
+    float x0, y0, x1, y1;      ///< of all of them
     float w_min, w_max, r_max;
 };
 

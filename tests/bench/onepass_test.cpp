@@ -208,7 +208,7 @@ bool isShown(DepthBlocks& image, const Seen& seen, const glm::dmat4& transform, 
     const auto scratch = std::make_unique<DrawScratch>();
     for (uint32_t c = 0; c < mesh.clusters.size(); ++c) {
         const PlaneMesh::Cluster& cluster = mesh.clusters[c];
-        const AskedBox box = askedBox(seen.screen, glm::dvec3(cluster.centre), glm::dvec3(cluster.half));
+        const AskedBox box = askedBox(frame.x, frame.y, frame.w, glm::dvec3(cluster.centre), glm::dvec3(cluster.half));
         if (isClusterOpen(image, frame, mesh, c, box, *scratch)) return true;
     }
     return false;
