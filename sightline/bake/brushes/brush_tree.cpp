@@ -14,6 +14,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Three points of a plane may lie anywhere in it: brushes reach farther than their points, but seldom farther than this.
+/// [world units]
+constexpr double kBeyondPoints = 1e4;
+
 struct Brush {
     LeafContents contents = LeafContents::kSolid;
     std::vector<uint32_t> sides;
@@ -32,6 +36,7 @@ struct Region {
     LeafContents base;
     BrushFaces faces;
     std::vector<Guest> guests;
+    uint32_t divided = BrushPlanes::kNone;  // the plane of sides that it was cut along last
 };
 
 /// Which sides of a plane points lie on, but for a tolerance: bit 0 behind, bit 1 in front.
@@ -108,10 +113,13 @@ private:
 
     /// Corners and boxes; the bounds from them.
     void shape() {
-        // Three points of a plane may lie anywhere in it: brushes reach farther than their points, but seldom far.
-        const Box3d wide{all_points_.min - 1e4, all_points_.max + 1e4};
+        const Box3d wide{all_points_.min - kBeyondPoints, all_points_.max + kBeyondPoints};
         const glm::dvec3 size = glm::max(glm::abs(wide.min), glm::abs(wide.max));
-        out_.tolerance = 0x1p-36 * std::max({size.x, size.y, size.z});
+        const double largest = std::max({size.x, size.y, size.z});
+        out_.tolerance = 0x1p-36 * largest;
+        // Of the map's extent, gaps close by rounding alone. The squares that corners are cut from reach as far as 7 of
+        // `largest`: heights, and how far a corner is off its plane, are off by less than 128 roundings of 2^-53 of it.
+        gap_ = 0x1p-36 * kBeyondPoints + 0x1p-46 * largest;
         Box3d held;
         std::vector<Brush> kept;
         for (Brush& brush : brushes_) {
@@ -159,6 +167,7 @@ private:
         behind.slot = node << 1;
         front.slot = node << 1 | 1;
         behind.base = front.base = region.base;
+        behind.divided = front.divided = number;
         cutFaces(region.faces, plane, out_.tree.bounds, behind.faces, front.faces);
         for (Guest& guest : region.guests) {
             const uint32_t own = sideIn(guest, number);
@@ -194,8 +203,10 @@ private:
             std::vector<uint32_t> sides;
             for (const uint32_t side : guest.sides) {
                 const glm::dvec4 plane = planes_.planeOf(side);
-                uint32_t where = sidesOfBox(box, plane, out_.tolerance);
-                if (where == 3) where = sidesOf(corners, plane, out_.tolerance);
+                uint32_t where = sidesOfBox(box, plane, gap_);
+                if (where == 3) where = sidesOf(corners, plane, gap_);
+                // What is left in front of a plane that it was cut along is rounding, and to cut again would not end.
+                if (where == 3 && side >> 1 == region.divided) where = 1;
                 if (where == 2 || where == 0) apart = true;
                 if (apart) break;
                 if (where == 3) sides.push_back(side);
@@ -313,6 +324,7 @@ private:
     const BrushTreeSettings& settings_;
     BrushPlanes planes_;
     Box3d all_points_;
+    double gap_ = 0;  ///< a region that reaches no farther in front of a side counts as behind it  [world units]
     std::vector<Brush> brushes_;
     std::vector<Region> regions_;
     std::vector<uint32_t> tried_;

@@ -128,6 +128,30 @@ TEST(BrushTree, MakesPlanesThatAreAllButOneOne) {
     }
 }
 
+TEST(BrushTree, KeepsSlitsOpenWhateverLiesFarOff) {
+    constexpr double kSlit = 0.012;
+    for (const double far : {1e5, 1e7, 9e8}) {
+        SCOPED_TRACE(far);
+        BrushMaker maker;
+        maker.box({-64, -64, -64}, {0, 64, 64});
+        maker.box({kSlit, -64, -64}, {64, 64, 64});
+        maker.box({far, -64, -64}, {far + 64, 64, 64});
+        const BrushTree brushes = treeOfBrushes(maker.map);
+        for (const double y : {-60.0, 0.5, 60.0})
+            EXPECT_EQ(contentsAt(brushes.tree, {0.5 * kSlit, y, 0.5}), LeafContents::kEmpty) << y;
+        EXPECT_EQ(contentsAt(brushes.tree, {-32, 0.5, 0.5}), LeafContents::kSolid);
+        EXPECT_EQ(contentsAt(brushes.tree, {32, 0.5, 0.5}), LeafContents::kSolid);
+        // A brush that is as wide as all fills no more.
+        BrushMaker ground;
+        ground.box({-far, -64, -far}, {far, 0, far});
+        ground.box({-64, kSlit, -64}, {64, 64, 64});
+        const BrushTree above = treeOfBrushes(ground.map);
+        EXPECT_EQ(contentsAt(above.tree, {0.5, 0.5 * kSlit, 0.5}), LeafContents::kEmpty);
+        EXPECT_EQ(contentsAt(above.tree, {0.5, -32, 0.5}), LeafContents::kSolid);
+        EXPECT_EQ(contentsAt(above.tree, {0.5, 32, 0.5}), LeafContents::kSolid);
+    }
+}
+
 TEST(BrushTree, StandsMapsOfNothingAndOfEverything) {
     BrushMaker none;
     EXPECT_EQ(treeOfBrushes(none.map).tree.contents, std::vector<LeafContents>{LeafContents::kEmpty});
