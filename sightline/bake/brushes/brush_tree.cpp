@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "sightline/bake/brushes/brush_planes.h"
 
@@ -20,6 +21,7 @@ constexpr double kBeyondPoints = 1e4;
 
 struct Brush {
     LeafContents contents = LeafContents::kSolid;
+    std::vector<glm::dvec4> planes;  // as the map has them; sides may lie in others, which are all but the same
     std::vector<uint32_t> sides;
     std::vector<glm::dvec3> corners;
     Box3d box;
@@ -99,11 +101,9 @@ private:
                                                            : LeafContents::kLiquid;
                 for (const QuakeMapSide& side : map_.sidesOf(source)) {
                     for (const glm::dvec3& point : side.points) all_points_.grow(point);
-                    const uint32_t number = planes_.sideOf(side.points);
-                    if (number != BrushPlanes::kNone) brush.sides.push_back(number);
+                    if (const std::optional<glm::dvec4> plane = planeThrough(side.points))
+                        brush.planes.push_back(*plane);
                 }
-                std::sort(brush.sides.begin(), brush.sides.end());
-                brush.sides.erase(std::unique(brush.sides.begin(), brush.sides.end()), brush.sides.end());
                 brushes_.push_back(std::move(brush));
             }
         }
@@ -111,7 +111,32 @@ private:
         shape();
     }
 
-    /// Corners and boxes; the bounds from them.
+    static std::vector<glm::dvec3> cornersOf(const std::vector<glm::dvec4>& planes, const Box3d& wide) {
+        std::vector<glm::dvec3> corners;
+        for (size_t i = 0; i < planes.size(); ++i) {
+            std::vector<glm::dvec4> others = planes;
+            others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+            for (const glm::dvec3& corner : faceIn(planes[i], wide, others)) corners.push_back(corner);
+        }
+        return corners;
+    }
+
+    /// Numbers the sides of a brush. The corners in a side's plane are those of all faces: of a side that a map has twice,
+    /// the face itself is rounding, and the faces beside it are not.
+    void findSides(Brush& brush, const Box3d& wide) {
+        const std::vector<glm::dvec3> corners = cornersOf(brush.planes, wide);
+        std::vector<glm::dvec3> face;
+        for (const glm::dvec4& plane : brush.planes) {
+            face.clear();
+            for (const glm::dvec3& corner : corners)
+                if (heightOf(plane, corner) >= -out_.tolerance) face.push_back(corner);
+            brush.sides.push_back(planes_.sideOf(plane, face));
+        }
+        std::sort(brush.sides.begin(), brush.sides.end());
+        brush.sides.erase(std::unique(brush.sides.begin(), brush.sides.end()), brush.sides.end());
+    }
+
+    /// Sides, corners and boxes; the bounds from them.
     void shape() {
         const Box3d wide{all_points_.min - kBeyondPoints, all_points_.max + kBeyondPoints};
         const glm::dvec3 size = glm::max(glm::abs(wide.min), glm::abs(wide.max));
@@ -123,13 +148,10 @@ private:
         Box3d held;
         std::vector<Brush> kept;
         for (Brush& brush : brushes_) {
+            findSides(brush, wide);
             std::vector<glm::dvec4> planes;
             for (const uint32_t side : brush.sides) planes.push_back(planes_.planeOf(side));
-            for (size_t i = 0; i < planes.size(); ++i) {
-                std::vector<glm::dvec4> others = planes;
-                others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-                for (const glm::dvec3& corner : faceIn(planes[i], wide, others)) brush.corners.push_back(corner);
-            }
+            brush.corners = cornersOf(planes, wide);
             for (const glm::dvec3& corner : brush.corners) brush.box.grow(corner);
             if (!hasVolume(brush, planes)) {
                 ++out_.counts.empty;

@@ -17,7 +17,7 @@ using namespace tools;
 struct BrushTreeSettings {
     BrushRules rules = {};
     /// Planes of brushes that are so close, and all but parallel, are one: what was drawn on two grids closes. It
-    /// moves faces, by so much at most near the origin: what is known of the result is known of the moved brushes.
+    /// moves faces, by so much at most at each corner: what is known of the result is known of the moved brushes.
     /// [world units]
     double snap_distance = 0.01;
     /// Regions larger than this are first divided along this grid, whatever is in them: small ones are faster, and make
