@@ -168,7 +168,7 @@ TEST(OddGraphs, SeeThroughThinCellsWhateverLiesFarOff) {
     }
 }
 
-// Of a portal that reaches far off, points are known so badly that all three lie in one plane by its measure, but not by theirs.
+// By the precision of the last portal, which reaches far off, all three lie in one plane; by those of the others they do not.
 TEST(OddGraphs, SeeThroughStacksOfThinCells) {
     CellGraph stack;
     stack.cells = 4;
