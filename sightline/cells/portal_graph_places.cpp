@@ -50,6 +50,11 @@ Box3d grown(Box3d box, double by) {
     return box;
 }
 
+double largestOf(const Box3d& box) {
+    const glm::dvec3 far = glm::max(glm::abs(box.min), glm::abs(box.max));
+    return std::max({far.x, far.y, far.z});
+}
+
 bool meet(const Box3d& a, const Box3d& b) {
     for (int axis = 0; axis < 3; ++axis)
         if (!(a.min[axis] <= b.max[axis] && b.min[axis] <= a.max[axis])) return false;
@@ -147,9 +152,12 @@ bool PortalGraph::cellsOfTree(std::span<const glm::dvec3> points, double radius,
 bool PortalGraph::isCovered(std::span<const glm::dvec3> points, std::span<const uint32_t> regions) const {
     if (points.empty()) return true;
     if (regions.empty()) return false;
-    const double rounding = std::min(tolerance_, 0x1p-40 * reach_);  // of planes that two regions share
     SIGHTLINE_DEBUG_ASSERT(regions[0] < regions_.size());
     const CellRegion& region = regions_[regions[0]];
+    // How far apart a plane that two regions share may be from region to region: by the points' coordinates, and by the
+    // distance of the plane, which is known to a few roundings of 2^-53 of the region's. Not by what lies elsewhere.
+    const double apart = 0x1p-40 * largestOf(boxOf(points)) + 0x1p-50 * largestOf(region.bounds);
+    const double rounding = std::min(tolerance_, apart);
     PointBody rest, part;
     for (uint32_t i = region.first_plane; i < region.first_plane + region.plane_count; ++i) {
         if (heightsOf(points, planes_[i]).least >= -rounding) continue;

@@ -191,6 +191,30 @@ TEST(PortalGraph, DoubtsWhatComesAsCloseToAWallAsTheTolerance) {
     }
 }
 
+// What lies between two regions is the outside's, however narrow it is for the world's size.
+TEST(PortalGraph, DoubtsGapsWhateverLiesFarOff) {
+    constexpr double kGap = 5e-6;
+    for (const double far : {0.0, 1e7, 1e9}) {
+        CellSpace space;
+        addRegion(space, {{0, 0, 0}, {1, 1, 1}});
+        addRegion(space, {{1 + kGap, 0, 0}, {2, 1, 1}});
+        if (far > 0) addRegion(space, {{far, 0, 0}, {far + 1, 1, 1}});
+        space.outside = static_cast<uint32_t>(space.regions.size());
+        space.regions.push_back({});
+        space.graph.cells = static_cast<uint32_t>(space.regions.size());
+        space.tolerance = 2 * kGap;
+        const PortalGraph graph(space);
+        Array<uint32_t> cells;
+        const glm::dvec3 between(1 + 0.5 * kGap, 0.5, 0.5), within(0.5, 0.5, 0.5);
+        EXPECT_TRUE(graph.cellsAround({&between, 1}, 0, cells));
+        EXPECT_TRUE(has(cells, 0) && has(cells, 1) && has(cells, space.outside)) << far;
+        EXPECT_TRUE(graph.cellsOf({{0.9, 0.4, 0.4}, {1.1, 0.6, 0.6}}, cells));
+        EXPECT_TRUE(has(cells, space.outside)) << far;
+        EXPECT_TRUE(graph.cellsAround({&within, 1}, 0, cells));
+        EXPECT_FALSE(has(cells, space.outside)) << far;
+    }
+}
+
 TEST(PortalGraph, LaysPortalsSideBySide) {
     const CellSpace space = gridSpace(2, {.rooms = {3, 3, 2}});
     const PortalGraph graph(space);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/bake/brushes/brush_planes.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sightline::bake {
@@ -23,38 +24,51 @@ void keepBehind(const std::vector<glm::dvec3>& outline, const std::vector<double
     }
 }
 
-}  // namespace
-
-uint32_t BrushPlanes::sideOf(const glm::dvec3 (&points)[3]) {
-    const glm::dvec3 normal = glm::cross(points[0] - points[1], points[2] - points[1]);
-    const double length = glm::length(normal);
-    if (!(length > 1e-12 * glm::length(points[0] - points[1]) * glm::length(points[2] - points[1]))) return kNone;
-    return sideOf(glm::dvec4(normal / length, -glm::dot(normal / length, points[1])));
+/// Whether a side that takes another plane moves by no more than a distance at all corners of its face. The change is
+/// measured, not the heights of the corners: where the planes are the same there is none, whatever the corners' rounding.
+bool movesLittle(const glm::dvec4& from, const glm::dvec4& to, std::span<const glm::dvec3> face, double distance) {
+    const glm::dvec4 change = to - from;
+    return std::abs(change.w) <= distance && std::all_of(face.begin(), face.end(), [&](const glm::dvec3& corner) {
+               return std::abs(heightOf(change, corner)) <= distance;
+           });
 }
 
-uint32_t BrushPlanes::sideOf(const glm::dvec4& given) {
-    glm::dvec4 plane = given;
+}  // namespace
+
+std::optional<glm::dvec4> planeThrough(const glm::dvec3 (&points)[3]) {
+    const glm::dvec3 normal = glm::cross(points[0] - points[1], points[2] - points[1]);
+    const double length = glm::length(normal);
+    if (!(length > 1e-12 * glm::length(points[0] - points[1]) * glm::length(points[2] - points[1])))
+        return std::nullopt;
+    return glm::dvec4(normal / length, -glm::dot(normal / length, points[1]));
+}
+
+uint32_t BrushPlanes::sideOf(const glm::dvec4& given, std::span<const glm::dvec3> face) {
+    glm::dvec4 exact = given, plane = given;
     for (int axis = 0; axis < 3; ++axis)
-        if (std::abs(std::abs(plane[axis]) - 1) < kSnapNormal * kSnapNormal) {
+        if (std::abs(std::abs(given[axis]) - 1) < kSnapNormal * kSnapNormal) {
             glm::dvec4 along(0.0);
-            along[axis] = plane[axis] > 0 ? 1 : -1;
-            along.w = plane.w;
-            plane = along;
+            along[axis] = given[axis] > 0 ? 1 : -1;
+            along.w = given.w;
+            if (movesLittle(given, along, face, snap_)) plane = along;
         }
     const glm::dvec3 size = glm::abs(glm::dvec3(plane));
     const int largest = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
     uint32_t flipped = plane[largest] < 0;
-    if (flipped) plane = -plane;
+    if (flipped) {
+        plane = -plane;
+        exact = -exact;
+    }
     const int64_t bucket = static_cast<int64_t>(std::floor(plane.w / kBucket));
     // A normal may have two components that are largest but for rounding: then it may be listed facing the other way.
     for (const uint32_t turned : {0u, 1u})
         for (int64_t at = -1; at <= 1; ++at) {
             const auto found = by_distance_.find(turned ? -bucket - 1 + at : bucket + at);
             if (found == by_distance_.end()) continue;
-            const glm::dvec4 wanted = turned ? -plane : plane;
+            const glm::dvec4 wanted = turned ? -plane : plane, before = turned ? -exact : exact;
             for (const uint32_t i : found->second)
                 if (glm::length(glm::dvec3(planes_[i] - wanted)) < kSnapNormal &&
-                    std::abs(planes_[i].w - wanted.w) <= snap_)
+                    movesLittle(before, planes_[i], face, snap_))
                     return i << 1 | (flipped ^ turned);
         }
     planes_.push_back(plane);

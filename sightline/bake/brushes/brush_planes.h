@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -19,20 +20,23 @@ inline double heightOf(const glm::dvec4& plane, const glm::dvec3& point) {
     return glm::dot(glm::dvec3(plane), point) + plane.w;
 }
 
+/// The plane through three points as a map has them, its unit normal out of the brush; none if they lie in a line.
+std::optional<glm::dvec4> planeThrough(const glm::dvec3 (&points)[3]);
+
 /// Planes that are told apart. Each is kept facing one way; a side is its number times 2, plus 1 if the side faces
 /// the other way.
 class BrushPlanes {
 public:
-    /// @param snap_distance  planes whose normals are all but the same (1e-5) and that are no farther apart than
-    ///                       this, measured at the point nearest to the origin, are one  [world units]
+    /// @param snap_distance  planes whose normals are all but the same (1e-5) are one where a side that takes the other's
+    ///                       plane moves no farther than this: at the point nearest to the origin, and at each corner
+    ///                       of its face  [world units]
     explicit BrushPlanes(double snap_distance) : snap_(snap_distance) {}
 
     static constexpr uint32_t kNone = ~0u;
 
-    /// The side through three points as a map has them, its normal out of the brush; kNone if they lie in a line.
-    uint32_t sideOf(const glm::dvec3 (&points)[3]);
-    /// The same by its unit normal and distance.
-    uint32_t sideOf(const glm::dvec4& plane);
+    /// The side in a plane with a unit normal.
+    /// @param face  the brush's corners in the plane; none: other sides bound the brush, and it does not grow
+    uint32_t sideOf(const glm::dvec4& plane, std::span<const glm::dvec3> face);
 
     size_t size() const { return planes_.size(); }
     const glm::dvec4& plane(size_t i) const { return planes_[i]; }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "sightline/bake/brushes/brush_planes.h"
 
@@ -14,8 +15,13 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Three points of a plane may lie anywhere in it: brushes reach farther than their points, but seldom farther than this.
+/// [world units]
+constexpr double kBeyondPoints = 1e4;
+
 struct Brush {
     LeafContents contents = LeafContents::kSolid;
+    std::vector<glm::dvec4> planes;  // as the map has them; sides may lie in others, which are all but the same
     std::vector<uint32_t> sides;
     std::vector<glm::dvec3> corners;
     Box3d box;
@@ -32,6 +38,7 @@ struct Region {
     LeafContents base;
     BrushFaces faces;
     std::vector<Guest> guests;
+    uint32_t divided = BrushPlanes::kNone;  // the plane of sides that it was cut along last
 };
 
 /// Which sides of a plane points lie on, but for a tolerance: bit 0 behind, bit 1 in front.
@@ -94,11 +101,9 @@ private:
                                                            : LeafContents::kLiquid;
                 for (const QuakeMapSide& side : map_.sidesOf(source)) {
                     for (const glm::dvec3& point : side.points) all_points_.grow(point);
-                    const uint32_t number = planes_.sideOf(side.points);
-                    if (number != BrushPlanes::kNone) brush.sides.push_back(number);
+                    if (const std::optional<glm::dvec4> plane = planeThrough(side.points))
+                        brush.planes.push_back(*plane);
                 }
-                std::sort(brush.sides.begin(), brush.sides.end());
-                brush.sides.erase(std::unique(brush.sides.begin(), brush.sides.end()), brush.sides.end());
                 brushes_.push_back(std::move(brush));
             }
         }
@@ -106,22 +111,47 @@ private:
         shape();
     }
 
-    /// Corners and boxes; the bounds from them.
+    static std::vector<glm::dvec3> cornersOf(const std::vector<glm::dvec4>& planes, const Box3d& wide) {
+        std::vector<glm::dvec3> corners;
+        for (size_t i = 0; i < planes.size(); ++i) {
+            std::vector<glm::dvec4> others = planes;
+            others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+            for (const glm::dvec3& corner : faceIn(planes[i], wide, others)) corners.push_back(corner);
+        }
+        return corners;
+    }
+
+    /// Numbers the sides of a brush. The corners in a side's plane are those of all faces: of a side that a map has twice,
+    /// the face itself is rounding, and the faces beside it are not.
+    void findSides(Brush& brush, const Box3d& wide) {
+        const std::vector<glm::dvec3> corners = cornersOf(brush.planes, wide);
+        std::vector<glm::dvec3> face;
+        for (const glm::dvec4& plane : brush.planes) {
+            face.clear();
+            for (const glm::dvec3& corner : corners)
+                if (heightOf(plane, corner) >= -out_.tolerance) face.push_back(corner);
+            brush.sides.push_back(planes_.sideOf(plane, face));
+        }
+        std::sort(brush.sides.begin(), brush.sides.end());
+        brush.sides.erase(std::unique(brush.sides.begin(), brush.sides.end()), brush.sides.end());
+    }
+
+    /// Sides, corners and boxes; the bounds from them.
     void shape() {
-        // Three points of a plane may lie anywhere in it: brushes reach farther than their points, but seldom far.
-        const Box3d wide{all_points_.min - 1e4, all_points_.max + 1e4};
+        const Box3d wide{all_points_.min - kBeyondPoints, all_points_.max + kBeyondPoints};
         const glm::dvec3 size = glm::max(glm::abs(wide.min), glm::abs(wide.max));
-        out_.tolerance = 0x1p-36 * std::max({size.x, size.y, size.z});
+        const double largest = std::max({size.x, size.y, size.z});
+        out_.tolerance = 0x1p-36 * largest;
+        // Of the map's extent, gaps close by rounding alone. The squares that corners are cut from reach as far as 7 of
+        // `largest`: heights, and how far a corner is off its plane, are off by less than 128 roundings of 2^-53 of it.
+        gap_ = 0x1p-36 * kBeyondPoints + 0x1p-46 * largest;
         Box3d held;
         std::vector<Brush> kept;
         for (Brush& brush : brushes_) {
+            findSides(brush, wide);
             std::vector<glm::dvec4> planes;
             for (const uint32_t side : brush.sides) planes.push_back(planes_.planeOf(side));
-            for (size_t i = 0; i < planes.size(); ++i) {
-                std::vector<glm::dvec4> others = planes;
-                others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-                for (const glm::dvec3& corner : faceIn(planes[i], wide, others)) brush.corners.push_back(corner);
-            }
+            brush.corners = cornersOf(planes, wide);
             for (const glm::dvec3& corner : brush.corners) brush.box.grow(corner);
             if (!hasVolume(brush, planes)) {
                 ++out_.counts.empty;
@@ -159,6 +189,7 @@ private:
         behind.slot = node << 1;
         front.slot = node << 1 | 1;
         behind.base = front.base = region.base;
+        behind.divided = front.divided = number;
         cutFaces(region.faces, plane, out_.tree.bounds, behind.faces, front.faces);
         for (Guest& guest : region.guests) {
             const uint32_t own = sideIn(guest, number);
@@ -194,8 +225,10 @@ private:
             std::vector<uint32_t> sides;
             for (const uint32_t side : guest.sides) {
                 const glm::dvec4 plane = planes_.planeOf(side);
-                uint32_t where = sidesOfBox(box, plane, out_.tolerance);
-                if (where == 3) where = sidesOf(corners, plane, out_.tolerance);
+                uint32_t where = sidesOfBox(box, plane, gap_);
+                if (where == 3) where = sidesOf(corners, plane, gap_);
+                // What is left in front of a plane that it was cut along is rounding, and to cut again would not end.
+                if (where == 3 && side >> 1 == region.divided) where = 1;
                 if (where == 2 || where == 0) apart = true;
                 if (apart) break;
                 if (where == 3) sides.push_back(side);
@@ -313,6 +346,7 @@ private:
     const BrushTreeSettings& settings_;
     BrushPlanes planes_;
     Box3d all_points_;
+    double gap_ = 0;  ///< a region that reaches no farther in front of a side counts as behind it  [world units]
     std::vector<Brush> brushes_;
     std::vector<Region> regions_;
     std::vector<uint32_t> tried_;

@@ -17,7 +17,7 @@ using namespace tools;
 struct BrushTreeSettings {
     BrushRules rules = {};
     /// Planes of brushes that are so close, and all but parallel, are one: what was drawn on two grids closes. It
-    /// moves faces, by so much at most near the origin: what is known of the result is known of the moved brushes.
+    /// moves faces, by so much at most at each corner: what is known of the result is known of the moved brushes.
     /// [world units]
     double snap_distance = 0.01;
     /// Regions larger than this are first divided along this grid, whatever is in them: small ones are faster, and make
@@ -37,14 +37,15 @@ struct BrushTree {
     LeafTree tree;
     std::vector<uint32_t> edge_leaves;    ///< not solid, and at the bounds: from there it is outside
     std::vector<glm::dvec3> edge_points;  ///< of each of them, a point on the bounds
-    double tolerance = 0;                 ///< see below [world units]
+    double tolerance = 0;  ///< what a brush reaches into a leaf by less may be missing there  [world units]
     BrushTreeCounts counts;
     BrushRoles roles;
 };
 
-/// The tree of the world's brushes. A leaf is solid only if it lies in one solid brush but for the tolerance, 2^-36
-/// of the largest coordinate; what is only detail, moves, or is no obstacle, is not in it: more may then be seen
-/// through it than in truth, never less. Where brushes overlap, solid is stronger than sky and sky than liquids.
+/// The tree of the world's brushes. A leaf is solid only if it lies in one solid brush, but for a gap of 1.5e-7 and
+/// 2^-46 of the largest coordinate. A brush that reaches into a leaf by less than the tolerance, 2^-36 of the largest
+/// coordinate, may be missing there. What is only detail, moves, or is no obstacle, is not in the tree: more may then be
+/// seen through it than in truth, never less. Where brushes overlap, solid is stronger than sky and sky than liquids.
 ///
 /// The planes are those of the brushes: first the one that divides the fewest of them and has the most sides in it,
 /// axial ones before others. Deterministic. O(brushes * depth * candidates), as maps are.

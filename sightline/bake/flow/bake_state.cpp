@@ -14,7 +14,7 @@
 namespace sightline::bake {
 namespace {
 
-constexpr uint64_t kMagic = 0x32656b6162736c73ull;  // "slsbake2"
+constexpr uint64_t kMagic = 0x33656b6162736c73ull;  // "slsbake3"
 
 void putMatrix(ByteWriter& out, const BitMatrix& matrix) {
     for (size_t r = 0; r < matrix.rows(); ++r) putBits(out, matrix.row(r));

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numeric>
 #include <unordered_map>
 
@@ -13,55 +15,88 @@
 namespace sightline::bake {
 namespace {
 
+/// How well the points of each portal are known. Moving all points to the center rounds them, and so does each height.
+/// @param directed  with its precision and its rounding
+std::vector<double> precisionsOf(const CellGraph& graph, const FlowPortals& directed) {
+    std::vector<double> precisions;
+    precisions.reserve(graph.portals.size());
+    for (const CellPortal& portal : graph.portals) {
+        glm::dvec3 far(0.0);
+        for (const glm::dvec3& point : graph.outline(portal)) far = glm::max(far, glm::abs(point));
+        const double own = kPortalPrecision * std::max({far.x, far.y, far.z}) + directed.rounding;
+        precisions.push_back(std::min(directed.precision, own));
+    }
+    return precisions;
+}
+
 /// Welds points that are near one another to the first of them.
 class Welder {
 public:
-    Welder(std::vector<glm::dvec3>& points, double precision) : points_(points), size_(4 * precision) {
-        cells_.reserve(points.size());
+    /// @param points  of `graph`, moved
+    Welder(std::vector<glm::dvec3>& points, const CellGraph& graph, std::span<const double> precisions)
+        : points_(points), reach_(points.size(), 0) {
+        for (size_t i = 0; i < graph.portals.size(); ++i)
+            std::fill_n(reach_.begin() + graph.portals[i].first, graph.portals[i].count, precisions[i]);
     }
 
     void weld() {
         for (uint32_t i = 0; i < points_.size(); ++i) {
+            if (!(reach_[i] > 0)) continue;
             const uint32_t same = find(i);
-            if (same != i) points_[i] = points_[same];
-            else cells_.emplace(keyOf(placeOf(points_[i])), i);
+            if (same != i) {
+                points_[i] = points_[same];
+                continue;
+            }
+            const int level = levelOf(reach_[i]);
+            grids_[level].emplace(keyOf(placeOf(points_[i], level)), i);
         }
     }
 
 private:
     using Place = glm::tvec3<int64_t>;
 
-    Place placeOf(const glm::dvec3& point) const { return Place(glm::floor(point / size_)); }
+    /// Points are listed in the grid of their level, where a cell is four times as wide as the widest reach.
+    static int levelOf(double reach) { return std::ilogb(reach) >> 3; }
+    static double widestOf(int level) { return std::ldexp(1.0, 8 * (level + 1)); }
+    static Place placeOf(const glm::dvec3& point, int level) {
+        return Place(glm::floor(point / (4 * widestOf(level))));
+    }
     static uint64_t keyOf(const Place& place) {
         return mixSeed(mixSeed(static_cast<uint64_t>(place.x), static_cast<uint64_t>(place.y)),
                        static_cast<uint64_t>(place.z));
     }
 
     uint32_t find(uint32_t i) const {
-        const glm::dvec3 reach(size_ / 4);
-        const Place low = placeOf(points_[i] - reach), high = placeOf(points_[i] + reach);
         uint32_t best = i;
-        for (int64_t x = low.x; x <= high.x; ++x)
-            for (int64_t y = low.y; y <= high.y; ++y)
-                for (int64_t z = low.z; z <= high.z; ++z) {
-                    const auto [begin, end] = cells_.equal_range(keyOf({x, y, z}));
-                    for (auto other = begin; other != end; ++other) {
-                        const glm::dvec3 apart = glm::abs(points_[other->second] - points_[i]);
-                        if (std::max({apart.x, apart.y, apart.z}) <= reach.x) best = std::min(best, other->second);
+        for (const auto& [level, cells] : grids_) {
+            const glm::dvec3 reach(std::min(reach_[i], widestOf(level)));
+            const Place low = placeOf(points_[i] - reach, level), high = placeOf(points_[i] + reach, level);
+            for (int64_t x = low.x; x <= high.x; ++x)
+                for (int64_t y = low.y; y <= high.y; ++y)
+                    for (int64_t z = low.z; z <= high.z; ++z) {
+                        const auto [begin, end] = cells.equal_range(keyOf({x, y, z}));
+                        for (auto other = begin; other != end; ++other)
+                            if (isSame(i, other->second)) best = std::min(best, other->second);
                     }
-                }
+        }
         return best;
     }
 
+    bool isSame(uint32_t a, uint32_t b) const {
+        const glm::dvec3 apart = glm::abs(points_[a] - points_[b]);
+        return std::max({apart.x, apart.y, apart.z}) <= std::min(reach_[a], reach_[b]);
+    }
+
     std::vector<glm::dvec3>& points_;
-    double size_;
-    std::unordered_multimap<uint64_t, uint32_t> cells_;
+    std::vector<double> reach_;
+    std::map<int, std::unordered_multimap<uint64_t, uint32_t>> grids_;
 };
 
-/// Numbers the planes of portals: portals with one number lie in one plane to within the precision.
+/// Numbers the planes of portals: portals with one number lie in one plane to within four of their own precisions.
 class Sheets {
 public:
-    explicit Sheets(double tolerance) : tolerance_(tolerance) {}
+    /// @param search  planes whose offsets are farther apart are not held against one another
+    explicit Sheets(double search) : search_(search) {}
 
     uint32_t of(const FlowPortal& portal, std::span<const glm::dvec3> outline) {
         // Both sides of a plane are the same sheet.
@@ -72,14 +107,12 @@ public:
         const glm::dvec3 at = normal / step;
         for (int64_t x = floorOf(at.x - .01); x <= floorOf(at.x + .01); ++x)
             for (int64_t y = floorOf(at.y - .01); y <= floorOf(at.y + .01); ++y)
-                for (int64_t z = floorOf(at.z - .01); z <= floorOf(at.z + .01); ++z) {
-                    const double low = offset - 64 * tolerance_, high = offset + 64 * tolerance_;
-                    for (int64_t w = floorOf(low); w <= floorOf(high); ++w) {
+                for (int64_t z = floorOf(at.z - .01); z <= floorOf(at.z + .01); ++z)
+                    for (int64_t w = floorOf(offset - search_); w <= floorOf(offset + search_); ++w) {
                         const auto [begin, end] = known_.equal_range(key(x, y, z, w));
                         for (auto other = begin; other != end; ++other)
-                            if (holds(sheets_[other->second], outline)) return other->second;
+                            if (holds(sheets_[other->second], outline, 4 * portal.precision)) return other->second;
                     }
-                }
         const auto number = static_cast<uint32_t>(sheets_.size());
         sheets_.push_back(glm::dvec4(normal, offset));
         known_.emplace(key(floorOf(at.x), floorOf(at.y), floorOf(at.z), floorOf(offset)), number);
@@ -104,13 +137,13 @@ private:
         return mixSeed(mixSeed(static_cast<uint64_t>(x), static_cast<uint64_t>(y)),
                        mixSeed(static_cast<uint64_t>(z), static_cast<uint64_t>(w)));
     }
-    bool holds(const glm::dvec4& plane, std::span<const glm::dvec3> outline) const {
+    static bool holds(const glm::dvec4& plane, std::span<const glm::dvec3> outline, double tolerance) {
         return std::all_of(outline.begin(), outline.end(), [&](const glm::dvec3& point) {
-            return std::abs(glm::dot(glm::dvec3(plane), point) + plane.w) <= tolerance_;
+            return std::abs(glm::dot(glm::dvec3(plane), point) + plane.w) <= tolerance;
         });
     }
 
-    double tolerance_;
+    double search_;
     std::vector<glm::dvec4> sheets_;
     std::unordered_multimap<uint64_t, uint32_t> known_;
 };
@@ -174,7 +207,8 @@ FlowPortals flowPortalsOf(const CellGraph& graph) {
 
     std::vector<glm::dvec3> points = graph.points;
     for (glm::dvec3& point : points) point -= directed.center;
-    Welder(points, directed.precision).weld();
+    const std::vector<double> precisions = precisionsOf(graph, directed);
+    Welder(points, graph, precisions).weld();
 
     // Portals are sorted by the cell that they leave; those of one cell keep the graph's order.
     for (const CellPortal& portal : graph.portals)
@@ -182,19 +216,20 @@ FlowPortals flowPortalsOf(const CellGraph& graph) {
     std::partial_sum(directed.first_of_cell.begin(), directed.first_of_cell.end(), directed.first_of_cell.begin());
     std::vector<uint32_t> next(directed.first_of_cell.begin(), directed.first_of_cell.end() - 1);
     directed.portals.resize(2 * graph.portals.size());
-    Sheets sheets(4 * directed.precision);
+    Sheets sheets(256 * directed.precision);
     for (uint32_t i = 0; i < graph.portals.size(); ++i) {
         const CellPortal& portal = graph.portals[i];
         const std::span<const glm::dvec3> given{points.data() + portal.first, portal.count};
         std::vector<glm::dvec3> hull;
         FlowPortal way = wayThrough(portal, directed.center, given, hull);
         way.portal = i;
+        way.precision = precisions[i];
         for (const glm::dvec3& point : hull) way.bend = std::max(way.bend, std::abs(way.height(point)));
         way.straight = bulgeOf(hull, way.normal) <= directed.rounding;
         // A line that leaves a flat portal rises, so it passes every later portal higher up. It may leave a bent portal
         // as far below its plane as it is bent.
-        const bool flat = way.bend <= directed.precision;
-        way.above = flat ? directed.precision : -way.bend;
+        const bool flat = way.bend <= way.precision;
+        way.above = flat ? way.precision : -way.bend;
         way.sheet = flat ? sheets.of(way, hull) : sheets.ofItsOwn();
         const uint32_t there = next[portal.cells[1]]++, back = next[portal.cells[0]]++;
         way.count = static_cast<uint32_t>(hull.size());

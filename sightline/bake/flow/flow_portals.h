@@ -15,6 +15,10 @@ namespace sightline::bake {
 /// How well the points of a graph are taken to be known, of the largest coordinate: a few units in the last place, and
 /// what a chain of a map compiler's clips adds, which is a few thousand times that.
 inline constexpr double kGraphPrecision = 0x1p-35;
+/// No portal's points are taken to be known worse than this, of the largest of its own coordinates, however far off others
+/// are: a 32nd of the last place of a float. It is more than kGraphPrecision, for portals of a tree reach beyond their
+/// faces by 2^-39 of the tree's largest coordinate, and what only does so must not count as above a plane.
+inline constexpr double kPortalPrecision = 0x1p-29;
 
 /// A portal and a way through it. Its plane's normal points along the way, into the cell that is entered.
 struct FlowPortal {
@@ -23,6 +27,7 @@ struct FlowPortal {
     glm::dvec3 center{0.0};
     double radius = 0;      ///< no point of the outline is farther from the center
     double bend = 0;        ///< no point of the outline is farther from the plane
+    double precision = 0;   ///< how well its points are known  [world units]
     double above = 0;       ///< a portal that reaches no higher than this is not passed after this one
     bool straight = false;  ///< Window::straight
     uint32_t first = 0,
@@ -42,7 +47,8 @@ struct FlowPortals {
     glm::dvec3 center{0.0};
     double extent = 0;    ///< no coordinate of a point is larger
     double rounding = 0;  ///< what sums of three products of coordinates with unit vectors may be off by  [world units]
-    double precision = 0;  ///< how well points are known: closer points are the same  [world units]
+    double precision = 0;  ///< no portal's points are known worse: searches that keep more the larger it is take it for
+                           ///< all  [world units]
 
     uint32_t cells() const { return static_cast<uint32_t>(first_of_cell.size()) - 1; }
     uint32_t size() const { return static_cast<uint32_t>(portals.size()); }
@@ -51,8 +57,8 @@ struct FlowPortals {
     }
 };
 
-/// Points closer than the precision become one; outlines that are not convex are replaced by their convex hulls, so
-/// that the portals only grow.
+/// Points closer than the precision of both their portals become one; outlines that are not convex are replaced by their
+/// convex hulls, so that the portals only grow.
 FlowPortals flowPortalsOf(const CellGraph& graph);
 
 }  // namespace sightline::bake

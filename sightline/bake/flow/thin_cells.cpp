@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "sightline/bake/flow/flow_portals.h"
 #include "sightline/bsp/merge_cells.h"
@@ -30,6 +31,7 @@ bool areOnePlane(const FlowPortals& directed, uint32_t r, uint32_t q) {
 
 /// Whether no edge of `a`, prolonged, has all of `b` outside, or hardly inside.
 bool reachesInto(const FlowPortals& directed, uint32_t a, uint32_t b) {
+    const double hardly = kHardly * std::max(directed.portals[a].precision, directed.portals[b].precision);
     const std::span<const glm::dvec3> outline = directed.outline(a);
     for (size_t i = 0; i < outline.size(); ++i) {
         const glm::dvec3 edge = outline[i + 1 == outline.size() ? 0 : i + 1] - outline[i];
@@ -38,14 +40,12 @@ bool reachesInto(const FlowPortals& directed, uint32_t a, uint32_t b) {
         const glm::dvec3 inward = glm::cross(directed.portals[a].normal, edge) / length;
         double most = -1e300;
         for (const glm::dvec3& point : directed.outline(b)) most = std::max(most, glm::dot(inward, point - outline[i]));
-        if (most <= kHardly * directed.precision) return false;
+        if (most <= hardly) return false;
     }
     return true;
 }
 
-}  // namespace
-
-ThinMerged mergeThinCells(const CellGraph& graph) {
+ThinMerged mergeOnce(const CellGraph& graph) {
     const FlowPortals directed = flowPortalsOf(graph);
     std::vector<uint32_t> root(graph.cells);
     std::iota(root.begin(), root.end(), 0u);
@@ -71,6 +71,20 @@ ThinMerged mergeThinCells(const CellGraph& graph) {
     for (uint32_t cell = 0; cell < graph.cells; ++cell)
         merged.cell_of_cell[cell] = rootOf(cell) == cell ? cells++ : merged.cell_of_cell[rootOf(cell)];
     merged.graph = mergeCells(graph, merged.cell_of_cell, cells);
+    return merged;
+}
+
+}  // namespace
+
+ThinMerged mergeThinCells(const CellGraph& graph) {
+    ThinMerged merged = mergeOnce(graph);
+    // A portal whose points are known badly lies over others farther off: what was merged may be thin for it again.
+    while (merged.any) {
+        ThinMerged again = mergeOnce(merged.graph);
+        if (!again.any) break;
+        for (uint32_t& cell : merged.cell_of_cell) cell = again.cell_of_cell[cell];
+        merged.graph = std::move(again.graph);
+    }
     return merged;
 }
 

@@ -32,10 +32,11 @@ std::vector<WallTriangle> opaqueTriangles(const Scene& scene, const SoupScale& s
         return !scale.core.bounds.holds(box);
     });
     const glm::dvec3 middle = scale.core.bounds.center();
-    // Planes are computed in doubles, of coordinates up to those of the core.
-    const double least =
-        std::max({scale.diagonal, largest(scale.core.bounds.min), largest(scale.core.bounds.max)}) * 0x1p-40;
     for (WallTriangle& triangle : triangles) {
+        // Planes are computed in doubles of the triangle's own coordinates, and are off by far less than 2^13 roundings of
+        // 2^-53. Of the core's size only the rounding counts: faces of cells are cut from squares of some diagonals.
+        double least = 0x1p-48 * scale.diagonal;
+        for (const glm::dvec3& corner : triangle.corners) least = std::max(least, 0x1p-40 * largest(corner));
         // An object's place was rounded, too. What all places share, as on a map, is in doubles and counts for nothing.
         const glm::dvec3 at(scene.objects[triangle.object].transform[3]);
         const double moved = std::min(largest(at), largest(at - middle));

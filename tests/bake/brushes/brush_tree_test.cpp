@@ -128,6 +128,60 @@ TEST(BrushTree, MakesPlanesThatAreAllButOneOne) {
     }
 }
 
+/// A box that ends at x = 0, and a brush whose face leans away from it by 9e-6 of y, so that a wedge is open between them.
+BrushTree leaningBrushes(double low_y, double high_y) {
+    BrushMaker maker;
+    maker.box({-64, low_y, -64}, {0, high_y, 64});
+    const glm::dvec3 leaning = glm::normalize(glm::dvec3(-1, 9e-6, 0));
+    maker.brush({glm::dvec4(leaning, 0), glm::dvec4(1, 0, 0, -64), glm::dvec4(0, -1, 0, low_y),
+                 glm::dvec4(0, 1, 0, -high_y), glm::dvec4(0, 0, -1, -64), glm::dvec4(0, 0, 1, -64)});
+    return treeOfBrushes(maker.map);
+}
+
+TEST(BrushTree, MeasuresPlanesThatAreAllButOneAtTheBrushes) {
+    // The wedge is 0.9 wide far off, where the planes part, and 0.0009 near the origin.
+    const BrushTree far = leaningBrushes(99900, 100000), near = leaningBrushes(0, 100);
+    EXPECT_EQ(contentsAt(far.tree, {0.45, 99950, 0.5}), LeafContents::kEmpty);
+    EXPECT_EQ(contentsAt(far.tree, {-1, 99950, 0.5}), LeafContents::kSolid);
+    EXPECT_EQ(contentsAt(far.tree, {1, 99950, 0.5}), LeafContents::kSolid);
+    EXPECT_EQ(contentsAt(near.tree, {0.0004, 90, 0.5}), LeafContents::kSolid);
+    // No other brush is needed to move a face: it may be taken for one along an axis.
+    BrushMaker alone;
+    alone.brush({glm::dvec4(glm::normalize(glm::dvec3(-1, 9e-6, 0)), 0), glm::dvec4(1, 0, 0, -64),
+                 glm::dvec4(0, -1, 0, 99900), glm::dvec4(0, 1, 0, -100000), glm::dvec4(0, 0, -1, -64),
+                 glm::dvec4(0, 0, 1, -64)});
+    EXPECT_EQ(contentsAt(treeOfBrushes(alone.map).tree, {0.45, 99950, 0.5}), LeafContents::kEmpty);
+    // Two grids, far off.
+    BrushMaker grids;
+    grids.box({1e5, 0, 0}, {1e5 + 64, 64, 64});
+    grids.box({1e5 + 64.005, 0, 0}, {1e5 + 128, 64, 64});
+    EXPECT_EQ(contentsAt(treeOfBrushes(grids.map).tree, {1e5 + 64.0025, 32, 32}), LeafContents::kSolid);
+}
+
+TEST(BrushTree, KeepsSlitsOpenWhateverLiesFarOff) {
+    constexpr double kSlit = 0.012;
+    for (const double far : {1e5, 1e7, 9e8}) {
+        SCOPED_TRACE(far);
+        BrushMaker maker;
+        maker.box({-64, -64, -64}, {0, 64, 64});
+        maker.box({kSlit, -64, -64}, {64, 64, 64});
+        maker.box({far, -64, -64}, {far + 64, 64, 64});
+        const BrushTree brushes = treeOfBrushes(maker.map);
+        for (const double y : {-60.0, 0.5, 60.0})
+            EXPECT_EQ(contentsAt(brushes.tree, {0.5 * kSlit, y, 0.5}), LeafContents::kEmpty) << y;
+        EXPECT_EQ(contentsAt(brushes.tree, {-32, 0.5, 0.5}), LeafContents::kSolid);
+        EXPECT_EQ(contentsAt(brushes.tree, {32, 0.5, 0.5}), LeafContents::kSolid);
+        // A brush that is as wide as all fills no more.
+        BrushMaker ground;
+        ground.box({-far, -64, -far}, {far, 0, far});
+        ground.box({-64, kSlit, -64}, {64, 64, 64});
+        const BrushTree above = treeOfBrushes(ground.map);
+        EXPECT_EQ(contentsAt(above.tree, {0.5, 0.5 * kSlit, 0.5}), LeafContents::kEmpty);
+        EXPECT_EQ(contentsAt(above.tree, {0.5, -32, 0.5}), LeafContents::kSolid);
+        EXPECT_EQ(contentsAt(above.tree, {0.5, 32, 0.5}), LeafContents::kSolid);
+    }
+}
+
 TEST(BrushTree, StandsMapsOfNothingAndOfEverything) {
     BrushMaker none;
     EXPECT_EQ(treeOfBrushes(none.map).tree.contents, std::vector<LeafContents>{LeafContents::kEmpty});

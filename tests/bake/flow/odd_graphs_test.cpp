@@ -138,6 +138,46 @@ TEST(OddGraphs, SeeThroughCellsOfAnyThickness) {
     }
 }
 
+/// A rectangle in the plane x, about +x, from z = 0 to 1.
+std::vector<glm::dvec3> upright(double x, double low, double high) {
+    return {{x, low, 0}, {x, high, 0}, {x, high, 1}, {x, low, 1}};
+}
+
+/// Adds a portal between two cells of their own, so far off.
+void addFarPortal(CellGraph& graph, double far) {
+    graph.cells += 2;
+    if (far > 0) graph.addPortal(graph.cells - 1, graph.cells - 2, upright(far, 0, 1));
+}
+
+TEST(OddGraphs, SeeThroughThinCellsWhateverLiesFarOff) {
+    for (const double far : {0.0, 1e5, 1e7, 1e9}) {
+        // A cavity of a millimetre whose openings do not lie over one another.
+        CellGraph cavity;
+        cavity.cells = 3;
+        cavity.addPortal(1, 0, upright(0, 0, 1));
+        cavity.addPortal(2, 1, upright(1e-3, 1.5, 2.5));
+        addFarPortal(cavity, far);
+        EXPECT_TRUE(bakeCellVisibility(cavity).visible.at(0, 2)) << far;
+        // A cell without thickness whose openings share half a millimetre.
+        CellGraph flat;
+        flat.cells = 3;
+        flat.addPortal(1, 0, upright(0, 0, 1));
+        flat.addPortal(2, 1, upright(0, 1 - 5e-4, 2));
+        addFarPortal(flat, far);
+        EXPECT_TRUE(bakeCellVisibility(flat).visible.at(0, 2)) << far;
+    }
+}
+
+// By the precision of the last portal, which reaches far off, all three lie in one plane; by those of the others they do not.
+TEST(OddGraphs, SeeThroughStacksOfThinCells) {
+    CellGraph stack;
+    stack.cells = 4;
+    stack.addPortal(1, 0, upright(0, 0, 1));
+    stack.addPortal(2, 1, upright(1.3e-4, 0, 1));
+    stack.addPortal(3, 2, upright(2.6e-4, 0, 1e7));
+    EXPECT_EQ(bakeCellVisibility(stack).visible.count(), 16u);
+}
+
 /// A slit between two cells, as wide as told, whose corners lie off its plane by less than points are known to; and a
 /// low door far behind it, which lies above the slit's plane, but below that of its corners.
 CellGraph slitAndDoor(double width, bool turned, Random& random) {

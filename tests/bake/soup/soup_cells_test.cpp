@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "sightline/bake/soup/soup_scale.h"
 #include "sightline/base/random.h"
 #include "sightline/cells/portal_graph.h"
 #include "sightline/tools/import/scene_file.h"
@@ -272,6 +274,25 @@ TEST(SoupCells, SlitsAreSeenThroughWhateverLiesFarOff) {
                 EXPECT_GT(lookThroughSlit(made, half, cells, 2000, random), 20);
                 if (HasFailure()) return;
             }
+}
+
+// The core is as large as a chain of triangles, each beyond the one before. The room's walls are as exact as without it.
+TEST(SoupCells, WallsAreRoundedByTheirOwnCoordinates) {
+    Random random(13);
+    for (const double far : {1e4, 1e7, 1e9}) {
+        SCOPED_TRACE(far);
+        MarkedRooms made;
+        made.room({{0, 0, 0}, {16, 16, 16}});
+        const size_t walls = made.scene.objects.size();
+        addFarThing(made, FarThing::kChain, far, random);
+        const std::optional<SoupScale> scale = soupScaleOf(made.scene);
+        ASSERT_TRUE(scale && scale->core.isWhole());
+        const double doubles = 0x1p-48 * scale->diagonal;
+        for (const WallTriangle& triangle : opaqueTriangles(made.scene, *scale, 0, {}))
+            if (triangle.object < walls) { EXPECT_LE(triangle.rounding, std::max(0x1p-40 * 16, doubles)); }
+        for (const WallTriangle& triangle : opaqueTriangles(made.scene, *scale, -1, {}))
+            if (triangle.object < walls) { EXPECT_LE(triangle.rounding, std::max(0x1p-22 * 16, doubles)); }
+    }
 }
 
 // A room whose walls are drawn from inside alone is shut from there, and open from outside.

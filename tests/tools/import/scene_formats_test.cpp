@@ -230,6 +230,26 @@ TEST_F(SceneFormats, WhatAnAnimationMovesIsKnown) {
     EXPECT_EQ(changesOf(turn + size + places(5, 5), "Door"), "Door Knob ") << "it stands elsewhere";
 }
 
+// At 5,400 km, as maps of countries have it, a float has steps of half a metre, and of centimetres it has steps of 64.
+TEST_F(SceneFormats, WhatFloatsLoseIsNoted) {
+    std::vector<Surface> boxes = twoBoxes();
+    const auto noteOf = [&](const std::string& name, const std::string& bytes) {
+        std::string noted;
+        settings_.note = [&](const std::string& words) { noted += words; };
+        EXPECT_TRUE(load(write(name, bytes)).ok());
+        return noted;
+    };
+    for (const bool far : {false, true}) {
+        if (far)
+            for (Surface& surface : boxes)
+                for (glm::vec3& position : surface.positions) position.x += 5.4e6f;
+        for (const std::string& noted : {noteOf("a.obj", objText(boxes)), noteOf("a.fbx", fbxText(boxes))})
+            EXPECT_EQ(noted.find("points may be off by up to 322 mm: coordinates reach 5400 km") != std::string::npos,
+                      far)
+                << noted;
+    }
+}
+
 TEST_F(SceneFormats, AMissingMaterialFileIsNoted) {
     std::string noted;
     settings_.note = [&](const std::string& text) { noted += text; };

@@ -56,6 +56,34 @@ TEST_F(SceneWorker, AGoodStreamIsAScene) {
     EXPECT_EQ(scene->objects.size(), 3u);
 }
 
+TEST_F(SceneWorker, ScenesFarFromTheOriginAreNotedOnce) {
+    const auto notesOf = [&](const Scene& scene, double scale) {
+        write("stream", streamOf(scene));
+        settings_.worker = script("worker", "cat " + path("stream"));
+        settings_.scale = scale;
+        std::vector<std::string> notes;
+        settings_.note = [&](const std::string& words) { notes.push_back(words); };
+        EXPECT_TRUE(load(file_).ok());
+        std::erase_if(notes, [](const std::string& words) { return words.find("32-bit") == std::string::npos; });
+        return notes;
+    };
+    EXPECT_TRUE(notesOf(sampleScene(), 1).empty());
+    Scene far = sampleScene();
+    for (SceneObject& object : far.objects) object.transform[3].x = 5.4e6;
+    const std::vector<std::string> notes = notesOf(far, 1);
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_EQ(notes[0], file_ +
+                            ": points may be off by up to 322 mm: coordinates reach 5400 km, and this format is "
+                            "read in 32-bit numbers. Move the model near the origin, or export it as glTF");
+    EXPECT_TRUE(notesOf(far, 1e-3).empty()) << "5.4 km, in millimetres";
+    // A place takes vertices back to the origin, and not their digits.
+    Scene back = sampleScene();
+    for (Mesh& mesh : back.meshes)
+        for (glm::vec3& position : mesh.positions) position.z += 2e7f;
+    for (SceneObject& object : back.objects) object.transform[3].z = -2e7;
+    EXPECT_EQ(notesOf(back, 1).size(), 1u);
+}
+
 TEST_F(SceneWorker, MayHangAfterItsEndOrIgnoreRequests) {
     write("stream", streamOf(sampleScene()));
     settings_.worker = script("worker", "trap '' TERM INT HUP; cat " + path("stream") + "; sleep 1000");

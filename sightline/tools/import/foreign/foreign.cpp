@@ -24,6 +24,7 @@
 #include <fmt/core.h>
 
 #include "sightline/base/result.h"
+#include "sightline/tools/import/foreign/float_error.h"
 #include "sightline/tools/import/foreign/scene_stream.h"
 
 namespace sightline::tools {
@@ -285,6 +286,10 @@ Result<Scene> loadForeign(const std::string& file, std::string_view suffix, cons
     const bool cut = stream.end == SceneStream::End::kCut;
     const WorkerProcess::Exit exit = process.finish(!cut || process.timedOut());
     if (stream.end != SceneStream::End::kWhole) return failed(reason(stream, exit, process.timedOut(), settings));
+    // web-ifc keeps places in doubles; Assimp keeps nothing so.
+    const bool in_floats = suffix != "ifc" && suffix != "ifczip";
+    if (const std::string lost = in_floats ? floatErrorText(stream.scene, settings.scale) : ""; !lost.empty())
+        stream.notes.push_back(lost);
     for (const std::string& note : stream.notes)
         if (settings.note) settings.note(fmt::format("{}: {}", file, oneLine(note)));
     return std::move(stream.scene);
