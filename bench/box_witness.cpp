@@ -147,7 +147,7 @@ private:
     /// Whether nothing that float knows of lies clearly before a point of a line of sight.
     bool reaches(const SightRay& ray, double t) {
         witness_.rays.look(ray, sight_.eye(), sighting_);
-        return sighting_.t >= t - 1e-5 * std::abs(t) - witness_.rays.rounding();
+        return sighting_.t >= t - 1e-5 * std::abs(t) - sighting_.rounding;
     }
     void note(bool confirmed, const glm::dvec2& place) {
         if (!confirmed) {

@@ -95,7 +95,7 @@ OpenPlaces::OpenPlaces(const SceneEdges& edges, const RayScene& rays, const Sigh
         const SightRay ray = sight.rayThrough(place.at);
         const double depth = glm::dot(point - ray.origin, ray.direction);
         rays.look(ray, eye, sighting);
-        if (sighting.t < depth - 1e-4 * std::abs(depth) - rays.rounding()) return false;
+        if (sighting.t < depth - 1e-4 * std::abs(depth) - sighting.rounding) return false;
         const glm::dvec2 run = (other - place.at) * size_;
         if (!(glm::length(run) > 0)) return false;
         const glm::dvec2 across = glm::dvec2(-run.y, run.x) / glm::length(run);

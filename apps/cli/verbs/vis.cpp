@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <ctime>
@@ -93,8 +92,8 @@ std::optional<VisSummary::Verification::Brushes> verifyByBrushes(const VisMap& m
     return out;
 }
 
-/// Rays pass a portal only within its outline by twice what its points are known by: narrower ones are no openings, but
-/// what cells that touch in an edge share by the tolerance of the tree.
+/// Rays pass a portal only within its outline by twice what its points are known by, of its own coordinates: narrower ones
+/// are no openings, but what cells that touch in an edge share by the tolerance of the tree.
 /// Half of the rays go through the map's own tree, if it has one: then the rows hold for the map, and not only for its
 /// portals. The others go through the portals. Of a source as many as through the tree go through its brushes.
 VisSummary::Verification verifyVis(const VisMap& map, const BitMatrix& visible, const VisOptions& options, Jobs& jobs) {
@@ -110,9 +109,8 @@ VisSummary::Verification verifyVis(const VisMap& map, const BitMatrix& visible, 
     settings.segments = map.tree ? std::max<uint64_t>(1, options.rays / 2) : options.rays;
     settings.farthest = options.farthest;
     settings.seed = options.seed;
-    double largest = 1;
-    for (const glm::dvec3& p : graph.points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    addReport(checkCellRows(GraphRays(graph, 2 * kGraphPrecision * largest), visible, settings), out, leaf_of_cell);
+    const GraphRays through_portals(graph, 0, 2 * kGraphPrecision);
+    addReport(checkCellRows(through_portals, visible, settings), out, leaf_of_cell);
     if (map.tree) {
         AimedHoles holes;
         for (const CellPortal& portal : graph.portals) holes.add(graph.outline(portal));

@@ -24,7 +24,7 @@ struct Encased {
     uint64_t shells = 0;                           ///< closed surfaces that were found, by object
 };
 
-/// All triangles that keep a distance from some shell around them: a millionth of the scene's largest coordinate, so that
+/// All triangles that keep a distance from some shell around them: a millionth of the shell's largest coordinate, so that
 /// positions in float change nothing. Nothing of what deforms, and nothing within what several surfaces shut together.
 /// Doors, and what the file may draw otherwise (SceneObject::changes), are no shells and are encased by none. What else
 /// moves is taken where it stands.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <fmt/core.h>
@@ -14,12 +15,35 @@
 namespace sightline::tools {
 namespace {
 
-constexpr double kTurned = 3e-5;  // by which planes that were taken for one another may be turned, as a slope
+/// Planes that were taken for one another may be turned by 1e-5 about their points nearest to the origin. At a point p they
+/// are then 1e-5 |p| apart, and |p| is at most 1.8 times the largest coordinate.
+constexpr double kTurned = 3e-5;
 constexpr int kDeepest = 9;
 constexpr size_t kFew = 6, kMostNodes = size_t(1) << 20;
 
 double heightOver(const glm::dvec4& plane, const glm::dvec3& p) {
     return plane.x * p.x + plane.y * p.y + plane.z * p.z + plane.w;
+}
+
+/// Takes away what of an outline is higher over a plane than this.
+void cutAbove(const glm::dvec4& plane, double height, std::vector<glm::dvec3>& outline) {
+    std::vector<glm::dvec3> kept;
+    for (size_t i = 0; i < outline.size(); ++i) {
+        const glm::dvec3 &here = outline[i], &next = outline[i + 1 < outline.size() ? i + 1 : 0];
+        const double at_here = heightOver(plane, here) - height, at_next = heightOver(plane, next) - height;
+        if (at_here <= 0) kept.push_back(here);
+        if ((at_here <= 0) != (at_next <= 0)) kept.push_back(here + at_here / (at_here - at_next) * (next - here));
+    }
+    outline.swap(kept);
+}
+
+/// A square in a plane about a point of it.
+std::vector<glm::dvec3> squareIn(const glm::dvec4& plane, const glm::dvec3& middle, double half) {
+    const glm::dvec3 n(plane), size = glm::abs(n);
+    glm::dvec3 helper(0.0);
+    helper[size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2] = 1;
+    const glm::dvec3 u = half * glm::normalize(glm::cross(helper, n)), v = glm::cross(n, u);
+    return {middle - u - v, middle + u - v, middle + u + v, middle - u + v};
 }
 
 /// The text of a map by its lines: braces, and three points at the beginning of a side.
@@ -99,12 +123,12 @@ Result<BrushRays> BrushRays::read(std::string_view text, std::span<const uint8_t
     BrushRays out;
     size_t count = 0;
     bool taken = false;
-    double largest = 0;
+    out.slack_ = slack;
     SideLines(text).run(
         [&] {
             taken = count < stops.size() && stops[count];
             ++count;
-            if (taken) out.brushes_.push_back({static_cast<uint32_t>(out.planes_.size()), 0});
+            if (taken) out.brushes_.push_back({static_cast<uint32_t>(out.planes_.size()), 0, 0});
         },
         [&](const glm::dvec3(&points)[3]) {
             if (!taken) return;
@@ -114,7 +138,6 @@ Result<BrushRays> BrushRays::read(std::string_view text, std::span<const uint8_t
             for (const glm::dvec3& p : points) {
                 out.points_.push_back(p);
                 out.bounds_.grow(p);
-                largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
             }
             out.planes_.emplace_back(normal / length, -glm::dot(normal / length, points[1]));
             ++out.brushes_.back().count;
@@ -122,21 +145,50 @@ Result<BrushRays> BrushRays::read(std::string_view text, std::span<const uint8_t
     if (count != stops.size())
         return Error{Error::Kind::kInput,
                      fmt::format("by their lines there are {} brushes, and {} were read", count, stops.size())};
-    out.growth_ = slack + kTurned * largest;
-    for (glm::dvec4& plane : out.planes_) plane.w -= out.growth_;
     if (!out.bounds_.empty()) {
         out.bounds_.min -= 1024.0;
         out.bounds_.max += 1024.0;
     }
+    out.grow();
     out.divide();
     return out;
 }
 
+double BrushRays::growthAt(const glm::dvec3& point) const { return slack_ + kTurned * largestCoordinate(point); }
+
+/// No point of a brush has a larger coordinate; one without an end reaches to the bounds. The faces are moved out by the
+/// slack, and cut by twice that: so much may a tree have moved them, and no face is lost beside one that equals it.
+double BrushRays::largestOf(const Brush& brush) const {
+    const double beyond = 2 * glm::length(bounds_.size());
+    double by_corners = 0, by_points = 0;
+    for (uint32_t i = brush.first; i < brush.first + brush.count; ++i) {
+        const glm::dvec3* points = points_.data() + 3 * size_t{i};
+        for (int k = 0; k < 3; ++k) by_points = std::max(by_points, largestCoordinate(points[k]));
+        std::vector<glm::dvec3> face = squareIn(planes_[i], points[1] + slack_ * glm::dvec3(planes_[i]), beyond);
+        for (uint32_t k = brush.first; k < brush.first + brush.count && !face.empty(); ++k)
+            if (k != i) cutAbove(planes_[k], 2 * slack_, face);
+        for (const glm::dvec3& corner : face) by_corners = std::max(by_corners, largestCoordinate(corner));
+    }
+    const double most = std::max(largestCoordinate(bounds_.min), largestCoordinate(bounds_.max));
+    return std::min(by_corners > 0 ? by_corners : by_points, most);
+}
+
+void BrushRays::grow() {
+    for (Brush& brush : brushes_) {
+        if (brush.count == 0) continue;
+        brush.growth = slack_ + kTurned * largestOf(brush);
+    }
+    for (const Brush& brush : brushes_)
+        for (uint32_t i = brush.first; i < brush.first + brush.count; ++i) planes_[i].w -= brush.growth;
+}
+
 bool BrushRays::meets(const Brush& brush, const Box3d& box) const {
     const glm::dvec3 center = box.center(), half = 0.5 * box.size();
-    for (uint32_t i = brush.first; i < brush.first + brush.count; ++i)
-        if (heightOver(planes_[i], center) > glm::dot(glm::abs(glm::dvec3(planes_[i])), half) * (1 + 1e-12) + 1e-9)
+    for (uint32_t i = brush.first; i < brush.first + brush.count; ++i) {
+        const double size = largestCoordinate(center) + largestCoordinate(half) + std::abs(planes_[i].w);
+        if (heightOver(planes_[i], center) > glm::dot(glm::abs(glm::dvec3(planes_[i])), half) + 1e-12 * size)
             return false;
+    }
     return true;
 }
 
@@ -224,8 +276,12 @@ double BrushRays::follow(const glm::dvec3& a, const glm::dvec3& b) const {
 }
 
 glm::dvec3 BrushRays::pointNearSide(Random& random) const {
-    const glm::dvec3 at = points_[random.below(points_.size())];
-    return at + 4 * growth_ * std::exp2(random.uniform(0, 10)) * randomDirection(random);
+    const size_t point = random.below(points_.size());
+    // A brush without sides begins where the next one does.
+    const auto next = std::upper_bound(brushes_.begin(), brushes_.end(), point / 3,
+                                       [](size_t side, const Brush& brush) { return side < brush.first; });
+    const double off = 4 * std::prev(next)->growth * std::exp2(random.uniform(0, 10));
+    return points_[point] + off * randomDirection(random);
 }
 
 namespace {
@@ -253,7 +309,7 @@ public:
         glm::dvec3 direction = randomDirection(random);
         if (random.below(2) == 0) {
             const glm::dvec3 toward = aim(random) - through;
-            if (glm::length(toward) > rays_.growth()) direction = glm::normalize(toward);
+            if (glm::length(toward) > rays_.growthAt(through)) direction = glm::normalize(toward);
         }
         const double reach = glm::length(tree_.bounds.size());
         const glm::dvec3 ahead = within(through, through + reach * direction);
@@ -314,13 +370,15 @@ private:
 
     void judge(const glm::dvec3& a, const glm::dvec3& b) {
         const double length = glm::distance(a, b);
-        if (!(length > 4 * rays_.growth())) return;
+        const auto growthAlong = [&](double at) { return rays_.growthAt(a + at * (b - a)); };
+        if (!(length > 4 * std::max(growthAlong(0), growthAlong(1)))) return;
         walk(a, b);
         places_.clear();
         extents_.clear();
         for (const LeafStretch& stretch : stretches_) {
             // Shorter ones may be no more than rounding at a corner of the tree.
-            if (!((stretch.to - stretch.from) * length > 0.5 * rays_.growth())) continue;
+            const double least = 0.5 * std::max(growthAlong(stretch.from), growthAlong(stretch.to));
+            if (!((stretch.to - stretch.from) * length > least)) continue;
             const LeafContents contents = tree_.contents[stretch.leaf];
             if (contents == LeafContents::kSolid || contents == LeafContents::kSky) {
                 if (!convicted_[stretch.leaf]) solid_.push_back({stretch.leaf, stretch.leaf, a, b});
@@ -338,7 +396,10 @@ private:
         judge_.judge(
             places_, a, b, [](size_t, size_t) { return true; },
             [&](size_t i, size_t j) {
-                return !(farthest_ > 0) || extents_[j].first - extents_[i].second + rays_.growth() <= farthest_;
+                const double left = extents_[i].second, entered = extents_[j].first;
+                return !(farthest_ > 0) ||
+                       entered - left + std::max(growthAlong(left / length), growthAlong(entered / length)) <=
+                           farthest_;
             });
     }
 

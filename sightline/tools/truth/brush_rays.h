@@ -26,9 +26,12 @@ public:
     /// Errors (kInput): the text has another number of brushes.
     static Result<BrushRays> read(std::string_view text, std::span<const uint8_t> stops, double slack);
 
-    /// Brushes count as larger by this on all sides, for planes that a tree took for one another: the slack, and 3e-5 of the
-    /// largest coordinate.  [world units]
-    double growth() const { return growth_; }
+    /// A brush counts as larger by this on all sides, for planes that a tree took for one another: the slack, and 3e-5 of the
+    /// brush's own largest coordinate.  [world units]
+    /// @param brush  of those that stop sight, in the text's order
+    double growth(size_t brush) const { return brushes_[brush].growth; }
+    /// How far a tree's faces may lie from where they should at a point: what is shorter there tells nothing.  [world units]
+    double growthAt(const glm::dvec3& point) const;
     size_t brushes() const { return brushes_.size(); }
     /// A random point near a side of a brush, in the open or not.
     glm::dvec3 pointNearSide(Random& random) const;
@@ -38,6 +41,7 @@ public:
 private:
     struct Brush {
         uint32_t first = 0, count = 0;  // of planes
+        double growth = 0;
     };
     /// A box of space: eight smaller ones from `first` on, or a list.
     struct Node {
@@ -45,6 +49,8 @@ private:
         uint32_t first = 0, count = 0;
         bool divided = false;
     };
+    double largestOf(const Brush& brush) const;
+    void grow();
     void divide();
     bool meets(const Brush& brush, const Box3d& box) const;
 
@@ -54,7 +60,7 @@ private:
     std::vector<Node> nodes_;
     std::vector<uint32_t> lists_;
     Box3d bounds_;
-    double growth_ = 0;
+    double slack_ = 0;
 };
 
 /// What the brushes had to say.

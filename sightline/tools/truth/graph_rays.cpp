@@ -9,7 +9,8 @@
 
 namespace sightline::tools {
 
-GraphRays::GraphRays(const CellGraph& graph, double margin) : graph_(graph), margin_(margin) {
+GraphRays::GraphRays(const CellGraph& graph, double margin, double share)
+    : graph_(graph), margin_(margin), share_(share) {
     first_exit_.assign(graph.cells + 1, 0);
     for (const CellPortal& portal : graph.portals)
         for (const uint32_t cell : portal.cells) ++first_exit_[cell + 1];
@@ -22,7 +23,9 @@ GraphRays::GraphRays(const CellGraph& graph, double margin) : graph_(graph), mar
         for (uint32_t side = 0; side < 2; ++side)
             exits_[next[portal.cells[side]]++] = {i, portal.cells[1 - side], side == 0 ? 1.0 : -1.0};
         const auto outline = graph.outline(portal);
+        margins_.push_back(margin);
         for (size_t k = 0; k < outline.size(); ++k) {
+            margins_[i] = std::max(margins_[i], marginAt(outline[k]));
             const glm::dvec3 edge = outline[(k + 1) % outline.size()] - outline[k];
             const glm::dvec3 inward = glm::cross(glm::dvec3(portal.plane), edge);
             const double length = glm::length(inward);
@@ -31,11 +34,12 @@ GraphRays::GraphRays(const CellGraph& graph, double margin) : graph_(graph), mar
     }
 }
 
-bool GraphRays::isThrough(const CellPortal& portal, const glm::dvec3& point) const {
+bool GraphRays::isThrough(uint32_t number, const glm::dvec3& point) const {
+    const CellPortal& portal = graph_.portals[number];
     for (uint32_t k = portal.first; k < portal.first + portal.count; ++k) {
         const glm::dvec3& inward = inward_[k];
         if (inward == glm::dvec3(0.0)) continue;  // two corners are one
-        if (!(glm::dot(inward, point - graph_.points[k]) > margin_)) return false;
+        if (!(glm::dot(inward, point - graph_.points[k]) > margins_[number])) return false;
     }
     return true;
 }
@@ -54,7 +58,7 @@ void GraphRays::follow(uint32_t cell, const glm::dvec3& point, const glm::dvec3&
             if (!(toward < -1e-9 * speed)) continue;
             const double height = glm::dot(glm::dvec3(portal.plane), point) + portal.plane.w;
             const double at = -height * exit.side / toward;
-            if (!(at > step.at) || !isThrough(portal, point + at * direction)) continue;
+            if (!(at > step.at) || !isThrough(exit.portal, point + at * direction)) continue;
             steps.push_back({exit.to, s, at});
             // Unions of cells can be entered again and again, but not without end.
             if (steps.size() > 4096) return;
@@ -81,7 +85,8 @@ public:
 
     void line(Random& random) {
         const CellGraph& graph = rays_.graph();
-        const CellPortal& portal = graph.portals[random.below(graph.portals.size())];
+        const auto number = static_cast<uint32_t>(random.below(graph.portals.size()));
+        const CellPortal& portal = graph.portals[number];
         const glm::dvec3 through = pointInHole(random, graph.outline(portal));
         glm::dvec3 direction = randomDirection(random);
         if (random.below(2) == 0) {
@@ -92,7 +97,7 @@ public:
             if (glm::length(toward) > 0) direction = glm::normalize(toward);
         }
         const double along = glm::dot(glm::dvec3(portal.plane), direction);
-        if (!(std::abs(along) > 1e-9) || !isInside(portal, through)) return;
+        if (!(std::abs(along) > 1e-9) || !isInside(number, through)) return;
         // Forward and backward are two walks; each chain of the one and each of the other make one line.
         const uint32_t ahead = along > 0 ? 0 : 1;
         rays_.follow(portal.cells[ahead], through, direction, forward_);
@@ -113,8 +118,11 @@ public:
                     entered_.push_back(forward_[step].at);
                 }
                 const auto is_near = [&](size_t i, size_t j) {
-                    return !(farthest_ > 0) || i == j ||
-                           entered_[j] - entered_[i + 1] + 4 * rays_.margin() <= farthest_;
+                    if (!(farthest_ > 0) || i == j) return true;
+                    const double left = entered_[i + 1], entered = entered_[j];
+                    const double margin =
+                        rays_.marginAt(through + left * direction) + rays_.marginAt(through + entered * direction);
+                    return entered - left + 2 * margin <= farthest_;
                 };
                 judge_.judge(
                     places_, through - direction, through + direction, [](size_t, size_t) { return true; }, is_near);
@@ -124,13 +132,14 @@ public:
     const RowJudge& judge() const { return judge_; }
 
 private:
-    bool isInside(const CellPortal& portal, const glm::dvec3& point) const {
+    bool isInside(uint32_t number, const glm::dvec3& point) const {
+        const CellPortal& portal = rays_.graph().portals[number];
         const auto outline = rays_.graph().outline(portal);
         for (size_t k = 0; k < outline.size(); ++k) {
             const glm::dvec3 edge = outline[(k + 1) % outline.size()] - outline[k];
             const glm::dvec3 inward = glm::cross(glm::dvec3(portal.plane), edge);
             if (edge != glm::dvec3(0.0) &&
-                !(glm::dot(inward, point - outline[k]) > rays_.margin() * glm::length(inward)))
+                !(glm::dot(inward, point - outline[k]) > rays_.marginOf(number) * glm::length(inward)))
                 return false;
         }
         return true;

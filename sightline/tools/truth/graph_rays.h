@@ -27,11 +27,15 @@ class GraphRays {
 public:
     /// @param graph   outlives this  [finite]
     /// @param margin  a line is through a portal if it passes inside of the outline by so much, seen along the portal's
-    ///                normal; what passes closer to an edge, or outside, is not through  [world units] [> 0]
-    explicit GraphRays(const CellGraph& graph, double margin);
+    ///                normal; what passes closer to an edge, or outside, is not through  [world units]
+    /// @param share   of the largest coordinate of the portal's own outline, which is added to the margin
+    explicit GraphRays(const CellGraph& graph, double margin, double share = 0);
 
     const CellGraph& graph() const { return graph_; }
-    double margin() const { return margin_; }
+    double margin() const { return margin_; }  ///< without the share
+    double marginOf(uint32_t portal) const { return margins_[portal]; }
+    /// No more than that of any portal with this point in it.
+    double marginAt(const glm::dvec3& point) const { return margin_ + share_ * largestCoordinate(point); }
 
     /// All cells that a line reaches from a point in a cell, where parameters are above 0. From a convex cell a line
     /// goes on through one portal, or through two that overlap by a tolerance; from a cell that is a union of others,
@@ -48,12 +52,13 @@ private:
         uint32_t to;
         double side;  // +1: the normal points into the cell that is left
     };
-    bool isThrough(const CellPortal& portal, const glm::dvec3& point) const;
+    bool isThrough(uint32_t portal, const glm::dvec3& point) const;
 
     const CellGraph& graph_;
-    double margin_;
+    double margin_, share_;
     std::vector<uint32_t> first_exit_;
     std::vector<Exit> exits_;
+    std::vector<double> margins_;     // per portal
     std::vector<glm::dvec3> inward_;  // per point of the graph: of the edge that begins there, unit, in the plane
 };
 

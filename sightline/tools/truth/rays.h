@@ -23,22 +23,21 @@ struct RaySighting {
 
     uint32_t object = kNone;     ///< the first front that hides what is behind it
     double t = 0;                ///< there, along SightRay; or t_far
+    double rounding = 0;         ///< how far the place that was met may be off  [world units]
     std::vector<Passed> passed;  ///< met before it: seen, but hiding nothing; in no order, may repeat
 };
 
-/// One Embree scene per shared mesh and one instance per object that shares it, relative to the scene's centre.
-/// Thread-safe once made.
+/// One Embree scene for each group of objects that lie near together (NearGroup), about the group's middle: what is far off
+/// coarsens nothing. One more for each shared mesh, of which objects are instances. Thread-safe once made.
 class RayScene {
 public:
+    /// @param facts  outlive this
     explicit RayScene(const SceneFacts& facts);
     ~RayScene();
 
     /// Single-sided back faces are passed unseen; the ray begins at the near plane and ends at the far plane.
     /// @param eye  that the ray is relative to, in world space
     void look(const SightRay& ray, const glm::dvec3& eye, RaySighting& sighting) const;
-
-    /// How far positions may be off, over all of the scene [world units].
-    double rounding() const;
 
 private:
     struct Impl;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,6 +14,9 @@
 #include "sightline/base/jobs.h"
 
 namespace sightline::tools {
+
+/// No coordinate of a point is larger, whichever its sign.
+inline double largestCoordinate(const glm::dvec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
 
 /// A pair that the rows lack, and the segment that passes from one to the other with nothing between.
 struct RowMiss {

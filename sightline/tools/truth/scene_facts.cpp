@@ -125,21 +125,15 @@ SceneFacts::SceneFacts(const Scene& scene) : scene_(scene) {
         meshes_.push_back(std::make_unique<MeshFacts>());
         gather(scene, mesh, *meshes_.back());
     }
-    Box3d world;
     boxes_.resize(scene.objects.size());
     for (size_t i = 0; i < scene.objects.size(); ++i) {
         const SceneObject& object = scene.objects[i];
         const Box3d box = transformBox(meshes_[object.mesh]->bounds, object.transform);
         if (!box.finite() || !withinReach(box)) continue;
         boxes_[i] = box;
-        world.grow(box);
     }
     tree_.build(boxes_);
     findEqual();
-    if (world.empty()) return;
-    center_ = world.center();
-    const glm::dvec3 half = 0.5 * world.size();
-    radius_ = std::max({half.x, half.y, half.z});
 }
 
 bool SceneFacts::areEqual(uint32_t a, uint32_t b) const {

@@ -85,8 +85,6 @@ public:
     uint32_t firstEqual(uint32_t object) const { return twins_ > 0 ? first_equal_[object] : object; }
     /// Whether another object equals it.
     bool hasEqual(uint32_t object) const { return twins_ > 0 && has_equal_[object]; }
-    const glm::dvec3& center() const { return center_; }
-    double radius() const { return radius_; }  ///< largest distance of a box from the centre, per axis
 
 private:
     void findEqual();
@@ -99,8 +97,6 @@ private:
     std::vector<uint32_t> first_equal_;
     std::vector<uint8_t> has_equal_;
     size_t twins_ = 0;  ///< objects that equal an earlier one
-    glm::dvec3 center_{0.0};
-    double radius_ = 0;
 };
 
 }  // namespace sightline::tools

@@ -35,10 +35,6 @@ TreeRays::TreeRays(const LeafTree& tree, const TreeRaySettings& settings)
         }
         nodes_.push_back(node);
     }
-    if (!tree.bounds.empty()) {
-        const glm::dvec3 far = glm::max(glm::abs(tree.bounds.min), glm::abs(tree.bounds.max));
-        margin_ = 0x1p-42 * std::max({far.x, far.y, far.z});
-    }
 }
 
 uint32_t TreeRays::leafAt(const glm::dvec3& point) const {
@@ -82,24 +78,40 @@ void TreeRays::follow(const glm::dvec3& a, const glm::dvec3& b, TreeWalk& walk) 
     walk.arrived = true;
 }
 
-bool TreeRays::isInside(uint32_t place, uint32_t but, const glm::dvec3& point) const {
+/// The crossing may be off along the segment by the rounding of its height, divided by the plane's slope: then heights over
+/// another plane change by that times the other's slope.
+bool TreeRays::isInside(uint32_t place, const Step& step) const {
+    const SegmentRounding rounding(step.a, step.b);
+    const auto roundingOf = [&](const Node& node, double at) {
+        return rounding.at(at) + SegmentRounding::kPart * std::abs(node.plane[3]);
+    };
+    const auto slopeOf = [&](const Node& node) {
+        return std::abs(heightAt(node.plane, step.b) - heightAt(node.plane, step.a));
+    };
+    const Node& crossed = nodes_[step.node];
+    const double slope = slopeOf(crossed) - roundingOf(crossed, 1);
+    if (!(slope > 0)) return false;
+    const double off = roundingOf(crossed, step.at) / slope;
+    const glm::dvec3 point = step.a + step.at * (step.b - step.a);
     for (; place != kTop; place = above_[place >> 1]) {
-        if (place >> 1 == but) continue;
+        if (place >> 1 == step.node) continue;
         const Node& node = nodes_[place >> 1];
         const double height = heightAt(node.plane, point);
-        if (((place & 1) != 0 ? height : -height) > margin_) continue;
+        const double margin = roundingOf(node, step.at) + off * (slopeOf(node) + roundingOf(node, 1));
+        if (((place & 1) != 0 ? height : -height) > margin) continue;
         // The same plane once more is no other plane.
-        const glm::dvec4 &here = tree_.nodes[place >> 1].plane, &crossed = tree_.nodes[but].plane;
-        if (here != crossed && here != -crossed) return false;
+        const glm::dvec4 &here = tree_.nodes[place >> 1].plane, &there = tree_.nodes[step.node].plane;
+        if (here != there && here != -there) return false;
     }
     return true;
 }
 
 bool TreeRays::stands(const glm::dvec3& a, const glm::dvec3& b, const TreeWalk& walk, size_t i, size_t j) const {
     const double length = glm::distance(a, b);
+    const SegmentRounding rounding(a, b);
     for (const size_t end : {i, j}) {
         const TreeStretch& stretch = walk.stretches[end];
-        if (!((stretch.to - stretch.from) * length > margin_)) return false;
+        if (!((stretch.to - stretch.from) * length > rounding.at(stretch.to))) return false;
     }
     for (size_t k = i; k < j; ++k) {
         const TreeStretch &before = walk.stretches[k], &after = walk.stretches[k + 1];
@@ -111,8 +123,8 @@ bool TreeRays::stands(const glm::dvec3& a, const glm::dvec3& b, const TreeWalk& 
             else y = above_[y >> 1];
             if (x == kTop || y == kTop) return false;
         }
-        const glm::dvec3 point = a + after.from * (b - a);
-        if (!isInside(before.place, x >> 1, point) || !isInside(after.place, x >> 1, point)) return false;
+        const Step step{a, b, after.from, x >> 1};
+        if (!isInside(before.place, step) || !isInside(after.place, step)) return false;
     }
     return true;
 }
@@ -151,7 +163,7 @@ public:
                 (hole + random.below(128) + holes_.size() - std::min<size_t>(64, holes_.size())) % holes_.size();
             const glm::dvec3 at = pointInHole(random, holes_.outline(other));
             const double distance = glm::distance(at, through);
-            if (distance > 1e-9 * diagonal_) direction = (at - through) / distance;
+            if (distance > 0) direction = (at - through) / distance;
         }
         // Both ways from the hole, as far as they go; together they are one segment.
         const glm::dvec3 back = endOf(through, -direction), to = endOf(through, direction);
@@ -161,14 +173,12 @@ public:
         const glm::dvec3 from = middleOf(back_walk_.stretches.back(), through, back);
         places_.clear();
         extents_.clear();
-        const double least_back = leastOf(through, back), least = leastOf(through, to);
-        const double reach_back = glm::distance(through, back), reach = glm::distance(through, to);
+        const Line behind(through, back), ahead(through, to);
         for (size_t i = back_walk_.stretches.size(); i-- > 0;) {
-            const TreeStretch& stretch = back_walk_.stretches[i];
-            addPlace(stretch, least_back, {-stretch.to * reach_back, -stretch.from * reach_back});
+            const Extent extent = behind.extentOf(back_walk_.stretches[i]);
+            addPlace(back_walk_.stretches[i], {-extent.to, -extent.from, extent.rounding});
         }
-        for (const TreeStretch& stretch : walk_.stretches)
-            addPlace(stretch, least, {stretch.from * reach, stretch.to * reach});
+        for (const TreeStretch& stretch : walk_.stretches) addPlace(stretch, ahead.extentOf(stretch));
         const glm::dvec3 end = middleOf(walk_.stretches.back(), through, to);
         seen_.assign(places_.begin(), places_.end());
         seen_extents_.assign(extents_.begin(), extents_.end());
@@ -190,11 +200,19 @@ public:
 private:
     /// Where a line is in a place, along the line.  [world units]
     struct Extent {
-        double from, to;
+        double from, to, rounding;
+    };
+    struct Line {
+        Line(const glm::dvec3& a, const glm::dvec3& b) : length(glm::distance(a, b)), rounding(a, b) {}
+        Extent extentOf(const TreeStretch& stretch) const {
+            return {stretch.from * length, stretch.to * length, rounding.at(stretch.to)};
+        }
+        double length;
+        SegmentRounding rounding;
     };
 
     bool isNear(const Extent& first, const Extent& second) const {
-        return !(farthest_ > 0) || second.from - first.to + 4 * rays_.margin() <= farthest_;
+        return !(farthest_ > 0) || second.from - first.to + 2 * (first.rounding + second.rounding) <= farthest_;
     }
 
     glm::dvec3 pointInBounds(Random& random) const {
@@ -215,20 +233,18 @@ private:
         return from + reach * direction;
     }
 
-    double leastOf(const glm::dvec3& a, const glm::dvec3& b) const {
-        return rays_.margin() / std::max(glm::distance(a, b), rays_.margin());
-    }
     static glm::dvec3 middleOf(const TreeStretch& stretch, const glm::dvec3& a, const glm::dvec3& b) {
         return a + 0.5 * (stretch.from + stretch.to) * (b - a);
     }
 
     /// Adds where a stretch lies, unless it is too short to tell or goes on where the last one was. True if it was
     /// added.
-    bool addPlace(const TreeStretch& stretch, double least, const Extent& extent) {
-        if (!(stretch.to - stretch.from > least)) return false;
+    bool addPlace(const TreeStretch& stretch, const Extent& extent) {
+        if (!(extent.to - extent.from > extent.rounding)) return false;
         const uint32_t row = row_of_leaf_.empty() ? stretch.leaf : row_of_leaf_[stretch.leaf];
         if (!places_.empty() && places_.back() == row) {
             extents_.back().to = extent.to;
+            extents_.back().rounding = std::max(extents_.back().rounding, extent.rounding);
             return false;
         }
         places_.push_back(row);
@@ -241,11 +257,9 @@ private:
         places_.clear();
         extents_.clear();
         stretch_.clear();
-        const double least = leastOf(a, b), length = glm::distance(a, b);
-        for (uint32_t i = 0; i < walk_.stretches.size(); ++i) {
-            const TreeStretch& stretch = walk_.stretches[i];
-            if (addPlace(stretch, least, {stretch.from * length, stretch.to * length})) stretch_.push_back(i);
-        }
+        const Line line(a, b);
+        for (uint32_t i = 0; i < walk_.stretches.size(); ++i)
+            if (addPlace(walk_.stretches[i], line.extentOf(walk_.stretches[i]))) stretch_.push_back(i);
     }
 
     void pass(const glm::dvec3& a, const glm::dvec3& b) {

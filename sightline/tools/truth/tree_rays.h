@@ -39,26 +39,45 @@ struct TreeWalk {
     std::vector<Part> stack;
 };
 
+/// How far the place of a parameter of a segment may be off by rounding: 2^-46 (|a| + t (|a| + |b|)). Where the segment begins
+/// nearby that follows the coordinates of the place, however far the other end is.  [world units]
+///
+/// Let u = 2^-53, and h(t) the exact height over a plane (n, w) of a point of the segment. The heights of the ends are computed
+/// with errors below 4 u (|a| + |w|) and 4 u (|b| + |w|). Where the computed ones cross, h is the mean of these errors, weighed
+/// by 1 - t and t. The quotient, and comparisons at the ends of a part, add 6 u t |b - a|. So |h| < 10 u (|a| + t (|a| + |b|) +
+/// |w|). The point itself is rounded by 3 u (|a| + t (|a| + |b|)), and its height over another plane by 4 u (|p| + |w|). 2^-46
+/// is 128 u, seven times as much as these together.
+class SegmentRounding {
+public:
+    static constexpr double kPart = 0x1p-46;
+
+    SegmentRounding(const glm::dvec3& a, const glm::dvec3& b)
+        : at_start_(kPart * glm::length(a)), per_t_(at_start_ + kPart * glm::length(b)) {}
+
+    double at(double t) const { return at_start_ + t * per_t_; }
+
+private:
+    double at_start_, per_t_;
+};
+
 class TreeRays {
 public:
     /// @param tree  outlives this  [finite]
     explicit TreeRays(const LeafTree& tree, const TreeRaySettings& settings = {});
 
     const LeafTree& tree() const { return tree_; }
-    /// What is closer than this is not told apart [world units]: 2^-42 of the largest coordinate.
-    double margin() const { return margin_; }
     /// Whether segments may be in it.
     bool passes(uint32_t leaf) const { return passes_[leaf]; }
     /// Of a point in a plane the leaf in front.
     uint32_t leafAt(const glm::dvec3& point) const;
 
-    /// Follows a segment from `a` towards `b`. In double, so that it may be wrong about what it passes within some
-    /// 1e-12 of the coordinates: stands() tells. Nothing is passed if `a` is in what ends segments.
+    /// Follows a segment from `a` towards `b`. In double, so that it may be wrong about what it passes within rounding:
+    /// stands() tells. Nothing is passed if `a` is in what ends segments.
     void follow(const glm::dvec3& a, const glm::dvec3& b, TreeWalk& walk) const;
 
-    /// Whether the steps of a walk from stretch `i` to stretch `j` are beyond rounding: each crosses a plane at a place
-    /// that is inside all other planes of the two leaves by more than the margin, and both stretches at the ends are
-    /// longer than that.
+    /// Whether the steps of a walk from stretch `i` to stretch `j` are beyond rounding (SegmentRounding): each crosses a plane
+    /// at a place that is inside all other planes of the two leaves by more than that, and both stretches at the ends are
+    /// longer.
     bool stands(const glm::dvec3& a, const glm::dvec3& b, const TreeWalk& walk, size_t i, size_t j) const;
 
 private:
@@ -66,11 +85,15 @@ private:
         double plane[4];
         uint32_t child[2];
     };
-    bool isInside(uint32_t place, uint32_t but, const glm::dvec3& point) const;
+    struct Step {
+        glm::dvec3 a, b;
+        double at;  // where the segment crosses the plane of a node
+        uint32_t node;
+    };
+    bool isInside(uint32_t place, const Step& step) const;
 
     const LeafTree& tree_;
     bool contents_stop_;
-    double margin_ = 0;
     std::vector<Node> nodes_;
     std::vector<uint8_t> passes_;
     std::vector<uint32_t> above_;  // per node: the parent times 2 plus the side
@@ -78,8 +101,8 @@ private:
 
 /// Holds rows of leaves, or of what leaves belong to, against segments: between points of the bounds, the first of
 /// which is in a leaf that can be passed; and, aimed, through points of holes, to both sides, half of them on to
-/// another hole nearby. All leaves of a segment see one another, but for those that it passes for less than the
-/// margin. Seeded: a report is the same on every machine and with any number of threads.
+/// another hole nearby. All leaves of a segment see one another, but for those that it passes for less than rounding
+/// (SegmentRounding). Seeded: a report is the same on every machine and with any number of threads.
 /// @param rows         symmetric or not: both directions must be there
 /// @param row_of_leaf  or RowJudge::kNoRow; empty: each leaf is its own row  [size: leaves]
 /// @param holes        without any, no segment is aimed

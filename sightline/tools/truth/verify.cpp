@@ -134,7 +134,7 @@ struct Witness::Impl {
                 ++trial.verdict.aimed_rays;
                 // Float cannot tell what is this close to the point: the exact test may.
                 const double t = glm::dot(target.point - ray.origin, ray.direction);
-                if (sighting.t >= t - 1e-5 * std::abs(t) - rays.rounding()) trial.reached(aim.object, target);
+                if (sighting.t >= t - 1e-5 * std::abs(t) - sighting.rounding) trial.reached(aim.object, target);
             }
         }
     }

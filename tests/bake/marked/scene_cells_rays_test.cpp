@@ -205,11 +205,10 @@ void judgeScene(const Scene& scene, int rays, uint64_t seed, SceneCellSettings s
     const SceneFacts facts(without);
     const RayScene truth(facts);
     const OpaqueTriangles triangles(without);
-    const double rounding = 4 * truth.rounding();
     const auto meets = [&](const glm::dvec3& from, const glm::dvec3& along, double, double last) {
         RaySighting sighting;
-        truth.look({glm::dvec3(0), along, 0, last + rounding}, from, sighting);
-        return sighting.object != RaySighting::kNone && sighting.t <= last + rounding;
+        truth.look({glm::dvec3(0), along, 0, std::numeric_limits<double>::infinity()}, from, sighting);
+        return sighting.object != RaySighting::kNone && sighting.t <= last + 4 * sighting.rounding;
     };
     const auto surely = [&](const glm::dvec3& from, const glm::dvec3& along, double first, double last) {
         return triangles.meets(from, along, first, last, 1e-9);

@@ -33,7 +33,8 @@ std::string boxText(int x0, int y0, int z0, int x1, int y1, int z1, const std::s
 }
 
 /// Two rooms of 128 with a wall between them, which has a door 32 wide, and a pillar in each room.
-std::string roomsText(bool with_door = true) {
+/// @param stray  one more brush stands so far off; 0: none
+std::string roomsText(bool with_door = true, int stray = 0) {
     std::string text = "// Game: Quake\n{\n\"classname\" \"worldspawn\"\n";
     text += boxText(-16, -16, -16, 288, 144, 0) + boxText(-16, -16, 128, 288, 144, 144);
     text += boxText(-16, -16, 0, 0, 144, 128) + boxText(272, -16, 0, 288, 144, 128);
@@ -41,6 +42,7 @@ std::string roomsText(bool with_door = true) {
     text += boxText(128, 0, 0, 144, 48, 128) + boxText(128, 80, 0, 144, 128, 128);
     if (!with_door) text += boxText(128, 48, 0, 144, 80, 128);
     text += boxText(32, 32, 0, 48, 96, 128) + boxText(208, 16, 0, 224, 64, 128);
+    if (stray != 0) text += boxText(stray, 0, 0, stray + 16, 16, 16);
     return text + boxText(100, 100, 40, 110, 110, 50, "clip") +
            "}\n{\n\"classname\" \"light\"\n\"origin\" \"64 16 64\"\n}\n";
 }
@@ -81,9 +83,10 @@ TEST(BrushRays, StopAtBrushes) {
     const Result<BrushRays> rays = rooms.rays();
     ASSERT_TRUE(rays.ok()) << rays.error().message;
     EXPECT_EQ(rays->brushes(), 10u) << "a clip stops nothing";
-    EXPECT_NEAR(rays->growth(), 0.01 + 3e-5 * 288, 1e-12);
+    EXPECT_NEAR(rays->growth(3), 0.01 + 3e-5 * 288, 1e-6);
+    EXPECT_NEAR(rays->growth(8), 0.01 + 3e-5 * 128, 1e-6) << "a pillar";
     // In the file's axes: from (16, 64, 64) along x to the pillar at 32.
-    EXPECT_NEAR(rays->follow({16, 64, -64}, {116, 64, -64}), (16 - rays->growth()) / 100, 1e-9);
+    EXPECT_NEAR(rays->follow({16, 64, -64}, {116, 64, -64}), (16 - rays->growth(8)) / 100, 1e-9);
     EXPECT_EQ(rays->follow({64, 64, -64}, {200, 64, -72}), 1);  // through the door
     EXPECT_EQ(rays->follow({40, 64, -64}, {0, 64, -64}), 0);    // from within the pillar
     EXPECT_LT(rays->follow({64, 64, -16}, {200, 64, -16}), 0.5);
@@ -96,13 +99,15 @@ TEST(BrushRays, StopAtBrushes) {
         };
         const glm::dvec3 a = point(), b = point();
         double first = 1;
+        size_t stops = 0;
         for (const QuakeMapBrush& brush : rooms.map.brushes) {
             if (rooms.map.textures[rooms.map.sidesOf(brush)[0].texture] == "clip") continue;
+            const double growth = rays->growth(stops++);
             double in = 0, out = 1;
             for (const QuakeMapSide& side : rooms.map.sidesOf(brush)) {
                 const glm::dvec3 n =
                     glm::normalize(glm::cross(side.points[0] - side.points[1], side.points[2] - side.points[1]));
-                const double at = glm::dot(n, a - side.points[0]) - rays->growth(), slope = glm::dot(n, b - a);
+                const double at = glm::dot(n, a - side.points[0]) - growth, slope = glm::dot(n, b - a);
                 if (slope < 0) in = std::max(in, -at / slope);
                 else if (slope > 0) out = std::min(out, -at / slope);
                 else if (at > 0) in = 2;
@@ -157,11 +162,11 @@ TEST(BrushRays, ConvictATreeWithAShiftedPlane) {
     EXPECT_GE(3 * convicted, moved) << moved;
 }
 
-TEST(BrushRays, ConvictATreeWithoutADoor) {
-    // The tree and the rows of another map, in which the door is walled up: the tree's own rays find nothing wrong.
-    const Judged walled(roomsText(false));
+/// The tree and the rows of another map, in which the door is walled up: the tree's own rays find nothing wrong.
+void judgeWithoutADoor(int stray) {
+    const Judged walled(roomsText(false, stray));
     Judged wrong = walled;
-    wrong.text = roomsText(true);
+    wrong.text = roomsText(true, stray);
     const Result<QuakeMap> map =
         parseQuakeMap({reinterpret_cast<const unsigned char*>(wrong.text.data()), wrong.text.size()}, "test.map");
     wrong.brushes.roles = brushRoles(*map);
@@ -170,6 +175,20 @@ TEST(BrushRays, ConvictATreeWithoutADoor) {
     EXPECT_GT(report.rows.misses, 0u);
     for (const RowMiss& miss : report.solid) EXPECT_GT(glm::distance(miss.from, miss.to), 0);
     EXPECT_TRUE(walled.judge(40000).solid.empty());
+}
+
+TEST(BrushRays, ConvictATreeWithoutADoor) { judgeWithoutADoor(0); }
+
+// A brush far off once made all brushes grow by 30 units and more: the door was shut.
+TEST(BrushRays, ConvictATreeWithoutADoorWhateverLiesFarOff) {
+    for (const int stray : {100000, 1000000, 10000000}) {
+        SCOPED_TRACE(stray);
+        const Result<BrushRays> rays = Judged(roomsText(true, stray)).rays();
+        ASSERT_TRUE(rays.ok()) << rays.error().message;
+        EXPECT_NEAR(rays->growth(8), 0.01 + 3e-5 * 128, 1e-6) << "a pillar";
+        EXPECT_NEAR(rays->growth(10), 0.01 + 3e-5 * stray, 1e-3) << "the brush far off";
+        judgeWithoutADoor(stray);
+    }
 }
 
 TEST(BrushRays, ConvictRowsThatLackAPair) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sightline/tools/truth/graph_rays.h"
 
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "sightline/bsp/merge_cells.h"
@@ -110,6 +112,40 @@ TEST(GraphRays, PassInsideOfTheMarginOnly) {
         EXPECT_EQ(steps.size(), 1u) << y;
     }
     EXPECT_EQ(graph.portals[0].plane.x, -1);  // counter-clockwise as seen from cell 0, the normal into it
+}
+
+// Three cells in a row, the first portal being a slit, and two more far off, which see nothing of them.
+TEST(GraphRays, FindSlitsWhateverLiesFarOff) {
+    constexpr double kShare = 0x1p-34;
+    for (const double far : {1e3, 1e6, 1e7})
+        for (const double width : {1e-3, 1e-6, 1e-8}) {
+            CellGraph graph = stairs(3, 0);
+            for (uint32_t k = 0; k < 4; ++k)
+                if (graph.points[k].y > 0) graph.points[k].y = width;
+            graph.cells = 5;
+            const glm::dvec3 outline[4] = {{far, 0, 0}, {far, 0, 1}, {far, 1, 1}, {far, 1, 0}};
+            graph.addPortal(3, 4, outline);
+            BitMatrix rows(5, 5);
+            for (uint32_t i = 0; i < 5; ++i) rows.set(i, i);
+            for (const auto& [a, b] : {std::pair(0, 1), std::pair(1, 2), std::pair(3, 4)})
+                rows.set(a, b), rows.set(b, a);
+            const RowCheckSettings settings{.segments = 4000};
+            const RowReport report = checkCellRows(GraphRays(graph, 0, kShare), rows, settings);
+            EXPECT_EQ(report.misses, 2u) << "portal at " << far << ", width " << width;
+            // A margin by the largest coordinate of the graph closes the slit.
+            if (2 * kShare * far > width) {
+                EXPECT_EQ(checkCellRows(GraphRays(graph, kShare * far), rows, settings).misses, 0u);
+            }
+        }
+}
+
+TEST(GraphRays, TakeTheirShareOfThePortalAtHand) {
+    CellGraph graph = stairs(3, 0);
+    for (uint32_t k = 4; k < 8; ++k) graph.points[k].y -= 1e6;
+    const GraphRays rays(graph, 1e-3, 0x1p-20);
+    EXPECT_EQ(rays.marginOf(0), 1e-3 + 0x1p-20);
+    EXPECT_EQ(rays.marginOf(1), 1e-3 + 1e6 * 0x1p-20);
+    EXPECT_EQ(GraphRays(graph, 1e-3).marginOf(1), 1e-3);
 }
 
 TEST(GraphRays, LeaveUnionsOfCellsThroughEachPortal) {

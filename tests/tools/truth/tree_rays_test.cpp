@@ -161,6 +161,27 @@ TEST(TreeRays, AimedOnesFindSlitsThatOthersDoNot) {
     EXPECT_EQ(report.misses, 0u);
 }
 
+// The bounds of a map reach as far as one stray thing does: rounding is that of the segment all the same.
+TEST(TreeRays, AimedOnesFindSlitsHoweverFarTheBoundsReach) {
+    BitMatrix rows(5, 5);
+    for (uint32_t i = 0; i < 5; ++i) rows.set(i, i);
+    for (const uint32_t room : {0u, 1u}) rows.set(room, 3), rows.set(3, room);
+    for (const double far : {1e3, 1e6, 1e7})
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double width : {1e-3, 1e-6, 1e-9}) {
+                LeafTree tree = slit(width);
+                const AimedHoles holes = holesOf(cellsOfTree(tree));
+                tree.bounds.max[axis] = far;
+                const RowCheckSettings settings{.segments = 4000, .aimed = 1};
+                const RowReport report = checkLeafRows(TreeRays(tree), rows, {}, holes, settings);
+                EXPECT_EQ(report.misses, 2u) << "bounds " << far << " along " << axis << ", width " << width;
+            }
+    LeafTree tree = slit(1e-14);
+    const AimedHoles holes = holesOf(cellsOfTree(tree));
+    tree.bounds.max.x = 1e6;
+    EXPECT_EQ(checkLeafRows(TreeRays(tree), rows, {}, holes, {.segments = 4000, .aimed = 1}).misses, 0u);
+}
+
 TEST(TreeRays, CountPlacesWithoutARow) {
     const LeafTree tree = slit(1);
     BitMatrix rows(1, 1);

@@ -200,6 +200,68 @@ TEST(Witness, AimedRaysFindSlits) {
     }
 }
 
+/// What lies far off, or around all.
+enum class Far {
+    kStray,   ///< a triangle
+    kDome,    ///< a box around all, with a middle of its own
+    kChain,   ///< triangles each five times as far as the one before: no gap tells them from the rest
+    kInMesh,  ///< a triangle of the walls' own mesh
+};
+
+void addFar(Scene& scene, Far what, double far) {
+    const auto triangleAt = [](double at, double size) {
+        const auto x = static_cast<float>(at), y = static_cast<float>(size);
+        return std::vector<glm::vec3>{{x, 0, 0}, {x, y, 0}, {x, 0, y}};
+    };
+    if (what == Far::kStray) addObject(scene, addMesh(scene, triangleAt(far, 1), {0, 1, 2}), moved({0, 0, 0}));
+    if (what == Far::kDome)
+        addObject(scene, addBox(scene, glm::vec3(static_cast<float>(far)), 1), moved({0.3 * far, 0.2 * far, 0}));
+    for (double at = 100; what == Far::kChain && at <= far; at *= 5)
+        addObject(scene, addMesh(scene, triangleAt(at, 0.2 * at), {0, 1, 2}), moved({0, 0, 0}));
+    if (what != Far::kInMesh) return;
+    Mesh& wall = scene.meshes[0];
+    for (const glm::vec3& corner : triangleAt(far, 1)) {
+        wall.indices.push_back(static_cast<uint32_t>(wall.positions.size()));
+        wall.positions.push_back(corner);
+        wall.bounds.grow(glm::dvec3(corner));
+    }
+    ++wall.primitives[0].triangle_count;
+}
+
+TEST(Witness, AimedRaysFindSlitsWhateverLiesFarOff) {
+    const View view = viewBy(perspective(1.0, 4.0 / 3, 0.1), 1280, 960);
+    WitnessSettings settings = raysOnly();
+    settings.rays = settings.aimed_rays = 4000;
+    for (const Far what : {Far::kStray, Far::kDome, Far::kChain, Far::kInMesh})
+        for (const double far : {1e3, 1e4, 1e5, 1e6, 1e7})
+            for (const double width : {0.3, -0.3}) {
+                Scene scene = slitScene(view, width, glm::dvec3(0.0));
+                addFar(scene, what, far);
+                std::vector<uint8_t> culled(scene.objects.size(), 0);
+                culled[2] = 1;
+                const FrameVerdict verdict = Witness(scene).judge(view, culled, settings);
+                EXPECT_EQ(verdict.false_culls.size(), width > 0 ? 1u : 0u)
+                    << "thing " << static_cast<int>(what) << " at " << far << " width " << width;
+            }
+}
+
+TEST(Witness, AimedRaysFindSlitsInEachOfTwoTowns) {
+    WitnessSettings settings = raysOnly();
+    settings.rays = settings.aimed_rays = 4000;
+    for (const double far : {1e3, 1e4, 1e5, 1e6, 1e7})
+        for (uint32_t town = 0; town < 2; ++town) {
+            const glm::dvec3 eye(town * far, 0, 0);
+            View view = viewBy(perspective(1.0, 4.0 / 3, 0.1), 1280, 960);
+            Scene scene = slitScene(view, 0.3, glm::dvec3(0.0));
+            for (const SceneObject& object : slitScene(view, 0.3, glm::dvec3(far, 0, 0)).objects)
+                addObject(scene, object.mesh, object.transform);
+            view.view = lookAt(eye, eye + glm::dvec3(0, 0, -1), {0, 1, 0});
+            const FrameVerdict verdict = Witness(scene).judge(view, std::vector<uint8_t>{0, 0, 1, 0, 0, 1}, settings);
+            ASSERT_EQ(verdict.false_culls.size(), 1u) << "town " << town << ", the other at " << far;
+            EXPECT_EQ(verdict.false_culls[0].object, town == 0 ? 2u : 5u) << far;
+        }
+}
+
 TEST(Witness, WorldFarFromTheOrigin) {
     for (const double away : {1e6, 1e9}) {
         const glm::dvec3 shift(away, -away, 0.3 * away);
