@@ -114,6 +114,26 @@ void projectVertices(const ObjectFrame& frame, const PlaneMesh& mesh, const Plan
     out.r_max = most(r1);
 }
 
+void projectExactly(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& c, ExactImage& out) {
+    const hn::CappedTag<double, 8> d;
+    const hn::Rebind<float, decltype(d)> f;
+    for (uint32_t i = 0; i < c.vertices; i += static_cast<uint32_t>(hn::Lanes(d))) {
+        const size_t at = size_t{c.first_vertex} + i;
+        const auto load = [&](const std::vector<float>& from, float centre) HWY_ATTR {
+            return hn::Add(hn::PromoteTo(d, hn::LoadU(f, &from[at])), hn::Set(d, static_cast<double>(centre)));
+        };
+        const auto x = load(mesh.x, c.centre.x), y = load(mesh.y, c.centre.y), z = load(mesh.z, c.centre.z);
+        const auto over = [&](const glm::dvec4& row) HWY_ATTR {
+            return hn::Add(hn::Add(hn::Mul(hn::Set(d, row.x), x), hn::Mul(hn::Set(d, row.y), y)),
+                           hn::Add(hn::Mul(hn::Set(d, row.z), z), hn::Set(d, row.w)));
+        };
+        const auto w = over(frame.w);
+        hn::Store(hn::Div(over(frame.x), w), d, out.x + i);
+        hn::Store(hn::Div(over(frame.y), w), d, out.y + i);
+        hn::Store(w, d, out.w + i);
+    }
+}
+
 uint32_t clustersInViewKernel(float width, float height, const ObjectFrame& frame, const PlaneMesh& mesh,
                               uint32_t* out) {
     const F f;
@@ -231,8 +251,11 @@ Edges findEdges(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& m
             !isRectOpen(image, x0, y0, x1, y1, view.nearest * (1 + 1e-6f)))
             return Edges::kOutside;
         gatherEdges(mesh, c, turn, projected, edges);
-    } else if (!cutEdges(frame, view.near_w, mesh, c, turn, width, height, edges, scratch.rects, view.nearest)) {
-        return Edges::kUnknown;
+    } else {
+        projectExactly(frame, mesh, c, scratch.exact);
+        if (!cutEdges(frame, scratch.exact, view.near_w, mesh, c, turn, width, height, edges, scratch.rects,
+                      view.nearest))
+            return Edges::kUnknown;
     }
     if (edges.full) return Edges::kUnknown;
     for (int i = 0; frame.sign < 0 && i < edges.count; ++i) edges.change[i] = -edges.change[i];

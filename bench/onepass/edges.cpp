@@ -53,23 +53,18 @@ struct CutPoint {
 
 }  // namespace
 
-bool cutEdges(const ObjectFrame& frame, double near_w, const PlaneMesh& mesh, const PlaneMesh::Cluster& cluster,
+bool cutEdges(const ObjectFrame& frame, const ExactImage& image, double near_w, const PlaneMesh& mesh, const PlaneMesh::Cluster& cluster,
               const int8_t* turn, float width, float height, EdgeList& edges, GroupRect* rects, float& nearest) {
     static thread_local std::vector<CutPoint> cuts;
-    double x[256], y[256], w[256], r[256], least = 1e300;
+    const double *x = image.x, *y = image.y, *w = image.w;
+    double r[256], least = 1e300;
     // Vertices are rounded to floats around the centre, and may lie off their planes, along which groups are closed.
     const double off = 0x1p-23 * cluster.radius + 2.0 * cluster.thick;
     const double lengths = std::max(frame.length_x, frame.length_y), length_w = frame.length_w;
     const auto offOf = [&](double px, double py, double pw) {
         return off * (lengths + std::max(std::abs(px), std::abs(py)) * length_w) / pw + 1e-3;
     };
-    const glm::dvec3 centre(cluster.centre);
     for (uint32_t i = 0; i < cluster.vertices; ++i) {
-        const size_t at = size_t{cluster.first_vertex} + i;
-        const glm::dvec4 p(centre + glm::dvec3(mesh.x[at], mesh.y[at], mesh.z[at]), 1);
-        w[i] = glm::dot(frame.w, p);
-        x[i] = glm::dot(frame.x, p) / w[i];
-        y[i] = glm::dot(frame.y, p) / w[i];
         r[i] = offOf(x[i], y[i], w[i]);
         least = std::min(least, w[i]);
     }

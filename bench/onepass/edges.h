@@ -71,13 +71,19 @@ struct GroupRect {
     }
 };
 
+/// The images of a cluster's vertices in doubles, wherever they are.
+struct ExactImage {
+    alignas(64) double x[256], y[256], w[256];
+};
+
 /// Gathers the edges of a cluster that the near plane cuts, in doubles, with those that close its groups there.
+/// @param image    of the vertices
 /// @param near_w   where they are cut
 /// @param turn     per group: 1, -1, or 0: it is not drawn
 /// @param rects    per group, of those that are drawn
 /// @param nearest  becomes the nearness of what is nearest
 /// @returns false if they are not known
-bool cutEdges(const ObjectFrame& frame, double near_w, const PlaneMesh& mesh, const PlaneMesh::Cluster& cluster,
+bool cutEdges(const ObjectFrame& frame, const ExactImage& image, double near_w, const PlaneMesh& mesh, const PlaneMesh::Cluster& cluster,
               const int8_t* turn, float width, float height, EdgeList& edges, GroupRect* rects, float& nearest);
 
 }  // namespace sightline::bench

@@ -75,6 +75,7 @@ struct GroupPlanes {
 
 struct DrawScratch {
     ClusterImage image;
+    ExactImage exact;
     EdgeList edges;
     GroupPlanes planes;
     GroupDepth groups[PlaneMesh::kMostGroups];
