@@ -53,8 +53,9 @@ struct CutPoint {
 
 }  // namespace
 
-bool cutEdges(const ObjectFrame& frame, const ExactImage& image, double near_w, const PlaneMesh& mesh, const PlaneMesh::Cluster& cluster,
-              const int8_t* turn, float width, float height, EdgeList& edges, GroupRect* rects, float& nearest) {
+bool cutEdges(const ObjectFrame& frame, const ExactImage& image, double near_w, const PlaneMesh& mesh,
+              const PlaneMesh::Cluster& cluster, const int8_t* turn, float width, float height, EdgeList& edges,
+              GroupRect* rects, float& nearest) {
     static thread_local std::vector<CutPoint> cuts;
     const double *x = image.x, *y = image.y, *w = image.w;
     double r[256], least = 1e300;

@@ -83,7 +83,8 @@ struct ExactImage {
 /// @param rects    per group, of those that are drawn
 /// @param nearest  becomes the nearness of what is nearest
 /// @returns false if they are not known
-bool cutEdges(const ObjectFrame& frame, const ExactImage& image, double near_w, const PlaneMesh& mesh, const PlaneMesh::Cluster& cluster,
-              const int8_t* turn, float width, float height, EdgeList& edges, GroupRect* rects, float& nearest);
+bool cutEdges(const ObjectFrame& frame, const ExactImage& image, double near_w, const PlaneMesh& mesh,
+              const PlaneMesh::Cluster& cluster, const int8_t* turn, float width, float height, EdgeList& edges,
+              GroupRect* rects, float& nearest);
 
 }  // namespace sightline::bench

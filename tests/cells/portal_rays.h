@@ -168,7 +168,7 @@ public:
     }
 
 private:
-    double margin() const { return rays_.margin(); }
+    double margin() const { return rays_.margin().most; }
 
     void aim(uint32_t cell, const KnownView& known, Random& random, glm::dvec2& at) {
         if (of_cell_.empty()) {

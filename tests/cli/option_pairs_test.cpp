@@ -177,7 +177,7 @@ TEST_F(OptionPairs, AreSoundOrRefused) {
         if (outcome.exit_code != 0) continue;
         const json answer = json::parse(read(path("o.json")));
         EXPECT_EQ(answer["verification"]["false_culls"], 0);
-        if (options.find("--stereo") == std::string::npos) EXPECT_EQ(unaccounted(answer), "");
+        if (options.find("--stereo") == std::string::npos) { EXPECT_EQ(unaccounted(answer), ""); }
         for (const json& frame : answer["frames"])
             culls += answer["scene"]["objects"].get<size_t>() - frame["visible"].size();
     }

@@ -129,6 +129,7 @@ TEST_F(Vis, WhatIsNotKnownHidesNothingAndIsTold) {
                           "--shaders PATH (with the game's .shader or .wal files) or --solid PATTERN tells"),
               std::string::npos)
         << said();
+    EXPECT_EQ(vis("m.map")["unknown_brushes"], nlohmann::json({{"count", 1}, {"textures", {"skip"}}}));
     // Flags are the rule of Quake 2.
     write("m.map", twoRooms("e1u1/floor 0 0 0 1 1 1 0 0", "e1u1/wall" + flags));
     EXPECT_EQ(pairs(""), 2);

@@ -370,7 +370,7 @@ TEST(Modes, AWorldWithoutVolumesSaysSo) {
         const uint32_t bit = offBit(Off::kCertificatesByWorld);
         const QueryStats walk = asked({}, now), without = asked({.stateless = true}, now);
         EXPECT_EQ((walk.off & bit) != 0, !volumes);
-        if (!volumes) EXPECT_EQ(walk.proved, 0u);
+        if (!volumes) { EXPECT_EQ(walk.proved, 0u); }
         EXPECT_EQ(without.off & bit, 0u);
         EXPECT_EQ(asked({}, empty).off & bit, 0u);
         QuerySettings of_volumes{.stateless = true};

@@ -63,6 +63,7 @@ Result<BakeSource> loadMapSource(const std::string& name, const BakeSourceChoice
     out.rows_are = map->cells_are;
     out.of_bsp = map->map.has_value();
     out.leaks = !map->leaks.empty();
+    out.roles = std::move(map->roles);
     if (!map->map) return out;
     Result<Scene> scene = quakeScene(*map->map, map->map_name);
     if (!scene) {

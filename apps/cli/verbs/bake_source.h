@@ -25,6 +25,7 @@ struct BakeSource {
     uint64_t movable = 0;   ///< objects that hide nothing, for they may be elsewhere at run time: doors, and --moves
     bool of_bsp = false;
     bool leaks = false;                   ///< of a .map
+    BrushRoles roles;                     ///< of a .map: its brushes
     std::optional<SoupCellReport> walls;  ///< of cells of a scene's own walls
 };
 

@@ -264,6 +264,7 @@ std::string bakeJson(const BakeSource& source, const Baked& baked, const BakeSum
                 {"over_budget", s.over_budget},
                 {"stopped", s.stopped},
                 {"leaks", source.leaks},
+                {"unknown_brushes", {{"count", source.roles.unknown}, {"textures", source.roles.unknown_textures}}},
                 {"objects",
                  {{"count", objects.places.size()},
                   {"places", objects.places.cells.size()},

@@ -73,7 +73,7 @@ std::optional<VisSummary::Verification::Brushes> verifyByBrushes(const VisMap& m
                                                                  const RowCheckSettings& settings,
                                                                  const std::vector<uint32_t>& leaf_of_cell) {
     std::vector<uint8_t> stops;
-    for (const BrushRole role : map.roles) stops.push_back(role <= BrushRole::kSky);
+    for (const BrushRole role : map.roles.roles) stops.push_back(role <= BrushRole::kSky);
     const Result<BrushRays> rays =
         BrushRays::read(map.source, stops, BrushTreeSettings().snap_distance + map.tolerance);
     if (!rays) {
@@ -109,7 +109,11 @@ VisSummary::Verification verifyVis(const VisMap& map, const BitMatrix& visible, 
     settings.segments = map.tree ? std::max<uint64_t>(1, options.rays / 2) : options.rays;
     settings.farthest = options.farthest;
     settings.seed = options.seed;
-    const GraphRays through_portals(graph, 0, 2 * kGraphPrecision);
+    // Twice what rows promise: how well the points of each portal are known (FlowPortals).
+    double largest = 1;
+    for (const glm::dvec3& point : graph.points) largest = std::max(largest, largestCoordinate(point));
+    const PortalMargin margin{2 * kGraphPrecision * largest, 2 * kPortalPrecision, 0x1p-45 * largest};
+    const GraphRays through_portals(graph, margin);
     addReport(checkCellRows(through_portals, visible, settings), out, leaf_of_cell);
     if (map.tree) {
         AimedHoles holes;
@@ -263,6 +267,8 @@ VisSummary summaryOf(const VisMap& map, const CellVisibility& visibility, const 
     summary.resident_bytes = outputs.rows.resident_bytes;
     summary.lump_bytes = outputs.lump_bytes;
     for (const MapLeak& leak : map.leaks) summary.leaks.push_back({leak.what, leak.path});
+    summary.unknown_brushes = map.roles.unknown;
+    summary.unknown_textures = map.roles.unknown_textures;
     return summary;
 }
 

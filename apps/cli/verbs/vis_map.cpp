@@ -234,7 +234,7 @@ Result<VisMap> loadSource(const VisMapChoice& choice) {
     out.tolerance = brushes.tolerance;
     out.tree = std::move(brushes.tree);
     out.cells_are = "of the brushes";
-    out.roles = std::move(brushes.roles.roles);
+    out.roles = std::move(brushes.roles);
     out.source = std::move(*text);
     return out;
 }

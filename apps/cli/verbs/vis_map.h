@@ -50,7 +50,7 @@ struct VisMap {
     bool contents_stop = false;           ///< TreePortalSettings
     std::vector<MapLeak> leaks;           ///< of a .map
     std::string source;                   ///< of a .map: its text
-    std::vector<BrushRole> roles;         ///< of a .map: its brushes
+    BrushRoles roles;                     ///< of a .map: its brushes
     double farthest = 0;                  ///< _farplanedist of its worldspawn: sight ends there; 0: none  [map units]
     std::string map_name;                 ///< of its bytes
     std::vector<unsigned char> map_bytes;

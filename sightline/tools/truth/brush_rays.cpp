@@ -15,9 +15,10 @@
 namespace sightline::tools {
 namespace {
 
-/// Planes that were taken for one another may be turned by 1e-5 about their points nearest to the origin. At a point p they
-/// are then 1e-5 |p| apart, and |p| is at most 1.8 times the largest coordinate.
-constexpr double kTurned = 3e-5;
+/// A side that took another's plane moved by no more than the slack at each corner of its face. Beyond these corners, which
+/// the sides beside it moved as little, it is turned by 1e-5 at most: twice the slack holds it.
+constexpr double kMoved = 2;
+constexpr double kBrushRounding = 0x1p-36;  // of coordinates
 constexpr int kDeepest = 9;
 constexpr size_t kFew = 6, kMostNodes = size_t(1) << 20;
 
@@ -154,7 +155,9 @@ Result<BrushRays> BrushRays::read(std::string_view text, std::span<const uint8_t
     return out;
 }
 
-double BrushRays::growthAt(const glm::dvec3& point) const { return slack_ + kTurned * largestCoordinate(point); }
+double BrushRays::growthAt(const glm::dvec3& point) const {
+    return kMoved * slack_ + kBrushRounding * largestCoordinate(point);
+}
 
 /// No point of a brush has a larger coordinate; one without an end reaches to the bounds. The faces are moved out by the
 /// slack, and cut by twice that: so much may a tree have moved them, and no face is lost beside one that equals it.
@@ -176,7 +179,7 @@ double BrushRays::largestOf(const Brush& brush) const {
 void BrushRays::grow() {
     for (Brush& brush : brushes_) {
         if (brush.count == 0) continue;
-        brush.growth = slack_ + kTurned * largestOf(brush);
+        brush.growth = kMoved * slack_ + kBrushRounding * largestOf(brush);
     }
     for (const Brush& brush : brushes_)
         for (uint32_t i = brush.first; i < brush.first + brush.count; ++i) planes_[i].w -= brush.growth;

@@ -22,12 +22,12 @@ public:
     /// Reads the brushes that stop sight.
     /// @param text    of a `.map`; sides must stand on lines of their own, as editors write them
     /// @param stops   of each brush in the text's order, patches left out: whether sight ends in it
-    /// @param slack   trees may have moved planes by so much near the origin  [world units] [>= 0]
+    /// @param slack   a tree may have moved the corners of faces by so much  [world units] [>= 0]
     /// Errors (kInput): the text has another number of brushes.
     static Result<BrushRays> read(std::string_view text, std::span<const uint8_t> stops, double slack);
 
-    /// A brush counts as larger by this on all sides, for planes that a tree took for one another: the slack, and 3e-5 of the
-    /// brush's own largest coordinate.  [world units]
+    /// A brush counts as larger by this on all sides, for planes that a tree took for one another: twice the slack, and
+    /// rounding of the brush's own largest coordinate.  [world units]
     /// @param brush  of those that stop sight, in the text's order
     double growth(size_t brush) const { return brushes_[brush].growth; }
     /// How far a tree's faces may lie from where they should at a point: what is shorter there tells nothing.  [world units]

@@ -9,8 +9,7 @@
 
 namespace sightline::tools {
 
-GraphRays::GraphRays(const CellGraph& graph, double margin, double share)
-    : graph_(graph), margin_(margin), share_(share) {
+GraphRays::GraphRays(const CellGraph& graph, const PortalMargin& margin) : graph_(graph), margin_(margin) {
     first_exit_.assign(graph.cells + 1, 0);
     for (const CellPortal& portal : graph.portals)
         for (const uint32_t cell : portal.cells) ++first_exit_[cell + 1];
@@ -23,14 +22,15 @@ GraphRays::GraphRays(const CellGraph& graph, double margin, double share)
         for (uint32_t side = 0; side < 2; ++side)
             exits_[next[portal.cells[side]]++] = {i, portal.cells[1 - side], side == 0 ? 1.0 : -1.0};
         const auto outline = graph.outline(portal);
-        margins_.push_back(margin);
+        double largest = 0;
         for (size_t k = 0; k < outline.size(); ++k) {
-            margins_[i] = std::max(margins_[i], marginAt(outline[k]));
+            largest = std::max(largest, largestCoordinate(outline[k]));
             const glm::dvec3 edge = outline[(k + 1) % outline.size()] - outline[k];
             const glm::dvec3 inward = glm::cross(glm::dvec3(portal.plane), edge);
             const double length = glm::length(inward);
             if (length > 0) inward_[portal.first + k] = inward / length;
         }
+        margins_.push_back(margin.at(largest));
     }
 }
 

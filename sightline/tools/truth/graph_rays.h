@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,19 +24,30 @@ struct GraphStep {
     double at = 0;             ///< the parameter of the line where it was
 };
 
+/// How far inside of a portal's outline a line passes through it.  [world units]
+struct PortalMargin {
+    double most;      ///< for every portal, or if there is a share:
+    double share;     ///< no more than this of the largest coordinate of the portal's own outline,
+    double rounding;  ///< and this
+
+    PortalMargin(double of_all, double share_of_own = 0, double own_rounding = 0)
+        : most(of_all), share(share_of_own), rounding(own_rounding) {}
+
+    double at(double largest) const { return share > 0 ? std::min(most, share * largest + rounding) : most; }
+};
+
 class GraphRays {
 public:
     /// @param graph   outlives this  [finite]
     /// @param margin  a line is through a portal if it passes inside of the outline by so much, seen along the portal's
-    ///                normal; what passes closer to an edge, or outside, is not through  [world units]
-    /// @param share   of the largest coordinate of the portal's own outline, which is added to the margin
-    explicit GraphRays(const CellGraph& graph, double margin, double share = 0);
+    ///                normal; what passes closer to an edge, or outside, is not through
+    GraphRays(const CellGraph& graph, const PortalMargin& margin);
 
     const CellGraph& graph() const { return graph_; }
-    double margin() const { return margin_; }  ///< without the share
+    const PortalMargin& margin() const { return margin_; }
     double marginOf(uint32_t portal) const { return margins_[portal]; }
     /// No more than that of any portal with this point in it.
-    double marginAt(const glm::dvec3& point) const { return margin_ + share_ * largestCoordinate(point); }
+    double marginAt(const glm::dvec3& point) const { return margin_.at(largestCoordinate(point)); }
 
     /// All cells that a line reaches from a point in a cell, where parameters are above 0. From a convex cell a line
     /// goes on through one portal, or through two that overlap by a tolerance; from a cell that is a union of others,
@@ -55,7 +67,7 @@ private:
     bool isThrough(uint32_t portal, const glm::dvec3& point) const;
 
     const CellGraph& graph_;
-    double margin_, share_;
+    PortalMargin margin_;
     std::vector<uint32_t> first_exit_;
     std::vector<Exit> exits_;
     std::vector<double> margins_;     // per portal

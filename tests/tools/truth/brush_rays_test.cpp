@@ -83,8 +83,8 @@ TEST(BrushRays, StopAtBrushes) {
     const Result<BrushRays> rays = rooms.rays();
     ASSERT_TRUE(rays.ok()) << rays.error().message;
     EXPECT_EQ(rays->brushes(), 10u) << "a clip stops nothing";
-    EXPECT_NEAR(rays->growth(3), 0.01 + 3e-5 * 288, 1e-6);
-    EXPECT_NEAR(rays->growth(8), 0.01 + 3e-5 * 128, 1e-6) << "a pillar";
+    EXPECT_NEAR(rays->growth(3), 0.02, 1e-6);
+    EXPECT_NEAR(rays->growth(8), 0.02, 1e-6) << "a pillar";
     // In the file's axes: from (16, 64, 64) along x to the pillar at 32.
     EXPECT_NEAR(rays->follow({16, 64, -64}, {116, 64, -64}), (16 - rays->growth(8)) / 100, 1e-9);
     EXPECT_EQ(rays->follow({64, 64, -64}, {200, 64, -72}), 1);  // through the door
@@ -185,8 +185,8 @@ TEST(BrushRays, ConvictATreeWithoutADoorWhateverLiesFarOff) {
         SCOPED_TRACE(stray);
         const Result<BrushRays> rays = Judged(roomsText(true, stray)).rays();
         ASSERT_TRUE(rays.ok()) << rays.error().message;
-        EXPECT_NEAR(rays->growth(8), 0.01 + 3e-5 * 128, 1e-6) << "a pillar";
-        EXPECT_NEAR(rays->growth(10), 0.01 + 3e-5 * stray, 1e-3) << "the brush far off";
+        EXPECT_NEAR(rays->growth(8), 0.02, 1e-6) << "a pillar";
+        EXPECT_NEAR(rays->growth(10), 0.02, 1e-3) << "the brush far off";
         judgeWithoutADoor(stray);
     }
 }

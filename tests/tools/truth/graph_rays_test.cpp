@@ -130,11 +130,11 @@ TEST(GraphRays, FindSlitsWhateverLiesFarOff) {
             for (const auto& [a, b] : {std::pair(0, 1), std::pair(1, 2), std::pair(3, 4)})
                 rows.set(a, b), rows.set(b, a);
             const RowCheckSettings settings{.segments = 4000};
-            const RowReport report = checkCellRows(GraphRays(graph, 0, kShare), rows, settings);
+            const RowReport report = checkCellRows(GraphRays(graph, {kShare * far, kShare}), rows, settings);
             EXPECT_EQ(report.misses, 2u) << "portal at " << far << ", width " << width;
             // A margin by the largest coordinate of the graph closes the slit.
             if (2 * kShare * far > width) {
-                EXPECT_EQ(checkCellRows(GraphRays(graph, kShare * far), rows, settings).misses, 0u);
+                EXPECT_EQ(checkCellRows(GraphRays(graph, {kShare * far}), rows, settings).misses, 0u);
             }
         }
 }
@@ -142,10 +142,10 @@ TEST(GraphRays, FindSlitsWhateverLiesFarOff) {
 TEST(GraphRays, TakeTheirShareOfThePortalAtHand) {
     CellGraph graph = stairs(3, 0);
     for (uint32_t k = 4; k < 8; ++k) graph.points[k].y -= 1e6;
-    const GraphRays rays(graph, 1e-3, 0x1p-20);
-    EXPECT_EQ(rays.marginOf(0), 1e-3 + 0x1p-20);
-    EXPECT_EQ(rays.marginOf(1), 1e-3 + 1e6 * 0x1p-20);
-    EXPECT_EQ(GraphRays(graph, 1e-3).marginOf(1), 1e-3);
+    const GraphRays rays(graph, {1e-3, 0x1p-20, 1e-9});
+    EXPECT_EQ(rays.marginOf(0), 0x1p-20 + 1e-9);
+    EXPECT_EQ(rays.marginOf(1), 1e-3);
+    EXPECT_EQ(GraphRays(graph, {1e-3}).marginOf(0), 1e-3);
 }
 
 TEST(GraphRays, LeaveUnionsOfCellsThroughEachPortal) {

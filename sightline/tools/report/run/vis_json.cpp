@@ -32,6 +32,7 @@ std::string visJson(const VisSummary& summary) {
     out["cpu_seconds"] = summary.cpu_seconds;
     out["wall_seconds"] = summary.wall_seconds;
     const auto vector = [](const glm::dvec3& p) { return Json{p.x, p.y, p.z}; };
+    out["unknown_brushes"] = {{"count", summary.unknown_brushes}, {"textures", summary.unknown_textures}};
     out["leaks"] = Json::array();
     for (const VisSummary::Leak& leak : summary.leaks) {
         Json path = Json::array();

@@ -35,6 +35,9 @@ struct VisSummary {
     };
     std::vector<Leak> leaks;  ///< ways out of a map that is not sealed; one is told
 
+    uint64_t unknown_brushes = 0;               ///< of a .map: they hide nothing, because their textures are not known
+    std::vector<std::string> unknown_textures;  ///< the most frequent first
+
     /// The lump that the map came with beside the new one, in ordered pairs of its clusters.
     struct Before {
         uint64_t visible_pairs = 0, removed = 0, added = 0;
