@@ -31,6 +31,7 @@ TEST_F(Comfort, QuietLeavesErrorsAndWhatWasAskedFor) {
 }
 
 TEST_F(Comfort, ColoursAreForTerminalsAlone) {
+    if (!Process::hasTerminals()) GTEST_SKIP() << "there are no terminals: /dev/pts is not mounted";
     const std::vector<std::string> verify = {"verify", "city:1:50", "--frames", "1",
                                              "--size", "64x36",     "--rays",   "1000"};
     constexpr const char* kGreen = "\033[32msound";
@@ -46,6 +47,7 @@ TEST_F(Comfort, ColoursAreForTerminalsAlone) {
 }
 
 TEST_F(Comfort, LongWorkShowsABarOnATerminalAndLinesWhenPiped) {
+    if (!Process::hasTerminals()) GTEST_SKIP() << "there are no terminals: /dev/pts is not mounted";
     const std::string frames = std::to_string(test::rounds(60, 8));
     const std::string words = "verify city:1:3000 --frames " + frames + " --size 320x180 --rays 300000 --no-proofs";
     const Outcome piped = run(words);

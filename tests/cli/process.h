@@ -54,6 +54,15 @@ public:
         return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
     }
 
+    /// Whether this machine gives out terminals: a change of root without /dev/pts does not.
+    static bool hasTerminals() {
+        int terminal = -1, other = -1;
+        if (::openpty(&terminal, &other, nullptr, nullptr, nullptr) != 0) return false;
+        ::close(terminal);
+        ::close(other);
+        return true;
+    }
+
     /// What it writes on a terminal of its own, standard error included, until it ends.
     static std::string onTerminal(const std::filesystem::path& directory, const std::vector<std::string>& arguments) {
         int terminal = -1;
