@@ -38,11 +38,10 @@ public:
                 }
             const MeshView view{mesh.positions, mesh.indices};
             meshes_.push_back(makePlaneMesh(prepareOccluder(view, hides, both)));
+            // What a look asks is all that is drawn, with no polygon left out.
             const std::vector<uint8_t> all(mesh.triangles(), 1);
-            const bool same = hides == all;
-            looks_.push_back(mesh.deforms || (same && !meshes_.back().is_whole) ? PlaneMesh()
-                             : same                                             ? meshes_.back()
-                                    : makePlaneMesh(prepareOccluder(view, all, both)));
+            if (!mesh.deforms) looks_.push_back(makePlaneMesh(prepareOccluder(view, all, both)));
+            else looks_.emplace_back();
             if (!looks_.back().is_whole) looks_.back() = PlaneMesh();
         }
         asked_.resize(boxes_.size());

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <limits>
 
+#include "bench/onepass/cover-inl.h"
 #include "bench/onepass/frame.h"
 #include "bench/onepass/lanes-inl.h"
 #include "bench/onepass/scratch.h"

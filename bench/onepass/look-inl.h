@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "bench/onepass/ask-inl.h"
+#include "bench/onepass/cluster-inl.h"
 #include "bench/onepass/cover-inl.h"
 #include "bench/onepass/depth-inl.h"
 #include "bench/onepass/rows-inl.h"
@@ -68,6 +69,53 @@ bool isOutlineOpen(DepthBlocks& image, DrawScratch& scratch, float nearest, int 
         return arePixelsOpen(image, image.at(column, row), pixels, nearness, behind);
     };
     return walkRows<kPlanes, false>(image, scratch, nearest * (1 + 1e-6f), take);
+}
+
+/// Whether a rectangle of the image, which may reach beside it, is open to a nearness.
+bool isRectangleOpen(DepthBlocks& image, const GroupRect& rect, float nearness) {
+    const float right = static_cast<float>(image.width - 1), bottom = static_cast<float>(image.height - 1);
+    if (!(rect.x1 >= 0 && rect.y1 >= 0 && rect.x0 <= right + 1 && rect.y0 <= bottom + 1)) return false;
+    const auto pixel = [](float v, float most) { return static_cast<int>(std::clamp(v, 0.0f, most)); };
+    return isOpenKernel(image, pixel(rect.x0, right), pixel(rect.y0, bottom), pixel(rect.x1, right),
+                        pixel(rect.y1, bottom), nearness, nullptr);
+}
+
+/// Whether a corner of a group that faces the eye is open. That an object is seen shows soonest there.
+bool isCornerOpen(DepthBlocks& image, const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const int8_t* turn,
+                  float near_w, const ClusterImage& projected) {
+    const float width = static_cast<float>(image.width), height = static_cast<float>(image.height);
+    for (uint32_t g = 0; g < c.groups; ++g) {
+        if (turn[g] == 0) continue;
+        const size_t at = size_t{c.first_group} + g;
+        for (uint32_t k = 0; k < std::min(mesh.corner_count[at], 4u); ++k) {
+            const uint8_t v = mesh.corners[mesh.first_corner[at] + k];
+            const float x = projected.x[v], y = projected.y[v], w = projected.w[v];
+            if (w > near_w && x > 0 && y > 0 && x < width && y < height &&
+                image.claim(static_cast<int>(x), static_cast<int>(y)) * w < 1)
+                return true;
+        }
+    }
+    return false;
+}
+
+bool lookKernel(DepthBlocks& image, const ObjectFrame& frame, const PlaneMesh& mesh, uint32_t index,
+                const AskedBox& box, DrawScratch& scratch) {
+    SIGHTLINE_DEBUG_ASSERT(index < mesh.clusters.size());
+    const PlaneMesh::Cluster& c = mesh.clusters[index];
+    ClusterView view = viewOf(frame, frame.near_w * (1 - 1e-6), c);
+    alignas(64) int8_t turn[PlaneMesh::kNoGroup + 1] = {}, doubt[PlaneMesh::kNoGroup + 1] = {};
+    const int facing = faceGroups(mesh, c, glm::vec3(view.eye), view.away, turn, doubt);
+    const bool is_doubtful = std::find(doubt, doubt + c.groups, 1) != doubt + c.groups;
+    if ((facing == 0 && !is_doubtful) || !project(frame, mesh, c, view, scratch.image)) return false;
+    if (isCornerOpen(image, mesh, c, turn, view.near_w, scratch.image)) return true;
+    const Edges found = findEdges(image, frame, mesh, c, view, turn, scratch);
+    if (found == Edges::kOutside) return false;
+    if (found == Edges::kUnknown || (is_doubtful && !view.by_floats)) return true;
+    for (uint32_t g = 0; is_doubtful && g < c.groups; ++g)
+        if (doubt[g] != 0 && isRectangleOpen(image, rectOf(mesh, c, g, true, scratch), view.nearest)) return true;
+    if (found == Edges::kNone) return false;
+    const int count = groupDepths<true>(image, frame, mesh, c, view.eye, turn, view.by_floats, scratch);
+    return isOutlineOpen(image, scratch, view.nearest, count, box);
 }
 
 }  // namespace HWY_NAMESPACE
