@@ -139,10 +139,6 @@ void measureOcclusionCore(const Options& options, Table& table);
 void measureTightness(const Scene& scene, const CameraPath& path, uint32_t occlusion_size, const std::string& where,
                       Table& table);
 
-/// Adds rows: nanoseconds per polygon of projected clusters, of the thread's own time, the median of Options::repeat
-/// (24 if it is 0), for each size of triangles at 1280x720.
-void measureSmallPolygons(const Options& options, Table& table);
-
 /// The views of a path in one bin and in two, by one worker and by two; times of the clock on the wall, so that the
 /// ratios mean something on idle cores only. Adds its rows to the table.
 void measureQueryThreads(const Scene& scene, const CameraPath& path, const std::string& where, int repeat,

@@ -22,17 +22,6 @@ public:
     virtual size_t answer(const View& view) = 0;
 };
 
-struct OnePassSettings {
-    const char* name;
-    uint32_t size;          ///< the longer side of the buffer  [pixels]
-    bool looks;             ///< objects whose boxes are open are asked by the outlines of their clusters
-    float pixels_per_edge;  ///< clusters whose boxes have fewer are not drawn
-};
-
-/// The rasterizer that is to take the place of the library's (bench/onepass). Perspective views alone.
-/// @param scene  must outlive it
-std::unique_ptr<Contestant> makeOnePassContestant(const tools::Scene& scene, const OnePassSettings& settings);
-
 #ifdef SIGHTLINE_PEER
 /// MaskedOcclusionCulling, of the folder that CMake was told by SIGHTLINE_PEER, in a buffer of 640 x 360. A flat
 /// list gives the objects in the frustum. They are taken the nearest first. An object whose box is not hidden is drawn

@@ -83,7 +83,6 @@ Table benchOcclusion(const Options& options) {
         measure(*options.scene, seededCameras(*options.scene, 16, kSeed), options.scene->name, true);
         return table;
     }
-    if (options.only.empty()) measureSmallPolygons(options, table);
     measureOcclusionCore(options, table);
     if (!options.only.empty()) return table;
     for (uint32_t objects : {1000u, 10000u, 100000u, 1000000u})

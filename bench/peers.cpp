@@ -24,8 +24,6 @@ namespace {
 constexpr uint64_t kColdSeed = 1179, kWalkSeed = 1201;
 constexpr uint32_t kColdCameras = 32, kWalkFrames = 300;
 
-constexpr OnePassSettings kOnePass[] = {{"one pass 384, boxes", 384, false, 16}, {"one pass 384", 384, true, 16}};
-
 class Asking final : public Contestant {
 public:
     Asking(const char* name, const Snapshot& now, const QuerySettings& settings)
@@ -78,7 +76,6 @@ void measurePeers(const Scene& scene, int repeat, Table& table) {
 #ifdef SIGHTLINE_PEER
     all.push_back(makeMaskedContestant(scene));
 #endif
-    for (const OnePassSettings& settings : kOnePass) all.push_back(makeOnePassContestant(scene, settings));
     all.push_back(std::make_unique<Asking>("frustum alone", now, QuerySettings{.stages = stageBit(Stage::kFrustum)}));
     all.push_back(std::make_unique<Asking>("stateless, boxes alone", now, boxes));
     all.push_back(std::make_unique<Asking>("stateless", now, QuerySettings{.stateless = true}));

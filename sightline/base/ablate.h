@@ -15,10 +15,7 @@ struct Ablate {
     bool joiner = SIGHTLINE_IS_ABLATED(SIGHTLINE_ABLATE_JOINER);  ///< of these, by identical edges
     bool pairs = SIGHTLINE_IS_ABLATED(SIGHTLINE_ABLATE_PAIRS);  ///< of these, two polygons with a shared side, by tiles
     bool masks = SIGHTLINE_IS_ABLATED(SIGHTLINE_ABLATE_MASKS);  ///< refutation of shared pixels by masks
-    bool planes = SIGHTLINE_IS_ABLATED(SIGHTLINE_ABLATE_PLANES);      ///< covers and the planes of occluders
-    bool outlines = SIGHTLINE_IS_ABLATED(SIGHTLINE_ABLATE_OUTLINES);  ///< convex outlines of joined clusters
-    bool dense = SIGHTLINE_IS_ABLATED(SIGHTLINE_ABLATE_DENSE);        ///< the path of dense clusters
-    bool batch = SIGHTLINE_IS_ABLATED(SIGHTLINE_ABLATE_BATCH);  ///< small polygons of loose clusters, by the batch
+    bool planes = SIGHTLINE_IS_ABLATED(SIGHTLINE_ABLATE_PLANES);  ///< covers and the planes of occluders
 };
 
 constexpr Ablate kAblate;  // not inline: it differs between the files of an ablated program

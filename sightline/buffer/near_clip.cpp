@@ -73,14 +73,4 @@ bool clipAtNear(const Screen& object, const Occluder& occluder, const OccluderCl
     return true;
 }
 
-bool cutAtNear(const Screen& object, const Occluder& occluder, const OccluderCluster& cluster, uint8_t inside,
-               uint8_t outside, double& x, double& y) {
-    SIGHTLINE_DEBUG_ASSERT(inside != outside);
-    const Corner at = cut(cornerAt(object, occluder, cluster, inside), cornerAt(object, occluder, cluster, outside),
-                          object.near_guard);
-    x = at.x / at.w;
-    y = at.y / at.w;
-    return at.w > 0.0 && std::isfinite(x) && std::isfinite(y);
-}
-
 }  // namespace sightline

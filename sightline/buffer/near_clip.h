@@ -14,9 +14,4 @@ namespace sightline {
 bool clipAtNear(const Screen& object, const Occluder& occluder, const OccluderCluster& cluster, const uint8_t* vertices,
                 int count, ClippedPolygon& out);
 
-/// Where the edge from a vertex before the eye to one that is not meets the near plane: the same place as in
-/// clipAtNear(). False if it has no image.
-bool cutAtNear(const Screen& object, const Occluder& occluder, const OccluderCluster& cluster, uint8_t inside,
-               uint8_t outside, double& x, double& y);
-
 }  // namespace sightline

@@ -28,10 +28,10 @@ struct DrawnCluster {
     const Occluder* occluder = nullptr;
     const glm::dmat4* transform = nullptr;  ///< must outlive the frame
     uint64_t transform_hash = 0;
-    bool clockwise = false;     ///< of its polygons, those that come out clockwise
-    bool backs = false;         ///< these are backs: those alone that have two sides
-    uint32_t first_vertex = 0;  ///< in DepthTiles::px, py, pd
-    uint32_t object = ~0u;      ///< in DepthTiles::objects, if vertices lie before the near plane
+    bool clockwise = false;       ///< of its polygons, those that come out clockwise
+    bool backs = false;           ///< these are backs: those alone that have two sides
+    uint32_t first_vertex = ~0u;  ///< in DepthTiles::px, py, pd, once a seam has asked for a polygon
+    uint32_t object = ~0u;        ///< in DepthTiles::objects
     uint32_t cluster = 0;
     uint32_t made = ~0u;   ///< in DepthTiles::made, one for each of its own polygons, once a seam has asked for one
     uint32_t boxes = ~0u;  ///< in DepthTiles::boxes, once a seam has asked which polygons lie in a tile
@@ -141,6 +141,7 @@ enum class OcclusionDetail : uint8_t {
 };
 using Detail = OcclusionDetail;
 
+struct ObjectFrame;
 struct TileLog;
 class OccludeeBox;
 
@@ -189,32 +190,14 @@ struct DepthTiles {
     Array<double> px{memory}, py{memory}, pd{memory};  ///< projected vertices that seams need: px is NaN before the
     size_t vertex_count = 0;                           ///< near plane; so many are in use
     Array<DrawnCluster> drawn{memory};                 ///< those that left seams
-    Array<Screen> objects{memory};
+    Array<Screen> objects{memory};                     ///< theirs
     Array<ClippedPolygon> clipped{memory};
     Array<SeamPolygon> polygons{memory};
     Array<uint32_t> made{memory};  ///< per polygon of a drawn cluster: 4 * its first SeamPolygon + how many, or kNone
     Array<float> boxes{memory};  ///< per sixteen polygons of one: 16 least x, 16 least y, 16 greatest x, 16 greatest y
     Array<SeamChunk> chunks{memory};
 
-    /// The scratch of drawing one cluster: the tiles of its rectangle.
-    struct Scratch {
-        explicit Scratch(Memory* memory)
-            : first(memory),
-              last(memory),
-              z(memory),
-              plane(memory),
-              second_plane(memory),
-              slot(memory),
-              touched(memory),
-              winding(memory) {}
-        Array<int32_t> first, last;    ///< per row: the columns between which something may become nearer
-        Array<float> z;                ///< no polygon that touches the tile is farther in it; infinity: none does
-        Array<uint32_t> plane;         ///< the plane that they lie on, or kNone
-        Array<uint32_t> second_plane;  ///< with a plane: the only other one, or kNone
-        Array<uint32_t> slot;          ///< of tiles that an open edge meets; kNone: none does
-        Array<uint64_t> touched;       ///< per slot: pixels that an open edge touches
-        Array<uint8_t> winding;        ///< per slot, 64: change of the winding number from the pixel to the left
-    } scratch{memory};
+    Array<char> scratch{memory};  ///< of drawing
 
     /// Gaps narrower than this between occluders are closed; set after clear(), which makes it 0  [pixels]
     double gap = 0;
@@ -256,8 +239,8 @@ struct DepthTiles {
 ///
 /// @param cluster  all but what drawing finds out: vertices, polygons, object, clockwise
 /// @param object   objectScreen() of the object that the occluder belongs to
-/// @param flips    the object's transform mirrors: its counter-clockwise triangles are back faces
-void drawCluster(DepthTiles& tiles, const DrawnCluster& cluster, const Screen& object, bool flips);
+/// @param frame    objectFrame() of it
+void drawCluster(DepthTiles& tiles, const DrawnCluster& cluster, const Screen& object, const ObjectFrame& frame);
 
 /// What to do where only pixels that polygons share stand between an answer and a rectangle.
 enum class Seams : uint8_t {
@@ -276,6 +259,10 @@ bool isHidden(DepthTiles& tiles, const PixelRect& rect, Seams seams = Seams::kRe
 /// @param box      of what is asked about, if it is known: then planes hide it, too
 uint64_t openPixels(DepthTiles& tiles, uint32_t tile, uint64_t window, const float (&nearest)[64],
                     Seams seams = Seams::kResolve, const OccludeeBox* box = nullptr);
+
+/// The same of what lies at one nearness.
+uint64_t openPixels(DepthTiles& tiles, uint32_t tile, uint64_t window, float nearest, Seams seams = Seams::kResolve,
+                    const OccludeeBox* box = nullptr);
 
 /// Pixels of a tile that seams may still cover; openPixels() with Seams::kResolve decides them.
 uint64_t undecidedSeams(const DepthTiles& tiles, uint32_t tile);

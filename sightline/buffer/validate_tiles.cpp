@@ -105,8 +105,9 @@ void validateDrawn(const DepthTiles& tiles) {
     for (const DrawnCluster& drawn : tiles.drawn) {
         SIGHTLINE_DEBUG_ASSERT(drawn.occluder && drawn.transform && drawn.cluster < drawn.occluder->clusters.size());
         const OccluderCluster& cluster = drawn.occluder->clusters[drawn.cluster];
-        SIGHTLINE_DEBUG_ASSERT(size_t{drawn.first_vertex} + cluster.vertex_count <= tiles.vertex_count);
-        SIGHTLINE_DEBUG_ASSERT(drawn.object == DepthTiles::kNone || drawn.object < tiles.objects.size());
+        SIGHTLINE_DEBUG_ASSERT(drawn.first_vertex == DepthTiles::kNone ||
+                               size_t{drawn.first_vertex} + cluster.vertex_count <= tiles.vertex_count);
+        SIGHTLINE_DEBUG_ASSERT(drawn.object < tiles.objects.size());
         SIGHTLINE_DEBUG_ASSERT(drawn.made == DepthTiles::kNone ||
                                size_t{drawn.made} + cluster.polygon_count <= tiles.made.size());
         SIGHTLINE_DEBUG_ASSERT(drawn.boxes == DepthTiles::kNone ||

@@ -302,7 +302,6 @@ OccluderInstance makeOccluderInstance(const Screen& screen, const Occluder& occl
     instance.occluder = &occluder;
     instance.transform = &transform;
     instance.screen = objectScreen(screen, transform);
-    instance.flips = glm::determinant(glm::dmat3(transform)) < 0.0;
     uint64_t words[16];
     static_assert(sizeof words == sizeof transform);
     std::memcpy(words, &transform, sizeof words);
@@ -322,6 +321,11 @@ OccluderInstance makeOccluderInstance(const Screen& screen, const Occluder& occl
         errorOf(screen.x) + errorOf(screen.y) + 2.0 * std::max(screen.width, screen.height) * errorOf(screen.w);
     instance.depth_error = screen.perspective ? errorOf(screen.w) : errorOf(screen.d);
     instance.clips = 4.0 * errorOf(screen.near) < screen.near_guard;
+    // As far as a step in the world goes among the object's own positions.
+    const glm::dmat3 inverse = glm::inverse(glm::dmat3(transform));
+    const double stretch = glm::length(inverse[0]) + glm::length(inverse[1]) + glm::length(inverse[2]);
+    instance.frame = objectFrame(instance.screen, glm::determinant(glm::dmat3(transform)) < 0.0, world_error * stretch,
+                                 instance.clips);
     return instance;
 }
 
@@ -345,7 +349,7 @@ bool placeCluster(const OccluderInstance& instance, uint32_t cluster, const BoxA
 uint32_t drawOccluder(DepthTiles& tiles, const OccluderInstance& instance, uint32_t cluster, const BoxAnswer& box) {
     DrawnCluster drawn;
     if (!placeCluster(instance, cluster, box, drawn)) return 0;
-    drawCluster(tiles, drawn, instance.screen, instance.flips);
+    drawCluster(tiles, drawn, instance.screen, instance.frame);
     const int32_t right = static_cast<int32_t>(tiles.width) - 1, top = static_cast<int32_t>(tiles.height) - 1;
     validateTiles(tiles, box.doubt ? PixelRect{0, 0, right, top, 0} : box.rect);
     return instance.occluder->clusters[cluster].triangle_count;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "sightline/buffer/draw/frame.h"
 #include "sightline/buffer/tiles.h"
 
 namespace sightline {
@@ -54,7 +55,7 @@ struct OccluderInstance {
     const glm::dmat4* transform = nullptr;  ///< must outlive the frame
     uint64_t transform_hash = 0;
     Screen screen;           ///< objectScreen() of the transform
-    bool flips = false;      ///< the transform's determinant is negative
+    ObjectFrame frame;       ///< objectFrame() of it
     double pixel_error = 0;  ///< bound on the rounding of a projected vertex at w = 1 [pixels]
     double depth_error = 0;  ///< bound on the rounding of its w, or of its depth in parallel projection
     bool clips = false;      ///< and of its distance from the near plane: small against the near guard

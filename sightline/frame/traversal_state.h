@@ -7,7 +7,7 @@
 #include "sightline/cull/frustum.h"
 #include "sightline/cull/occluder_volumes.h"
 #include "sightline/cull/occlusion.h"
-#include "sightline/cull/triangles.h"
+#include "sightline/cull/outline_look.h"
 #include "sightline/frame/image_part.h"
 #include "sightline/frame/pending.h"
 #include "sightline/frame/place_range.h"
@@ -103,10 +103,10 @@ struct TraversalState {
     Array<KeptPlace> kept;  ///< per object of `visible`, in a strip of the image; else empty
     Array<CulledRange> culled;
     Array<SecondLook> second;  ///< objects of `visible` that will be asked by their triangles
-    TriangleScratch looks;
-    /// Per place: the polygon that was open in the last answer that asked the object there by its triangles. It outlives
+    LookScratch looks;
+    /// Per place: the cluster that was open in the last answer that asked the object there by its outlines. It outlives
     /// the answer; what has moved to another place meanwhile is asked in vain.
-    Array<OpenPolygon> open_at;
+    Array<uint32_t> open_at;
     Turns turns;                ///< it outlives the answer, too
     ProofMemory proofs;         ///< and so does this
     bool notes_hidden = false;  ///< ProofMemory::hidden is to be filled
@@ -114,9 +114,7 @@ struct TraversalState {
     OpenVolumes volumes;
     QueryStats stats;
 
-    OpenPolygon openAt(uint32_t place) const {
-        return place < open_at.size() ? open_at[place] : OpenPolygon{OpenPolygon::kNone};
-    }
+    uint32_t openAt(uint32_t place) const { return place < open_at.size() ? open_at[place] : OutlineLook::kNone; }
 
     void clear() {
         tiles.clear(0, 0);

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "sightline/base/array.h"
+#include "sightline/geom/plane_mesh.h"
 #include "sightline/math/box.h"
 
 namespace sightline {
@@ -55,10 +56,11 @@ struct Occluder {
     Array<OccluderPolygon> polygons;
     Array<OccluderEdge> edges;
     Array<OccluderCluster> clusters;
-    Box3f bounds;  ///< of all vertices, those of rings too
+    Box3f bounds;      ///< of all vertices, those of rings too
+    PlaneMesh planes;  ///< the same triangles as they are drawn: geom/make_plane_mesh.h
 
     explicit Occluder(Memory* memory = defaultMemory())
-        : x(memory), y(memory), z(memory), polygons(memory), edges(memory), clusters(memory) {}
+        : x(memory), y(memory), z(memory), polygons(memory), edges(memory), clusters(memory), planes(memory) {}
 
     uint32_t triangleCount() const {
         uint32_t count = 0;

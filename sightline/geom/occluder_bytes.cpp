@@ -1,6 +1,7 @@
 // Writes occluders as bytes, and reads them.
 // SPDX-License-Identifier: MIT
 #include "sightline/geom/occluder_bytes.h"
+#include "sightline/geom/make_plane_mesh.h"
 
 #include <cmath>
 
@@ -74,7 +75,11 @@ bool OccluderReader::take(Occluder& occluder) {
     if (!reserve(kClusters, &occluder.clusters) || !reserve(kVertices, &occluder.x, &occluder.y, &occluder.z) ||
         !reserve(kPolygons, &occluder.polygons) || !reserve(kEdges, &occluder.edges))
         return false;
-    if (counts_[kClusters] > 0) return takeBox(bounds, occluder.bounds, fault_) && takeParts(occluder);
+    if (counts_[kClusters] > 0) {
+        if (!takeBox(bounds, occluder.bounds, fault_) || !takeParts(occluder)) return false;
+        makePlaneMesh(occluder);
+        return true;
+    }
     return counts_[kVertices] + counts_[kPolygons] + counts_[kEdges] == 0 ||
            wrong("an occluder without clusters that has parts", at);
 }

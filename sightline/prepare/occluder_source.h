@@ -16,10 +16,6 @@ struct OccluderSettings {
     /// The same if its polygons do not face one way: where they lie one behind the other, the farthest of them gives
     /// the depth. Smaller clusters hide more there.  [limit: 3 to own_polygons]
     uint32_t folded_polygons = 48;
-    /// The same again for what hangs together in no more than `few` polygons and is no mere box (16 or fewer), as walls
-    /// with doors do: their faces are large and lie far behind one another.  [limit: 3 to folded_polygons]
-    uint32_t polygons_of_few = 4;
-    uint32_t few = 0;       ///< [polygons]  0: no such difference is made
     bool rings = false;     ///< give joined clusters their neighbours' polygons around them, so that no seam stays open
     bool merge = false;     ///< make larger polygons of those that lie exactly in one plane
     bool junctions = true;  ///< polygons hang together also where a vertex lies, exactly, on another's side

@@ -250,7 +250,7 @@ private:
     /// @param others  objects that will be looked at again: where nothing else is left to ask, it hides nothing
     void offerOccluder(const Pending& entry, size_t others) {
         if (!drawn_ || (waiting_ == 0 && others == 0)) return;
-        if (entry.testable && isSmall(frame_.screen, entry.rect)) return;
+        if (entry.testable && !mayHideEnough(frame_.screen, entry.rect, PlaneMesh::kLeastCost)) return;
         const uint32_t place = entry.index;
         const OfferedOccluder offered = occluderOf(frame_, place);
         if (!offered.occluder) return;

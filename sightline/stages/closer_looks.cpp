@@ -1,4 +1,4 @@
-// The closer looks at objects that their boxes' rectangles would keep: by the boxes' faces, and at the end by triangles.
+// The closer looks at objects that their boxes' rectangles would keep: by the boxes' faces, and at the end by their outlines.
 // SPDX-License-Identifier: MIT
 #include "sightline/base/assert.h"
 #include "sightline/cull/shapes.h"
@@ -21,20 +21,27 @@ TurnAnswer settle(const Frame& frame, const TraversalState& state, Look look, Si
 
 namespace {
 
-// What is noted of an object that was hidden, in place of an open polygon's cluster.
-constexpr uint32_t kHiddenByFaces = OpenPolygon::kNone - 1, kHiddenByTriangles = OpenPolygon::kNone - 2;
+/// Of what is smaller in the image, in pixels of the buffer, a look by outlines tells hardly more than the box.
+constexpr int64_t kLeastLook = 64;
+
+bool isTiny(const Pending& entry) {
+    const PixelRect& rect = entry.rect;
+    return entry.testable && int64_t{rect.x1 - rect.x0 + 1} * (rect.y1 - rect.y0 + 1) < kLeastLook;
+}
+
+// What is noted of an object that was hidden, in place of an open cluster.
+constexpr uint32_t kHiddenByFaces = OutlineLook::kNone - 1, kHiddenByTriangles = OutlineLook::kNone - 2;
 
 /// What the last look at the object at a place found.
-OpenPolygon lastLook(const Frame& frame, const TraversalState& state, uint32_t place) {
-    return frame.settings.stateless ? OpenPolygon{OpenPolygon::kNone} : state.openAt(place);
+uint32_t lastLook(const Frame& frame, const TraversalState& state, uint32_t place) {
+    return frame.settings.stateless ? OutlineLook::kNone : state.openAt(place);
 }
 
 /// Notes what was found of the object at a place.
-void note(const Frame& frame, TraversalState& state, uint32_t place, const OpenPolygon& open) {
+void note(const Frame& frame, TraversalState& state, uint32_t place, uint32_t open) {
     if (frame.settings.stateless) return;
     SIGHTLINE_DEBUG_ASSERT(place < frame.world->placed.size());
-    if (place >= state.open_at.size())
-        state.open_at.resize(frame.world->placed.size(), OpenPolygon{OpenPolygon::kNone});
+    if (place >= state.open_at.size()) state.open_at.resize(frame.world->placed.size(), OutlineLook::kNone);
     state.open_at[place] = open;
 }
 
@@ -55,9 +62,9 @@ TurnAnswer cullByFaces(const Frame& frame, TraversalState& state, const Pending&
     SIGHTLINE_DEBUG_ASSERT(entry.index < frame.world->placed.size());
     const ObjectRecord& object = frame.world->objectAt(entry.index);
     const bool in_layers = object.layers & frame.view.layers;
-    const bool again =
-        frame.settings.second_look && object.shape.index != 0 && in_layers && !frame.mayBeCoarse(entry.index);
-    const bool by_faces = lastLook(frame, state, entry.index).cluster == kHiddenByFaces;
+    const bool again = frame.settings.second_look && object.shape.index != 0 && in_layers &&
+                       !frame.mayBeCoarse(entry.index) && !isTiny(entry);
+    const bool by_faces = lastLook(frame, state, entry.index) == kHiddenByFaces;
     const bool asks_faces = frame.settings.faces && in_layers && (!again || by_faces);
     if (asks_faces) {
         const OccludeePlace place = makeOccludeePlace(frame.screen, object.transform, object.bounds);
@@ -80,28 +87,29 @@ TurnAnswer cullByTriangles(const Frame& frame, TraversalState& state, const Seco
     const ObjectRecord& object = frame.world->objectAt(kept.entry.index);
     SIGHTLINE_DEBUG_ASSERT(object.shape.index > 0 && object.shape.index < frame.world->occluders.size());
     const OccludeePlace place = makeOccludeePlace(frame.screen, object.transform, object.bounds);
-    TriangleLook look;
+    OutlineLook look;
     SIGHTLINE_DEBUG_ASSERT(state.stats.second_look_polygons <= frame.settings.second_look_polygons);
     look.most_polygons = frame.settings.second_look_polygons - state.stats.second_look_polygons;
-    const OpenPolygon last = lastLook(frame, state, kept.entry.index);
+    const uint32_t last = lastLook(frame, state, kept.entry.index);
     look.first = last;
     ++state.stats.second_looks;
-    const Sight sight =
-        askTriangles(state.tiles, place, *frame.world->occluders[object.shape.index], state.looks, look);
+    const OccluderInstance instance =
+        makeOccluderInstance(frame.screen, *frame.world->occluders[object.shape.index], object.transform);
+    const Sight sight = askOutlines(state.tiles, instance, state.looks, look);
     SIGHTLINE_DEBUG_ASSERT(look.spent || look.polygons <= look.most_polygons);
     state.stats.second_look_polygons += look.polygons;
     state.stats.second_look_spent |= look.spent;
     TurnAnswer answer = settle(frame, state, Look::kTriangles, sight, look.away);
     state.stats.second_look_culled += answer.culled;
-    OpenPolygon found{OpenPolygon::kNone};
+    uint32_t found = OutlineLook::kNone;
     if (answer.culled) {
         // Which of both looks is to be taken the next time: faces are cheaper, and come before the object is drawn.
-        const bool known = !kept.faces_left || last.cluster == kHiddenByTriangles || frame.settings.stateless;
+        const bool known = !kept.faces_left || last == kHiddenByTriangles || frame.settings.stateless;
         const bool by_faces = !known && askFaces(frame, state, place, object.bounds).culled;
-        found.cluster = by_faces ? kHiddenByFaces : kHiddenByTriangles;
+        found = by_faces ? kHiddenByFaces : kHiddenByTriangles;
     } else if (kept.faces_left && (look.spent || look.in_doubt)) {
         answer = askFaces(frame, state, place, object.bounds);
-        if (answer.culled) found.cluster = kHiddenByFaces;
+        if (answer.culled) found = kHiddenByFaces;
     } else if (!look.spent) {
         found = look.open;
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "sightline/base/assert.h"
+#include "sightline/buffer/ask/occludee_box.h"
 #include "sightline/stages/occluder_form.h"
 #include "sightline/stages/pipeline.h"
 
@@ -14,10 +15,12 @@ bool isHiddenHere(TraversalState& state, PixelRect rect, Seams seams, const Occl
     return !state.tiles.clip(rect) || isHidden(state.tiles, rect, seams, box);
 }
 
-bool isSmall(const Screen& screen, const PixelRect& rect) {
+bool mayHideEnough(const Screen& screen, const PixelRect& rect, uint32_t cost) {
+    // Chosen on the ten scenes of bench/peers: what is smaller takes more to draw than it saves.
+    constexpr int64_t kPixelsOfCost = 2, kPartsOfImage = 330;
     SIGHTLINE_DEBUG_ASSERT(rect.x0 <= rect.x1 && rect.y0 <= rect.y1);
-    const auto least = static_cast<int32_t>(std::max(screen.width, screen.height) / 32);
-    return rect.x1 - rect.x0 < least && rect.y1 - rect.y0 < least;
+    const int64_t area = int64_t{rect.x1 - rect.x0 + 1} * (rect.y1 - rect.y0 + 1);
+    return area >= kPixelsOfCost * cost && area * kPartsOfImage >= int64_t{screen.width} * screen.height;
 }
 
 OccludeeBox boxAt(const Screen& screen, const Box3f& box) {
@@ -68,7 +71,7 @@ bool mayDraw(const Frame& frame, const TraversalState& state, const OfferedOcclu
 bool drawCluster(const Frame& frame, TraversalState& state, const OccluderInstance& instance, uint32_t cluster,
                  const BoxAnswer& box, uint32_t& triangles) {
     SIGHTLINE_DEBUG_ASSERT(!box.outside && cluster < instance.occluder->clusters.size());
-    if (!box.doubt && isSmall(frame.screen, box.rect)) return false;
+    if (!box.doubt && !mayHideEnough(frame.screen, box.rect, instance.occluder->planes.costOf(cluster))) return false;
     if (state.stats.occluder_triangles >= frame.settings.occluder_triangles) {
         state.stats.budget_spent = true;
         return false;

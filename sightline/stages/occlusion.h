@@ -19,9 +19,9 @@ bool isHiddenHere(TraversalState& state, PixelRect rect, Seams seams, const Occl
 /// @param box  relative to the eye, each number rounded: Pending::box
 OccludeeBox boxAt(const Screen& screen, const Box3f& box);
 
-/// Whether an occluder of this image is too small to be drawn: what is smaller than a thirty-second of the buffer in
-/// both directions hides next to nothing.
-bool isSmall(const Screen& screen, const PixelRect& rect);
+/// Whether drawing something in a rectangle may hide enough for what it costs.
+/// @param cost  PlaneMesh::costOf(), or no more
+bool mayHideEnough(const Screen& screen, const PixelRect& rect, uint32_t cost);
 
 /// An occluder that an object in the answer brings.
 struct OfferedOccluder {

@@ -7,12 +7,14 @@
 #include <limits>
 
 #include "sightline/base/assert.h"
+#include "sightline/geom/make_plane_mesh.h"
 
 namespace sightline::detail {
 
 HeldOccluder::HeldOccluder(const Occluder& from, std::span<const InnerOccluder> levels, bool volumes, Memory* memory)
     : Occluder(memory), inner(memory), parts(memory), faces(memory) {
     Occluder::operator=(from);
+    if (planes.first_part.empty()) makePlaneMesh(*this);
     inner.reserve(levels.size());
     for (const InnerOccluder& level : levels) {
         InnerOccluder& held = inner.emplace_back(memory);

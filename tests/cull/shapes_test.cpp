@@ -6,7 +6,7 @@
 
 #include <functional>
 
-#include "sightline/cull/triangles.h"
+#include "sightline/cull/outline_look.h"
 #include "tests/buffer/tiles_fixture.h"
 
 namespace sightline::test {
@@ -99,9 +99,10 @@ TEST(Shapes, AnswerForBoxesHullsAndTrianglesWhatRaysSay) {
             const std::vector<uint32_t> indices = {0, 1, 2};
             const std::vector<uint8_t> both = {1};
             const Occluder shape = prepareOccluder({triangle, indices}, {}, both);
-            TriangleScratch scratch(defaultMemory());
-            TriangleLook look;
-            const Sight by_triangle = askTriangles(drawing.tiles, place, shape, scratch, look);
+            LookScratch scratch(defaultMemory());
+            OutlineLook look;
+            const Sight by_triangle =
+                askOutlines(drawing.tiles, makeOccluderInstance(drawing.screen, shape, t), scratch, look);
             EXPECT_EQ(look.polygons, 1u);
             expectTrue(
                 drawing, by_triangle,
@@ -177,22 +178,23 @@ TEST(Shapes, WhatHoldsTheEyeOrMeetsTheNearPlaneIsVisible) {
     EXPECT_EQ(askSphere(drawing.tiles, drawing.screen, {0, 0, -3}, 1), Sight::kOccluded);
 }
 
-/// The clipped polygon has six corners: two of the quadrangle, and one on each of its sides.
-TEST(Shapes, AQuadrangleWhoseSidesAllCrossTheNearPlaneIsVisible) {
-    Drawing drawing(smallView());
-    constexpr float kWarp = 2e-5f;  // less than what makes two triangles of it
-    const std::vector<glm::vec3> corners = {
-        {-1, -1, -0.1f + kWarp}, {1, -1, -0.1f - kWarp}, {1, 1, -0.1f + kWarp}, {-1, 1, -0.1f - kWarp}};
-    const std::vector<uint32_t> indices = {0, 1, 2, 0, 2, 3};
-    const std::vector<uint8_t> both = {1, 1};
-    const Occluder shape = prepareOccluder({corners, indices}, {}, both);
-    ASSERT_EQ(shape.polygons.size(), 1u);
-    const OccludeePlace place =
-        makeOccludeePlace(drawing.screen, glm::dmat4(1), {glm::dvec3(shape.bounds.min), glm::dvec3(shape.bounds.max)});
-    TriangleScratch scratch(defaultMemory());
-    TriangleLook look;
-    EXPECT_EQ(askTriangles(drawing.tiles, place, shape, scratch, look), Sight::kVisible);
-    EXPECT_FALSE(look.in_doubt);
+/// Its two triangles meet in the middle of the view, along a line before the near plane or beyond it.
+TEST(Shapes, AQuadrangleWhoseSidesAllCrossTheNearPlaneIsCutAsTwoTriangles) {
+    for (const float warp : {2e-5f, -2e-5f}) {  // less than what makes two polygons of it
+        Drawing drawing(smallView());
+        const std::vector<glm::vec3> corners = {
+            {-1, -1, -0.1f + warp}, {1, -1, -0.1f - warp}, {1, 1, -0.1f + warp}, {-1, 1, -0.1f - warp}};
+        const std::vector<uint32_t> indices = {0, 1, 2, 0, 2, 3};
+        const std::vector<uint8_t> both = {1, 1};
+        const Occluder shape = prepareOccluder({corners, indices}, {}, both);
+        ASSERT_EQ(shape.polygons.size(), 1u);
+        LookScratch scratch(defaultMemory());
+        OutlineLook look;
+        const glm::dmat4 here(1);
+        EXPECT_EQ(askOutlines(drawing.tiles, makeOccluderInstance(drawing.screen, shape, here), scratch, look),
+                  warp > 0 ? Sight::kOutside : Sight::kVisible);
+        EXPECT_FALSE(look.in_doubt);
+    }
 }
 
 }  // namespace

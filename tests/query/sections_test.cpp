@@ -200,7 +200,7 @@ TEST(Sections, WhatIsLeftWholeHidesAsEver) {
     const Snapshot now = made.world.commit();
     Query query;
     View view = viewFrom({0, 0, 0}, {0, 0, -1}, {90});
-    QuerySettings settings{.occlusion_size = 160};
+    QuerySettings settings;
     EXPECT_EQ(query.visible(now, view, settings).objects.size(), 1u);
     view.sections.add({1, 0, 0, 2});  // x >= -2
     const std::vector<uint8_t> kept = keptOf(query.visible(now, view, settings), 11);

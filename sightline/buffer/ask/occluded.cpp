@@ -198,6 +198,14 @@ uint64_t openPixels(DepthTiles& tiles, uint32_t tile, uint64_t window, const flo
     return open;
 }
 
+uint64_t openPixels(DepthTiles& tiles, uint32_t tile, uint64_t window, float nearest, Seams seams,
+                    const OccludeeBox* box) {
+    if (tiles.base[tile] > nearest && !tiles.log) return 0;
+    float all[64];
+    std::fill_n(all, 64, nearest);
+    return openPixels(tiles, tile, window, all, seams, box);
+}
+
 uint64_t undecidedSeams(const DepthTiles& tiles, uint32_t tile) {
     SIGHTLINE_DEBUG_ASSERT(tile < tiles.seams.size());
     return tiles.seams[tile] == DepthTiles::kNone ? 0 : tiles.seam_mask[tile] & ~tiles.tried[tile];

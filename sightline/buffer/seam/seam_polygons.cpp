@@ -187,10 +187,33 @@ private:
     uint8_t source_ = 0;
 };
 
+/// Projects the vertices of a drawn cluster; those before the near guard get a NaN.
+void projectDrawn(DepthTiles& tiles, uint32_t drawn) {
+    DrawnCluster& record = tiles.drawn[drawn];
+    if (record.first_vertex != DepthTiles::kNone) return;
+    const OccluderCluster& cluster = record.occluder->clusters[record.cluster];
+    const size_t first = tiles.vertex_count, count = cluster.vertex_count;
+    tiles.vertex_count = first + count;
+    if (tiles.px.size() < tiles.vertex_count)
+        for (Array<double>* array : {&tiles.px, &tiles.py, &tiles.pd}) array->resize(2 * tiles.vertex_count);
+    const Screen& object = tiles.objects[record.object];
+    for (size_t i = 0; i < count; ++i) {
+        const size_t at = size_t{cluster.first_vertex} + i;
+        const glm::dvec4 v(record.occluder->x[at], record.occluder->y[at], record.occluder->z[at], 1.0);
+        const double w = glm::dot(object.w, v);
+        const bool drawn = glm::dot(object.near, v) >= object.near_guard && w > 0;
+        tiles.px[first + i] = drawn ? glm::dot(object.x, v) / w : std::numeric_limits<double>::quiet_NaN();
+        tiles.py[first + i] = glm::dot(object.y, v) / w;
+        tiles.pd[first + i] = glm::dot(object.d, v) / w;
+    }
+    record.first_vertex = static_cast<uint32_t>(first);
+}
+
 }  // namespace
 
 void seamPolygon(DepthTiles& tiles, uint32_t drawn, uint32_t polygon, uint32_t& first, uint32_t& count) {
     SIGHTLINE_DEBUG_ASSERT(drawn < tiles.drawn.size());
+    projectDrawn(tiles, drawn);
     DrawnCluster& record = tiles.drawn[drawn];
     const uint32_t own = record.occluder->clusters[record.cluster].polygon_count;
     first = count = 0;
@@ -240,6 +263,7 @@ uint32_t seamPlane(DepthTiles& tiles, uint32_t polygon) {
 
 uint32_t seamBoxes(DepthTiles& tiles, uint32_t drawn, uint32_t& count) {
     SIGHTLINE_DEBUG_ASSERT(drawn < tiles.drawn.size());
+    projectDrawn(tiles, drawn);
     const DrawnCluster& record = tiles.drawn[drawn];
     count = record.occluder->clusters[record.cluster].polygon_count;
     if (record.boxes != DepthTiles::kNone) return record.boxes;

@@ -32,10 +32,7 @@ slStatus slPrepareOccluder(const slOccluderDef* def, slOccluder** occluder_out) 
         both.assign(triangles, 1);
         double_sided = both;
     }
-    // Walls of some tens of large polygons lie far behind one another: buildings have many of these.
-    constexpr OccluderSettings settings{.few = 64};
-    *occluder_out =
-        c::makeHandle<slOccluder>(c::shareHooks(def->log), prepareOccluder(mesh.view, hides, double_sided, settings));
+    *occluder_out = c::makeHandle<slOccluder>(c::shareHooks(def->log), prepareOccluder(mesh.view, hides, double_sided));
     return SL_OK;
 }
 

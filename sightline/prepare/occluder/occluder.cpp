@@ -9,6 +9,7 @@
 #include "sightline/prepare/occluder/merge.h"
 #include "sightline/prepare/occluder/orient.h"
 #include "sightline/prepare/occluder/quads.h"
+#include "sightline/geom/make_plane_mesh.h"
 
 namespace sightline {
 namespace {
@@ -33,8 +34,6 @@ Prepared prepare(std::span<const OccluderSource> sources, const OccluderSettings
     limits.reach_across = settings.rings;
     limits.most_joined = std::clamp(settings.own_polygons, 3u, OccluderCluster::kMaxOwn);
     limits.most_folded = std::clamp(settings.folded_polygons, 3u, limits.most_joined);
-    limits.few = settings.few;
-    limits.most_of_few = std::clamp(settings.polygons_of_few, 3u, limits.most_folded);
     limits.most_loose = OccluderCluster::kMaxLoose;
     limits.most_vertices = OccluderCluster::kMaxVertices - (settings.rings ? kRoomForRing : 0);
     out.runs = sortIntoRuns(out.patchwork, limits);
@@ -55,6 +54,7 @@ std::vector<Occluder> prepareOccluders(std::span<const OccluderSource> sources, 
     ClusterWriter writer(prepared.patchwork, prepared.runs, settings.rings);
     for (const Runs::Run& run : prepared.runs.runs)
         writer.add(out[prepared.patchwork.polygons[prepared.runs.order[run.first]].mesh], run);
+    for (Occluder& of_mesh : out) makePlaneMesh(of_mesh);
     return out;
 }
 
@@ -63,6 +63,7 @@ Occluder prepareJoined(std::span<const OccluderSource> sources, const OccluderSe
     Occluder out;
     ClusterWriter writer(prepared.patchwork, prepared.runs, settings.rings);
     for (const Runs::Run& run : prepared.runs.runs) writer.add(out, run);
+    makePlaneMesh(out);
     return out;
 }
 

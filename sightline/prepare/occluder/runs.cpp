@@ -16,7 +16,6 @@ constexpr uint32_t kLeastJoined = 3;  // a single panel shares no side worth a r
 
 /// A box or a slab, with what its triangles leave unpaired: few of its faces are seen at once, and cutting it in two
 /// costs more than it gains.
-constexpr size_t kMostOfBox = 16;
 
 /// Cosine below which polygons lie back to back: no eye sees the fronts of both. Where more than two meet, these are
 /// the faces between boxes that touch; kept apart they do not break the wall that the boxes make.
@@ -174,7 +173,6 @@ Runs sortIntoRuns(const Patchwork& patchwork, const RunLimits& limits) {
     std::vector<uint32_t> whole_size(count, 0);
     for (uint32_t whole : out.whole) ++whole_size[whole];
 
-    const auto isFew = [&](size_t polygons) { return polygons > kMostOfBox && polygons <= limits.few; };
     Splitter splitter(patchwork, limits.most_vertices);
     std::vector<uint32_t> loose, joined;
     std::vector<uint32_t> order = std::move(out.order);
@@ -189,9 +187,7 @@ Runs sortIntoRuns(const Patchwork& patchwork, const RunLimits& limits) {
         const size_t size = limits.reach_across ? whole_size[out.whole[order[first]]] : last - first;
         joined.assign(order.begin() + static_cast<ptrdiff_t>(first), order.begin() + static_cast<ptrdiff_t>(last));
         if (size < kLeastJoined) loose.insert(loose.end(), joined.begin(), joined.end());
-        else
-            splitter.split(out, joined, true, limits.most_joined,
-                           isFew(size) ? limits.most_of_few : limits.most_folded);
+        else splitter.split(out, joined, true, limits.most_joined, limits.most_folded);
     }
     endMesh();
     return out;

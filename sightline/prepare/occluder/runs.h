@@ -22,8 +22,6 @@ struct RunLimits {
     bool reach_across = false;   ///< what hangs together across meshes counts as one, though its runs are kept apart
     uint32_t most_joined = 0;    ///< polygons of a joined run
     uint32_t most_folded = 0;    ///< polygons of a joined run that do not face one way
-    uint32_t few = 0;            ///< what hangs together in so many polygons or fewer, and is no mere box,
-    uint32_t most_of_few = 0;    ///< has this instead of most_folded  [limit: <= most_folded]
     uint32_t most_loose = 0;     ///< polygons of a loose run
     uint32_t most_vertices = 0;  ///< of any run  [limit: >= 4]
 };

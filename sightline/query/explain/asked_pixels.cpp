@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "sightline/buffer/draw/outline.h"
+#include "sightline/cull/occlusion.h"
 #include "sightline/cull/shapes.h"
 #include "sightline/query/explain/trial.h"
 #include "sightline/stages/occlusion.h"
@@ -12,29 +14,41 @@
 namespace sightline::detail {
 namespace {
 
-/// Takes polygons down, pixel by pixel.
-struct Painter : PolygonSink {
+/// Takes what was asked down, pixel by pixel.
+struct Painter : OutlineSink {
     AskedPixels& asked;
     bool rects = false, painted = false;
+    const uint32_t stride;  ///< DepthTiles::stride
 
-    explicit Painter(AskedPixels& to) : asked(to) {}
+    Painter(AskedPixels& to, uint32_t tiles_stride) : asked(to), stride(tiles_stride) {}
 
-    bool take(const OccludeePolygon& polygon) override {
-        const PixelRect &from = polygon.rect, &rect = asked.rect;
+    bool take(uint32_t tile, uint64_t mask, float nearness) override {
+        const auto x0 = static_cast<int32_t>(8 * (tile % stride)), y0 = static_cast<int32_t>(8 * (tile / stride));
+        for (uint64_t left = mask; left; left &= left - 1) {
+            const int bit = std::countr_zero(left);
+            paint(x0 + (bit & 7), y0 + (bit >> 3), nearness);
+        }
+        return true;
+    }
+
+    void paint(int32_t x, int32_t y, float nearness) {
+        const PixelRect& rect = asked.rect;
+        if (x < rect.x0 || x > rect.x1 || y < rect.y0 || y > rect.y1) return;
+        float& place = asked.nearness[static_cast<size_t>(y - rect.y0) * static_cast<size_t>(rect.x1 - rect.x0 + 1) +
+                                      static_cast<size_t>(x - rect.x0)];
+        place = std::max(place, nearness);
+        painted = true;
+    }
+
+    void take(const OccludeePolygon& polygon) {
+        const PixelRect& from = polygon.rect;
         alignas(64) float nearest[64];
         for (int32_t row = from.y0 >> 3; row <= from.y1 >> 3; ++row)
             for (int32_t column = from.x0 >> 3; column <= from.x1 >> 3; ++column)
                 for (uint64_t left = pixelsOf(polygon, column, row, nearest); left; left &= left - 1) {
                     const int bit = std::countr_zero(left);
-                    const int32_t x = 8 * column + (bit & 7), y = 8 * row + (bit >> 3);
-                    if (x < rect.x0 || x > rect.x1 || y < rect.y0 || y > rect.y1) continue;
-                    float& place =
-                        asked.nearness[static_cast<size_t>(y - rect.y0) * static_cast<size_t>(rect.x1 - rect.x0 + 1) +
-                                       static_cast<size_t>(x - rect.x0)];
-                    place = std::max(place, nearest[bit]);
-                    painted = true;
+                    paint(8 * column + (bit & 7), 8 * row + (bit >> 3), nearest[bit]);
                 }
-        return true;
     }
 
     uint64_t pixelsOf(const OccludeePolygon& polygon, int32_t column, int32_t row, float (&nearest)[64]) const {
@@ -52,16 +66,23 @@ struct Painter : PolygonSink {
 
 bool paint(const RecordedTraversal& from, uint32_t place, Look look, AskedPixels& asked) {
     const ObjectRecord& object = from.frame.world->objectAt(place);
+    DepthTiles& tiles = asked.empty;
+    tiles.clear(from.frame.screen.width, from.frame.screen.height);
+    Painter painter(asked, tiles.stride);
+    if (look == Look::kTriangles) {
+        const Occluder& shape = *from.frame.world->occluders[object.shape.index];
+        const OccluderInstance instance = makeOccluderInstance(from.frame.screen, shape, object.transform);
+        for (uint32_t cluster = 0; cluster < shape.clusters.size(); ++cluster)
+            if (!forOutline(tiles, instance.frame, shape, cluster, OutlineOf::kAll, painter).known) return false;
+        return painter.painted;
+    }
     const OccludeePlace at = makeOccludeePlace(from.frame.screen, object.transform, object.bounds);
-    Painter painter(asked);
     BoxFaces faces;
-    if (look == Look::kFaces && makeBoxFaces(at, object.bounds, faces) != Sight::kOccluded) return false;
+    if (makeBoxFaces(at, object.bounds, faces) != Sight::kOccluded) return false;
     // What was hidden by rectangles alone may touch no pixel at all: then these are what was asked.
     for (const bool rects : {false, true}) {
         if (painter.painted) break;
         painter.rects = rects;
-        if (look == Look::kTriangles && !forTriangles(at, *from.frame.world->occluders[object.shape.index], painter))
-            return false;
         for (int i = 0; i < faces.count; ++i) painter.take(faces.faces[i]);
     }
     return painter.painted;

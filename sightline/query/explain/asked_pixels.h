@@ -14,11 +14,12 @@ namespace sightline::detail {
 struct AskedPixels {
     static constexpr float kNotAsked = -std::numeric_limits<float>::infinity();
 
-    explicit AskedPixels(Memory* memory) : nearness(memory) {}
+    explicit AskedPixels(Memory* memory) : nearness(memory), empty(memory) {}
 
     PixelRect rect;                  ///< holds them all
     Array<float> nearness;           ///< per pixel of the rectangle; kNotAsked where nothing of the object can be
     std::optional<OccludeeBox> box;  ///< that was held against planes
+    DepthTiles empty;                ///< in which outlines are drawn
 
     /// @param x,y  inside `rect`
     float at(int32_t x, int32_t y) const {

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "sightline/query/recorded_traversal.h"
+#include "sightline/geom/make_plane_mesh.h"
 
 namespace sightline {
 namespace {
@@ -25,6 +26,7 @@ public:
             first_.push_back(next);
             for (; next < drawn_.size() && drawn_[next].occluder == i; ++next)
                 addCluster(*met_[i], met_[i]->clusters[drawn_[next].cluster], to);
+            makePlaneMesh(to);
         }
         Array<uint32_t> instance_of(state_.instances.size(), kNone, memory);
         out.draws.reserve(record_.draws.size());

@@ -21,10 +21,9 @@ struct LoadedWorld {
 };
 
 struct LoadSettings {
-    bool volumes = true;  ///< WorldDef::volumes
-    /// How each mesh is prepared. Buildings have many walls of some tens of large polygons: `few` is 64.
-    OccluderSettings occluders = {.few = 64};
-    bool inner = false;  ///< prepare simpler occluders for dense meshes, too: prepareInner()
+    bool volumes = true;         ///< WorldDef::volumes
+    OccluderSettings occluders;  ///< how each mesh is prepared
+    bool inner = false;          ///< prepare simpler occluders for dense meshes, too: prepareInner()
     InnerSettings inner_occluders;
     bool clusters = false;  ///< prepare clusters of meshes of some size, too: prepareDrawClusters()
     DrawClusterSettings draw_clusters;

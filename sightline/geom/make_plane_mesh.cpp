@@ -1,17 +1,21 @@
 // Gathers the polygons of clusters by planes.
 // SPDX-License-Identifier: MIT
-#include "bench/onepass/mesh.h"
+#include "sightline/geom/make_plane_mesh.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include <vector>
+
 #include "sightline/base/assert.h"
 
-namespace sightline::bench {
+namespace sightline {
 namespace {
 
 constexpr double kFlat = 2e-6;    // how far a vertex may lie from its group's plane  [radii of the cluster]
 constexpr double kTilted = 2e-3;  // how much a triangle's normal may differ from its group's
+
+constexpr uint32_t kLoose = 1;  // polygons of a loose cluster that are drawn at once
 
 struct Group {
     glm::dvec3 normal{0.0};
@@ -23,8 +27,10 @@ struct Group {
 /// Makes one or more clusters of some polygons of a cluster.
 class Gather {
 public:
-    Gather(const Occluder& from, const OccluderCluster& cluster, PlaneMesh& out)
-        : from_(from), cluster_(cluster), out_(out) {}
+    Gather(const Occluder& from, uint32_t cluster, PlaneMesh& out)
+        : from_(from), cluster_(from.clusters[cluster]), index_(cluster), out_(out) {}
+
+    /// @param polygons  numbers in the cluster, one after the other
 
     void add(std::vector<uint32_t> polygons, bool loose) {
         if (polygons.empty()) return;
@@ -32,8 +38,13 @@ public:
         for (const uint32_t p : polygons) in_[p] = true;
         takeVertices(polygons);
         takeGroups(polygons);
-        const size_t edges = loose ? 4 * polygons.size() : cluster_.edge_count;
-        if (groups_.size() > PlaneMesh::kMostGroups || (edges > PlaneMesh::kMostEdges && polygons.size() > 1)) {
+        const bool fits =
+            groups_.size() <= PlaneMesh::kMostGroups && countEdges(polygons, loose) <= PlaneMesh::kMostEdges;
+        if (!fits && polygons.size() == 1) {
+            out_.is_whole = false;
+            return;
+        }
+        if (!fits) {
             const auto half = polygons.begin() + static_cast<std::ptrdiff_t>(polygons.size() / 2);
             add({polygons.begin(), half}, loose);
             add({half, polygons.end()}, loose);
@@ -49,6 +60,18 @@ private:
     }
     bool isIn(uint8_t p) const { return p != OccluderEdge::kNone && in_[p]; }
     const OccluderPolygon& polygon(uint32_t p) const { return from_.polygons[cluster_.first_polygon + p]; }
+
+    uint8_t groupOf(uint8_t p) const { return isIn(p) ? group_of_[p] : PlaneMesh::kNoGroup; }
+
+    size_t countEdges(const std::vector<uint32_t>& polygons, bool loose) const {
+        if (loose) return 4 * polygons.size();
+        size_t count = 0;
+        for (uint32_t i = 0; i < cluster_.edge_count; ++i) {
+            const OccluderEdge& e = from_.edges[cluster_.first_edge + i];
+            count += groupOf(e.left) != groupOf(e.right);
+        }
+        return count;
+    }
 
     void takeVertices(const std::vector<uint32_t>& polygons) {
         place_.assign(cluster_.vertex_count, -1);
@@ -127,26 +150,34 @@ private:
     }
 
     template <class T>
-    static void pad(std::vector<T>& array, T with) {
+    static void pad(Array<T>& array, T with) {
         while (array.size() % PlaneMesh::kPadding) array.push_back(with);
     }
 
     void write(const std::vector<uint32_t>& polygons, bool loose) {
-        PlaneMesh::Cluster cluster;
-        cluster.centre = centre_;
-        cluster.half = glm::vec3(half_ * (1 + 1e-6));
-        cluster.radius = static_cast<float>(radius_ * (1 + 1e-6));
-        cluster.first_vertex = static_cast<uint32_t>(out_.x.size());
-        cluster.vertices = static_cast<uint32_t>(vertices_.size());
+        PlaneMesh::Part part;
+        part.centre = centre_;
+        part.half = glm::vec3(half_ * (1 + 1e-6));
+        part.radius = static_cast<float>(radius_ * (1 + 1e-6));
+        part.first_vertex = static_cast<uint32_t>(out_.x.size());
+        part.vertices = static_cast<uint32_t>(vertices_.size());
         for (const uint8_t v : vertices_) {
             const glm::dvec3 r = at(v) - glm::dvec3(centre_);
             out_.x.push_back(static_cast<float>(r.x));
             out_.y.push_back(static_cast<float>(r.y));
             out_.z.push_back(static_cast<float>(r.z));
+            out_.source.push_back(v);
         }
-        for (std::vector<float>* list : {&out_.x, &out_.y, &out_.z}) pad(*list, list->back());
-        cluster.first_group = static_cast<uint32_t>(out_.nx.size());
-        cluster.groups = static_cast<uint32_t>(groups_.size());
+        part.cluster = index_;
+        part.first_polygon = polygons.front();
+        part.polygons = static_cast<uint32_t>(polygons.size());
+        part.first_group_of = static_cast<uint32_t>(out_.group_of.size());
+        for (const uint32_t p : polygons) out_.group_of.push_back(group_of_[p]);
+        while (out_.source.size() < out_.x.size() || out_.source.size() % PlaneMesh::kPadding)
+            out_.source.push_back(out_.source.back());
+        for (Array<float>* list : {&out_.x, &out_.y, &out_.z}) pad(*list, list->back());
+        part.first_group = static_cast<uint32_t>(out_.nx.size());
+        part.groups = static_cast<uint32_t>(groups_.size());
         for (Group& group : groups_) {
             out_.nx.push_back(static_cast<float>(group.normal.x));
             out_.ny.push_back(static_cast<float>(group.normal.y));
@@ -155,23 +186,22 @@ private:
             out_.thick.push_back(static_cast<float>(group.thick * 1.001 + 0x1p-22 * radius_));
             out_.tilt.push_back(static_cast<float>(group.tilt * 1.001));
             out_.both.push_back(group.both ? 1.0f : 0.0f);
-            cluster.thick = std::max(cluster.thick, out_.thick.back());
             std::sort(group.corners.begin(), group.corners.end());
             group.corners.erase(std::unique(group.corners.begin(), group.corners.end()), group.corners.end());
             out_.first_corner.push_back(static_cast<uint32_t>(out_.corners.size()));
             out_.corner_count.push_back(static_cast<uint32_t>(group.corners.size()));
-            out_.corners.insert(out_.corners.end(), group.corners.begin(), group.corners.end());
+            for (const uint8_t corner : group.corners) out_.corners.push_back(corner);
         }
-        for (std::vector<float>* list : {&out_.nx, &out_.ny, &out_.nz, &out_.nd, &out_.thick, &out_.tilt, &out_.both})
+        for (Array<float>* list : {&out_.nx, &out_.ny, &out_.nz, &out_.nd, &out_.thick, &out_.tilt, &out_.both})
             pad(*list, 0.0f);
         pad(out_.first_corner, uint32_t{0});
         pad(out_.corner_count, uint32_t{0});
-        writeEdges(polygons, loose, cluster);
-        out_.clusters.push_back(cluster);
+        writeEdges(polygons, loose, part);
+        out_.parts.push_back(part);
     }
 
-    void writeEdges(const std::vector<uint32_t>& polygons, bool loose, PlaneMesh::Cluster& cluster) {
-        cluster.first_edge = static_cast<uint32_t>(out_.from.size());
+    void writeEdges(const std::vector<uint32_t>& polygons, bool loose, PlaneMesh::Part& part) {
+        part.first_edge = static_cast<uint32_t>(out_.from.size());
         const auto edge = [&](uint8_t a, uint8_t b, uint8_t left, uint8_t right) {
             if (left == right) return;
             SIGHTLINE_DEBUG_ASSERT(place_[a] >= 0 && place_[b] >= 0);
@@ -185,19 +215,23 @@ private:
                 for (int k = 0, n = polygon(p).corners(); k < n; ++k)
                     edge(polygon(p).vertex[k], polygon(p).vertex[(k + 1) % n], group_of_[p], PlaneMesh::kNoGroup);
         } else {
-            const auto groupOf = [&](uint8_t p) { return isIn(p) ? group_of_[p] : PlaneMesh::kNoGroup; };
             for (uint32_t i = 0; i < cluster_.edge_count; ++i) {
                 const OccluderEdge& e = from_.edges[cluster_.first_edge + i];
                 edge(e.from, e.to, groupOf(e.left), groupOf(e.right));
             }
         }
-        cluster.edges = static_cast<uint32_t>(out_.from.size()) - cluster.first_edge;
-        for (std::vector<uint8_t>* list : {&out_.from, &out_.to}) pad(*list, uint8_t{0});
-        for (std::vector<uint8_t>* list : {&out_.left, &out_.right}) pad(*list, PlaneMesh::kNoGroup);
+        part.edges = static_cast<uint32_t>(out_.from.size()) - part.first_edge;
+        uint32_t border = 0;
+        for (uint32_t e = part.first_edge; e < part.first_edge + part.edges; ++e)
+            border += out_.left[e] == PlaneMesh::kNoGroup || out_.right[e] == PlaneMesh::kNoGroup;
+        part.cost = PlaneMesh::kLeastCost + border + (part.edges - border) / 8;
+        for (Array<uint8_t>* list : {&out_.from, &out_.to}) pad(*list, uint8_t{0});
+        for (Array<uint8_t>* list : {&out_.left, &out_.right}) pad(*list, PlaneMesh::kNoGroup);
     }
 
     const Occluder& from_;
     const OccluderCluster& cluster_;
+    const uint32_t index_;
     PlaneMesh& out_;
     std::vector<bool> in_;  ///< polygons that are taken
     std::vector<int> place_;
@@ -210,24 +244,24 @@ private:
 
 }  // namespace
 
-PlaneMesh makePlaneMesh(const Occluder& occluder) {
-    PlaneMesh out;
-    for (const OccluderCluster& cluster : occluder.clusters) {
-        Gather gather(occluder, cluster, out);
-        std::vector<uint32_t> all(cluster.polygon_count);
-        for (uint32_t p = 0; p < cluster.polygon_count; ++p) all[p] = p;
-        if (cluster.edge_count > 0) gather.add(std::move(all), false);
-        else
-            for (const uint32_t p : all) gather.add({p}, true);
-    }
-    for (const PlaneMesh::Cluster& cluster : out.clusters)
-        for (int axis = 0; axis < 3; ++axis) {
-            out.box[axis].push_back(cluster.centre[axis]);
-            out.box[3 + axis].push_back(cluster.half[axis]);
-            out.reach = std::max(out.reach, std::abs(cluster.centre[axis]) + cluster.half[axis]);
+void makePlaneMesh(Occluder& occluder) {
+    PlaneMesh out(occluder.x.memory());
+    std::vector<uint32_t> some;
+    for (uint32_t c = 0; c < occluder.clusters.size(); ++c) {
+        const OccluderCluster& cluster = occluder.clusters[c];
+        out.first_part.push_back(static_cast<uint32_t>(out.parts.size()));
+        Gather gather(occluder, c, out);
+        const uint32_t all = cluster.polygon_count + cluster.ring_count;
+        const bool loose = cluster.edge_count == 0;
+        for (uint32_t p = 0; p < all; p += kLoose) {
+            some.clear();
+            for (uint32_t k = p; k < all && (!loose || k < p + kLoose); ++k) some.push_back(k);
+            gather.add(some, loose);
+            if (!loose) break;
         }
-    for (std::vector<float>& side : out.box) side.resize((side.size() + 15) / 16 * 16);
-    return out;
+    }
+    out.first_part.push_back(static_cast<uint32_t>(out.parts.size()));
+    occluder.planes = std::move(out);
 }
 
-}  // namespace sightline::bench
+}  // namespace sightline

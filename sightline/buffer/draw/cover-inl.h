@@ -1,25 +1,25 @@
 // Which pixels of a row of blocks the edges of a cluster bound: winding numbers and touches, in bits.
 // SPDX-License-Identifier: MIT
-#if defined(SIGHTLINE_BENCH_ONEPASS_COVER_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SIGHTLINE_BENCH_ONEPASS_COVER_INL_H
-#undef SIGHTLINE_BENCH_ONEPASS_COVER_INL_H
+#if defined(SIGHTLINE_BUFFER_DRAW_COVER_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIGHTLINE_BUFFER_DRAW_COVER_INL_H
+#undef SIGHTLINE_BUFFER_DRAW_COVER_INL_H
 #else
-#define SIGHTLINE_BENCH_ONEPASS_COVER_INL_H
+#define SIGHTLINE_BUFFER_DRAW_COVER_INL_H
 #endif
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include "bench/onepass/lanes-inl.h"
-#include "bench/onepass/scratch.h"
+#include "sightline/buffer/draw/project-inl.h"
+#include "sightline/buffer/draw/scratch.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sightline::bench {
+namespace sightline {
 namespace HWY_NAMESPACE {
 /// Brings edges into the form that rows read.
 /// @param bounds  grows by what the edges touch: x0 y0 x1 y1
-void setUpEdges(EdgeList& e, float height, float (&bounds)[4]) {
+inline void setUpEdges(EdgeList& e, float height, float (&bounds)[4]) {
     const F f;
     const I i32;
     const VF rows = hn::Set(f, height + 1);
@@ -79,9 +79,7 @@ HWY_INLINE VI wholeOf(VF v) {
     return hn::Sub(hn::BitCast(i32, hn::Add(v, hn::Set(f, kLast))), hn::Set(i32, std::bit_cast<int32_t>(kLast)));
 }
 
-/// @tparam kInner  the edge touches pixels alone of which the middles may be on its inner side
-template <bool kInner>
-void setUpRow(const EdgeList& e, int i, int row0, float width, RowEdge& out) {
+inline void setUpRow(const EdgeList& e, int i, int row0, float width, RowEdge& out) {
     const F f;
     const I i32;
     const VF slope = hn::Set(f, e.slope[i]), x0 = hn::Set(f, e.x[i]), y0 = hn::Set(f, e.y[i]);
@@ -95,12 +93,15 @@ void setUpRow(const EdgeList& e, int i, int row0, float width, RowEdge& out) {
         const VF y = hn::Iota(f, static_cast<float>(row0) + 0.5f + static_cast<float>(k));
         const VF x = hn::Add(hn::Mul(hn::Sub(y, y0), slope), x0);
         hn::Store(wholeOf(clamp(atMiddle(hn::Min(hn::Max(x, left), right)))), i32, out.crossed + k);
-        VF first = hn::Floor(hn::Max(hn::Sub(x, half), left)),
-           end = hn::Add(hn::Floor(hn::Min(hn::Add(x, half), right)), one);
-        if (kInner && !level && plus) first = hn::Max(first, atMiddle(hn::Sub(x, beside)));
-        if (kInner && !level && !plus) end = hn::Min(end, hn::Add(hn::Floor(hn::Add(x, hn::Sub(beside, middle))), one));
+        const VF first = hn::Floor(hn::Max(hn::Sub(x, half), left)),
+                 end = hn::Add(hn::Floor(hn::Min(hn::Add(x, half), right)), one);
+        // A level edge has all that it touches on its inner side.
+        const VF inner = level  ? hn::Set(f, plus ? -1.0f : width + 64)
+                         : plus ? atMiddle(hn::Sub(x, beside))
+                                : hn::Add(hn::Floor(hn::Add(x, hn::Sub(beside, middle))), one);
         hn::Store(wholeOf(clamp(first)), i32, out.first + k);
         hn::Store(wholeOf(clamp(end)), i32, out.end + k);
+        hn::Store(wholeOf(clamp(inner)), i32, out.inner + k);
     }
 }
 
@@ -112,7 +113,7 @@ struct RowPlaces {
 };
 
 /// @param beyond  what begins here or farther right does not matter
-void placeEdges(const EdgeList& e, int at, int row0, float beyond, RowPlaces& out) {
+inline void placeEdges(const EdgeList& e, int at, int row0, float beyond, RowPlaces& out) {
     const F f;
     const I i32;
     out.meets = 0;
@@ -184,12 +185,14 @@ struct BlockRows {
     }
 };
 
-/// The pixels of a block that are covered. From the middle of a pixel a straight way to any point of it crosses only edges that
-/// touch the pixel, each once at most, and only one that has the middle on its inner side lowers the winding number there, by
-/// one. So a pixel is covered if the winding number of its middle is larger than the number of such edges. Rounding moves edges
-/// by no more than what they touch beside them: a middle that close counts as inside, whichever way it was counted before.
+/// The pixels of a block that are covered, and those that edges touch. From the middle of a pixel a straight way to any point
+/// of it crosses only edges that touch the pixel, each once at most, and only one that has the middle on its inner side lowers
+/// the winding number there, by one. So a pixel is covered if the winding number of its middle is larger than the number of such
+/// edges. Rounding moves edges by no more than what they touch beside them: a middle that close counts as inside, whichever way
+/// it was counted before.
 /// @returns whether there are any
-bool coverBlock(const BlockEdges& edges, const RowWinding<2>& before, int column, uint32_t* covered) {
+inline bool coverBlock(const BlockEdges& edges, const RowWinding<2>& before, int column, uint32_t* covered,
+                       uint32_t* touched) {
     const U u32;
     VU any = hn::Zero(u32);
     for (size_t k = 0; k < kBlockHeight; k += hn::Lanes(u32)) {
@@ -198,61 +201,38 @@ bool coverBlock(const BlockEdges& edges, const RowWinding<2>& before, int column
         VU winding[2] = {rows.all(before.plane[0]), rows.all(before.plane[1])};
         VU once = hn::Zero(u32), twice = once,
            thrice = once;  // so often an edge touches from its inner side, or more often
+        VU touch = once;
         for (int n = 0; n < edges.count; ++n) {
             const RowEdge& e = edges.row[edges.list[n]];
             countEdge(winding, rows.right(e), e.plus);
-            const VU touched = rows.touched(e);
-            thrice = hn::Or(thrice, hn::And(twice, touched));
-            twice = hn::Or(twice, hn::And(once, touched));
-            once = hn::Or(once, touched);
+            const VU here = rows.touched(e), beyond = onesFrom(hn::Load(I(), e.inner + k), rows.block),
+                     inner = e.plus ? hn::And(here, beyond) : hn::AndNot(beyond, here);
+            touch = hn::Or(touch, here);
+            thrice = hn::Or(thrice, hn::And(twice, inner));
+            twice = hn::Or(twice, hn::And(once, inner));
+            once = hn::Or(once, inner);
         }
         // The winding number is 1 to 3, or looks as if it were: what is four times covered counts as open.
         const VU low = winding[0], high = winding[1];
         const VU cover = hn::Or(hn::AndNot(once, hn::Or(low, high)),
                                 hn::Or(hn::AndNot(twice, high), hn::AndNot(thrice, hn::And(high, low))));
         hn::Store(cover, u32, covered + k);
-        any = hn::Or(any, cover);
+        hn::Store(hn::AndNot(cover, touch), u32, touched + k);
+        any = hn::Or(any, hn::Or(cover, touch));
     }
     return !hn::AllTrue(u32, hn::Eq(any, hn::Zero(u32)));
 }
 
-/// The pixels of a block that the edges touch or go around: all of them where the planes do not hold the winding numbers.
-/// @returns whether there are any
-template <int kPlanes>
-bool touchBlock(const BlockEdges& edges, const RowWinding<kPlanes>& before, int column, uint32_t* pixels) {
-    const U u32;
-    if (edges.most >= 1 << kPlanes) {
-        std::fill_n(pixels, kBlockHeight, ~0u);
-        return true;
-    }
-    VU all = hn::Zero(u32);
-    for (size_t k = 0; k < kBlockHeight; k += hn::Lanes(u32)) {
-        const BlockRows rows{hn::Shl(hn::Set(u32, 1u), hn::Iota(u32, static_cast<uint32_t>(k))), hn::Set(I(), column),
-                             k};
-        VU winding[kPlanes], any = hn::Zero(u32);
-        for (int p = 0; p < kPlanes; ++p) winding[p] = rows.all(before.plane[p]);
-        for (int n = 0; n < edges.count; ++n) {
-            const RowEdge& e = edges.row[edges.list[n]];
-            countEdge(winding, rows.right(e), e.plus);
-            any = hn::Or(any, rows.touched(e));
-        }
-        for (const VU& of : winding) any = hn::Or(any, of);
-        hn::Store(any, u32, pixels + k);
-        all = hn::Or(all, any);
-    }
-    return !hn::AllTrue(u32, hn::Eq(all, hn::Zero(u32)));
-}
-
 /// From rows of 32 pixels to masks of tiles, bit 8 * row + column.
 #if HWY_TARGET == HWY_SCALAR
-void tilesOf(const uint32_t* rows, uint64_t* tiles) {
+inline void tilesOf(const uint32_t* rows, uint64_t* tiles) {
     for (int t = 0; t < kBlockTiles; ++t) {
         tiles[t] = 0;
         for (int y = 0; y < 8; ++y) tiles[t] |= uint64_t{rows[8 * (t / 4) + y] >> (8 * (t % 4)) & 255} << (8 * y);
     }
 }
 #else
-void tilesOf(const uint32_t* rows, uint64_t* tiles) {
+inline void tilesOf(const uint32_t* rows, uint64_t* tiles) {
     const hn::FixedTag<uint8_t, 16> u8;
     const hn::FixedTag<uint32_t, 4> u32;
     const hn::FixedTag<uint64_t, 2> u64;
@@ -270,7 +250,7 @@ void tilesOf(const uint32_t* rows, uint64_t* tiles) {
 #endif
 
 }  // namespace HWY_NAMESPACE
-}  // namespace sightline::bench
+}  // namespace sightline
 HWY_AFTER_NAMESPACE();
 
 #endif  // per-target include guard

@@ -1,10 +1,10 @@
 // Which groups of a cluster face the eye, where its vertices are in the image, and the edges between its groups there.
 // SPDX-License-Identifier: MIT
-#if defined(SIGHTLINE_BENCH_ONEPASS_PROJECT_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SIGHTLINE_BENCH_ONEPASS_PROJECT_INL_H
-#undef SIGHTLINE_BENCH_ONEPASS_PROJECT_INL_H
+#if defined(SIGHTLINE_BUFFER_DRAW_PROJECT_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIGHTLINE_BUFFER_DRAW_PROJECT_INL_H
+#undef SIGHTLINE_BUFFER_DRAW_PROJECT_INL_H
 #else
-#define SIGHTLINE_BENCH_ONEPASS_PROJECT_INL_H
+#define SIGHTLINE_BUFFER_DRAW_PROJECT_INL_H
 #endif
 
 #include <bit>
@@ -12,20 +12,28 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "bench/onepass/frame.h"
-#include "bench/onepass/lanes-inl.h"
-#include "bench/onepass/scratch.h"
+#include "sightline/buffer/draw/frame.h"
+#include "sightline/buffer/draw/scratch.h"
+#include "sightline/buffer/tile_ops-inl.h"
+#include "sightline/geom/occluder.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sightline::bench {
+namespace sightline {
 namespace HWY_NAMESPACE {
+
+using F = F16;
+using I = hn::RebindToSigned<F>;
+using U = hn::RebindToUnsigned<F>;
+using VF = hn::Vec<F>;
+using VI = hn::Vec<I>;
+using VU = hn::Vec<U>;
 
 /// A row over vertices relative to the cluster's centre: m holds it, in floats, and its value at the centre.
 struct LocalRow {
     float x, y, z, at_centre;
 };
 
-LocalRow rowOf(const glm::dvec4& row, const glm::dvec3& centre) {
+inline LocalRow rowOf(const glm::dvec4& row, const glm::dvec3& centre) {
     return {static_cast<float>(row.x), static_cast<float>(row.y), static_cast<float>(row.z),
             static_cast<float>(glm::dot(glm::dvec3(row), centre) + row.w)};
 }
@@ -36,49 +44,63 @@ HWY_INLINE VF apply(const LocalRow& row, VF x, VF y, VF z) {
                    hn::Add(hn::Mul(hn::Set(f, row.z), z), hn::Set(f, row.at_centre)));
 }
 
+/// How many groups show their front, are drawn from behind, and may show either.
+struct Facing {
+    int fronts = 0, backs = 0, doubts = 0;
+};
+
 /// Which groups surely show their front (1) or, drawn from both sides, their back (-1) to the eye; 0: all others. A group
 /// that is not 0 has no polygon that faces otherwise, so that no winding number is less than 0.
-/// @param doubt  becomes 1 for each group that may show its front and has 0; or null
-/// @returns how many are not 0
-int faceGroups(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const glm::vec3& eye, float away, int8_t* turn,
-               int8_t* doubt) {
+/// @param eye    from the part's centre
+/// @param away   its distance
+/// @param doubt  becomes 1 for each group that may show its front and has 0, else 0; or null
+inline Facing faceGroups(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Part& c,
+                         const glm::vec3& eye, float away, int8_t* turn, int8_t* doubt) {
     const F f;
-    int count = 0;
-    const float reach = away + c.radius;
+    Facing out;
+    // A direction, of length 1, has no place.
+    const float place = frame.perspective ? 1.0f : 0.0f, reach = frame.perspective ? away + c.radius : 1.0f;
     for (uint32_t g = 0; g < c.groups; g += static_cast<uint32_t>(hn::Lanes(f))) {
         const size_t at = size_t{c.first_group} + g;
         const VF h = hn::Sub(hn::Add(hn::Add(hn::Mul(hn::LoadU(f, &mesh.nx[at]), hn::Set(f, eye.x)),
                                              hn::Mul(hn::LoadU(f, &mesh.ny[at]), hn::Set(f, eye.y))),
                                      hn::Mul(hn::LoadU(f, &mesh.nz[at]), hn::Set(f, eye.z))),
-                             hn::LoadU(f, &mesh.nd[at]));
+                             hn::Mul(hn::Set(f, place), hn::LoadU(f, &mesh.nd[at])));
         // What floats may be off by, what vertices lie off the plane, and what a triangle may lean.
+        const VF off =
+            hn::Mul(hn::Set(f, place), hn::Add(hn::LoadU(f, &mesh.thick[at]), hn::Set(f, frame.place_error)));
         const VF room =
-            hn::Add(hn::LoadU(f, &mesh.thick[at]),
-                    hn::Mul(hn::Add(hn::LoadU(f, &mesh.tilt[at]), hn::Set(f, 0x1p-20f)), hn::Set(f, reach)));
+            hn::Add(off, hn::Mul(hn::Add(hn::LoadU(f, &mesh.tilt[at]), hn::Set(f, 0x1p-20f)), hn::Set(f, reach)));
         const auto front = hn::Gt(h, room);
         const auto away_from = hn::Lt(h, hn::Neg(room));
         const VF back = hn::IfThenElseZero(away_from, hn::LoadU(f, &mesh.both[at]));
         const VF turns = hn::IfThenElse(front, hn::Set(f, 1.0f), hn::Neg(back));
-        const auto store = [&](VF v, int8_t* to) HWY_ATTR {
-            const hn::Rebind<int8_t, F> i8;
-            hn::StoreU(hn::DemoteTo(i8, hn::ConvertTo(I(), v)), i8, to);
-        };
+        const hn::Rebind<int8_t, F> i8;
+        const auto store = [&](VF v, int8_t* to)
+                               HWY_ATTR { hn::StoreU(hn::DemoteTo(i8, hn::ConvertTo(I(), v)), i8, to); };
         store(turns, turn + g);
-        if (doubt) store(hn::IfThenElse(hn::Or(front, away_from), hn::Zero(f), hn::Set(f, 1.0f)), doubt + g);
-        count += static_cast<int>(hn::CountTrue(f, hn::Ne(turns, hn::Zero(f))));
+        if (doubt) {
+            const auto is_real = hn::Lt(hn::Iota(f, static_cast<float>(g)), hn::Set(f, static_cast<float>(c.groups)));
+            const auto doubtful = hn::And(is_real, hn::Not(hn::Or(front, away_from)));
+            store(hn::IfThenElseZero(doubtful, hn::Set(f, 1.0f)), doubt + g);
+            out.doubts += static_cast<int>(hn::CountTrue(f, doubtful));
+        }
+        out.fronts += static_cast<int>(hn::CountTrue(f, front));
+        out.backs += static_cast<int>(hn::CountTrue(f, hn::Ne(back, hn::Zero(f))));
     }
-    return count;
+    return out;
 }
 
-/// Numerators and w are off by 2^-20 of what they are made of at most.
-/// @param reach    no vertex is farther from the eye
-/// @param w_error  what w may be off by
-void projectVertices(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& c, float reach,
-                     float w_error, ClusterImage& out) {
+/// Numerators and w are off by 2^-20 of what they are made of at most, and by what the object's place is.
+/// @param errors  what x, y and w may be off by
+/// @param touch   what edges touch beside themselves  [pixels]
+inline void projectVertices(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Part& c,
+                            const glm::vec3& errors, float touch, PartImage& out) {
     const F f;
     const glm::dvec3 centre(c.centre);
     const LocalRow rx = rowOf(frame.x, centre), ry = rowOf(frame.y, centre), rw = rowOf(frame.w, centre);
-    const VF error = hn::Set(f, w_error), own = hn::Set(f, 0x1p-20f * std::max(frame.length_x, frame.length_y) * reach);
+    const VF error = hn::Set(f, errors.z), own = hn::Set(f, std::max(errors.x, errors.y)),
+             more = hn::Set(f, 1e-5f + touch);
     VF x0 = hn::Set(f, 3e38f), y0 = x0, w0 = x0, x1 = hn::Set(f, -3e38f), y1 = x1, w1 = x1, r1 = hn::Zero(f);
     for (uint32_t i = 0; i < c.vertices; i += static_cast<uint32_t>(hn::Lanes(f))) {
         const size_t at = size_t{c.first_vertex} + i;
@@ -86,7 +108,7 @@ void projectVertices(const ObjectFrame& frame, const PlaneMesh& mesh, const Plan
         const VF w = apply(rw, x, y, z);
         const VF px = hn::Div(apply(rx, x, y, z), w), py = hn::Div(apply(ry, x, y, z), w);
         const VF far = hn::Max(hn::Abs(px), hn::Abs(py));
-        const VF r = hn::Add(hn::Div(hn::Add(own, hn::Mul(far, error)), hn::Sub(w, error)), hn::Set(f, 1e-5f));
+        const VF r = hn::Add(hn::Div(hn::Add(own, hn::Mul(far, error)), hn::Sub(w, error)), more);
         hn::Store(px, f, out.x + i);
         hn::Store(py, f, out.y + i);
         hn::Store(w, f, out.w + i);
@@ -110,15 +132,17 @@ void projectVertices(const ObjectFrame& frame, const PlaneMesh& mesh, const Plan
     out.r_max = most(r1);
 }
 
-void projectExactly(const ObjectFrame& frame, const PlaneMesh& mesh, const PlaneMesh::Cluster& c, ExactImage& out) {
+/// All vertices of a part's cluster, by their own positions.
+/// @param guard  what has less of near.h does not matter
+inline void projectExactly(const ObjectFrame& frame, const Occluder& occluder, const PlaneMesh::Part& c, double guard,
+                           ExactImage& out) {
     const hn::CappedTag<double, 8> d;
     const hn::Rebind<float, decltype(d)> f;
-    for (uint32_t i = 0; i < c.vertices; i += static_cast<uint32_t>(hn::Lanes(d))) {
-        const size_t at = size_t{c.first_vertex} + i;
-        const auto load = [&](const std::vector<float>& from, float centre) HWY_ATTR {
-            return hn::Add(hn::PromoteTo(d, hn::LoadU(f, &from[at])), hn::Set(d, static_cast<double>(centre)));
-        };
-        const auto x = load(mesh.x, c.centre.x), y = load(mesh.y, c.centre.y), z = load(mesh.z, c.centre.z);
+    const OccluderCluster& cluster = occluder.clusters[c.cluster];
+    for (uint32_t i = 0; i < cluster.vertex_count; i += static_cast<uint32_t>(hn::Lanes(d))) {
+        const size_t at = size_t{cluster.first_vertex} + i;
+        const auto load = [&](const Array<float>& from) HWY_ATTR { return hn::PromoteTo(d, hn::LoadU(f, &from[at])); };
+        const auto x = load(occluder.x), y = load(occluder.y), z = load(occluder.z);
         const auto over = [&](const glm::dvec4& row) HWY_ATTR {
             return hn::Add(hn::Add(hn::Mul(hn::Set(d, row.x), x), hn::Mul(hn::Set(d, row.y), y)),
                            hn::Add(hn::Mul(hn::Set(d, row.z), z), hn::Set(d, row.w)));
@@ -127,44 +151,13 @@ void projectExactly(const ObjectFrame& frame, const PlaneMesh& mesh, const Plane
         hn::Store(hn::Div(over(frame.x), w), d, out.x + i);
         hn::Store(hn::Div(over(frame.y), w), d, out.y + i);
         hn::Store(w, d, out.w + i);
+        hn::Store(hn::Sub(over(frame.near), hn::Set(d, guard)), d, out.near + i);
     }
-}
-
-uint32_t clustersInViewKernel(float width, float height, const ObjectFrame& frame, const PlaneMesh& mesh,
-                              uint32_t* out) {
-    const F f;
-    // What is in the image is on the positive side of all of these.
-    const glm::dvec4 nearer(0, 0, 0, -frame.near_w * (1 - 1e-6));
-    const glm::vec4 sides[5] = {glm::vec4(frame.x), glm::vec4(frame.w * static_cast<double>(width) - frame.x),
-                                glm::vec4(frame.y), glm::vec4(frame.w * static_cast<double>(height) - frame.y),
-                                glm::vec4(frame.w + nearer)};
-    uint32_t count = 0;
-    for (size_t i = 0; i < mesh.clusters.size(); i += hn::Lanes(f)) {
-        VF box[6];
-        for (int k = 0; k < 6; ++k) box[k] = hn::LoadU(f, &mesh.box[k][i]);
-        VF least = hn::Set(f, 3e38f);
-        for (const glm::vec4& side : sides) {
-            // With what rounding of its summands may be off by.
-            const float sum = std::abs(side.x) + std::abs(side.y) + std::abs(side.z);
-            VF most = hn::Set(f, side.w + 0x1p-20f * (2 * sum * mesh.reach + std::abs(side.w)));
-            for (int k = 0; k < 3; ++k)
-                most = hn::Add(most, hn::Add(hn::Mul(hn::Set(f, side[k]), box[k]),
-                                             hn::Mul(hn::Set(f, std::abs(side[k])), box[3 + k])));
-            least = hn::Min(least, most);
-        }
-        uint8_t bytes[8] = {};
-        hn::StoreMaskBits(f, hn::Ge(least, hn::Zero(f)), bytes);
-        uint32_t bits = bytes[0] | static_cast<uint32_t>(bytes[1]) << 8;
-        if (mesh.clusters.size() - i < 16) bits &= (1u << (mesh.clusters.size() - i)) - 1;
-        for (; bits != 0; bits &= bits - 1)
-            out[count++] = static_cast<uint32_t>(i) + static_cast<uint32_t>(std::countr_zero(bits));
-    }
-    return count;
 }
 
 /// The edges on whose sides groups are drawn otherwise, with their corners' images.
-void gatherEdges(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const int8_t* turn, const ClusterImage& image,
-                 EdgeList& out) {
+inline void gatherEdges(const PlaneMesh& mesh, const PlaneMesh::Part& c, const int8_t* turn, const PartImage& image,
+                        EdgeList& out) {
     const F f;
     const I i32;
     const hn::Rebind<uint8_t, F> u8;
@@ -203,7 +196,7 @@ void gatherEdges(const PlaneMesh& mesh, const PlaneMesh::Cluster& c, const int8_
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace sightline::bench
+}  // namespace sightline
 HWY_AFTER_NAMESPACE();
 
 #endif  // per-target include guard

@@ -1,15 +1,15 @@
-// What the one rasterizer covers is covered: each point of such a pixel shows a triangle that is as near as is claimed.
+// What drawing covers is covered: each point of such a pixel shows a triangle that is as near as is claimed.
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "bench/onepass/draw.h"
+#include "sightline/buffer/depth_image.h"
+#include "sightline/cull/outline_look.h"
 #include "sightline/prepare/occluder/occluder.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
@@ -17,10 +17,8 @@
 #include "tests/support/views.h"
 
 namespace sightline::test {
-namespace onepass {
+namespace drawing {
 namespace {
-
-using namespace bench;
 
 /// A mesh of some kind, with triangles that are drawn from both sides.
 struct Made {
@@ -137,39 +135,48 @@ struct Case {
     }
 };
 
-/// @returns clusters that could not be drawn
-uint64_t draw(const Case& of, uint32_t size, DepthBlocks& image, uint64_t& clusters) {
-    const Screen screen = makeScreen(of.view, size);
-    const ObjectFrame frame =
-        objectFrame(objectScreen(screen, of.transform), glm::determinant(glm::dmat3(of.transform)) < 0);
-    EXPECT_TRUE(frame.usable);
-    const PlaneMesh mesh = makePlaneMesh(prepareOccluder(of.made.mesh.view(), {}, of.made.both));
-    image.clear(screen.width, screen.height, 1e-6f / float(screen.near_w));
-    uint64_t undrawn = 0;
-    const auto scratch = std::make_unique<DrawScratch>();
-    for (uint32_t c = 0; c < mesh.clusters.size(); ++c) undrawn += !drawCluster(image, frame, mesh, c, *scratch);
-    clusters += mesh.clusters.size();
-    return undrawn;
-}
+/// A case drawn alone; it holds what seams look at.
+struct Drawn {
+    DepthTiles& tiles;
+    const Occluder occluder;
 
-TEST(OnePass, CoversNothingThatIsOpen) {
-    uint64_t pixels = 0, clusters = 0, undrawn = 0;
+    Drawn(const Case& of, uint32_t size, DepthTiles& in)
+        : tiles(in), occluder(prepareOccluder(of.made.mesh.view(), {}, of.made.both)) {
+        const Screen screen = makeScreen(of.view, size);
+        const OccluderInstance instance = makeOccluderInstance(screen, occluder, of.transform);
+        EXPECT_TRUE(instance.frame.usable);
+        tiles.clear(screen.width, screen.height);
+        for (uint32_t c = 0; c < occluder.clusters.size(); ++c) {
+            const BoxAnswer box = projectBox(instance.screen, occluder.clusters[c].bounds);
+            if (!box.outside) drawOccluder(tiles, instance, c, box);
+        }
+    }
+    /// What each pixel claims, row by row.
+    std::vector<float> claims() const {
+        std::vector<float> out(size_t{tiles.width} * tiles.height);
+        readDepthImage(tiles, Seams::kLeave, out);
+        return out;
+    }
+};
+
+TEST(Draw, CoversNothingThatIsOpen) {
+    uint64_t pixels = 0;
     const char* const begin = std::getenv("SIGHTLINE_FIRST_SEED");
     const uint64_t first = begin ? std::strtoull(begin, nullptr, 10) : 1;
     for (uint64_t seed = first; seed < first + rounds(150, 20); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Random random(seed);
         const Case of(random);
-        DepthBlocks image;
-        undrawn += draw(of, 128, image, clusters);
+        DepthTiles tiles;
+        const std::vector<float> claims = Drawn(of, 128, tiles).claims();
         const Screen screen = makeScreen(of.view, 128), object = objectScreen(screen, of.transform);
         const glm::dmat3 rows =
             glm::transpose(glm::dmat3(glm::dvec3(object.x), glm::dvec3(object.y), glm::dvec3(object.w)));
         const glm::dmat3 from_image = glm::inverse(rows);
         const glm::dvec3 eye = -(from_image * glm::dvec3(object.x.w, object.y.w, object.w.w));
-        for (int y = 0; y < int(image.height); ++y)
-            for (int x = 0; x < int(image.width); ++x) {
-                const float claim = image.claim(x, y);
+        for (uint32_t y = 0; y < tiles.height; ++y)
+            for (uint32_t x = 0; x < tiles.width; ++x) {
+                const float claim = claims[size_t{y} * tiles.width + x];
                 if (!(claim > 0)) continue;
                 ++pixels;
                 // A corner of the pixel, or nearly, and a point in it.
@@ -183,7 +190,6 @@ TEST(OnePass, CoversNothingThatIsOpen) {
             }
     }
     EXPECT_GT(pixels, rounds(100000, 10000));
-    EXPECT_LT(undrawn, clusters / 20);
 }
 
 /// An object's space, seen from a view.
@@ -202,54 +208,48 @@ struct Seen {
     Ray ray(double x, double y) const { return {eye, from_image * glm::dvec3(x, y, 1)}; }
 };
 
-/// Whether a look finds something of an object open.
-bool isShown(DepthBlocks& image, const Seen& seen, const glm::dmat4& transform, const PlaneMesh& mesh) {
-    const ObjectFrame frame = objectFrame(seen.screen, glm::determinant(glm::dmat3(transform)) < 0);
-    const auto scratch = std::make_unique<DrawScratch>();
-    for (uint32_t c = 0; c < mesh.clusters.size(); ++c) {
-        const PlaneMesh::Cluster& cluster = mesh.clusters[c];
-        const AskedBox box = askedBox(frame.x, frame.y, frame.w, glm::dvec3(cluster.centre), glm::dvec3(cluster.half));
-        if (isClusterOpen(image, frame, mesh, c, box, *scratch)) return true;
-    }
-    return false;
-}
-
-TEST(OnePass, WhatALookFindsHiddenIsHidden) {
-    uint64_t hidden = 0, shown = 0, rays = 0, clusters = 0;
+TEST(Draw, WhatALookFindsHiddenIsHidden) {
+    uint64_t hidden = 0, shown = 0, rays = 0;
     const char* const begin = std::getenv("SIGHTLINE_FIRST_SEED");
     const uint64_t first = begin ? std::strtoull(begin, nullptr, 10) : 1;
     for (uint64_t seed = first; seed < first + rounds(4000, 200); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Random random(seed);
         const Case of(random);
-        DepthBlocks image;
-        draw(of, 128, image, clusters);
+        DepthTiles tiles;
+        Drawn drawn(of, 128, tiles);
+        const std::vector<float> claims = drawn.claims();
+        const auto claimAt = [&](double px, double py) {
+            return claims[static_cast<size_t>(py) * tiles.width + static_cast<size_t>(px)];
+        };
         const Made other = randomMesh(random);
-        const PlaneMesh mesh = makePlaneMesh(prepareOccluder(other.mesh.view(), {}, other.both));
-        if (!mesh.is_whole) continue;
+        const Occluder shape = prepareOccluder(other.mesh.view(), {}, other.both);
         glm::dmat4 transform = lookAt({0, 0, 0}, randomUnit(random), {0.1, 1, 0.2});
         const double size = std::pow(10, random.uniform(-2.5, -0.3));
         for (int axis = 0; axis < 3; ++axis) transform[axis] *= size * (random.below(6) == 0 ? -1 : 1);
         const Seen front(of.view, 128, of.transform);
         // At the border of what is covered where there is one, and a little behind it, or farther.
         const auto isCovered = [&](double px, double py) {
-            return px >= 0 && py >= 0 && px < image.width && py < image.height && image.claim(int(px), int(py)) > 0;
+            return px >= 0 && py >= 0 && px < tiles.width && py < tiles.height && claimAt(px, py) > 0;
         };
         double x = 0, y = 0;
         for (int tries = 0; tries < 200; ++tries) {
-            x = random.uniform(0, image.width);
-            y = random.uniform(0, image.height);
+            x = random.uniform(0, tiles.width);
+            y = random.uniform(0, tiles.height);
             if (isCovered(x, y) &&
                 !(isCovered(x - 2, y) && isCovered(x + 2, y) && isCovered(x, y - 2) && isCovered(x, y + 2)))
                 break;
         }
-        const float claim = image.claim(int(x), int(y));
+        const float claim = claimAt(x, y);
         const double behind = random.below(2) ? random.uniform(0.99, 1.1) : random.uniform(1, 4);
         const double w = (claim > 0 ? 1 / double(claim) : 5) * behind;
         const Ray to = front.ray(x, y);
         transform[3] = of.transform * glm::dvec4(to.eye + w * to.along, 1);
         const Seen back(of.view, 128, transform);
-        if (isShown(image, back, transform, mesh)) {
+        LookScratch scratch(defaultMemory());
+        OutlineLook found;
+        const Screen screen = makeScreen(of.view, 128);
+        if (askOutlines(tiles, makeOccluderInstance(screen, shape, transform), scratch, found) == Sight::kVisible) {
             ++shown;
             continue;
         }
@@ -268,7 +268,7 @@ TEST(OnePass, WhatALookFindsHiddenIsHidden) {
             const glm::dvec4 p(corner(0) + a * (corner(1) - corner(0)) + b * (corner(2) - corner(0)), 1);
             const double pw = glm::dot(back.screen.w, p), px = glm::dot(back.screen.x, p) / pw,
                          py = glm::dot(back.screen.y, p) / pw;
-            if (!(pw > back.screen.near_w && px > 0 && py > 0 && px < image.width && py < image.height)) continue;
+            if (!(pw > back.screen.near_w && px > 0 && py > 0 && px < tiles.width && py < tiles.height)) continue;
             const double nearness = nearnessOf(other, back.ray(px, py), back.screen.near_w);
             if (nearness == 0) continue;
             ++rays;
@@ -281,24 +281,20 @@ TEST(OnePass, WhatALookFindsHiddenIsHidden) {
     EXPECT_GT(rays, rounds(10000, 1000));
 }
 
-TEST(OnePass, IsTheSameOnEveryInstructionSet) {
+TEST(Draw, IsTheSameOnEveryInstructionSet) {
     for (uint64_t seed = 1; seed <= rounds(60, 10); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         std::vector<float> first;
         const int targets = forEachTarget([&](const std::string& target) {
             Random random(seed);
             const Case of(random);
-            DepthBlocks image;
-            uint64_t clusters = 0;
-            draw(of, 160, image, clusters);
-            std::vector<float> claims;
-            for (int y = 0; y < int(image.height); ++y)
-                for (int x = 0; x < int(image.width); ++x) claims.push_back(image.claim(x, y));
+            DepthTiles tiles;
+            const std::vector<float> claims = Drawn(of, 160, tiles).claims();
             if (first.empty()) first = claims;
             size_t differ = 0, where = 0;
             for (size_t i = 0; i < claims.size(); ++i)
                 if (claims[i] != first[i] && ++differ == 1) where = i;
-            EXPECT_EQ(differ, 0u) << target << ": pixel " << where % image.width << " " << where / image.width << ": "
+            EXPECT_EQ(differ, 0u) << target << ": pixel " << where % tiles.width << " " << where / tiles.width << ": "
                                   << claims[where] << ", not " << first[where];
         });
         EXPECT_GT(targets, 0);
@@ -306,5 +302,5 @@ TEST(OnePass, IsTheSameOnEveryInstructionSet) {
 }
 
 }  // namespace
-}  // namespace onepass
+}  // namespace drawing
 }  // namespace sightline::test

@@ -4,12 +4,10 @@
 
 #include <cstdint>
 
-#include "bench/onepass/frame.h"
-#include "bench/onepass/mesh.h"
+#include "sightline/buffer/draw/frame.h"
+#include "sightline/geom/occluder.h"
 
-namespace sightline::bench {
-
-constexpr int kMostColumns = 256;  ///< blocks in a row: images are no wider than 8192 pixels
+namespace sightline {
 
 /// Edges with the change of the winding number from their right to their left, side by side.
 struct EdgeList {
@@ -71,20 +69,20 @@ struct GroupRect {
     }
 };
 
-/// The images of a cluster's vertices in doubles, wherever they are.
+/// The images of the vertices of an occluder's cluster in doubles, wherever they are.
 struct ExactImage {
-    alignas(64) double x[256], y[256], w[256];
+    alignas(64) double x[256], y[256], w[256], near[256];  ///< near: before the near guard where it is not less than 0
 };
 
-/// Gathers the edges of a cluster that the near plane cuts, in doubles, with those that close its groups there.
+/// Gathers the edges of a part that the near plane cuts, in doubles, with those that close its triangles there.
 /// @param image    of the vertices
-/// @param near_w   where they are cut
 /// @param turn     per group: 1, -1, or 0: it is not drawn
+/// @param reach    what edges touch beside themselves  [pixels]
 /// @param rects    per group, of those that are drawn
-/// @param nearest  becomes the nearness of what is nearest
+/// @param nearest  in perspective becomes the nearness of what is nearest
 /// @returns false if they are not known
-bool cutEdges(const ObjectFrame& frame, const ExactImage& image, double near_w, const PlaneMesh& mesh,
-              const PlaneMesh::Cluster& cluster, const int8_t* turn, float width, float height, EdgeList& edges,
-              GroupRect* rects, float& nearest);
+bool cutEdges(const ObjectFrame& frame, const ExactImage& image, const Occluder& occluder, const PlaneMesh::Part& part,
+              const int8_t* turn, float width, float height, float reach, EdgeList& edges, GroupRect* rects,
+              float& nearest);
 
-}  // namespace sightline::bench
+}  // namespace sightline
