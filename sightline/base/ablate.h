@@ -13,8 +13,7 @@ struct Ablate {
     bool seams = SIGHTLINE_IS_ABLATED(SIGHTLINE_ABLATE_SEAMS);    ///< pixels that several polygons cover together
     bool unite = SIGHTLINE_IS_ABLATED(SIGHTLINE_ABLATE_UNITE);    ///< of these, by the union of the polygons
     bool joiner = SIGHTLINE_IS_ABLATED(SIGHTLINE_ABLATE_JOINER);  ///< of these, by identical edges
-    bool pairs = SIGHTLINE_IS_ABLATED(SIGHTLINE_ABLATE_PAIRS);  ///< of these, two polygons with a shared side, by tiles
-    bool masks = SIGHTLINE_IS_ABLATED(SIGHTLINE_ABLATE_MASKS);  ///< refutation of shared pixels by masks
+    bool masks = SIGHTLINE_IS_ABLATED(SIGHTLINE_ABLATE_MASKS);    ///< refutation of shared pixels by masks
     bool planes = SIGHTLINE_IS_ABLATED(SIGHTLINE_ABLATE_PLANES);  ///< covers and the planes of occluders
 };
 

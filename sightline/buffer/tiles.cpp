@@ -29,7 +29,6 @@ void DepthTiles::clear(uint32_t new_width, uint32_t new_height, Detail new_detai
         block.resize(count);
         seam_mask.resize(count);
         tried.resize(count);
-        paired.resize(count);
         lid.resize(count);
         lid_mask.resize(count);
         covers.resize(kCovers * count);

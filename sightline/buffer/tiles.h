@@ -177,7 +177,6 @@ struct DepthTiles {
     Array<uint32_t> block{memory};       ///< with a layer: index into blocks, or kNone
     Array<uint64_t> seam_mask{memory};   ///< with seams: pixels that some SeamEntry of the tile names
     Array<uint64_t> tried{memory};       ///< with seams: pixels whose present entries have been resolved
-    Array<uint32_t> paired{memory};      ///< with seams: how many entries there were when pairSeams() last looked
     Array<float> lid{memory};            ///< with seams: pixels of lid_mask are surely open to this nearness and to
     Array<uint64_t> lid_mask{memory};    ///< greater ones, unless the tile claims more there
 
@@ -273,9 +272,6 @@ void readClaims(const DepthTiles& tiles, uint32_t tile, float (&claims)[64]);
 /// Raises what a tile claims at the pixels of a mask.
 /// @param depths  per pixel, read where the mask has a bit
 void raiseClaims(DepthTiles& tiles, uint32_t tile, uint64_t mask, const float (&depths)[64]);
-
-/// Covers the pixels of a tile that two polygons of patches with a shared side cover between them, all pairs at once.
-void pairSeams(DepthTiles& tiles, uint32_t tile);
 
 /// Tries to cover one pixel by the polygons that share it; true if it claims more than the nearness wanted now. What
 /// else was asked before does not change the answer.

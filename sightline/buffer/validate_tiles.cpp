@@ -71,7 +71,6 @@ void validateSeams(const DepthTiles& tiles, uint32_t tile, bool all) {
     if (newest == DepthTiles::kNone) return;
     validateChunk(tiles, tile, newest);
     SIGHTLINE_DEBUG_ASSERT((tiles.tried[tile] & ~tiles.seam_mask[tile]) == 0);
-    SIGHTLINE_DEBUG_ASSERT(tiles.paired[tile] <= tiles.chunks[newest].before + tiles.chunks[newest].count);
     SIGHTLINE_DEBUG_ASSERT(tiles.lid_mask[tile] == 0 || !std::isnan(tiles.lid[tile]));
     for (uint32_t at = newest; all && at != DepthTiles::kNone; at = tiles.chunks[at].next)
         validateChunk(tiles, tile, at);
@@ -92,7 +91,7 @@ void validateSizes(const DepthTiles& tiles) {
     SIGHTLINE_DEBUG_ASSERT(tiles.seams.size() == tiles.base.size() && tiles.cover_count.size() == tiles.base.size());
     SIGHTLINE_DEBUG_ASSERT(tiles.plane.size() >= tiles.base.size() && tiles.layer_mask.size() == tiles.plane.size());
     SIGHTLINE_DEBUG_ASSERT(tiles.block.size() == tiles.plane.size() && tiles.seam_mask.size() == tiles.plane.size());
-    SIGHTLINE_DEBUG_ASSERT(tiles.tried.size() == tiles.plane.size() && tiles.paired.size() == tiles.plane.size());
+    SIGHTLINE_DEBUG_ASSERT(tiles.tried.size() == tiles.plane.size());
     SIGHTLINE_DEBUG_ASSERT(tiles.lid.size() == tiles.plane.size() && tiles.lid_mask.size() == tiles.plane.size());
     SIGHTLINE_DEBUG_ASSERT(tiles.covers.size() == DepthTiles::kCovers * tiles.plane.size());
     SIGHTLINE_DEBUG_ASSERT(tiles.blocks.size() >= 64 * size_t{tiles.block_count});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <vector>
 
@@ -14,8 +15,6 @@ namespace {
 
 constexpr double kFlat = 2e-6;    // how far a vertex may lie from its group's plane  [radii of the cluster]
 constexpr double kTilted = 2e-3;  // how much a triangle's normal may differ from its group's
-
-constexpr uint32_t kLoose = 1;  // polygons of a loose cluster that are drawn at once
 
 struct Group {
     glm::dvec3 normal{0.0};
@@ -250,15 +249,9 @@ void makePlaneMesh(Occluder& occluder) {
     for (uint32_t c = 0; c < occluder.clusters.size(); ++c) {
         const OccluderCluster& cluster = occluder.clusters[c];
         out.first_part.push_back(static_cast<uint32_t>(out.parts.size()));
-        Gather gather(occluder, c, out);
-        const uint32_t all = cluster.polygon_count + cluster.ring_count;
-        const bool loose = cluster.edge_count == 0;
-        for (uint32_t p = 0; p < all; p += kLoose) {
-            some.clear();
-            for (uint32_t k = p; k < all && (!loose || k < p + kLoose); ++k) some.push_back(k);
-            gather.add(some, loose);
-            if (!loose) break;
-        }
+        some.resize(cluster.polygon_count + cluster.ring_count);
+        std::iota(some.begin(), some.end(), 0u);
+        Gather(occluder, c, out).add(some, cluster.edge_count == 0);
     }
     out.first_part.push_back(static_cast<uint32_t>(out.parts.size()));
     occluder.planes = std::move(out);

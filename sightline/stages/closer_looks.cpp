@@ -21,7 +21,7 @@ TurnAnswer settle(const Frame& frame, const TraversalState& state, Look look, Si
 
 namespace {
 
-/// Of what is smaller in the image, in pixels of the buffer, a look by outlines tells hardly more than the box.
+/// Of what is smaller in the image, in pixels of the buffer, a closer look tells hardly more than the box.
 constexpr int64_t kLeastLook = 64;
 
 bool isTiny(const Pending& entry) {
@@ -57,15 +57,16 @@ TurnAnswer askFaces(const Frame& frame, TraversalState& state, const OccludeePla
 /// Where triangles will be asked, faces are worth asking only if they decided last time: they are open wherever a
 /// polygon is.
 TurnAnswer cullByFaces(const Frame& frame, TraversalState& state, const Pending& entry) {
-    const Look by_box = frame.settings.faces && entry.testable ? Look::kFaces : Look::kBox;
+    const Look by_box = frame.settings.faces && entry.testable && !isTiny(entry) ? Look::kFaces : Look::kBox;
     if (entry.kind != Pending::Kind::kObject) return {};
     SIGHTLINE_DEBUG_ASSERT(entry.index < frame.world->placed.size());
     const ObjectRecord& object = frame.world->objectAt(entry.index);
     const bool in_layers = object.layers & frame.view.layers;
-    const bool again = frame.settings.second_look && object.shape.index != 0 && in_layers &&
-                       !frame.mayBeCoarse(entry.index) && !isTiny(entry);
+    const bool closer = in_layers && !isTiny(entry);
+    const bool again =
+        frame.settings.second_look && object.shape.index != 0 && closer && !frame.mayBeCoarse(entry.index);
     const bool by_faces = lastLook(frame, state, entry.index) == kHiddenByFaces;
-    const bool asks_faces = frame.settings.faces && in_layers && (!again || by_faces);
+    const bool asks_faces = frame.settings.faces && closer && (!again || by_faces);
     if (asks_faces) {
         const OccludeePlace place = makeOccludeePlace(frame.screen, object.transform, object.bounds);
         const TurnAnswer answer = askFaces(frame, state, place, object.bounds);

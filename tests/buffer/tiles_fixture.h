@@ -58,7 +58,6 @@ struct Drawing {
     }
 
     void resolveAll() {
-        for (uint32_t t = 0; t < tiles.base.size(); ++t) pairSeams(tiles, t);
         for (uint32_t y = 0; y < tiles.height; ++y)
             for (uint32_t x = 0; x < tiles.width; ++x) resolve(x, y);
     }

@@ -83,7 +83,6 @@ struct Undecided {
 /// Whether seams close the pixels of a tile that are open to what lies at a nearness.
 bool closeSeams(DepthTiles& tiles, uint32_t tile, uint64_t open, float nearness, const OccludeeBox* box) {
     SIGHTLINE_DEBUG_ASSERT(open != 0);
-    pairSeams(tiles, tile);
     alignas(64) float claims[64];
     claimsOfTile(tiles, tile, claims);
     open &= ~pixelsNearer(claims, nearness);
@@ -155,7 +154,6 @@ uint64_t openPixelsKernel(DepthTiles& tiles, uint32_t tile, uint64_t window, con
     const uint64_t open = behind(openAgainst(tiles, tile, window, nearest));
     const uint64_t undecided = open & undecidedSeams(tiles, tile);
     if (seams == Seams::kLeave || !undecided) return open;
-    pairSeams(tiles, tile);
     for (uint64_t set = openAgainst(tiles, tile, undecided, nearest); set; set &= set - 1) {
         const int bit = std::countr_zero(set);
         resolveSeam(tiles, tile, bit, nearest[bit]);

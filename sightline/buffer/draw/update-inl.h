@@ -83,10 +83,7 @@ inline void coverPart(DepthTiles& tiles, uint32_t tile, uint64_t mask, float z, 
 /// Names a cluster as one of those that share pixels of a tile.
 inline void addSeam(DepthTiles& tiles, uint32_t tile, uint64_t mask, uint32_t source, float nearest) {
     uint32_t& last = tiles.seams[tile];
-    if (last == DepthTiles::kNone) {
-        tiles.seam_mask[tile] = tiles.tried[tile] = 0;
-        tiles.paired[tile] = 0;
-    }
+    if (last == DepthTiles::kNone) tiles.seam_mask[tile] = tiles.tried[tile] = 0;
     if (last == DepthTiles::kNone || tiles.chunks[last].count == SeamChunk::kMost) {
         const uint32_t before = last == DepthTiles::kNone ? 0 : tiles.chunks[last].before + SeamChunk::kMost;
         SeamChunk& chunk = tiles.chunks.emplace_back();

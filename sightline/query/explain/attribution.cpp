@@ -31,7 +31,6 @@ PixelRect drawAlone(const RecordedTraversal& from, std::span<const uint32_t> dra
 
 /// Covers what can be covered of the pixels that polygons of the instance share.
 void resolveTile(DepthTiles& tiles, uint32_t tile, uint64_t window) {
-    if (window & tiles.seamBits(tile) & ~tiles.coveredBits(tile)) pairSeams(tiles, tile);
     for (uint64_t open = window & tiles.seamBits(tile) & ~tiles.coveredBits(tile); open; open &= open - 1)
         resolveSeam(tiles, tile, std::countr_zero(open), kFarthest);
 }

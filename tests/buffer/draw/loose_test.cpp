@@ -95,7 +95,8 @@ TEST(LooseClusters, TurnFrontFacesAboutInAMirror) {
             solid.transform[0][0] = -1.0;
             turned += static_cast<double>(coveredBy(solid, smallView(), Detail::kMasked, seed));
         }
-        EXPECT_NEAR(turned, plain, 0.002 * plain);
+        // Other clusters are other soups: what polygons of one cover together is told better or worse.
+        EXPECT_NEAR(turned, plain, 0.03 * plain);
         EXPECT_GT(plain, 4000.0);
     }
 }
@@ -105,7 +106,7 @@ TEST(LooseClusters, AreDrawnFarFromTheOriginToo) {
     Soup soup;
     soup.size = 0.4f;
     const Solid solid = makeSoup(random, soup);
-    const double home = static_cast<double>(coveredBy(solid, smallView(), Detail::kMasked, 32));
+    const double home = static_cast<double>(coveredBy(solid, smallView(), Detail::kFull, 32));
     for (const double distance : {1e3, 1e6, 1e9}) {
         Solid moved = solid;
         View view = smallView();
@@ -113,7 +114,7 @@ TEST(LooseClusters, AreDrawnFarFromTheOriginToo) {
         view.view = lookAt(there, there + glm::dvec3(0, 0, -1), {0, 1, 0});
         moved.transform[3] = glm::dvec4(there, 1.0);
         Drawing drawing(view);
-        drawing.draw({moved});
+        drawing.drawAndResolve({moved});
         EXPECT_NEAR(static_cast<double>(drawing.coveredPixels()), home, 0.02 * home) << distance;
     }
     // The mesh's own coordinates are large: what floats round is in the vertices, not in the drawing.
@@ -121,7 +122,7 @@ TEST(LooseClusters, AreDrawnFarFromTheOriginToo) {
     Random again(32);
     Solid far = makeSoup(again, soup);
     far.transform[3] = glm::dvec4(-glm::dvec3(soup.home), 1.0);
-    EXPECT_NEAR(static_cast<double>(coveredBy(far, smallView(), Detail::kMasked, 33)), home, 0.02 * home);
+    EXPECT_NEAR(static_cast<double>(coveredBy(far, smallView(), Detail::kFull, 33)), home, 0.02 * home);
 }
 
 TEST(LooseClusters, HoldInParallelProjection) {
