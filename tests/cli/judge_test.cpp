@@ -80,8 +80,8 @@ std::set<uint64_t> seenAt(const tools::Scene& scene, const View& view, double x,
                 const bool front = (det > 0) == (glm::determinant(glm::dmat3(object.transform)) > 0);
                 if (det == 0 || (!front && !scene.materials[primitive.material].double_sided)) continue;
                 const double u = glm::dot(s, p) / det, v = glm::dot(along, q) / det, d = glm::dot(b, q) / det;
-                const double slack = 1e-9;
-                if (u < -slack || v < -slack || u + v > 1 + slack || d < -slack) continue;
+                const double slack = 1e-9, rounding = 1e-6;  // the witnesses' rays are floats
+                if (u < -rounding || v < -rounding || u + v > 1 + rounding || d < -slack) continue;
                 hits.emplace_back(d, object.key);
                 const bool inside = u > slack && v > slack && u + v < 1 - slack;
                 if (inside && !mesh.deforms && scene.materials[primitive.material].hides())
@@ -133,7 +133,8 @@ TEST_F(Judge, ConvictsWhateverVisibleIsLeftOut) {
                 else if (!std::binary_search(unseen.begin(), unseen.end(), key)) expected.back().insert(key);
         }
         writeAnswers(drawn);
-        const json said = judge(name + " --cameras path.json --size 192x108 --answers drawn.csv", 1);
+        const bool any = std::any_of(expected.begin(), expected.end(), [](const auto& keys) { return !keys.empty(); });
+        const json said = judge(name + " --cameras path.json --size 192x108 --answers drawn.csv", any);
         const Result<tools::CameraPath> path = tools::readCameraPath(this->path("path.json"));
         ASSERT_TRUE(path.ok());
         for (size_t i = 0; i < expected.size(); ++i) {
