@@ -43,7 +43,7 @@ void makePlane(const double* x, const double* y, const double* d, double area2, 
 
 /// For a sliver, of which not even the winding is certain: the band around its longest side.
 void makeBand(const double* x, const double* y, int count, double area2, double slack, RasterPolygon& out) {
-    out.covers = out.complete = false;
+    out.complete = false;
     out.edges = 0;
     double longest = kShortestEdge;
     int at = -1;
@@ -103,7 +103,6 @@ bool makeRasterPolygon(const double* x, const double* y, const double* d, int co
     out.error = position_error + 0x1p-30 + 0x1p-48 * extent;
 
     out.edges = 0;
-    out.covers = x_max - x_min >= 1.0 - slack && y_max - y_min >= 1.0 - slack;
     double area2 = 0, best = 0, perimeter = 0;
     int widest = 2;
     for (int i = 2; i < count; ++i) {
@@ -118,8 +117,7 @@ bool makeRasterPolygon(const double* x, const double* y, const double* d, int co
         const int j = i + 1 < count ? i + 1 : 0;
         const double length = std::abs(x[j] - x[i]) + std::abs(y[j] - y[i]);
         perimeter += length;
-        if (length < kShortestEdge) out.covers = false;
-        else out.edge[out.edges++] = makeEdge(x[i], y[i], x[j], y[j], length);
+        if (length >= kShortestEdge) out.edge[out.edges++] = makeEdge(x[i], y[i], x[j], y[j], length);
     }
     out.planar = false;
     out.complete = out.edges == count;
@@ -129,8 +127,6 @@ bool makeRasterPolygon(const double* x, const double* y, const double* d, int co
         makePlane(x, y, d, best, widest, out);
         // A quadrangle is flat but for this much, and no farther from the plane anywhere.
         for (int i = 0; i < count; ++i) depth_error_sum += std::abs(out.d0 + out.dx * x[i] + out.dy * y[i] - d[i]);
-    } else {
-        out.covers = false;
     }
     SIGHTLINE_DEBUG_ASSERT(out.edges <= 4 && (!out.complete || out.edges == count));
     out.depth_error = static_cast<float>(depth_error_sum * (1.0 + 0x1p-20));

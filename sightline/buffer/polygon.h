@@ -20,7 +20,6 @@ struct EdgeFunction {
 struct RasterPolygon {
     EdgeFunction edge[4];
     int edges = 0;
-    bool covers = false;    ///< may cover whole pixels; else it only touches them
     bool complete = false;  ///< edge i is the side from corner i to the next, for all of them, and bounds the inside
     double d0 = 0, dx = 0, dy = 0;  ///< nearness = d0 + dx x + dy y, where `planar`
     bool planar = false;

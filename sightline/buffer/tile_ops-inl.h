@@ -62,13 +62,6 @@ HWY_INLINE TilePlane planeInTile(const BufferPlane& plane, uint32_t column, uint
             plane.floor};
 }
 
-/// A plane's depths at the pixels of one row whose offsets from the tile's centre are given.
-template <class D, class Vec>
-HWY_INLINE Vec planeDepth(D d, const TilePlane& plane, int row, Vec x) {
-    const auto base = hn::Set(d, plane.d + plane.dy * (static_cast<float>(row) - 3.5f));
-    return hn::Max(hn::Add(base, hn::Mul(hn::Set(d, plane.dx), x)), hn::Set(d, plane.floor));
-}
-
 /// A plane's depths at the pixels of a tile from the i-th on.
 template <class D>
 HWY_INLINE hn::Vec<D> planeDepths(D d, const TilePlane& plane, size_t i) {

@@ -13,10 +13,10 @@ namespace sightline {
 /// Polygons of a cluster that lie in one plane, as nearly as floats tell, are a group: they face an eye together, have one
 /// depth, and their inner edges are gone. A group is counted from its part's first one. Plain data; geom/make_plane_mesh.h makes it.
 struct PlaneMesh {
-    static constexpr uint32_t kMostVertices = 240, kMostGroups = 120, kMostEdges = 448;  ///< of a part
-    static constexpr uint8_t kNoGroup = 127;                                             ///< beside an edge
-    static constexpr uint32_t kLeastCost = 8;                                            ///< of a part
-    static constexpr size_t kPadding = 16;  ///< arrays of a part begin at multiples of it
+    static constexpr uint32_t kMostGroups = 120, kMostEdges = 448;  ///< of a part
+    static constexpr uint8_t kNoGroup = 127;                        ///< beside an edge
+    static constexpr uint32_t kLeastCost = 8;                       ///< of a part
+    static constexpr size_t kPadding = 16;                          ///< arrays of a part begin at multiples of it
 
     /// What is drawn at once: a cluster of the occluder, or where that has too many groups or edges, some of its polygons.
     struct Part {

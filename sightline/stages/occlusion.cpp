@@ -17,7 +17,7 @@ bool isHiddenHere(TraversalState& state, PixelRect rect, Seams seams, const Occl
 
 bool mayHideEnough(const Screen& screen, const PixelRect& rect, uint32_t cost) {
     // Chosen on the ten scenes of bench/peers: what is smaller takes more to draw than it saves.
-    constexpr int64_t kPixelsOfCost = 2, kPartsOfImage = 330;
+    constexpr int64_t kPixelsOfCost = 2, kPartsOfImage = 1200;
     SIGHTLINE_DEBUG_ASSERT(rect.x0 <= rect.x1 && rect.y0 <= rect.y1);
     const int64_t area = int64_t{rect.x1 - rect.x0 + 1} * (rect.y1 - rect.y0 + 1);
     return area >= kPixelsOfCost * cost && area * kPartsOfImage >= int64_t{screen.width} * screen.height;

@@ -133,35 +133,6 @@ bool resolveHiddenKernel(DepthTiles& tiles, const OccludeePolygon& polygon, cons
         });
 }
 
-using D8 = hn::CappedTag<double, 8>;
-
-void projectOccludeeKernel(const Screen& object, const float* xs, const float* ys, const float* zs, uint32_t count,
-                           OccludeeVertices& out) {
-    const D8 d;
-    const hn::Rebind<float, D8> f;
-    const auto row = [&](const glm::dvec4& r, auto x, auto y, auto z) HWY_ATTR {
-        return hn::Add(hn::Add(hn::Mul(hn::Set(d, r.x), x), hn::Mul(hn::Set(d, r.y), y)),
-                       hn::Add(hn::Mul(hn::Set(d, r.z), z), hn::Set(d, r.w)));
-    };
-    const auto none = hn::Set(d, std::numeric_limits<double>::quiet_NaN());
-    const auto behind = hn::Set(d, OccludeeVertices::kBehind);
-    const auto guard = hn::Set(d, object.near_guard);
-    for (size_t i = 0; i < count; i += hn::Lanes(d)) {
-        const auto x = hn::PromoteTo(d, hn::LoadU(f, xs + i));
-        const auto y = hn::PromoteTo(d, hn::LoadU(f, ys + i));
-        const auto z = hn::PromoteTo(d, hn::LoadU(f, zs + i));
-        const auto w = row(object.w, x, y, z);
-        const auto near = row(object.near, x, y, z);
-        const auto drawn = hn::And(hn::Ge(near, guard), hn::Gt(w, hn::Zero(d)));
-        const auto inverse = hn::Div(hn::Set(d, 1.0), w);
-        const auto nearness = hn::Mul(row(object.d, x, y, z), inverse);
-        hn::StoreU(hn::IfThenElse(drawn, hn::Mul(row(object.x, x, y, z), inverse), none), d, out.x + i);
-        hn::StoreU(hn::Mul(row(object.y, x, y, z), inverse), d, out.y + i);
-        const auto undrawn = hn::IfThenElse(hn::Lt(near, hn::Neg(guard)), behind, none);
-        hn::StoreU(hn::IfThenElse(drawn, nearness, undrawn), d, out.d + i);
-    }
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace sightline
 HWY_AFTER_NAMESPACE();
@@ -209,7 +180,6 @@ void boundDepth(const double* x, const double* y, const double* d, int count, do
 HWY_EXPORT(occludeePixelsKernel);
 HWY_EXPORT(lookAtKernel);
 HWY_EXPORT(resolveHiddenKernel);
-HWY_EXPORT(projectOccludeeKernel);
 
 Sight makeOccludeePolygon(const double* x, const double* y, const double* d, int count, double position_error,
                           double depth_error, uint32_t width, uint32_t height, OccludeePolygon& out) {
@@ -288,12 +258,6 @@ bool resolveHidden(DepthTiles& tiles, const OccludeePolygon& polygon, const Occl
 bool isPolygonHidden(DepthTiles& tiles, const OccludeePolygon& polygon, const OccludeeBox* box) {
     const Cover cover = lookAt(tiles, polygon, box);
     return cover == Cover::kUndecided ? resolveHidden(tiles, polygon, box) : cover != Cover::kOpen;
-}
-
-void projectOccludee(const Screen& object, const float* x, const float* y, const float* z, uint32_t count,
-                     OccludeeVertices& out) {
-    SIGHTLINE_DEBUG_ASSERT(count <= OccluderCluster::kMaxVertices);
-    HWY_DYNAMIC_DISPATCH(projectOccludeeKernel)(object, x, y, z, count, out);
 }
 
 }  // namespace sightline

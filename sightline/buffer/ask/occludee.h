@@ -66,17 +66,4 @@ bool isPolygonHidden(DepthTiles& tiles, const OccludeePolygon& polygon, const Oc
 /// The second half of isPolygonHidden(), for a polygon that lookAt() left undecided.
 bool resolveHidden(DepthTiles& tiles, const OccludeePolygon& polygon, const OccludeeBox* box = nullptr);
 
-/// Where the vertices of a cluster lie. Before the near plane x is NaN; and d is kBehind, where that is sure.
-struct OccludeeVertices {
-    static constexpr double kBehind = -std::numeric_limits<double>::infinity();
-    static constexpr size_t kMost = (OccluderCluster::kMaxVertices + 7) / 8 * 8;
-    double x[kMost], y[kMost], d[kMost];
-};
-
-/// Projects vertices, eight at a time: the arrays are padded to a multiple of 8.
-/// @param object  objectScreen() of their transform
-/// @param count   [limit: <= OccluderCluster::kMaxVertices]
-void projectOccludee(const Screen& object, const float* x, const float* y, const float* z, uint32_t count,
-                     OccludeeVertices& out);
-
 }  // namespace sightline
