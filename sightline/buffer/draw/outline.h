@@ -1,4 +1,4 @@
-// Where a cluster may be in the image, and how near, tile by tile: what is asked about an object.
+// Gives the pixels that a cluster may touch, tile by tile, and how near it may be there.
 // SPDX-License-Identifier: MIT
 #pragma once
 

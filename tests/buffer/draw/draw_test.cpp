@@ -159,10 +159,15 @@ struct Drawn {
     }
 };
 
+/// Where a longer search goes on: SIGHTLINE_FIRST_SEED.
+uint64_t firstSeed() {
+    const char* const begin = std::getenv("SIGHTLINE_FIRST_SEED");
+    return begin ? std::strtoull(begin, nullptr, 10) : 1;
+}
+
 TEST(Draw, CoversNothingThatIsOpen) {
     uint64_t pixels = 0;
-    const char* const begin = std::getenv("SIGHTLINE_FIRST_SEED");
-    const uint64_t first = begin ? std::strtoull(begin, nullptr, 10) : 1;
+    const uint64_t first = firstSeed();
     for (uint64_t seed = first; seed < first + rounds(150, 20); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Random random(seed);
@@ -210,8 +215,7 @@ struct Seen {
 
 TEST(Draw, WhatALookFindsHiddenIsHidden) {
     uint64_t hidden = 0, shown = 0, rays = 0;
-    const char* const begin = std::getenv("SIGHTLINE_FIRST_SEED");
-    const uint64_t first = begin ? std::strtoull(begin, nullptr, 10) : 1;
+    const uint64_t first = firstSeed();
     for (uint64_t seed = first; seed < first + rounds(4000, 200); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Random random(seed);

@@ -95,7 +95,7 @@ TEST(LooseClusters, TurnFrontFacesAboutInAMirror) {
             solid.transform[0][0] = -1.0;
             turned += static_cast<double>(coveredBy(solid, smallView(), Detail::kMasked, seed));
         }
-        // Other clusters are other soups: what polygons of one cover together is told better or worse.
+        // The mirrored mesh is cut into other clusters. Polygons of one cluster are drawn together, so that coverage differs a little.
         EXPECT_NEAR(turned, plain, 0.03 * plain);
         EXPECT_GT(plain, 4000.0);
     }
